@@ -1,0 +1,60 @@
+# How every target of metier is made: warnings are errors, sanitizers come from the preset.
+
+add_library(metier_warnings INTERFACE)
+add_library(metier::warnings ALIAS metier_warnings)
+target_compile_features(metier_warnings INTERFACE cxx_std_20)
+target_compile_options(metier_warnings INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
+    -Woverloaded-virtual -Werror>)
+
+set(METIER_SANITIZE "" CACHE STRING "Sanitizers for everything, as -fsanitize= takes them")
+if(METIER_SANITIZE)
+    target_compile_options(metier_warnings INTERFACE
+        -fsanitize=${METIER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(metier_warnings INTERFACE -fsanitize=${METIER_SANITIZE})
+endif()
+
+# metier_add_library(<name> SOURCES ... [PUBLIC libs] [PRIVATE libs])
+# A library of libs/<name>: target metier_<name>, alias metier::<name>, headers in include/.
+# Without SOURCES it is header-only.
+function(metier_add_library name)
+    cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    set(target metier_${name})
+    if(arg_SOURCES)
+        add_library(${target} STATIC ${arg_SOURCES})
+        target_include_directories(${target} PUBLIC include PRIVATE src)
+        target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} metier::warnings)
+        target_compile_features(${target} PUBLIC cxx_std_20)
+    else()
+        add_library(${target} INTERFACE)
+        target_include_directories(${target} INTERFACE include)
+        target_link_libraries(${target} INTERFACE ${arg_PUBLIC})
+    endif()
+    add_library(metier::${name} ALIAS ${target})
+endfunction()
+
+# metier_add_test(<name> SOURCES ... LIBRARIES ... [LABELS ...] [TIMEOUT seconds])
+# A GoogleTest program; each of its tests is a ctest of its own.
+function(metier_add_test name)
+    if(NOT METIER_TESTS)
+        return()
+    endif()
+    cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+    if(NOT arg_TIMEOUT)
+        set(arg_TIMEOUT 60)
+    endif()
+    add_executable(${name} ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gmock_main metier::warnings)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
+        PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+endfunction()
+
+# metier_add_benchmark(<name> SOURCES ... LIBRARIES ...): a program of the target `benchmarks`.
+function(metier_add_benchmark name)
+    if(NOT METIER_BENCHMARKS)
+        return()
+    endif()
+    cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+    add_executable(${name} ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} benchmark::benchmark metier::warnings)
+endfunction()
