@@ -1,0 +1,42 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+
+namespace metier {
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+using UtcTime = std::chrono::system_clock::time_point;
+
+/// Where the time comes from, so that tests can move it by hand.
+///
+/// Threading: any thread.
+class Clock {
+public:
+    virtual ~Clock() = default;
+    /// Monotonic: for every duration and deadline. Never jumps.
+    virtual SteadyTime now() const noexcept = 0;
+    /// Wall clock: for time stamps only. May jump.
+    virtual UtcTime utcNow() const noexcept = 0;
+};
+
+/// The machine's own clocks.
+class SystemClock final : public Clock {
+public:
+    SteadyTime now() const noexcept override { return std::chrono::steady_clock::now(); }
+    UtcTime utcNow() const noexcept override { return std::chrono::system_clock::now(); }
+};
+
+/// A clock that stands until it is moved; both its times move together.
+class ManualClock final : public Clock {
+public:
+    SteadyTime now() const noexcept override;
+    UtcTime utcNow() const noexcept override;
+    /// Moves both times forward.
+    void advance(std::chrono::nanoseconds step) noexcept;
+
+private:
+    std::atomic<std::chrono::nanoseconds::rep> elapsed_ns_{0};
+};
+
+}  // namespace metier

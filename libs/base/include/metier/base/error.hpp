@@ -1,0 +1,57 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+
+namespace metier {
+
+/// What went wrong, chosen by what the caller can do about it.
+/// One table in opcua_skill maps these to StatusCodes.
+enum class Errc {
+    invalid_argument,      ///< wrong size, not finite, malformed: correct the call
+    type_mismatch,         ///< a value of another type than the parameter has
+    out_of_range,          ///< beyond a stated limit: choose another value
+    unreachable,           ///< no joint position reaches the pose within the limits
+    not_found,             ///< the named thing does not exist
+    already_exists,        ///< the name or id is taken
+    invalid_state,         ///< not allowed in the current state: Reset or wait
+    locked,                ///< another client holds it: wait or ask its owner
+    resource_unavailable,  ///< the device is busy with another skill
+    access_denied,         ///< the user may not do this
+    timeout,               ///< the deadline passed
+    connection_lost,       ///< the peer is gone: reconnect
+    device_fault,          ///< the device refused or stopped: see its own panel
+    limit_violated,        ///< a limit was exceeded during a motion
+    not_supported,         ///< the peer or device cannot do this
+    cancelled,             ///< ended on request
+    internal,              ///< a defect of this program
+};
+
+/// The enumerator's name, for logs and JSON.
+std::string_view toString(Errc code) noexcept;
+
+/// A failure: `code` is for the program, `message` for the person, with value, limit and unit.
+struct Error {
+    Errc code = Errc::internal;
+    std::string message;
+};
+
+/// A value, or why there is none.
+template <typename T = void>
+using Result = tl::expected<T, Error>;
+
+/// A failed Result: `return fail(Errc::not_found, "no axis 7");`
+inline tl::unexpected<Error> fail(Errc code, std::string message) {
+    return tl::unexpected<Error>(Error{code, std::move(message)});
+}
+
+/// A failed Result that passes on another's error: `return fail(plan.error());`
+inline tl::unexpected<Error> fail(Error error) {
+    return tl::unexpected<Error>(std::move(error));
+}
+
+}  // namespace metier

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+namespace metier {
+
+/// Hands the newest value from one thread to another; older ones are overwritten.
+///
+/// Threading: one writer, one reader. Neither locks, waits or allocates, so a cycle thread may be
+/// either. For several readers give each its own.
+template <typename T>
+class LatestValue {
+    static_assert(std::is_trivially_copyable_v<T>, "copied between threads byte by byte");
+
+public:
+    explicit LatestValue(const T& initial = T{}) { buffers_.fill(initial); }
+
+    /// Publishes a value. Writer only.
+    void write(const T& value) noexcept {
+        buffers_[write_index_] = value;
+        write_index_ = middle_.exchange(write_index_ | kFresh, std::memory_order_acq_rel) & kIndex;
+    }
+
+    /// The newest published value, the initial one before that. Reader only.
+    /// The reference holds until the next call.
+    const T& read() noexcept {
+        if (hasNew()) {
+            read_index_ = middle_.exchange(read_index_, std::memory_order_acq_rel) & kIndex;
+        }
+        return buffers_[read_index_];
+    }
+
+    /// Whether a value came since the last read(). Reader only.
+    bool hasNew() const noexcept { return (middle_.load(std::memory_order_acquire) & kFresh) != 0; }
+
+private:
+    static constexpr std::uint8_t kFresh = 4;
+    static constexpr std::uint8_t kIndex = 3;
+
+    std::array<T, 3> buffers_{};
+    std::atomic<std::uint8_t> middle_{1};
+    std::uint8_t write_index_ = 0;
+    std::uint8_t read_index_ = 2;
+};
+
+}  // namespace metier

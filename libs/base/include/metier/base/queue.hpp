@@ -1,0 +1,65 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "metier/base/clock.hpp"
+
+namespace metier {
+
+/// A bounded first-in-first-out queue between threads.
+///
+/// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
+template <typename T>
+class Queue {
+public:
+    /// \param capacity most elements it holds, > 0
+    explicit Queue(std::size_t capacity) : capacity_(capacity) {}
+
+    /// Appends, or returns false when the queue is full or closed. Does not wait.
+    bool tryPush(T value) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (closed_ || values_.size() >= capacity_) {
+                return false;
+            }
+            values_.push_back(std::move(value));
+        }
+        changed_.notify_one();
+        return true;
+    }
+
+    /// The oldest element; nothing if none came before `deadline` or the queue is closed and empty.
+    std::optional<T> popUntil(SteadyTime deadline) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_until(lock, deadline, [this] { return closed_ || !values_.empty(); });
+        if (values_.empty()) {
+            return std::nullopt;
+        }
+        std::optional<T> value(std::move(values_.front()));
+        values_.pop_front();
+        return value;
+    }
+
+    /// Refuses further elements and wakes every waiter; what is queued can still be taken.
+    void close() {
+        {
+            const std::lock_guard lock(mutex_);
+            closed_ = true;
+        }
+        changed_.notify_all();
+    }
+
+private:
+    const std::size_t capacity_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<T> values_;
+    bool closed_ = false;
+};
+
+}  // namespace metier

@@ -1,0 +1,114 @@
+#include "metier/configuration/cell.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "metier/configuration/toml_file.hpp"
+
+namespace metier::configuration {
+namespace {
+
+constexpr std::int64_t kMaxPort = 65535;
+
+std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
+                             const std::filesystem::path& folder) {
+    const auto text = table.text(key);
+    if (text.empty()) {
+        return {};
+    }
+    auto path = std::filesystem::absolute(folder / text).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        table.reject(key, fmt::format("no such file: {}", path.string()));
+    }
+    return path;
+}
+
+ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
+    ArmServer arm;
+    arm.model = pathIn(table, "model", folder);
+    arm.nodeset = table.text("nodeset");
+    arm.skills = table.texts("skills");
+    return arm;
+}
+
+ServerConfig readServer(const TomlTable& table, const std::filesystem::path& folder) {
+    ServerConfig server;
+    server.name = table.text("name");
+    server.port = static_cast<std::uint16_t>(table.integerOr("port", 0, 0, kMaxPort));
+    server.address = table.textOr("address", "127.0.0.1");
+    server.publish_at_once = table.flagOr("publish_at_once", true);
+    const auto kind = table.text("kind");
+    if (kind == "arm") {
+        server.kind = ServerKind::arm;
+        server.arm = readArm(table, folder);
+    } else if (kind == "move") {
+        server.kind = ServerKind::move;
+        server.move.robot = table.text("robot");
+    } else if (!kind.empty()) {
+        table.reject("kind", fmt::format("\"{}\" is not one of: arm, move", kind));
+    }
+    return server;
+}
+
+bool isAddress(const std::string& robot) {
+    return robot.starts_with("opc.tcp://");
+}
+
+void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& tables) {
+    std::set<std::string> names;
+    std::set<std::uint16_t> ports;
+    for (std::size_t i = 0; i < cell.servers.size(); ++i) {
+        const auto& server = cell.servers[i];
+        if (!server.name.empty() && !names.insert(server.name).second) {
+            tables[i].reject("name", fmt::format("\"{}\" is taken by a server above", server.name));
+        }
+        if (server.port != 0 && !ports.insert(server.port).second) {
+            tables[i].reject("port", fmt::format("{} is taken by a server above", server.port));
+        }
+        if (server.kind != ServerKind::move || isAddress(server.move.robot)) {
+            continue;
+        }
+        const auto* robot = cell.find(server.move.robot);
+        if (!server.move.robot.empty() && (robot == nullptr || robot->kind != ServerKind::arm)) {
+            tables[i].reject("robot", fmt::format("\"{}\" is neither a server of kind arm in this "
+                                                  "file nor an opc.tcp:// address",
+                                                  server.move.robot));
+        }
+    }
+}
+
+}  // namespace
+
+const ServerConfig* CellConfig::find(const std::string& server) const {
+    const auto found = std::find_if(servers.begin(), servers.end(),
+                                    [&](const auto& s) { return s.name == server; });
+    return found == servers.end() ? nullptr : &*found;
+}
+
+Result<CellConfig> loadCell(const std::filesystem::path& file) {
+    auto toml = TomlFile::load(file);
+    if (!toml) {
+        return fail(toml.error());
+    }
+    const auto root = toml->root();
+    CellConfig cell;
+    cell.file = std::filesystem::absolute(file);
+    cell.name = root.text("name");
+    const auto tables = root.tables("server");
+    for (const auto& table : tables) {
+        cell.servers.push_back(readServer(table, cell.file.parent_path()));
+    }
+    if (tables.empty()) {
+        root.reject("server", "a cell needs at least one [[server]]");
+    }
+    checkReferences(cell, tables);
+    if (auto checked = toml->finish(); !checked) {
+        return fail(checked.error());
+    }
+    return cell;
+}
+
+}  // namespace metier::configuration

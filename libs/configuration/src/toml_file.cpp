@@ -1,0 +1,269 @@
+#include "metier/configuration/toml_file.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace metier::configuration {
+
+namespace {
+
+constexpr std::string_view kText = "a text";
+constexpr std::string_view kNumber = "a finite number";
+constexpr std::string_view kWholeNumber = "a whole number";
+
+}  // namespace
+
+struct TomlFile::Impl {
+    std::string name;
+    toml::table root;
+    // Line numbers order the report as a reader goes through the file.
+    std::multimap<toml::source_index, std::string> problems = {};
+    std::vector<std::unique_ptr<const TomlTable::Impl>> tables = {};
+
+    // Out of line: TomlTable::Impl is complete only below.
+    Impl(std::string file_name, toml::table table);
+    ~Impl();
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    TomlTable open(const toml::table* table, std::string path);
+
+    void note(const toml::source_region& where, std::string_view key, std::string_view why) {
+        problems.emplace(where.begin.line,
+                         fmt::format("{}:{}: {}: {}", name, where.begin.line, key, why));
+    }
+};
+
+struct TomlTable::Impl {
+    TomlFile::Impl* file = nullptr;
+    const toml::table* table = nullptr;
+    std::string path;
+    mutable std::set<std::string, std::less<>> asked = {};
+
+    const toml::node* find(std::string_view key) const {
+        asked.emplace(key);
+        return table == nullptr ? nullptr : table->get(key);
+    }
+
+    std::string fullName(std::string_view key) const {
+        return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+    }
+
+    const toml::node* require(std::string_view key, std::string_view kind) const {
+        const auto* node = find(key);
+        if (node == nullptr && table != nullptr) {
+            file->note(table->source(), fullName(key), fmt::format("missing; needs {}", kind));
+        }
+        return node;
+    }
+
+    template <typename T>
+    T valueOf(const toml::node* node, std::string_view key, std::string_view kind) const {
+        if (node == nullptr) {
+            return T{};
+        }
+        if (const auto value = node->value<T>()) {
+            return *value;
+        }
+        file->note(node->source(), fullName(key), fmt::format("is not {}", kind));
+        return T{};
+    }
+
+    template <typename T>
+    std::vector<T> valuesOf(std::string_view key, std::string_view kind) const {
+        std::vector<T> values;
+        const auto* node = require(key, kind);
+        if (node == nullptr) {
+            return values;
+        }
+        const auto* array = node->as_array();
+        if (array == nullptr) {
+            file->note(node->source(), fullName(key), fmt::format("is not {}", kind));
+            return values;
+        }
+        for (const auto& element : *array) {
+            values.push_back(valueOf<T>(&element, key, kind));
+        }
+        return values;
+    }
+
+    TomlTable child(const toml::table* found, std::string child_path) const {
+        return file->open(found, std::move(child_path));
+    }
+
+    void reportUnknownKeys() const {
+        if (table == nullptr) {
+            return;
+        }
+        for (const auto& [key, node] : *table) {
+            if (!asked.contains(key.str())) {
+                file->note(key.source(), fullName(key.str()),
+                           fmt::format("unknown key; known here: {}", fmt::join(asked, ", ")));
+            }
+        }
+    }
+};
+
+TomlFile::Impl::Impl(std::string file_name, toml::table table)
+    : name(std::move(file_name)), root(std::move(table)) {}
+
+TomlFile::Impl::~Impl() = default;
+
+TomlTable TomlFile::Impl::open(const toml::table* table, std::string path) {
+    tables.push_back(
+        std::make_unique<TomlTable::Impl>(TomlTable::Impl{this, table, std::move(path)}));
+    return TomlTable(tables.back().get());
+}
+
+bool TomlTable::has(std::string_view key) const {
+    return impl_->find(key) != nullptr;
+}
+
+std::string TomlTable::text(std::string_view key) const {
+    return impl_->valueOf<std::string>(impl_->require(key, kText), key, kText);
+}
+
+double TomlTable::number(std::string_view key) const {
+    const auto value = impl_->valueOf<double>(impl_->require(key, kNumber), key, kNumber);
+    if (!std::isfinite(value)) {
+        reject(key, "is not a finite number");
+        return 0.0;
+    }
+    return value;
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key) const {
+    auto values = impl_->valuesOf<double>(key, "a list of finite numbers");
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+        reject(key, "holds a number that is not finite");
+        values.clear();
+    }
+    return values;
+}
+
+std::vector<std::string> TomlTable::texts(std::string_view key) const {
+    return impl_->valuesOf<std::string>(key, "a list of texts");
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+    const auto* node = impl_->require(key, "a table");
+    const auto* found = node == nullptr ? nullptr : node->as_table();
+    if (node != nullptr && found == nullptr) {
+        reject(key, "is not a table");
+    }
+    return impl_->child(found, impl_->fullName(key));
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+    std::vector<TomlTable> result;
+    const auto* node = impl_->find(key);
+    if (node == nullptr) {
+        return result;
+    }
+    if (!node->is_array_of_tables()) {
+        reject(key, fmt::format("is not a list of tables; write [[{}]]", impl_->fullName(key)));
+        return result;
+    }
+    for (const auto& element : *node->as_array()) {
+        const auto path = fmt::format("{}[{}]", impl_->fullName(key), result.size());
+        result.push_back(impl_->child(element.as_table(), path));
+    }
+    return result;
+}
+
+std::string TomlTable::textOr(std::string_view key, std::string fallback) const {
+    return has(key) ? text(key) : std::move(fallback);
+}
+
+double TomlTable::numberOr(std::string_view key, double fallback) const {
+    return has(key) ? number(key) : fallback;
+}
+
+std::int64_t TomlTable::integerOr(std::string_view key, std::int64_t fallback, std::int64_t low,
+                                  std::int64_t high) const {
+    const auto* node = impl_->find(key);
+    if (node == nullptr) {
+        return fallback;
+    }
+    const auto value = impl_->valueOf<std::int64_t>(node, key, kWholeNumber);
+    if (node->is_integer() && (value < low || value > high)) {
+        reject(key, fmt::format("{} is not within {} to {}", value, low, high));
+        return fallback;
+    }
+    return value;
+}
+
+bool TomlTable::flagOr(std::string_view key, bool fallback) const {
+    const auto* node = impl_->find(key);
+    return node == nullptr ? fallback : impl_->valueOf<bool>(node, key, "true or false");
+}
+
+void TomlTable::reject(std::string_view key, std::string_view why) const {
+    const auto* node = impl_->find(key);
+    if (node == nullptr && impl_->table == nullptr) {
+        return;  // the missing table is noted already
+    }
+    impl_->file->note(node == nullptr ? impl_->table->source() : node->source(),
+                      impl_->fullName(key), why);
+}
+
+std::string TomlTable::place() const {
+    const auto line = impl_->table == nullptr ? 1 : impl_->table->source().begin.line;
+    return fmt::format("{}:{}", impl_->file->name, line);
+}
+
+Result<TomlFile> TomlFile::load(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        return fail(Errc::not_found, fmt::format("{}: no such file", path.string()));
+    }
+    try {
+        return TomlFile(std::make_unique<Impl>(path.string(), toml::parse_file(path.string())));
+    } catch (const toml::parse_error& problem) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}:{}:{}: {}", path.string(), problem.source().begin.line,
+                                problem.source().begin.column, problem.description()));
+    }
+}
+
+Result<TomlFile> TomlFile::parse(std::string_view text, std::string name) {
+    try {
+        return TomlFile(std::make_unique<Impl>(name, toml::parse(text)));
+    } catch (const toml::parse_error& problem) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}:{}:{}: {}", name, problem.source().begin.line,
+                                problem.source().begin.column, problem.description()));
+    }
+}
+
+TomlFile::TomlFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+TomlFile::TomlFile(TomlFile&&) noexcept = default;
+TomlFile& TomlFile::operator=(TomlFile&&) noexcept = default;
+TomlFile::~TomlFile() = default;
+
+TomlTable TomlFile::root() const {
+    return impl_->open(&impl_->root, "");
+}
+
+Result<void> TomlFile::finish() const {
+    for (const auto& table : impl_->tables) {
+        table->reportUnknownKeys();
+    }
+    if (impl_->problems.empty()) {
+        return {};
+    }
+    std::string text;
+    for (const auto& [line, problem] : impl_->problems) {
+        text += (text.empty() ? "" : "\n") + problem;
+    }
+    return fail(Errc::invalid_argument, std::move(text));
+}
+
+}  // namespace metier::configuration

@@ -1,0 +1,85 @@
+#include "metier/configuration/toml_file.hpp"
+
+#include <gmock/gmock.h>
+
+namespace metier::configuration {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TomlFile parsed(std::string_view text) {
+    return std::move(TomlFile::parse(text, "a.toml").value());
+}
+
+TEST(TomlFile, ReadsValuesOfEachType) {
+    const auto file = parsed(R"(
+name = "ur5"
+cycle = 0.008
+axes = 6
+loud = true
+limits = [1.0, 2]
+tools = ["flange"]
+[frame]
+x = 1
+)");
+    const auto root = file.root();
+    EXPECT_EQ(root.text("name"), "ur5");
+    EXPECT_DOUBLE_EQ(root.number("cycle"), 0.008);
+    EXPECT_EQ(root.integerOr("axes", 0, 1, 7), 6);
+    EXPECT_TRUE(root.flagOr("loud", false));
+    EXPECT_THAT(root.numbers("limits"), ElementsAre(1.0, 2.0));
+    EXPECT_THAT(root.texts("tools"), ElementsAre("flange"));
+    EXPECT_DOUBLE_EQ(root.table("frame").number("x"), 1.0);
+    EXPECT_TRUE(file.finish());
+}
+
+TEST(TomlFile, NamesFileLineAndColumnOfASyntaxError) {
+    const auto file = TomlFile::parse("name = \n", "a.toml");
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().code, Errc::invalid_argument);
+    EXPECT_THAT(file.error().message, HasSubstr("a.toml:1:"));
+}
+
+TEST(TomlFile, NamesLineAndKeyOfEverythingWrong) {
+    const auto file = parsed("name = 3\n\n[frame]\nx = \"wide\"\n");
+    const auto root = file.root();
+    root.text("name");
+    root.table("frame").number("x");
+    root.number("cycle");
+    const auto outcome = file.finish();
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("a.toml:1: name: is not a text"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("a.toml:4: frame.x: is not a finite number"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("cycle: missing"));
+}
+
+TEST(TomlFile, RefusesAKeyThatNobodyKnows) {
+    const auto file = parsed("name = \"a\"\nnmae = \"b\"\n");
+    file.root().text("name");
+    const auto outcome = file.finish();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().message, "a.toml:2: nmae: unknown key; known here: name");
+}
+
+TEST(TomlFile, RefusesNumbersThatAreNotFiniteOrOutOfRange) {
+    const auto file = parsed("a = nan\nb = [inf]\nc = 9\n");
+    const auto root = file.root();
+    root.number("a");
+    root.numbers("b");
+    EXPECT_EQ(root.integerOr("c", 1, 0, 5), 1);
+    const auto outcome = file.finish();
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("a.toml:1: a:"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("a.toml:2: b:"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("a.toml:3: c: 9 is not within 0 to 5"));
+}
+
+TEST(TomlFile, TellsThatAFileIsMissing) {
+    const auto file = TomlFile::load("/nonexistent/a.toml");
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().code, Errc::not_found);
+}
+
+}  // namespace
+}  // namespace metier::configuration
