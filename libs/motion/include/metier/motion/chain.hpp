@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "metier/geometry/pose.hpp"
+#include "metier/motion/joint_vector.hpp"
+
+namespace metier::motion {
+
+/// What one axis may do. Positions [rad], the rest [rad/s], [rad/s2], [rad/s3] and > 0.
+struct JointLimits {
+    double lower = 0;
+    double upper = 0;
+    double velocity = 0;
+    double acceleration = 0;
+    double jerk = 0;
+};
+
+/// A revolute joint and where it sits.
+struct JointDescription {
+    std::string name;
+    /// Joint frame in the frame of the joint before (of the base for axis 1), at joint position 0.
+    geometry::Pose parent_from_joint;
+    /// Turning axis in the joint frame; a unit vector.
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+    JointLimits limits;
+};
+
+/// What the tool frame's origin and orientation may do along a path; all > 0.
+struct CartesianLimits {
+    double velocity = 0;              ///< [m/s]
+    double acceleration = 0;          ///< [m/s2]
+    double jerk = 0;                  ///< [m/s3]
+    double angular_velocity = 0;      ///< [rad/s]
+    double angular_acceleration = 0;  ///< [rad/s2]
+    double angular_jerk = 0;          ///< [rad/s3]
+};
+
+/// A named frame on the flange, with what it weighs for the driver.
+struct ToolFrame {
+    std::string name;
+    geometry::Pose flange_from_tool;
+    double mass = 0;                                           ///< [kg]
+    Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< in the flange frame [m]
+};
+
+/// A robot as a server publishes it and a client reads it back: enough to plan with.
+struct ChainDescription {
+    std::vector<JointDescription> joints;  ///< 1 to kMaxAxes
+    geometry::Pose last_from_flange;       ///< flange in the last joint's frame
+    CartesianLimits cartesian_limits;
+    JointVector home;              ///< a usable, non-singular working position [rad]
+    std::vector<ToolFrame> tools;  ///< besides "flange", which always exists
+    double cycle_time = 0.008;     ///< of the controller [s], > 0
+};
+
+}  // namespace metier::motion

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "metier/motion/trajectory.hpp"
+
+namespace metier::motion {
+
+/// A trajectory while it runs: gives the set-point of each cycle, brakes and goes on along the
+/// path.
+///
+/// Stop, resume and override act on the clock along the path only: the arm never leaves it.
+/// Threading: one thread, the control cycle. Nothing allocates, locks or throws.
+class MotionExecution {
+public:
+    /// Starts at rest at the beginning of the path, moving with the first next().
+    explicit MotionExecution(Trajectory trajectory) noexcept;
+
+    /// The set-point `step` later. A late cycle passes its longer step and stays on time.
+    /// \param step >= 0
+    SetPoint next(Seconds step) noexcept;
+    /// The set-point last given; the start of the path before the first next().
+    const SetPoint& current() const noexcept { return current_; }
+
+    /// Brakes on the path to rest within the motion's limits: Suspend. Takes effect at next().
+    void stop() noexcept;
+    /// As stop() with twice the acceleration and jerk: Halt.
+    void halt() noexcept;
+    /// Goes on to the end of the path, from rest or while still braking.
+    void resume() noexcept;
+    /// Speed as a share of the planned one. \param factor clamped to [0, 1]; 0 stands on the path
+    void setOverride(double factor) noexcept;
+
+    bool atRest() const noexcept;
+    /// At rest at the end of the path.
+    bool finished() const noexcept;
+    /// Where on the path, 0 start to 1 end.
+    double pathParameter() const noexcept;
+    /// Until rest at the end; while stopped or braking for a stop, until rest.
+    Seconds remaining() const noexcept;
+    const Trajectory& trajectory() const noexcept { return trajectory_; }
+
+private:
+    enum class Mode { running, stopping };
+
+    void replan(double limit_factor) noexcept;
+
+    Trajectory trajectory_;
+    Mode mode_ = Mode::running;
+    double override_ = 1.0;
+    ScalarState clock_;
+    Profile profile_;
+    double profile_time_ = 0;
+    SetPoint current_;
+};
+
+}  // namespace metier::motion

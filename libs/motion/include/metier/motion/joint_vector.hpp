@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+
+#include "metier/base/error.hpp"
+
+namespace metier::motion {
+
+inline constexpr std::size_t kMaxAxes = 7;
+
+/// One value per axis, axis 1 first: joint positions [rad], velocities [rad/s] and so on.
+/// At most kMaxAxes values; trivially copyable, never allocates.
+class JointVector {
+public:
+    JointVector() = default;
+    /// \param size <= kMaxAxes; all values 0
+    explicit JointVector(std::size_t size) noexcept : size_(size) {}
+    /// \param values at most kMaxAxes
+    JointVector(std::initializer_list<double> values) noexcept;
+
+    /// Errors: invalid_argument if there are too many values or one is not finite.
+    static Result<JointVector> from(std::span<const double> values);
+    /// `value` for each of `size` axes.
+    static JointVector constant(std::size_t size, double value) noexcept;
+
+    std::size_t size() const noexcept { return size_; }
+    bool empty() const noexcept { return size_ == 0; }
+    double operator[](std::size_t axis) const noexcept { return values_[axis]; }
+    double& operator[](std::size_t axis) noexcept { return values_[axis]; }
+    double* begin() noexcept { return values_.data(); }
+    double* end() noexcept { return values_.data() + size_; }
+    const double* begin() const noexcept { return values_.data(); }
+    const double* end() const noexcept { return values_.data() + size_; }
+    std::span<const double> span() const noexcept { return {values_.data(), size_}; }
+
+    using View = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>>;
+    using ConstView = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>>;
+    /// The same values for arithmetic with Eigen.
+    View view() noexcept { return {values_.data(), static_cast<Eigen::Index>(size_)}; }
+    ConstView view() const noexcept { return {values_.data(), static_cast<Eigen::Index>(size_)}; }
+
+    /// Whether every value is 0; true for no values.
+    bool allZero() const noexcept;
+    bool allFinite() const noexcept;
+    friend bool operator==(const JointVector& a, const JointVector& b) noexcept;
+
+private:
+    std::array<double, kMaxAxes> values_{};
+    std::size_t size_ = 0;
+};
+
+/// Largest absolute difference of two positions of the same size [rad].
+double maxDifference(const JointVector& a, const JointVector& b) noexcept;
+
+}  // namespace metier::motion

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace metier::motion {
+
+/// Position along one dimension and its first two time derivatives.
+struct ScalarState {
+    double position = 0;
+    double velocity = 0;
+    double acceleration = 0;
+};
+
+/// Bounds of |velocity|, |acceleration| and |jerk| along one dimension, all > 0.
+struct ScalarLimits {
+    double velocity = 0;
+    double acceleration = 0;
+    double jerk = 0;
+};
+
+/// A jerk-limited motion along one dimension that ends at rest: a few pieces of constant jerk.
+///
+/// Threading: a value; nothing allocates, locks or throws.
+/// Source: docs/motion.md#profile.
+class Profile {
+public:
+    Profile() = default;
+    /// From any state to rest at `target`, as quick as the limits allow (time-optimal but for
+    /// extreme start accelerations).
+    static Profile toRest(const ScalarState& start, double target,
+                          const ScalarLimits& limits) noexcept;
+    /// From any state to rest wherever the limits allow it soonest.
+    static Profile brake(const ScalarState& start, const ScalarLimits& limits) noexcept;
+
+    /// [s]
+    double duration() const noexcept { return duration_; }
+    /// State after `time` [s]; before 0 the start, after duration() exactly the end, at rest.
+    ScalarState at(double time) const noexcept;
+    double jerkAt(double time) const noexcept;
+    double end() const noexcept { return end_; }
+
+private:
+    struct Piece {
+        double duration = 0;
+        double jerk = 0;
+        ScalarState start;
+    };
+    static constexpr std::size_t kMaxPieces = 8;
+
+    void append(double duration, double jerk) noexcept;
+    void changeVelocity(double to_velocity, const ScalarLimits& limits) noexcept;
+
+    std::array<Piece, kMaxPieces> pieces_{};
+    std::size_t piece_count_ = 0;
+    ScalarState now_;
+    double duration_ = 0;
+    double end_ = 0;
+};
+
+}  // namespace metier::motion

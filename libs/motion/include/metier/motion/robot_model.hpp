@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/motion/chain.hpp"
+#include "metier/motion/kinematics.hpp"
+
+namespace metier::motion {
+
+/// A cylinder with round ends around a link, for self-collision.
+struct Capsule {
+    std::size_t link = 0;  ///< 0: the base, i: what axis i moves
+    Eigen::Vector3d from;  ///< in the joint frame of that axis, of the base for link 0 [m]
+    Eigen::Vector3d to;
+    double radius = 0;  ///< [m]
+};
+
+/// A (capped) cone to draw a link with.
+struct VisualPrimitive {
+    std::size_t link = 0;  ///< as in Capsule
+    Eigen::Vector3d from;
+    Eigen::Vector3d to;
+    double from_radius = 0;         ///< [m]
+    double to_radius = 0;           ///< [m]
+    std::array<double, 3> color{};  ///< red, green, blue, 0 to 1
+};
+
+/// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names.
+///
+/// Threading: immutable, any thread.
+class RobotModel {
+public:
+    /// Reads a file of models/ (models/README.md).
+    /// Errors: not_found; invalid_argument with file:line, key and what is wrong.
+    static Result<RobotModel> load(const std::filesystem::path& path);
+
+    /// A robot known from its chain alone, as a client reads it from a server.
+    /// Errors: invalid_argument (number of axes, axis not a unit vector, limits, home).
+    static Result<RobotModel> fromChain(ChainDescription chain);
+
+    std::string_view name() const noexcept { return name_; }        ///< as "ur5"
+    std::string_view maker() const noexcept { return maker_; }      ///< as "Universal Robots"
+    std::string_view product() const noexcept { return product_; }  ///< as "UR5"
+    std::size_t axisCount() const noexcept { return chain_.joints.size(); }
+    const ChainDescription& chain() const noexcept { return chain_; }
+    const Kinematics& kinematics() const noexcept { return kinematics_; }
+    const JointLimits& limits(std::size_t axis) const noexcept {
+        return chain_.joints[axis].limits;
+    }
+    const CartesianLimits& cartesianLimits() const noexcept { return chain_.cartesian_limits; }
+    const JointVector& home() const noexcept { return chain_.home; }
+    /// Controller cycle [s].
+    double cycleTime() const noexcept { return chain_.cycle_time; }
+    const std::vector<Capsule>& capsules() const noexcept { return capsules_; }
+    const std::vector<VisualPrimitive>& visual() const noexcept { return visual_; }
+
+    /// The tool frame of that name; "" and "flange" are the flange itself.
+    /// Errors: not_found, with the names there are.
+    Result<ToolFrame> tool(std::string_view tool_name) const;
+
+private:
+    explicit RobotModel(ChainDescription chain);
+
+    std::string name_;
+    std::string maker_;
+    std::string product_;
+    ChainDescription chain_;
+    Kinematics kinematics_;
+    std::vector<Capsule> capsules_;
+    std::vector<VisualPrimitive> visual_;
+};
+
+}  // namespace metier::motion

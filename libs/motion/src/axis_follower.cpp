@@ -1,0 +1,149 @@
+#include "axis_follower.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace metier::motion {
+
+namespace {
+
+/// Share of the limits that is used, so that rounding never breaks them.
+constexpr double kShare = 0.9995;
+constexpr int kBisections = 30;
+/// Share of the jerk limit for letting an error fade: the target's own motion needs some too.
+constexpr double kFadingJerk = 0.7;
+/// An error that is this much smaller each cycle is gone without overshoot; 0: gone at once.
+constexpr std::array kDecays{0.0, 0.5, 0.7, 0.8, 0.9, 0.95};
+
+ScalarState step(const ScalarState& now, double jerk, double cycle) noexcept {
+    const double acceleration = now.acceleration + jerk * cycle;
+    const double velocity = now.velocity + acceleration * cycle;
+    return {now.position + velocity * cycle, velocity, acceleration};
+}
+
+/// The jerk that brings the axis to `position` in one cycle.
+double jerkTo(double position, const ScalarState& now, double cycle) noexcept {
+    const double velocity = (position - now.position) / cycle;
+    return ((velocity - now.velocity) / cycle - now.acceleration) / cycle;
+}
+
+/// The error one cycle later if its three last values fade with a triple root at `decay`.
+double decayed(const ScalarState& error, double decay, double cycle) noexcept {
+    const double before = error.position - error.velocity * cycle;
+    const double earlier = before - (error.velocity - error.acceleration * cycle) * cycle;
+    return decay * (3 * error.position - decay * (3 * before - decay * earlier));
+}
+
+/// Whether an error can fade with `decay` without more than `jerk` on the way.
+bool fades(ScalarState error, double decay, double jerk, double cycle) noexcept {
+    constexpr int lookahead = 8;
+    for (int i = 0; i < lookahead; ++i) {
+        const double needed = jerkTo(decayed(error, decay, cycle), error, cycle);
+        if (std::abs(needed) > jerk) {
+            return false;
+        }
+        error = step(error, needed, cycle);
+    }
+    return true;
+}
+
+/// Largest acceleration of the next cycle after which the velocity still stays below the limit.
+double highestAcceleration(double velocity, const ScalarLimits& limits, double cycle) noexcept {
+    const double room = limits.velocity - velocity - limits.jerk * cycle * cycle / 8;
+    if (room <= 0) {
+        return room / cycle;
+    }
+    return limits.jerk * (std::sqrt(cycle * cycle + 2 * room / limits.jerk) - cycle);
+}
+
+ScalarLimits shareOf(const JointLimits& limits) noexcept {
+    return {kShare * limits.velocity, kShare * limits.acceleration, kShare * limits.jerk};
+}
+
+/// The state at the end of the cycle from that in finite differences, which lag half a cycle.
+ScalarState atInstant(const ScalarState& state, double cycle) noexcept {
+    return {state.position, state.velocity + state.acceleration * cycle / 2, state.acceleration};
+}
+
+/// Where a motion ends that brakes at once.
+double stopPosition(const ScalarState& state, const ScalarLimits& limits, double cycle) noexcept {
+    return Profile::brake(atInstant(state, cycle), limits).end();
+}
+
+struct JerkRange {
+    double low;
+    double high;
+};
+
+JerkRange allowedJerk(const ScalarState& now, const ScalarLimits& limits, double cycle) noexcept {
+    const double up =
+        std::min(limits.acceleration, highestAcceleration(now.velocity, limits, cycle));
+    const double down =
+        -std::min(limits.acceleration, highestAcceleration(-now.velocity, limits, cycle));
+    return {std::clamp((down - now.acceleration) / cycle, -limits.jerk, limits.jerk),
+            std::clamp((up - now.acceleration) / cycle, -limits.jerk, limits.jerk)};
+}
+
+/// The jerk for which the growing `excess` is 0, or the nearest in the range.
+template <typename Excess>
+double findJerk(const JerkRange& range, const Excess& excess) noexcept {
+    double low = range.low;
+    double high = range.high;
+    if (excess(high) <= 0) {
+        return high;
+    }
+    for (int i = 0; i < kBisections; ++i) {
+        const double middle = (low + high) / 2;
+        (excess(middle) <= 0 ? low : high) = middle;
+    }
+    return low;
+}
+
+}  // namespace
+
+Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
+    return Profile::brake(atInstant(now, cycle), shareOf(limits));
+}
+
+ScalarState followTarget(const ScalarState& now, const ScalarState& target,
+                         const JointLimits& limits, double cycle) noexcept {
+    const ScalarLimits used = shareOf(limits);
+    JerkRange range = allowedJerk(now, used, cycle);
+    range.high = findJerk(range, [&](double jerk) {
+        return stopPosition(step(now, jerk, cycle), used, cycle) - limits.upper;
+    });
+    range.low = -findJerk({-range.high, -range.low}, [&](double jerk) {
+        return limits.lower - stopPosition(step(now, -jerk, cycle), used, cycle);
+    });
+    const ScalarState error{now.position - target.position + target.velocity * cycle,
+                            now.velocity - target.velocity + target.acceleration * cycle,
+                            now.acceleration - target.acceleration};
+    for (const double decay : kDecays) {
+        const double position = target.position + decayed(error, decay, cycle);
+        const double jerk = jerkTo(position, now, cycle);
+        if (jerk >= range.low && jerk <= range.high &&
+            fades(error, decay, kFadingJerk * used.jerk, cycle)) {
+            ScalarState next = step(now, jerk, cycle);
+            next.position = position;
+            return next;
+        }
+    }
+    // Seen from the target, with what the target's own motion leaves of the limits.
+    const ScalarLimits relative{
+        used.velocity,
+        std::max(used.acceleration - std::abs(target.acceleration), 0.1 * used.acceleration),
+        0.7 * used.jerk};
+    return step(now,
+                findJerk(range,
+                         [&](double jerk) {
+                             const ScalarState next = step(now, jerk, cycle);
+                             return stopPosition(
+                                 {next.position - target.position, next.velocity - target.velocity,
+                                  next.acceleration - target.acceleration},
+                                 relative, cycle);
+                         }),
+                cycle);
+}
+
+}  // namespace metier::motion

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "metier/motion/chain.hpp"
+#include "metier/motion/profile.hpp"
+
+namespace metier::motion {
+
+/// The quickest stop of an axis whose state is in finite differences.
+Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept;
+
+/// One cycle of an axis that follows a moving target and breaks no limit.
+///
+/// The motion is a sequence of positions; velocity, acceleration and jerk are their finite
+/// differences, since these are what a controller sees. The target is taken as it is if the limits
+/// allow; else the error fades out as fast as they allow, and from farther away the axis, seen from
+/// the target, steers to where it can just brake to stand on it.
+/// \param target the target one cycle later, derivatives as finite differences too
+/// \param cycle  [s]
+ScalarState followTarget(const ScalarState& now, const ScalarState& target,
+                         const JointLimits& limits, double cycle) noexcept;
+
+}  // namespace metier::motion

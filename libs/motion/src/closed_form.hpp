@@ -1,0 +1,35 @@
+#pragma once
+
+#include "metier/motion/kinematics.hpp"
+
+namespace metier::motion {
+
+/// Which closed form fits the chain; moves `zero.point` to where its axes meet.
+IkKind recogniseStructure(std::size_t axis_count, ZeroPosition& zero);
+
+/// What the closed forms are asked.
+struct ClosedFormQuery {
+    Transform base_from_flange;
+    JointVector reference;        ///< for axes the pose leaves free [rad]
+    double redundancy_angle = 0;  ///< of an arm_angle chain [rad]
+};
+
+/// Joint positions and which of them rounding may have touched.
+struct ClosedFormSolutions {
+    JointSolutions solutions;
+    std::array<bool, JointSolutions::kCapacity> delicate{};
+};
+
+ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const ClosedFormQuery& query);
+ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFormQuery& query);
+ClosedFormSolutions solveArmAngle(const ZeroPosition& zero, const ClosedFormQuery& query);
+
+/// Orthonormal directions across the line from shoulder to wrist: `up` has arm angle 0.
+struct ArmPlane {
+    Eigen::Vector3d along;
+    Eigen::Vector3d up;
+    Eigen::Vector3d side;
+};
+ArmPlane armPlane(const Eigen::Vector3d& shoulder_to_wrist);
+
+}  // namespace metier::motion

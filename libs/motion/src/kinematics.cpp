@@ -1,0 +1,166 @@
+#include "metier/motion/kinematics.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "closed_form.hpp"
+#include "turn.hpp"
+
+namespace metier::motion {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geometry::Pose;
+
+/// frame * fixed, then turned about the new z.
+void advance(Transform& frame, const Transform& fixed, double q) noexcept {
+    const double c = std::cos(q);
+    const double s = std::sin(q);
+    frame.translation += frame.rotation * fixed.translation;
+    const Matrix3d turned = frame.rotation * fixed.rotation;
+    frame.rotation.col(0) = c * turned.col(0) + s * turned.col(1);
+    frame.rotation.col(1) = c * turned.col(1) - s * turned.col(0);
+    frame.rotation.col(2) = turned.col(2);
+}
+
+Transform compose(const Transform& a, const Transform& b) noexcept {
+    return {a.rotation * b.rotation, a.translation + a.rotation * b.translation};
+}
+
+Pose toPose(const Transform& transform) noexcept {
+    return {transform.translation, Eigen::Quaterniond(transform.rotation)};
+}
+
+}  // namespace
+
+std::string_view toString(IkKind kind) noexcept {
+    switch (kind) {
+        case IkKind::three_parallel_axes:
+            return "three_parallel_axes";
+        case IkKind::spherical_wrist:
+            return "spherical_wrist";
+        case IkKind::arm_angle:
+            return "arm_angle";
+        case IkKind::numeric:
+            return "numeric";
+    }
+    return "?";
+}
+
+Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints.size()) {
+    Matrix3d from_axis = Matrix3d::Identity();  // of the joint before: joint_from_z_axis_frame
+    Transform zero;
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+        const JointDescription& joint = chain.joints[i];
+        limits_[i] = joint.limits;
+        const Matrix3d to_axis =
+            Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+        fixed_[i].rotation =
+            from_axis.transpose() * joint.parent_from_joint.rotation.toRotationMatrix() * to_axis;
+        fixed_[i].translation = from_axis.transpose() * joint.parent_from_joint.translation;
+        axis_from_joint_[i] = Eigen::Quaterniond(Matrix3d(to_axis.transpose()));
+        from_axis = to_axis;
+        zero = compose(zero, fixed_[i]);
+        zero_.axis[i] = zero.rotation.col(2);
+        zero_.point[i] = zero.translation;
+        reach_ += i > 1 ? fixed_[i].translation.norm() : 0.0;
+    }
+    last_from_flange_.rotation =
+        from_axis.transpose() * chain.last_from_flange.rotation.toRotationMatrix();
+    last_from_flange_.translation = from_axis.transpose() * chain.last_from_flange.translation;
+    reach_ += last_from_flange_.translation.norm();
+    zero_.base_from_flange = compose(zero, last_from_flange_);
+    kind_ = recogniseStructure(axis_count_, zero_);
+}
+
+Transform Kinematics::flange(const JointVector& q) const noexcept {
+    Transform frame;
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+        advance(frame, fixed_[i], q[i]);
+    }
+    return compose(frame, last_from_flange_);
+}
+
+Vector3d Kinematics::reachCentre(const JointVector& q) const noexcept {
+    Transform frame;
+    advance(frame, fixed_[0], q[0]);
+    return axis_count_ < 2 ? frame.translation
+                           : Vector3d(frame.translation + frame.rotation * fixed_[1].translation);
+}
+
+Pose Kinematics::forward(const JointVector& q) const noexcept {
+    return toPose(flange(q));
+}
+
+std::array<Pose, kMaxAxes + 1> Kinematics::forwardAll(const JointVector& q) const noexcept {
+    std::array<Pose, kMaxAxes + 1> poses;
+    Transform frame;
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+        advance(frame, fixed_[i], q[i]);
+        poses[i] = toPose(frame);
+        poses[i].rotation = poses[i].rotation * axis_from_joint_[i];
+    }
+    poses[axis_count_] = toPose(compose(frame, last_from_flange_));
+    return poses;
+}
+
+Transform Kinematics::forward(const JointVector& q, Jacobian& jacobian) const noexcept {
+    jacobian.resize(6, static_cast<Eigen::Index>(axis_count_));
+    std::array<Vector3d, kMaxAxes> origin;
+    Transform frame;
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+        advance(frame, fixed_[i], q[i]);
+        jacobian.col(static_cast<Eigen::Index>(i)).tail<3>() = frame.rotation.col(2);
+        origin[i] = frame.translation;
+    }
+    Transform end = compose(frame, last_from_flange_);
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+        auto column = jacobian.col(static_cast<Eigen::Index>(i));
+        column.head<3>() = column.tail<3>().cross(end.translation - origin[i]);
+    }
+    return end;
+}
+
+Jacobian Kinematics::jacobian(const JointVector& q) const noexcept {
+    Jacobian result;
+    forward(q, result);
+    return result;
+}
+
+double Kinematics::smallestSingularValue(const JointVector& q) const {
+    const Eigen::JacobiSVD<Jacobian> svd(jacobian(q));
+    return svd.singularValues().minCoeff();
+}
+
+double Kinematics::redundancyAngle(const JointVector& q) const noexcept {
+    if (kind_ != IkKind::arm_angle) {
+        return 0.0;
+    }
+    // Elbow and axis 4 at q, from the zero position turned by axes 1 to 3.
+    const auto& axis = zero_.axis;
+    const Matrix3d shoulder = rotationMatrix(axis[0], Turn::of(q[0])) *
+                              rotationMatrix(axis[1], Turn::of(q[1])) *
+                              rotationMatrix(axis[2], Turn::of(q[2]));
+    const Vector3d upper = zero_.point[3] - zero_.point[0];
+    const Vector3d line = upper + rotate(axis[3], Turn::of(q[3]), zero_.point[4] - zero_.point[3]);
+    const Vector3d normal = axis[3].cross(line);
+    const ArmPlane plane = armPlane(shoulder * line);
+    const Vector3d elbow = shoulder * (upper.dot(normal) < 0 ? Vector3d(-normal) : normal);
+    return std::atan2(elbow.dot(plane.side), elbow.dot(plane.up));
+}
+
+bool Kinematics::withinLimits(const JointVector& q) const noexcept {
+    constexpr double rounding = 1e-9;
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+        if (q[i] < limits_[i].lower - rounding || q[i] > limits_[i].upper + rounding) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace metier::motion

@@ -1,0 +1,201 @@
+#include "line_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "metier/geometry/rotation.hpp"
+
+namespace metier::motion {
+
+namespace {
+
+constexpr double kKnotDistance = 0.005;  // [m]
+constexpr double kKnotAngle = 0.03;      // [rad]
+constexpr double kKnotsPerCorner = 16;
+constexpr std::size_t kFewestKnots = 16;
+constexpr std::size_t kMostKnots = 4096;
+/// A longer step between knots asks for more of them [rad].
+constexpr double kJointStep = 0.06;
+/// So does a step that differs more than this from what the steps before let expect [rad].
+constexpr double kJointBend = 0.004;
+/// A step that stays longer than this, however dense the knots, is a jump [rad].
+constexpr double kJump = 0.2;
+/// Half way between two knots the joint line may be this far off [m], [rad].
+constexpr double kHalfWayDistance = 1e-4;
+constexpr double kHalfWayAngle = 1e-3;
+constexpr double kNearSingular = 0.02;
+
+struct Track {
+    std::vector<JointVector> knots;
+    bool too_coarse = false;
+    std::optional<Refusal> refusal;
+};
+
+std::size_t knotCount(const ToolPath& path) {
+    const double wanted = std::max({path.distance() / kKnotDistance, path.angle() / kKnotAngle,
+                                    path.isLine() ? 0.0 : kKnotsPerCorner / path.shortestCorner()});
+    return std::clamp(static_cast<std::size_t>(std::ceil(wanted)), kFewestKnots, kMostKnots);
+}
+
+Refusal at(double fraction, Refusal refusal) {
+    refusal.fraction = fraction;
+    refusal.error.message += fmt::format(" at {:.1f} % of the path", 100 * fraction);
+    return refusal;
+}
+
+std::optional<Refusal> checkLimits(const TrackRequest& request, const JointVector& q) {
+    constexpr double rounding = 1e-9;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+        double lower = request.model->limits(i).lower;
+        double upper = request.model->limits(i).upper;
+        if (request.bounds.isSet()) {
+            lower = std::max(lower, request.bounds.lower[i]);
+            upper = std::min(upper, request.bounds.upper[i]);
+        }
+        if (q[i] >= lower - rounding && q[i] <= upper + rounding) {
+            continue;
+        }
+        const bool over = q[i] > upper;
+        Refusal refusal = refuse(RefusalReason::joint_limit, Errc::out_of_range,
+                                 fmt::format("axis {}: {:.4f} rad {} limit {:.4f} rad", i + 1, q[i],
+                                             over ? "over" : "under", over ? upper : lower));
+        refusal.axis = i;
+        return refusal;
+    }
+    return std::nullopt;
+}
+
+std::size_t largestStep(const JointVector& from, const JointVector& to) {
+    std::size_t axis = 0;
+    for (std::size_t i = 1; i < from.size(); ++i) {
+        axis = std::abs(to[i] - from[i]) > std::abs(to[axis] - from[axis]) ? i : axis;
+    }
+    return axis;
+}
+
+Refusal jump(const TrackRequest& request, const JointVector& from, const JointVector& to) {
+    const std::size_t axis = largestStep(from, to);
+    const double smallest = request.model->kinematics().smallestSingularValue(from);
+    const std::string what = fmt::format("axis {} would have to turn {:.3f} rad in one place",
+                                         axis + 1, std::abs(to[axis] - from[axis]));
+    Refusal refusal =
+        smallest < kNearSingular
+            ? refuse(RefusalReason::singularity, Errc::unreachable, "singularity: " + what)
+            : refuse(RefusalReason::configuration_change, Errc::unreachable,
+                     "the arm would have to change its configuration: " + what);
+    refusal.axis = axis;
+    return refusal;
+}
+
+Refusal outOfReach(const TrackRequest& request, const geometry::Pose& flange) {
+    const Kinematics& kinematics = request.model->kinematics();
+    const double distance = (flange.translation - kinematics.reachCentre(request.start)).norm();
+    return refuse(RefusalReason::unreachable, Errc::unreachable,
+                  fmt::format("unreachable: {:.4f} m from axis 2, reach {:.4f} m", distance,
+                              kinematics.reach()));
+}
+
+/// Follows the branch of the start position knot by knot.
+Track follow(const TrackRequest& request, std::size_t count) {
+    const Kinematics& kinematics = request.model->kinematics();
+    Track track;
+    track.knots.reserve(count + 1);
+    track.knots.push_back(request.start);
+    JointVector guess = request.start;
+    for (std::size_t k = 1; k <= count; ++k) {
+        const double s = static_cast<double>(k) / static_cast<double>(count);
+        const geometry::Pose flange = request.path.at(s);
+        const JointVector q = nearestSolution(
+            kinematics.allSolutions(flange, guess, request.path.armAngleAt(s)), guess);
+        const JointVector& last = track.knots.back();
+        if (q.empty()) {
+            track.refusal = at(s, outOfReach(request, flange));
+            return track;
+        }
+        const double step = maxDifference(q, last);
+        const bool bends = k > 1 && maxDifference(q, guess) > kJointBend;
+        if ((step > kJointStep || bends) && count < kMostKnots) {
+            track.too_coarse = true;
+            return track;
+        }
+        if (step > kJump) {
+            track.refusal = at(s, jump(request, last, q));
+            return track;
+        }
+        if (auto refusal = checkLimits(request, q)) {
+            track.refusal = at(s, *refusal);
+            return track;
+        }
+        guess.view() = 2 * q.view() - last.view();
+        track.knots.push_back(q);
+    }
+    return track;
+}
+
+/// Whether the joint lines between knots stay on the path: a hidden flip would not.
+bool halfWaysAreOnPath(const TrackRequest& request, const std::vector<JointVector>& knots) {
+    const std::size_t count = knots.size() - 1;
+    for (std::size_t k = 0; k < count; ++k) {
+        JointVector middle = knots[k];
+        middle.view() = 0.5 * (knots[k].view() + knots[k + 1].view());
+        const geometry::Pose reached = request.model->kinematics().forward(middle);
+        const geometry::Pose planned =
+            request.path.at((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+        if (geometry::distanceBetween(reached, planned) > kHalfWayDistance ||
+            geometry::rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
+            return false;
+        }
+    }
+    return true;
+}
+
+Planned<JointPath> trackWithArmAngle(const TrackRequest& request) {
+    Track track;
+    for (std::size_t count = knotCount(request.path.tool); true;
+         count = std::min(2 * count, kMostKnots)) {
+        track = follow(request, count);
+        if (track.refusal) {
+            return tl::unexpected(*track.refusal);
+        }
+        if (!track.too_coarse && halfWaysAreOnPath(request, track.knots)) {
+            return JointPath(request.path, std::move(track.knots));
+        }
+        if (count == kMostKnots) {
+            return tl::unexpected(refuse(RefusalReason::singularity, Errc::unreachable,
+                                         "singularity: the axes cannot follow the path"));
+        }
+    }
+}
+
+double shortTurn(double from, double to) {
+    return std::remainder(to - from, 2 * std::numbers::pi);
+}
+
+}  // namespace
+
+Planned<JointPath> trackLine(const TrackRequest& request) {
+    constexpr int tries = 18;
+    constexpr double step = std::numbers::pi / tries;
+    TrackRequest attempt = request;
+    const Kinematics& kinematics = request.model->kinematics();
+    attempt.path.arm_angle = kinematics.redundancyAngle(request.start);
+    if (request.end_arm_angle) {
+        attempt.path.arm_angle_turn = shortTurn(attempt.path.arm_angle, *request.end_arm_angle);
+    }
+    auto path = trackWithArmAngle(attempt);
+    if (path || request.end_arm_angle || kinematics.ikKind() != IkKind::arm_angle) {
+        return path;
+    }
+    for (int i = 1; i <= tries; ++i) {
+        for (const double turn : {i * step, -i * step}) {
+            attempt.path.arm_angle_turn = turn;
+            if (auto other = trackWithArmAngle(attempt)) {
+                return other;
+            }
+        }
+    }
+    return path;
+}
+
+}  // namespace metier::motion

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "metier/geometry/pose.hpp"
+#include "metier/motion/kinematics.hpp"
+#include "tool_path.hpp"
+
+namespace metier::motion {
+
+/// Joint position along a path and its first two derivatives by the path parameter.
+struct PathPoint {
+    JointVector q;
+    JointVector first;
+    JointVector second;
+};
+
+/// Straight in joint space; path parameter 0 to 1.
+struct JointLine {
+    JointVector from;
+    JointVector delta;
+
+    PathPoint at(double s) const noexcept;
+};
+
+/// Path of the flange: that of a tool frame on it and, for an arm that has one, its arm angle.
+struct FlangePath {
+    ToolPath tool;
+    geometry::Pose tool_from_flange;
+    double arm_angle = 0;       ///< at the start [rad]
+    double arm_angle_turn = 0;  ///< from start to end [rad]
+
+    geometry::Pose at(double s) const noexcept { return tool.at(s) * tool_from_flange; }
+    double armAngleAt(double s) const noexcept { return arm_angle + s * arm_angle_turn; }
+};
+
+/// The solution nearest to `guess`, whole turns included; empty if there is none.
+JointVector nearestSolution(const JointSolutions& solutions, const JointVector& guess) noexcept;
+
+/// Joint positions of a Cartesian path at equal steps of the path parameter, free of jumps; between
+/// them exact inverse kinematics, guided by interpolation.
+class JointPath {
+public:
+    JointPath() = default;
+    JointPath(FlangePath flange, std::vector<JointVector> knots);
+
+    const ToolPath& tool() const noexcept { return flange_.tool; }
+    std::size_t intervals() const noexcept { return knots_.size() - 1; }
+    const std::vector<JointVector>& knots() const noexcept { return knots_; }
+    /// Exact position; derivatives interpolated.
+    PathPoint at(double s, const Kinematics& kinematics) const noexcept;
+
+private:
+    PathPoint interpolate(double s) const noexcept;
+
+    FlangePath flange_;
+    std::vector<JointVector> knots_;
+    std::vector<JointVector> tangents_;  ///< derivative by the path parameter at the knots
+};
+
+}  // namespace metier::motion

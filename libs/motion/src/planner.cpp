@@ -1,0 +1,339 @@
+#include "metier/motion/planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "line_tracker.hpp"
+#include "metier/motion/self_collision.hpp"
+#include "plan.hpp"
+#include "request_check.hpp"
+#include "tool_limits.hpp"
+
+namespace metier::motion {
+
+namespace {
+
+using geometry::Pose;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A path that an axis slows down below this share of the request is refused.
+constexpr double kSlowest = 0.02;
+
+double perAxis(const JointVector& values, std::size_t axis) {
+    return values.empty() ? 0.0 : values[axis];
+}
+
+ScalarLimits limitsOfJointLine(const RobotModel& model, const PtpRequest& request,
+                               const JointVector& delta) {
+    ScalarLimits limits{kInfinity, kInfinity, kInfinity};
+    for (std::size_t i = 0; i < delta.size(); ++i) {
+        const double distance = std::abs(delta[i]);
+        if (distance == 0) {
+            continue;
+        }
+        const JointLimits& own = model.limits(i);
+        const double velocity =
+            capped(perAxis(request.max_velocity, i), own.velocity) * request.speed_override;
+        const double acceleration = capped(perAxis(request.max_acceleration, i), own.acceleration);
+        limits.velocity = std::min(limits.velocity, velocity / distance);
+        limits.acceleration = std::min(limits.acceleration, acceleration / distance);
+        limits.jerk = std::min(limits.jerk, own.jerk / distance);
+    }
+    return limits;
+}
+
+Trajectory makeTrajectory(const RobotModel& model, std::variant<JointLine, JointPath> path,
+                          SpeedPlan speed, const Pose& flange_from_tool) {
+    return Trajectory(std::make_shared<const Trajectory::Plan>(model.kinematics(), std::move(path),
+                                                               std::move(speed), flange_from_tool));
+}
+
+/// A motion that is over as soon as it starts.
+Trajectory standStill(const RobotModel& model, const JointVector& q, const Pose& flange_from_tool) {
+    SpeedPlan speed{SpeedMap::constant(kInfinity), {1, 1, 1}};
+    return makeTrajectory(model, JointLine{q, JointVector(q.size())}, std::move(speed),
+                          flange_from_tool);
+}
+
+Trajectory planJointLine(const RobotModel& model, const PtpRequest& request,
+                         const JointVector& target, const Pose& flange_from_tool) {
+    JointVector delta = target;
+    delta.view() -= request.start.view();
+    const ScalarLimits limits = limitsOfJointLine(model, request, delta);
+    if (limits.velocity == kInfinity) {
+        return standStill(model, request.start, flange_from_tool);
+    }
+    const double v = limits.velocity;
+    SpeedPlan speed{SpeedMap::constant(v), {1.0, limits.acceleration / v, limits.jerk / v}};
+    return makeTrajectory(model, JointLine{request.start, delta}, std::move(speed),
+                          flange_from_tool);
+}
+
+Pose absoluteTarget(const Pose& start, const Pose& target, TargetReference reference) {
+    switch (reference) {
+        case TargetReference::relative_base:
+            return {start.translation + target.translation, target.rotation * start.rotation};
+        case TargetReference::relative_tool:
+            return start * target;
+        case TargetReference::base:
+            break;
+    }
+    return {target.translation, target.rotation.normalized()};
+}
+
+/// Refuses a path that an axis would make too slow to be meant.
+std::optional<Refusal> refuseCrawling(const SpeedBottleneck& slowest) {
+    if (slowest.share >= kSlowest) {
+        return std::nullopt;
+    }
+    Refusal refusal = refuse(
+        RefusalReason::singularity, Errc::unreachable,
+        fmt::format("singularity: axis {} slows the path to {:.2f} % of the requested speed, "
+                    "limit {:.0f} %, at {:.1f} % of the path",
+                    slowest.axis + 1, 100 * slowest.share, 100 * kSlowest, 100 * slowest.fraction));
+    refusal.fraction = slowest.fraction;
+    refusal.axis = slowest.axis;
+    return refusal;
+}
+
+/// Refuses a motion in which two links would touch, nearer than they are at its start.
+Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory trajectory) {
+    constexpr double step = 0.03;       // of the axis that moves most [rad]
+    constexpr double worsening = 1e-3;  // [m]
+    const SelfCollision collision(model);
+    const auto at_start = collision.nearest(trajectory.start());
+    if (!at_start) {
+        return trajectory;
+    }
+    const double allowed = std::min(0.0, at_start->distance - worsening);
+    const double moved = maxDifference(trajectory.start(), trajectory.end());
+    const auto count =
+        static_cast<int>(std::clamp(2 * moved / step + trajectory.length() / 0.01, 8.0, 1000.0));
+    for (int i = 1; i <= count; ++i) {
+        const double fraction = static_cast<double>(i) / count;
+        const auto nearest = collision.nearest(trajectory.positionAt(fraction));
+        if (nearest->distance < allowed) {
+            Refusal refusal = refuse(
+                RefusalReason::collision, Errc::out_of_range,
+                fmt::format("{} and {} would touch: {:.4f} m apart, limit {:.4f} m, at {:.1f} % of "
+                            "the path",
+                            collision.linkName(nearest->first), collision.linkName(nearest->second),
+                            nearest->distance, allowed, 100 * fraction));
+            refusal.fraction = fraction;
+            return tl::unexpected(refusal);
+        }
+    }
+    return trajectory;
+}
+
+Planned<Trajectory> planLine(const RobotModel& model, const LinRequest& request,
+                             const TrackRequest& track, const Pose& flange_from_tool) {
+    const ToolPath& tool = track.path.tool;
+    if (tool.isPoint()) {
+        return standStill(model, request.start, flange_from_tool);
+    }
+    auto path = trackLine(track);
+    if (!path) {
+        return tl::unexpected(path.error());
+    }
+    const ScalarLimits limits = limitsOfLine(model, request, tool);
+    const auto bounds = axisBounds(model, path->knots());
+    if (auto refusal = refuseCrawling(findBottleneck(model, bounds, limits.velocity))) {
+        return tl::unexpected(*refusal);
+    }
+    SpeedPlan speed = planSpeed(bounds, limits);
+    return withoutCollision(
+        model, makeTrajectory(model, std::move(*path), std::move(speed), flange_from_tool));
+}
+
+Refusal targetRefusal(const Error& error) {
+    Refusal refusal = refuse(error.code == Errc::unreachable ? RefusalReason::unreachable
+                                                             : RefusalReason::invalid_request,
+                             error.code, "target: " + error.message);
+    refusal.fraction = 1;
+    return refusal;
+}
+
+template <typename Request>
+Result<Trajectory> withoutRefusal(Planned<Trajectory> (Planner::*plan)(const Request&) const,
+                                  const RobotModel& model, const Request& request) {
+    auto planned = (Planner(model).*plan)(request);
+    if (!planned) {
+        return fail(planned.error().error);
+    }
+    return std::move(*planned);
+}
+
+}  // namespace
+
+std::string_view toString(RefusalReason reason) noexcept {
+    switch (reason) {
+        case RefusalReason::invalid_request:
+            return "invalid_request";
+        case RefusalReason::unreachable:
+            return "unreachable";
+        case RefusalReason::joint_limit:
+            return "joint_limit";
+        case RefusalReason::configuration_change:
+            return "configuration_change";
+        case RefusalReason::singularity:
+            return "singularity";
+        case RefusalReason::collision:
+            return "collision";
+    }
+    return "?";
+}
+
+Planned<Trajectory> Planner::ptp(const PtpRequest& request) const {
+    const RobotModel& model = *model_;
+    if (auto checked = checkPtp(model, request); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    const auto tool = model.tool(request.tool_frame);
+    if (!tool) {
+        return invalid(tool.error());
+    }
+    if (const auto* joints = std::get_if<JointVector>(&request.target)) {
+        if (auto checked = checkPosition(model, *joints, "target", 1e-9); !checked) {
+            return tl::unexpected(checked.error());
+        }
+        return withoutCollision(model,
+                                planJointLine(model, request, *joints, tool->flange_from_tool));
+    }
+    const Pose& pose = std::get<Pose>(request.target);
+    if (auto checked = checkPose(pose); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    const Pose start = model.kinematics().forward(request.start) * tool->flange_from_tool;
+    const Pose flange =
+        absoluteTarget(start, pose, request.reference) * tool->flange_from_tool.inverse();
+    const auto target = model.kinematics().inverse(
+        flange, {request.start, request.axis_bounds, request.redundancy_angle});
+    if (!target) {
+        return tl::unexpected(targetRefusal(target.error()));
+    }
+    return withoutCollision(model, planJointLine(model, request, *target, tool->flange_from_tool));
+}
+
+Planned<Trajectory> Planner::lin(const LinRequest& request) const {
+    if (auto checked = checkLin(*model_, request); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    const auto tool = model_->tool(request.tool_frame);
+    if (!tool) {
+        return invalid(tool.error());
+    }
+    const Pose start = model_->kinematics().forward(request.start) * tool->flange_from_tool;
+    const Pose target = absoluteTarget(start, request.target, request.reference);
+    TrackRequest track;
+    track.model = model_;
+    track.start = request.start;
+    track.bounds = request.axis_bounds;
+    track.end_arm_angle = request.redundancy_angle;
+    track.path.tool = ToolPath(start, target);
+    track.path.tool_from_flange = tool->flange_from_tool.inverse();
+    return planLine(*model_, request, track, tool->flange_from_tool);
+}
+
+Planned<Trajectory> Planner::path(const PathRequest& request) const {
+    if (auto checked = checkPath(*model_, request); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    const auto tool = model_->tool(request.lin.tool_frame);
+    if (!tool) {
+        return invalid(tool.error());
+    }
+    const LinRequest& lin = request.lin;
+    TrackRequest track;
+    track.model = model_;
+    track.start = lin.start;
+    track.bounds = lin.axis_bounds;
+    track.end_arm_angle = lin.redundancy_angle;
+    track.path.tool_from_flange = tool->flange_from_tool.inverse();
+    Pose before = model_->kinematics().forward(lin.start) * tool->flange_from_tool;
+    for (std::size_t i = 0; i < request.waypoints.size(); ++i) {
+        const Pose target = absoluteTarget(before, request.waypoints[i].target, lin.reference);
+        if (i == 0) {
+            track.path.tool = ToolPath(before, target);
+        } else {
+            track.path.tool.append(target, request.waypoints[i - 1].blend_radius);
+        }
+        before = target;
+    }
+    if (track.path.tool.isPoint()) {
+        return standStill(*model_, lin.start, tool->flange_from_tool);
+    }
+    auto joints = trackLine(track);
+    if (!joints) {
+        return tl::unexpected(joints.error());
+    }
+    auto bounds = axisBounds(*model_, joints->knots());
+    const ScalarLimits limits = addToolBounds(*model_, request, track.path.tool, bounds);
+    if (auto refusal = refuseCrawling(findBottleneck(*model_, bounds, limits.velocity))) {
+        return tl::unexpected(*refusal);
+    }
+    SpeedPlan speed = planSpeed(bounds, limits);
+    return withoutCollision(*model_, makeTrajectory(*model_, std::move(*joints), std::move(speed),
+                                                    tool->flange_from_tool));
+}
+
+Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {
+    if (auto checked = checkPosition(*model_, request.target, "target", 1e-9); !checked) {
+        return tl::unexpected(checked.error());
+    }
+    const auto tool = model_->tool(request.lin.tool_frame);
+    if (!tool) {
+        return invalid(tool.error());
+    }
+    LinRequest lin_request = request.lin;
+    lin_request.target = model_->kinematics().forward(request.target) * tool->flange_from_tool;
+    lin_request.reference = TargetReference::base;
+    if (model_->kinematics().ikKind() == IkKind::arm_angle) {
+        lin_request.redundancy_angle = model_->kinematics().redundancyAngle(request.target);
+    }
+    return lin(lin_request);
+}
+
+Result<Trajectory> planPtp(const RobotModel& model, const PtpRequest& request) {
+    return withoutRefusal(&Planner::ptp, model, request);
+}
+
+Result<Trajectory> planLin(const RobotModel& model, const LinRequest& request) {
+    return withoutRefusal(&Planner::lin, model, request);
+}
+
+Result<Trajectory> planPath(const RobotModel& model, const PathRequest& request) {
+    return withoutRefusal(&Planner::path, model, request);
+}
+
+Result<Trajectory> planJointLinear(const RobotModel& model, const JointLinearRequest& request) {
+    return withoutRefusal(&Planner::jointLinear, model, request);
+}
+
+void synchronise(std::vector<Trajectory>& trajectories) {
+    Seconds slowest{0};
+    for (const Trajectory& trajectory : trajectories) {
+        slowest = std::max(slowest, trajectory.duration());
+    }
+    for (Trajectory& trajectory : trajectories) {
+        trajectory = trajectory.stretchedTo(slowest);
+    }
+}
+
+Feasibility assess(const Planned<Trajectory>& plan, std::size_t preview_points) {
+    Feasibility result;
+    if (!plan) {
+        result.refusal = plan.error();
+        return result;
+    }
+    result.duration = plan->duration();
+    for (std::size_t i = 0; i < preview_points; ++i) {
+        const double share = static_cast<double>(i) /
+                             static_cast<double>(std::max<std::size_t>(preview_points, 2) - 1);
+        result.preview.push_back(plan->sample(share * plan->duration()).position);
+    }
+    return result;
+}
+
+}  // namespace metier::motion

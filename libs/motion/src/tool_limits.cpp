@@ -1,0 +1,136 @@
+#include "tool_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace metier::motion {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Cartesian jerk limit as a multiple of a lowered acceleration limit [1/s].
+constexpr double kJerkPerAcceleration = 20.0;
+
+/// How fast the path parameter may change so that `vector` does not by more than `limit`.
+double perLength(double limit, const Eigen::Vector3d& vector) {
+    const double length = vector.norm();
+    if (length == 0) {
+        return kInfinity;
+    }
+    return limit / length;
+}
+
+/// What one half of the six Cartesian limits allows for a vector of the path.
+struct HalfLimits {
+    const double* requested = nullptr;  ///< three values
+    double own = 0;
+    Eigen::Vector3d vector;
+};
+
+/// Limit of the path parameter's derivative: of the vector's length where all three limits are
+/// equal, else of each component; the robot's own always of the length.
+double scalarLimit(const HalfLimits& half) {
+    const double length = half.vector.norm();
+    if (length == 0) {
+        return kInfinity;
+    }
+    const double* r = half.requested;
+    double limit = half.own / length;
+    if (r[0] == r[1] && r[1] == r[2]) {
+        return std::min(limit, capped(r[0], half.own) / length);
+    }
+    for (int i = 0; i < 3; ++i) {
+        const double component = std::abs(half.vector[i]);
+        limit = component > 0 ? std::min(limit, capped(r[i], half.own) / component) : limit;
+    }
+    return limit;
+}
+
+/// The tool frame's translation or rotation: what it may do and asks of the path parameter.
+struct ToolBound {
+    double velocity = 0;
+    double acceleration = 0;
+    double jerk = 0;
+
+    SpeedBound at(const ToolDerivatives& d, double max_velocity) const noexcept {
+        return {d.first, d.second, d.third, max_velocity, acceleration, jerk};
+    }
+};
+
+/// The least of three requested values, capped by the robot's own.
+double least(const double* three, double own) {
+    return capped(three[0], capped(three[1], capped(three[2], own)));
+}
+
+ToolBound toolBound(double velocity, double acceleration, double own_jerk) {
+    return {velocity, acceleration, std::min(own_jerk, kJerkPerAcceleration * acceleration)};
+}
+
+/// Narrows the limits of the path parameter by one bound; its velocity is what any place allows.
+void include(ScalarLimits& limits, const SpeedBound& bound) {
+    if (bound.first > 0) {
+        limits.acceleration = std::min(limits.acceleration, bound.acceleration / bound.first);
+        limits.jerk = std::min(limits.jerk, bound.jerk / bound.first);
+    }
+}
+
+double speedAt(const SpeedBound& bound) {
+    if (bound.first <= 0) {
+        return kInfinity;
+    }
+    return bound.velocity / bound.first;
+}
+
+}  // namespace
+
+ScalarLimits limitsOfLine(const RobotModel& model, const LinRequest& request,
+                          const ToolPath& line) {
+    const Eigen::Vector3d direction = line.direction();
+    const Eigen::Vector3d turn = line.turn();
+    const CartesianLimits& own = model.cartesianLimits();
+    const double* v = request.max_velocity.data();
+    const double* a = request.max_acceleration.data();
+    ScalarLimits limits;
+    limits.velocity =
+        request.speed_override * std::min(scalarLimit({v, own.velocity, direction}),
+                                          scalarLimit({v + 3, own.angular_velocity, turn}));
+    limits.acceleration = std::min(scalarLimit({a, own.acceleration, direction}),
+                                   scalarLimit({a + 3, own.angular_acceleration, turn}));
+    const double own_jerk =
+        std::min(perLength(own.jerk, direction), perLength(own.angular_jerk, turn));
+    limits.jerk = std::min(own_jerk, kJerkPerAcceleration * limits.acceleration);
+    return limits;
+}
+
+ScalarLimits addToolBounds(const RobotModel& model, const PathRequest& request,
+                           const ToolPath& path, std::vector<SpeedBounds>& bounds) {
+    const CartesianLimits& own = model.cartesianLimits();
+    const LinRequest& lin = request.lin;
+    const double* v = lin.max_velocity.data();
+    const double* a = lin.max_acceleration.data();
+    const ToolBound linear =
+        toolBound(least(v, own.velocity), least(a, own.acceleration), own.jerk);
+    const ToolBound angular = toolBound(least(v + 3, own.angular_velocity),
+                                        least(a + 3, own.angular_acceleration), own.angular_jerk);
+    ScalarLimits limits{0, kInfinity, kInfinity};
+    for (std::size_t k = 0; k < bounds.size(); ++k) {
+        const double s = static_cast<double>(k) / static_cast<double>(bounds.size() - 1);
+        const PathWaypoint& waypoint = request.waypoints[path.lineAt(s)];
+        const SpeedBound t =
+            linear.at(path.translationAt(s),
+                      lin.speed_override * capped(waypoint.max_velocity, linear.velocity));
+        const SpeedBound r = angular.at(
+            path.rotationAt(s),
+            lin.speed_override * capped(waypoint.max_angular_velocity, angular.velocity));
+        include(limits, t);
+        include(limits, r);
+        limits.velocity = std::max(limits.velocity, std::min(speedAt(t), speedAt(r)));
+        SpeedBounds& at = bounds[k];
+        at.values[at.count++] = t;
+        at.values[at.count++] = r;
+    }
+    return limits;
+}
+
+}  // namespace metier::motion

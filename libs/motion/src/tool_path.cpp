@@ -1,0 +1,198 @@
+#include "tool_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "metier/geometry/rotation.hpp"
+
+namespace metier::motion {
+
+namespace {
+
+using Eigen::Vector3d;
+using geometry::Pose;
+
+/// Length that a rotation counts for where it is more than the translation [m/rad].
+constexpr double kLengthPerAngle = 0.25;
+
+/// The smooth step from 0 to 1, its first two derivatives and its integral.
+struct Fade {
+    double value;
+    double first;
+    double second;
+    double integral;
+};
+
+Fade fade(double u) noexcept {
+    const double u2 = u * u;
+    return {u2 * u * (10 + u * (-15 + 6 * u)), 30 * u2 * (1 - u) * (1 - u),
+            60 * u * (1 + u * (-3 + 2 * u)), u2 * u2 * (2.5 + u * (u - 3))};
+}
+
+ToolDerivatives cornerDerivatives(const Vector3d& in, const Vector3d& out, const Fade& f,
+                                  double length) noexcept {
+    const double change = (out - in).norm();
+    return {((1 - f.value) * in + f.value * out).norm(), std::abs(f.first) * change / length,
+            std::abs(f.second) * change / (length * length)};
+}
+
+ToolDerivatives scaled(const ToolDerivatives& d, double length) noexcept {
+    return {d.first * length, d.second * length * length, d.third * length * length * length};
+}
+
+double share(const Vector3d& part, const Vector3d& whole) noexcept {
+    return part.dot(whole) / whole.squaredNorm();
+}
+
+}  // namespace
+
+ToolPath::ToolPath(const Pose& start, const Pose& target) : end_(start) {
+    appendLine(start, target);
+}
+
+void ToolPath::appendLine(const Pose& start, const Pose& target) {
+    const Vector3d direction = target.translation - start.translation;
+    const Vector3d turn = geometry::rotationVectorBetween(start.rotation, target.rotation);
+    Piece piece;
+    piece.begin = length_;
+    piece.length = std::max(direction.norm(), kLengthPerAngle * turn.norm());
+    piece.pose = start;
+    piece.line = line_count_++;
+    if (piece.length > 0) {
+        piece.in = {direction / piece.length, turn / piece.length};
+    }
+    length_ += piece.length;
+    distance_ += direction.norm();
+    angle_ += turn.norm();
+    end_ = target;
+    pieces_.push_back(piece);
+}
+
+void ToolPath::append(const Pose& target, double blend_radius) {
+    const std::size_t before = pieces_.size() - 1;
+    const Pose corner_pose = end_;
+    appendLine(corner_pose, target);
+    Piece& from = pieces_[before];
+    Piece& to = pieces_[before + 1];
+    const double fastest = std::max({from.in.velocity.norm(), to.in.velocity.norm(), 1e-9});
+    const double half = std::min({blend_radius / fastest, 0.5 * from.length, 0.5 * to.length});
+    Piece corner;
+    corner.corner = true;
+    corner.begin = from.begin + from.length - half;
+    corner.length = 2 * half;
+    corner.pose = corner_pose;
+    corner.in = from.in;
+    corner.out = to.in;
+    corner.line = from.line;
+    from.length -= half;
+    to.begin += half;
+    to.length -= half;
+    to.pose = {to.pose.translation + half * to.in.velocity,
+               geometry::fromRotationVector(half * to.in.spin) * to.pose.rotation};
+    pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(before) + 1, corner);
+}
+
+double ToolPath::shortestCorner() const noexcept {
+    double shortest = 1;
+    for (const Piece& piece : pieces_) {
+        shortest = piece.corner ? std::min(shortest, piece.length / length_) : shortest;
+    }
+    return shortest;
+}
+
+const ToolPath::Piece& ToolPath::pieceAt(double length) const noexcept {
+    const auto after =
+        std::upper_bound(pieces_.begin() + 1, pieces_.end(), length,
+                         [](double value, const Piece& piece) { return value < piece.begin; });
+    return *(after - 1);
+}
+
+Pose ToolPath::at(double s) const noexcept {
+    const double length = s * length_;
+    const Piece& piece = pieceAt(length);
+    const double along = length - piece.begin;
+    if (!piece.corner) {
+        return {piece.pose.translation + along * piece.in.velocity,
+                geometry::fromRotationVector(along * piece.in.spin) * piece.pose.rotation};
+    }
+    const double out = piece.length * fade(along / piece.length).integral;
+    const double in = along - out - piece.length / 2;
+    return {piece.pose.translation + in * piece.in.velocity + out * piece.out.velocity,
+            geometry::fromRotationVector(out * piece.out.spin) *
+                geometry::fromRotationVector(in * piece.in.spin) * piece.pose.rotation};
+}
+
+ToolDerivatives ToolPath::translationAt(double s) const noexcept {
+    const Piece& piece = pieceAt(s * length_);
+    if (!piece.corner) {
+        return {length_ * piece.in.velocity.norm(), 0, 0};
+    }
+    const Fade f = fade((s * length_ - piece.begin) / piece.length);
+    return scaled(cornerDerivatives(piece.in.velocity, piece.out.velocity, f, piece.length),
+                  length_);
+}
+
+ToolDerivatives ToolPath::rotationAt(double s) const noexcept {
+    const Piece& piece = pieceAt(s * length_);
+    if (!piece.corner) {
+        return {length_ * piece.in.spin.norm(), 0, 0};
+    }
+    const Fade f = fade((s * length_ - piece.begin) / piece.length);
+    ToolDerivatives d = cornerDerivatives(piece.in.spin, piece.out.spin, f, piece.length);
+    // Where both rotations run at once, one turns the axis of the other.
+    d.second += piece.in.spin.norm() * piece.out.spin.norm();
+    return scaled(d, length_);
+}
+
+std::size_t ToolPath::lineAt(double s) const noexcept {
+    const Piece& piece = pieceAt(s * length_);
+    const bool second_half = piece.corner && s * length_ > piece.begin + piece.length / 2;
+    return piece.line + (second_half ? 1 : 0);
+}
+
+double ToolPath::nearestOn(const Piece& piece, const Pose& pose) const noexcept {
+    const auto clamped = [&](double along) {
+        return (piece.begin + std::clamp(along, 0.0, piece.length)) / length_;
+    };
+    if (!piece.corner) {
+        const bool moves = piece.in.velocity.norm() > 0;
+        return clamped(
+            moves ? share(pose.translation - piece.pose.translation, piece.in.velocity)
+                  : share(geometry::rotationVectorBetween(piece.pose.rotation, pose.rotation),
+                          piece.in.spin));
+    }
+    const auto off = [&](double along) {
+        return geometry::distanceBetween(at(clamped(along)), pose);
+    };
+    double low = 0;
+    double high = piece.length;
+    for (int i = 0; i < 60; ++i) {
+        const double third = (high - low) / 3;
+        if (off(low + third) < off(high - third)) {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    return clamped((low + high) / 2);
+}
+
+double ToolPath::nearest(const Pose& pose) const noexcept {
+    double best = 0;
+    double least = -1;
+    for (const Piece& piece : pieces_) {
+        if (piece.length <= 0) {
+            continue;
+        }
+        const double s = nearestOn(piece, pose);
+        const Pose there = at(s);
+        const double off = geometry::distanceBetween(there, pose);
+        if (least < 0 || off < least) {
+            least = off;
+            best = s;
+        }
+    }
+    return best;
+}
+
+}  // namespace metier::motion

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "metier/geometry/pose.hpp"
+
+namespace metier::motion {
+
+/// How the tool frame moves at a place of the path, by the path parameter; lengths of vectors.
+struct ToolDerivatives {
+    double first = 0;
+    double second = 0;
+    double third = 0;
+};
+
+/// Path of a tool frame: straight lines with short-way rotation, their corners rounded.
+///
+/// In a corner the derivative by the path parameter fades from that of one line into that of the
+/// next, twice continuously differentiable: velocity and angular velocity have no jump, and the
+/// path stays in the triangle of the corner. Path parameter 0 to 1.
+class ToolPath {
+public:
+    ToolPath() = default;
+    /// One line.
+    ToolPath(const geometry::Pose& start, const geometry::Pose& target);
+
+    /// Goes on in a line to `target`, rounding the corner where it leaves the last one.
+    /// \param blend_radius > 0 [m]; less is used where a line is shorter than twice of it
+    void append(const geometry::Pose& target, double blend_radius);
+
+    bool isPoint() const noexcept { return length_ == 0; }
+    bool isLine() const noexcept { return pieces_.size() == 1; }
+    /// Of all lines [m] and of all rotations [rad].
+    double distance() const noexcept { return distance_; }
+    double angle() const noexcept { return angle_; }
+    /// Share of the path that its shortest corner takes; 1 without corners.
+    double shortestCorner() const noexcept;
+
+    geometry::Pose at(double s) const noexcept;
+    ToolDerivatives translationAt(double s) const noexcept;
+    ToolDerivatives rotationAt(double s) const noexcept;
+    /// Which of the lines (0 the first) a place belongs to; corners to the slower half each.
+    std::size_t lineAt(double s) const noexcept;
+    /// The path parameter where the path is nearest.
+    double nearest(const geometry::Pose& pose) const noexcept;
+
+    /// Translation and rotation vector of the only line, from start to end.
+    Eigen::Vector3d direction() const noexcept { return length_ * pieces_.front().in.velocity; }
+    Eigen::Vector3d turn() const noexcept { return length_ * pieces_.front().in.spin; }
+
+private:
+    /// Derivatives by the length.
+    struct Motion {
+        Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+        Eigen::Vector3d spin = Eigen::Vector3d::Zero();
+    };
+    struct Piece {
+        double begin = 0;
+        double length = 0;
+        geometry::Pose pose;  ///< at the begin of a line, at the point of a corner
+        Motion in;
+        Motion out;  ///< of a corner
+        bool corner = false;
+        std::size_t line = 0;
+    };
+
+    const Piece& pieceAt(double length) const noexcept;
+    void appendLine(const geometry::Pose& start, const geometry::Pose& target);
+    double nearestOn(const Piece& piece, const geometry::Pose& pose) const noexcept;
+
+    std::vector<Piece> pieces_;
+    geometry::Pose end_;
+    double length_ = 0;
+    double distance_ = 0;
+    double angle_ = 0;
+    std::size_t line_count_ = 0;
+};
+
+}  // namespace metier::motion

@@ -1,0 +1,128 @@
+#include "metier/motion/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "metier/geometry/rotation.hpp"
+#include "plan.hpp"
+
+namespace metier::motion {
+
+namespace {
+
+PathDeviation deviationAt(const geometry::Pose& planned, const geometry::Pose& pose, double s) {
+    return {geometry::distanceBetween(planned, pose),
+            geometry::rotationAngleBetween(planned.rotation, pose.rotation), s};
+}
+
+}  // namespace
+
+Seconds Trajectory::duration() const noexcept {
+    return Seconds(plan_->profile().duration());
+}
+
+std::size_t Trajectory::axisCount() const noexcept {
+    return plan_->kinematics().axisCount();
+}
+
+SetPoint Trajectory::sample(Seconds time) const noexcept {
+    return sampleAt(plan_->profile().at(time.count()));
+}
+
+ScalarState Trajectory::pathParameter(const ScalarState& clock) const noexcept {
+    const SpeedMap& map = plan_->speed().map;
+    if (clock.position >= map.end()) {
+        return {1.0, 0.0, 0.0};
+    }
+    const ScalarState s = map.at(std::max(clock.position, 0.0));
+    return {s.position, s.velocity * clock.velocity,
+            s.velocity * clock.acceleration + s.acceleration * clock.velocity * clock.velocity};
+}
+
+SetPoint Trajectory::sampleAt(const ScalarState& clock) const noexcept {
+    const ScalarState s = pathParameter(clock);
+    const PathPoint path = plan_->pathAt(s.position);
+    SetPoint point{path.q, path.first, path.first};
+    point.velocity.view() = s.velocity * path.first.view();
+    point.acceleration.view() =
+        s.acceleration * path.first.view() + s.velocity * s.velocity * path.second.view();
+    return point;
+}
+
+JointVector Trajectory::start() const noexcept {
+    return plan_->pathAt(0).q;
+}
+
+JointVector Trajectory::end() const noexcept {
+    return plan_->pathAt(1).q;
+}
+
+JointVector Trajectory::positionAt(double fraction) const noexcept {
+    return plan_->pathAt(std::clamp(fraction, 0.0, 1.0)).q;
+}
+
+geometry::Pose Trajectory::toolPose(const JointVector& q) const noexcept {
+    return plan_->kinematics().forward(q) * plan_->flangeFromTool();
+}
+
+geometry::Pose Trajectory::poseAt(double fraction) const noexcept {
+    const ToolPath* path = plan_->toolPath();
+    const double s = std::clamp(fraction, 0.0, 1.0);
+    return path != nullptr ? path->at(s) : toolPose(plan_->pathAt(s).q);
+}
+
+PathDeviation Trajectory::deviation(const geometry::Pose& base_from_tool) const noexcept {
+    if (const ToolPath* path = plan_->toolPath()) {
+        const double s = path->nearest(base_from_tool);
+        return deviationAt(path->at(s), base_from_tool, s);
+    }
+    // A PTP path is curved: nearest of many points, then halving steps round it.
+    constexpr int points = 100;
+    PathDeviation best = deviationAt(poseAt(0), base_from_tool, 0);
+    const auto consider = [&](double s) {
+        const double inside = std::clamp(s, 0.0, 1.0);
+        const PathDeviation other = deviationAt(poseAt(inside), base_from_tool, inside);
+        best = other.distance + other.angle < best.distance + best.angle ? other : best;
+    };
+    for (int i = 1; i <= points; ++i) {
+        consider(static_cast<double>(i) / points);
+    }
+    for (double step = 1.0 / points; step > 1e-9; step /= 2) {
+        const double centre = best.fraction;
+        consider(centre - step);
+        consider(centre + step);
+    }
+    return best;
+}
+
+const ScalarLimits& Trajectory::clockLimits() const noexcept {
+    return plan_->speed().limits;
+}
+
+double Trajectory::clockEnd() const noexcept {
+    return plan_->speed().map.end();
+}
+
+const Profile& Trajectory::profile() const noexcept {
+    return plan_->profile();
+}
+
+double Trajectory::length() const noexcept {
+    const ToolPath* path = plan_->toolPath();
+    return path != nullptr ? path->distance() : 0.0;
+}
+
+double Trajectory::angle() const noexcept {
+    const ToolPath* path = plan_->toolPath();
+    return path != nullptr ? path->angle() : 0.0;
+}
+
+Trajectory Trajectory::stretchedTo(Seconds duration) const {
+    const double now = plan_->profile().duration();
+    if (duration.count() <= now || now <= 0) {
+        return *this;
+    }
+    return Trajectory(std::make_shared<const Plan>(plan_->slowed(duration.count() / now)));
+}
+
+}  // namespace metier::motion

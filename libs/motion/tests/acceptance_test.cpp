@@ -1,0 +1,222 @@
+// Rows of the acceptance table that look at whole moves; METIER_TEST_SCALE multiplies their number.
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "kdl_oracle.hpp"
+#include "metier/geometry/rotation.hpp"
+#include "metier/motion/execution.hpp"
+#include "metier/motion/planner.hpp"
+#include "test_robots.hpp"
+
+namespace metier::motion {
+namespace {
+
+using geometry::Pose;
+
+LinRequest vertical(const RobotModel& model, double length) {
+    LinRequest request;
+    request.start = model.home();
+    request.reference = TargetReference::relative_base;
+    request.target.translation = {0, 0, length};
+    request.max_velocity = {0.25, 0.25, 0.25, 1, 1, 1};
+    request.max_acceleration = {1.2, 1.2, 1.2, 2, 2, 2};
+    return request;
+}
+
+LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    LinRequest request = vertical(model, 0);
+    for (double& q : request.start) {
+        q += 0.2 * unit(random);
+    }
+    request.target.translation = 0.15 * Eigen::Vector3d(unit(random), unit(random), unit(random));
+    request.target.rotation = geometry::fromRotationVector(
+        0.4 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
+    return request;
+}
+
+using AcceptanceOf = EachRobot;
+INSTANTIATE_TEST_SUITE_P(Robots, AcceptanceOf, testing::ValuesIn(kRobots), robotName);
+
+TEST_P(AcceptanceOf, BetweenSamplesTheJointLineStaysNearTheLine) {
+    const auto plan = Planner(model_).lin(vertical(model_, 0.08));
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    constexpr double cycle = 0.008;
+    double worst = 0;
+    for (double t = 0; t < plan->duration().count(); t += cycle) {
+        JointVector middle = plan->sample(Seconds(t)).position;
+        middle.view() = 0.5 * (middle.view() + plan->sample(Seconds(t + cycle)).position.view());
+        worst = std::max(worst, plan->deviation(plan->toolPose(middle)).distance);
+    }
+    EXPECT_LT(worst, 5e-6);  // 0.005 mm at 0.25 m/s and 8 ms
+}
+
+TEST_P(AcceptanceOf, TheSameMotionSampledAtTwoRatesAgrees) {
+    const auto plan = Planner(model_).lin(vertical(model_, 0.08));
+    ASSERT_TRUE(plan);
+    MotionExecution slow(*plan);
+    MotionExecution quick(*plan);
+    while (!slow.finished()) {
+        slow.next(Seconds(0.008));
+        for (int i = 0; i < 8; ++i) {
+            quick.next(Seconds(0.001));
+        }
+        ASSERT_LE(maxDifference(slow.current().position, quick.current().position), 1e-9);
+    }
+}
+
+TEST_P(AcceptanceOf, AnUnreachableTargetIsRefusedWithinAMillisecond) {
+    std::mt19937_64 random(1);
+    const Pose far{{2.5, 0.3, 0.4}, Eigen::Quaterniond::Identity()};
+    std::chrono::nanoseconds least = std::chrono::seconds(1);
+    for (int i = 0; i < 20; ++i) {
+        PtpRequest request;
+        request.start = randomPosition(model_, random);
+        request.target = far;
+        const auto begin = std::chrono::steady_clock::now();
+        const auto plan = Planner(model_).ptp(request);
+        least = std::min<std::chrono::nanoseconds>(least, std::chrono::steady_clock::now() - begin);
+        ASSERT_FALSE(plan);
+        EXPECT_EQ(plan.error().reason, RefusalReason::unreachable);
+    }
+    EXPECT_LT(least, std::chrono::milliseconds(1));
+}
+
+TEST_P(AcceptanceOf, NoLineFlipsTheArmOnTheWay) {
+    std::mt19937_64 random(2);
+    int planned = 0;
+    for (int i = 0; i < scaled(100); ++i) {
+        const auto plan = Planner(model_).lin(randomLin(model_, random));
+        if (!plan) {
+            continue;
+        }
+        ++planned;
+        constexpr double cycle = 0.004;
+        JointVector before = plan->start();
+        for (double t = 0; t <= plan->duration().count() + cycle; t += cycle) {
+            const JointVector q = plan->sample(Seconds(t)).position;
+            for (std::size_t axis = 0; axis < q.size(); ++axis) {
+                ASSERT_LE(std::abs(q[axis] - before[axis]),
+                          1.01 * cycle * model_.limits(axis).velocity);
+            }
+            before = q;
+        }
+    }
+    EXPECT_GT(planned, scaled(100) / 5);
+}
+
+TEST_P(AcceptanceOf, SetPointVelocityAndAccelerationAreTheDerivativesOfThePosition) {
+    const auto plan = Planner(model_).lin(vertical(model_, 0.08));
+    ASSERT_TRUE(plan);
+    constexpr double h = 1e-4;
+    for (double t = 0.05; t < plan->duration().count() - 0.05; t += 0.05) {
+        const SetPoint at = plan->sample(Seconds(t));
+        const JointVector after = plan->sample(Seconds(t + h)).position;
+        const JointVector before = plan->sample(Seconds(t - h)).position;
+        for (std::size_t i = 0; i < at.position.size(); ++i) {
+            EXPECT_NEAR(at.velocity[i], (after[i] - before[i]) / (2 * h), 2e-4);
+            EXPECT_NEAR(at.acceleration[i], (after[i] - 2 * at.position[i] + before[i]) / (h * h),
+                        2e-2);
+        }
+    }
+}
+
+TEST_P(AcceptanceOf, AHalfTurnIsTheSameWayEveryTime) {
+    LinRequest request = vertical(model_, 0);
+    request.reference = TargetReference::relative_tool;
+    for (const double angle : {std::numbers::pi, -std::numbers::pi}) {
+        request.target.rotation = geometry::fromRotationVector({0, 0, angle});
+        const auto plan = Planner(model_).lin(request);
+        if (!plan) {
+            EXPECT_EQ(plan.error().reason, RefusalReason::joint_limit);
+            continue;
+        }
+        const Pose quarter = plan->poseAt(0.5);
+        const Eigen::Vector3d turned =
+            geometry::rotationVectorBetween(plan->poseAt(0).rotation, quarter.rotation);
+        EXPECT_NEAR(turned.norm(), std::numbers::pi / 2, 1e-9);
+        EXPECT_GT(turned.z() + 1e-9, 0.0);
+    }
+}
+
+TEST(Acceptance, AHundredLapsOfTheSquareKeepTheElbowOfTheSevenAxisArm) {
+    const RobotModel model = loadRobot("iiwa7");
+    const std::array<Eigen::Vector3d, 4> sides{
+        Eigen::Vector3d(0, 0.1, 0), Eigen::Vector3d(0, 0, 0.1), Eigen::Vector3d(0, -0.1, 0),
+        Eigen::Vector3d(0, 0, -0.1)};
+    JointVector q = model.home();
+    q[2] = 0.2;
+    const JointVector start = q;
+    for (int lap = 0; lap < 100; ++lap) {
+        for (const Eigen::Vector3d& side : sides) {
+            LinRequest request = vertical(model, 0);
+            request.start = q;
+            request.target.translation = side;
+            const auto plan = Planner(model).lin(request);
+            ASSERT_TRUE(plan) << plan.error().error.message;
+            q = plan->end();
+        }
+    }
+    EXPECT_LE(maxDifference(q, start), 1e-9);
+}
+
+TEST(Acceptance, TheArmAngleCanBeChangedAlongALine) {
+    const RobotModel model = loadRobot("iiwa7");
+    LinRequest request = vertical(model, 0.05);
+    const double before = model.kinematics().redundancyAngle(request.start);
+    request.redundancy_angle = before + 0.4;
+    const auto plan = Planner(model).lin(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    EXPECT_NEAR(model.kinematics().redundancyAngle(plan->end()), before + 0.4, 1e-9);
+    EXPECT_NEAR(model.kinematics().redundancyAngle(plan->positionAt(0.5)), before + 0.2, 1e-9);
+}
+
+TEST(Acceptance, ALineThroughTheWristSingularityRunsIfTheAxesStayContinuous) {
+    const RobotModel model = loadRobot("edo");
+    // The wrist stretches through axis 5 = 0 while the tool turns about axis 5.
+    LinRequest request;
+    request.start = JointVector{0, 0.1, 1.2, 0, 0.3, 0};
+    request.reference = TargetReference::relative_base;
+    request.target.rotation = geometry::fromRotationVector({0, -0.6, 0});
+    const auto plan = Planner(model).lin(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    EXPECT_LT(maxDifference(plan->end(), plan->start()), 1.0);
+}
+
+TEST(Acceptance, ALineCloseByASingularityIsSlowOrRefusedButNeverTooFast) {
+    const RobotModel model = loadRobot("ur5");
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int refused = 0;
+    for (int i = 0; i < scaled(30); ++i) {
+        LinRequest request = vertical(model, 0);
+        request.start[4] = 0.3;  // the line turns the wrist past 0, a little beside it
+        request.target.rotation = geometry::fromRotationVector(
+            {0.02 * unit(random), 0.02 * unit(random), -0.6 * (unit(random) > 0 ? 1 : -1)});
+        request.target.translation = {0.0, 0.05 * unit(random), 0};
+        const auto plan = Planner(model).lin(request);
+        if (!plan) {
+            ++refused;
+            continue;
+        }
+        constexpr double cycle = 0.001;
+        JointVector before = plan->start();
+        for (double t = 0; t < plan->duration().count(); t += cycle) {
+            const JointVector q = plan->sample(Seconds(t)).position;
+            for (std::size_t axis = 0; axis < q.size(); ++axis) {
+                ASSERT_LE(std::abs(q[axis] - before[axis]),
+                          1.001 * cycle * model.limits(axis).velocity)
+                    << i << " axis " << axis << " at " << t;
+            }
+            before = q;
+        }
+    }
+    EXPECT_LT(refused, scaled(30));
+}
+
+}  // namespace
+}  // namespace metier::motion

@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "metier/geometry/rotation.hpp"
+#include "metier/motion/planner.hpp"
+#include "test_robots.hpp"
+
+namespace metier::motion {
+namespace {
+
+using geometry::Pose;
+using testing::HasSubstr;
+
+constexpr double kRadius = 0.03;
+
+/// Three sides of a vertical square and a turn of the tool, corners rounded.
+PathRequest roundedSquare(const RobotModel& model) {
+    PathRequest request;
+    request.lin.start = model.home();
+    request.lin.reference = TargetReference::relative_base;
+    request.lin.max_velocity = {0.25, 0.25, 0.25, 1, 1, 1};
+    request.lin.max_acceleration = {1.2, 1.2, 1.2, 4, 4, 4};
+    const auto side = [](double y, double z, double turn) {
+        return PathWaypoint{{{0, y, z}, geometry::fromRotationVector({0, 0, turn})}, kRadius};
+    };
+    request.waypoints = {side(0.1, 0, 0.2), side(0, 0.1, -0.3), side(-0.1, 0, 0.1)};
+    return request;
+}
+
+using BlendedPathOf = EachRobot;
+INSTANTIATE_TEST_SUITE_P(Robots, BlendedPathOf, testing::ValuesIn(kRobots), robotName);
+
+TEST_P(BlendedPathOf, StaysInTheSphereOfEveryCornerAndEndsAtTheLastPose) {
+    const PathRequest request = roundedSquare(model_);
+    const auto plan = Planner(model_).path(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    const Pose start = plan->toolPose(model_.home());
+    std::vector<Eigen::Vector3d> corners{start.translation};
+    for (const PathWaypoint& waypoint : request.waypoints) {
+        corners.push_back(corners.back() + waypoint.target.translation);
+    }
+    for (int i = 0; i <= 500; ++i) {
+        const Pose pose = plan->poseAt(i / 500.0);
+        double off_lines = 1;
+        for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
+            const Eigen::Vector3d side = corners[k + 1] - corners[k];
+            const double u = std::clamp(
+                (pose.translation - corners[k]).dot(side) / side.squaredNorm(), 0.0, 1.0);
+            off_lines = std::min(off_lines, (pose.translation - corners[k] - u * side).norm());
+        }
+        double to_corner = 1;
+        for (const Eigen::Vector3d& corner : corners) {
+            to_corner = std::min(to_corner, (pose.translation - corner).norm());
+        }
+        ASSERT_TRUE(off_lines < 1e-12 || to_corner <= kRadius) << i;
+    }
+    EXPECT_LT((plan->endPose().translation - corners.back()).norm(), 1e-9);
+    EXPECT_LT(poseError(plan->toolPose(plan->end()), plan->endPose()), 1e-9);
+}
+
+TEST_P(BlendedPathOf, HasNoJumpInVelocityOrAngularVelocityAndKeepsTheLimits) {
+    const auto plan = Planner(model_).path(roundedSquare(model_));
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    constexpr double cycle = 0.001;
+    const CartesianLimits& own = model_.cartesianLimits();
+    const double acceleration = std::min(1.2, own.acceleration);
+    const double angular_acceleration = std::min(4.0, own.angular_acceleration);
+    const auto pose = [&](double time) {
+        return plan->toolPose(plan->sample(Seconds(time)).position);
+    };
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    Eigen::Vector3d spin = Eigen::Vector3d::Zero();
+    Pose before = pose(-cycle);
+    double slowest_inside = 1;
+    for (double time = 0; time < plan->duration().count() + cycle; time += cycle) {
+        const Pose now = pose(time);
+        const Eigen::Vector3d v = (now.translation - before.translation) / cycle;
+        const Eigen::Vector3d w =
+            geometry::rotationVectorBetween(before.rotation, now.rotation) / cycle;
+        ASSERT_LE((v - velocity).norm() / cycle, 1.02 * acceleration) << time;
+        ASSERT_LE((w - spin).norm() / cycle, 1.02 * angular_acceleration) << time;
+        ASSERT_LE(v.norm(), 1.001 * std::min(0.25, own.velocity));
+        const bool inside =
+            time > 0.25 * plan->duration().count() && time < 0.75 * plan->duration().count();
+        slowest_inside = inside ? std::min(slowest_inside, v.norm()) : slowest_inside;
+        velocity = v;
+        spin = w;
+        before = now;
+    }
+    EXPECT_GT(slowest_inside, 0.005);
+}
+
+TEST(BlendedPath, IsQuickerThanStoppingAndKeepsHalfTheSpeedWhereTheLimitsAllow) {
+    for (const std::string robot : {"ur5", "ur5e", "iiwa7", "iiwa14"}) {
+        const RobotModel model = loadRobot(robot);
+        PathRequest request = roundedSquare(model);
+        request.lin.max_velocity = {0.08, 0.08, 0.08, 1, 1, 1};
+        const auto plan = Planner(model).path(request);
+        ASSERT_TRUE(plan) << plan.error().error.message;
+        Seconds stopping{0};
+        LinRequest line = request.lin;
+        for (const PathWaypoint& waypoint : request.waypoints) {
+            line.target = waypoint.target;
+            const auto side = Planner(model).lin(line);
+            ASSERT_TRUE(side) << side.error().error.message;
+            stopping += side->duration();
+            line.start = side->end();
+        }
+        EXPECT_LT(plan->duration(), stopping);
+        for (double share = 0.2; share < 0.8; share += 0.005) {
+            const auto place = [&](double seconds) {
+                const Seconds time = share * plan->duration() + Seconds(seconds);
+                return plan->toolPose(plan->sample(time).position).translation;
+            };
+            ASSERT_GE((place(1e-4) - place(-1e-4)).norm() / 2e-4, 0.04) << robot;
+        }
+    }
+}
+
+TEST_P(BlendedPathOf, OfOneWaypointIsALine) {
+    PathRequest request = roundedSquare(model_);
+    request.waypoints.resize(1);
+    LinRequest line = request.lin;
+    line.target = request.waypoints[0].target;
+    const auto path = Planner(model_).path(request);
+    const auto lin = Planner(model_).lin(line);
+    ASSERT_TRUE(path && lin);
+    EXPECT_NEAR(path->duration().count(), lin->duration().count(), 0.02 * lin->duration().count());
+    EXPECT_LT(maxDifference(path->end(), lin->end()), 1e-9);
+}
+
+TEST(BlendedPath, RunsASlowerLegSlower) {
+    const RobotModel model = loadRobot("iiwa7");
+    PathRequest request = roundedSquare(model);
+    const Seconds quick = planPath(model, request).value().duration();
+    request.waypoints[1].max_velocity = 0.05;
+    EXPECT_GT(planPath(model, request).value().duration(), quick + Seconds(0.5));
+}
+
+TEST(BlendedPath, RefusesAWaypointWithoutABlendRadius) {
+    const RobotModel model = loadRobot("ur5");
+    PathRequest request = roundedSquare(model);
+    request.waypoints[0].blend_radius = 0;
+    const auto plan = Planner(model).path(request);
+    ASSERT_FALSE(plan);
+    EXPECT_THAT(plan.error().error.message, HasSubstr("waypoint 1: blend radius 0 m"));
+    request.waypoints.clear();
+    EXPECT_FALSE(Planner(model).path(request));
+}
+
+TEST(Synchronise, GivesEveryMotionTheDurationOfTheSlowest) {
+    std::vector<Trajectory> motions;
+    for (const std::string robot : {"ur5", "edo"}) {
+        const RobotModel model = loadRobot(robot);
+        JointVector target = model.home();
+        target[0] += 0.5;
+        PtpRequest request;
+        request.start = model.home();
+        request.target = target;
+        motions.push_back(planPtp(model, request).value());
+    }
+    const Seconds slowest = std::max(motions[0].duration(), motions[1].duration());
+    synchronise(motions);
+    EXPECT_NEAR(motions[0].duration().count(), slowest.count(), 1e-9);
+    EXPECT_NEAR(motions[1].duration().count(), slowest.count(), 1e-9);
+}
+
+}  // namespace
+}  // namespace metier::motion

@@ -1,0 +1,149 @@
+#include "metier/motion/execution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "metier/motion/planner.hpp"
+#include "test_robots.hpp"
+
+namespace metier::motion {
+namespace {
+
+constexpr Seconds kCycle{0.008};
+
+Trajectory lineOf(const RobotModel& model, double length) {
+    LinRequest request;
+    request.start = model.home();
+    request.reference = TargetReference::relative_base;
+    request.target.translation = {0, 0, length};
+    request.max_velocity = {0.25, 0.25, 0.25, 1, 1, 1};
+    request.max_acceleration = {1.2, 1.2, 1.2, 2, 2, 2};
+    return planLin(model, request).value();
+}
+
+using ExecutionOf = EachRobot;
+INSTANTIATE_TEST_SUITE_P(Robots, ExecutionOf, testing::ValuesIn(kRobots), robotName);
+
+TEST_P(ExecutionOf, RunsTheTrajectoryAsPlanned) {
+    const Trajectory trajectory = lineOf(model_, 0.1);
+    MotionExecution execution(trajectory);
+    EXPECT_EQ(execution.current().position, trajectory.start());
+    for (int i = 1; !execution.finished(); ++i) {
+        ASSERT_LE(
+            maxDifference(execution.next(kCycle).position, trajectory.sample(i * kCycle).position),
+            1e-9);
+        ASSERT_LT(i, 10000);
+    }
+    EXPECT_EQ(execution.current().position, trajectory.end());
+    EXPECT_EQ(execution.pathParameter(), 1.0);
+}
+
+TEST_P(ExecutionOf, SuspendsAndResumesAnywhereOnThePath) {
+    std::mt19937_64 random(1);
+    const Trajectory trajectory = lineOf(model_, 0.1);
+    std::uniform_int_distribution<int> when(0, static_cast<int>(trajectory.duration() / kCycle));
+    for (int run = 0; run < 50; ++run) {
+        MotionExecution execution(trajectory);
+        const int stop_at = when(random);
+        for (int i = 0; i < stop_at; ++i) {
+            execution.next(kCycle);
+        }
+        execution.stop();
+        while (!execution.atRest()) {
+            const auto point = execution.next(kCycle);
+            ASSERT_LE(trajectory.deviation(trajectory.toolPose(point.position)).distance, 1e-9);
+        }
+        const JointVector held = execution.current().position;
+        EXPECT_EQ(execution.next(kCycle).position, held);
+        EXPECT_TRUE(execution.current().velocity.allZero());
+        execution.resume();
+        for (int i = 0; !execution.finished() && i < 10000; ++i) {
+            const auto point = execution.next(kCycle);
+            ASSERT_LE(trajectory.deviation(trajectory.toolPose(point.position)).distance, 1e-9);
+        }
+        ASSERT_TRUE(execution.finished());
+        EXPECT_EQ(execution.current().position, trajectory.end());
+    }
+}
+
+TEST(Execution, StopsWithinVelocityOverAccelerationPlusAccelerationOverJerk) {
+    const RobotModel model = loadRobot("ur5");
+    const Trajectory trajectory = lineOf(model, 0.2);
+    MotionExecution execution(trajectory);
+    while (execution.pathParameter() < 0.5) {
+        execution.next(kCycle);
+    }
+    const double before = execution.pathParameter();
+    execution.stop();
+    const ScalarLimits& limits = trajectory.clockLimits();
+    EXPECT_LE(execution.remaining().count(),
+              1 / limits.acceleration + limits.acceleration / limits.jerk + 1e-9);
+    EXPECT_LE(execution.remaining().count(), 0.3);
+    const double full = execution.remaining().count();
+    execution.halt();
+    EXPECT_LT(execution.remaining().count(), 0.65 * full);
+    while (!execution.atRest()) {
+        execution.next(kCycle);
+    }
+    EXPECT_LT((execution.pathParameter() - before) * 0.2, 0.036);
+    EXPECT_FALSE(execution.finished());
+}
+
+TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
+    const RobotModel model = loadRobot("ur5");
+    const Trajectory trajectory = lineOf(model, 0.2);
+    MotionExecution execution(trajectory);
+    std::mt19937_64 random(2);
+    std::uniform_real_distribution<double> factor(0.05, 1.0);
+    int cycles = 0;
+    while (!execution.finished() && cycles < 10000) {
+        if (++cycles % 20 == 0) {
+            execution.setOverride(factor(random));
+        }
+        const auto point = execution.next(kCycle);
+        ASSERT_LE(trajectory.deviation(trajectory.toolPose(point.position)).distance, 1e-9);
+    }
+    EXPECT_TRUE(execution.finished());
+    EXPECT_GT(cycles * kCycle.count(), trajectory.duration().count());
+}
+
+TEST(Execution, OverrideOfZeroStandsOnThePathUntilItIsRaised) {
+    const RobotModel model = loadRobot("ur5");
+    const Trajectory trajectory = lineOf(model, 0.1);
+    MotionExecution execution(trajectory);
+    for (int i = 0; i < 20; ++i) {
+        execution.next(kCycle);
+    }
+    execution.setOverride(0);
+    while (!execution.atRest()) {
+        execution.next(kCycle);
+    }
+    EXPECT_FALSE(execution.finished());
+    execution.setOverride(1);
+    for (int i = 0; !execution.finished() && i < 1000; ++i) {
+        execution.next(kCycle);
+    }
+    EXPECT_TRUE(execution.finished());
+}
+
+TEST(Execution, ALateCycleStaysOnTheTimeBase) {
+    const RobotModel model = loadRobot("ur5");
+    const Trajectory trajectory = lineOf(model, 0.1);
+    MotionExecution execution(trajectory);
+    execution.next(kCycle);
+    execution.next(3 * kCycle);
+    EXPECT_LE(maxDifference(execution.current().position, trajectory.sample(4 * kCycle).position),
+              1e-12);
+}
+
+TEST(Execution, AMotionOfNoLengthIsFinishedAtOnce) {
+    const RobotModel model = loadRobot("ur5");
+    MotionExecution execution(lineOf(model, 0.0));
+    execution.next(kCycle);
+    EXPECT_TRUE(execution.finished());
+    EXPECT_EQ(execution.current().position, model.home());
+}
+
+}  // namespace
+}  // namespace metier::motion

@@ -1,0 +1,110 @@
+#include "metier/motion/robot_model.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "test_robots.hpp"
+
+namespace metier::motion {
+namespace {
+
+using testing::HasSubstr;
+
+std::string fileText(const std::string& robot) {
+    std::ifstream file(std::string(METIER_MODELS_DIR) + "/" + robot + ".toml");
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+/// The error of the UR5's file after one replacement.
+Error errorAfter(const std::string& from, const std::string& to) {
+    std::string text = fileText("ur5");
+    text.replace(text.find(from), from.size(), to);
+    const auto path = std::filesystem::temp_directory_path() /
+                      (std::string("metier_") +
+                       testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml");
+    std::ofstream(path) << text;
+    const auto model = RobotModel::load(path);
+    std::filesystem::remove(path);
+    return model ? Error{Errc::internal, "was accepted"} : model.error();
+}
+
+using ModelOf = EachRobot;
+INSTANTIATE_TEST_SUITE_P(Robots, ModelOf, testing::ValuesIn(kRobots), robotName);
+
+TEST_P(ModelOf, HasNamesLimitsAndAUsableHome) {
+    EXPECT_EQ(model_.name(), GetParam());
+    EXPECT_FALSE(model_.maker().empty());
+    EXPECT_FALSE(model_.product().empty());
+    EXPECT_TRUE(model_.kinematics().withinLimits(model_.home()));
+}
+
+TEST_P(ModelOf, IsTheSameWhenBuiltFromItsPublishedChain) {
+    const auto copy = RobotModel::fromChain(model_.chain());
+    ASSERT_TRUE(copy);
+    EXPECT_EQ(copy->kinematics().ikKind(), model_.kinematics().ikKind());
+    EXPECT_EQ(poseError(copy->kinematics().forward(model_.home()),
+                        model_.kinematics().forward(model_.home())),
+              0.0);
+}
+
+TEST(RobotModel, NamesTheFlangeByItsNameAndByNone) {
+    const RobotModel model = loadRobot("ur5");
+    EXPECT_EQ(model.tool("")->name, "flange");
+    EXPECT_EQ(model.tool("flange")->name, "flange");
+    const auto unknown = model.tool("drill");
+    ASSERT_FALSE(unknown);
+    EXPECT_EQ(unknown.error().code, Errc::not_found);
+    EXPECT_THAT(unknown.error().message, HasSubstr("drill"));
+}
+
+TEST(RobotModel, TellsThatAFileIsMissing) {
+    EXPECT_EQ(RobotModel::load("/nowhere/ur5.toml").error().code, Errc::not_found);
+}
+
+TEST(RobotModel, TellsFileLineAndKeyOfAWrongValue) {
+    const Error error = errorAfter("velocity_deg = 180", "velocity_deg = \"fast\"");
+    EXPECT_THAT(error.message, HasSubstr(".toml:21: joint[1].velocity_deg: not a finite number"));
+}
+
+TEST(RobotModel, TellsWhichKeyIsMissing) {
+    EXPECT_THAT(errorAfter("jerk = 50.0\n\n[[joint]]", "\n[[joint]]").message,
+                HasSubstr("joint[1].jerk: missing"));
+}
+
+TEST(RobotModel, RefusesAMisspeltKey) {
+    EXPECT_THAT(errorAfter("maker =", "color = 1\nmaker =").message,
+                HasSubstr("color: unknown key"));
+}
+
+TEST(RobotModel, RefusesLimitsThatAreTheWrongWayRound) {
+    EXPECT_THAT(errorAfter("position_deg = [-360, 360]", "position_deg = [10, -10]").message,
+                HasSubstr("axis 1 (base): position limits"));
+}
+
+TEST(RobotModel, RefusesAHomeOutsideTheLimits) {
+    EXPECT_THAT(errorAfter("home = [0.0", "home = [7.0").message, HasSubstr("home 7 rad"));
+}
+
+TEST(RobotModel, TellsTheLineOfAFaultInTheSyntax) {
+    EXPECT_THAT(errorAfter("name = \"ur5\"", "name = ").message, HasSubstr(".toml:3: "));
+}
+
+TEST(RobotModel, RefusesAChainWhoseAxisIsNoUnitVector) {
+    ChainDescription chain = loadRobot("ur5").chain();
+    chain.joints[2].axis = {0, 0, 2};
+    EXPECT_THAT(RobotModel::fromChain(chain).error().message, HasSubstr("axis 3"));
+}
+
+TEST(RobotModel, RefusesMoreAxesThanItCanHold) {
+    ChainDescription chain = loadRobot("iiwa7").chain();
+    chain.joints.push_back(chain.joints.back());
+    EXPECT_THAT(RobotModel::fromChain(chain).error().message, HasSubstr("8 axes"));
+}
+
+}  // namespace
+}  // namespace metier::motion

@@ -1,0 +1,180 @@
+#include "metier/motion/stream_follower.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+#include "test_robots.hpp"
+
+namespace metier::motion {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kCycle = 0.008;
+
+class StreamFollowerTest : public testing::Test {
+protected:
+    StreamFollowerTest()
+        : follower_(StreamFollower::create(model_, {Seconds(kCycle)}, model_.home()).value()) {}
+
+    Seconds time(int cycle) const { return Seconds(cycle * kCycle); }
+
+    /// One cycle; keeps the largest finite differences.
+    JointVector step(int cycle) {
+        const JointVector q = follower_.next(time(cycle)).position;
+        for (std::size_t i = 0; i < q.size(); ++i) {
+            const double v = (q[i] - last_[i]) / kCycle;
+            const double a = (v - velocity_[i]) / kCycle;
+            const double j = (a - acceleration_[i]) / kCycle;
+            const JointLimits& limits = model_.limits(i);
+            worst_ = std::max({worst_, std::abs(v) / limits.velocity,
+                               std::abs(a) / limits.acceleration, std::abs(j) / limits.jerk});
+            velocity_[i] = v;
+            acceleration_[i] = a;
+        }
+        last_ = q;
+        return q;
+    }
+
+    JointVector offset(double angle) const {
+        JointVector q = model_.home();
+        q[0] += angle;
+        return q;
+    }
+
+    RobotModel model_ = loadRobot("ur5");
+    StreamFollower follower_;
+    JointVector last_ = model_.home();
+    JointVector velocity_ = JointVector(6);
+    JointVector acceleration_ = JointVector(6);
+    double worst_ = 0;
+};
+
+TEST_F(StreamFollowerTest, HoldsUntilTheFirstSetPoint) {
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_EQ(step(i), model_.home());
+    }
+    EXPECT_EQ(follower_.state(), StreamFollower::State::waiting);
+    EXPECT_EQ(follower_.missedCycles(), 0U);
+}
+
+TEST_F(StreamFollowerTest, FollowsASineExactlyAfterThePlayoutDelay) {
+    const auto sine = [](double t) { return 0.3 * (1 - std::cos(std::numbers::pi * t)) / 2; };
+    double worst = 0;
+    for (int i = 0; i < 1000; ++i) {
+        ASSERT_FALSE(follower_.accept(offset(sine(i * kCycle)), time(i), time(i)));
+        const JointVector q = step(i);
+        if (i > 100) {
+            worst = std::max(worst, std::abs(q[0] - model_.home()[0] - sine((i - 3) * kCycle)));
+        }
+    }
+    EXPECT_LT(worst, 1e-6);
+    EXPECT_LE(worst_, 1.0);
+    EXPECT_EQ(follower_.acceptedCount(), 1000U);
+    EXPECT_EQ(follower_.missedCycles(), 0U);
+}
+
+TEST_F(StreamFollowerTest, BreaksNoLimitForWhiteNoise) {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    JointVector q = model_.home();
+    for (int i = 0; i < 20000; ++i) {
+        JointVector wild = q;
+        for (std::size_t axis = 0; axis < q.size(); ++axis) {
+            wild[axis] += 1.9 * kCycle * model_.limits(axis).velocity * unit(random);
+            wild[axis] =
+                std::clamp(wild[axis], model_.limits(axis).lower, model_.limits(axis).upper);
+        }
+        if (!follower_.accept(wild, time(i), time(i))) {
+            q = wild;
+        }
+        ASSERT_TRUE(model_.kinematics().withinLimits(step(i))) << i;
+        ASSERT_LE(worst_, 1.0) << i;
+    }
+    EXPECT_GT(follower_.acceptedCount(), 19000U);
+}
+
+TEST_F(StreamFollowerTest, CatchesUpWithAStreamThatWasTooFast) {
+    for (int i = 0; i < 600; ++i) {
+        const double angle = std::min(i * kCycle * 3.0, 1.5);  // from rest to 3 rad/s at once
+        ASSERT_FALSE(follower_.accept(offset(angle), time(i), time(i)));
+        step(i);
+    }
+    EXPECT_NEAR(last_[0], model_.home()[0] + 1.5, 1e-6);
+    EXPECT_LE(worst_, 1.0);
+}
+
+TEST_F(StreamFollowerTest, RefusesAJumpWithAxisValueAndLimit) {
+    const auto refusal = follower_.accept(offset(1.0), time(0), time(0));
+    ASSERT_TRUE(refusal);
+    EXPECT_EQ(refusal->reason, StreamRefusal::Reason::jump);
+    EXPECT_EQ(toError(*refusal).code, Errc::out_of_range);
+    EXPECT_THAT(toError(*refusal).message, HasSubstr("axis 1: jump of 1.0000 rad over limit"));
+    EXPECT_EQ(step(0), model_.home());
+}
+
+TEST_F(StreamFollowerTest, RefusesWrongSizesWhatIsNotFiniteAndOldTimes) {
+    using Reason = StreamRefusal::Reason;
+    EXPECT_EQ(follower_.accept(JointVector(7), time(0), time(0))->reason, Reason::wrong_size);
+    EXPECT_EQ(follower_.accept(offset(std::nan("")), time(0), time(0))->reason, Reason::not_finite);
+    EXPECT_EQ(follower_.accept(JointVector::constant(6, 9.0), time(0), time(0))->reason,
+              Reason::position_limit);
+    ASSERT_FALSE(follower_.accept(offset(0), time(1), time(1)));
+    EXPECT_EQ(follower_.accept(offset(0), time(1), time(2))->reason, Reason::not_later);
+}
+
+TEST_F(StreamFollowerTest, StopsWithinTheLimitsWhenTheStreamFallsSilent) {
+    int i = 0;
+    for (; i < 300; ++i) {
+        const double t = i * kCycle;
+        const double angle = t < 1 ? 0.5 * t * t : 0.5 + (t - 1);  // up to 1 rad/s
+        ASSERT_FALSE(follower_.accept(offset(angle), time(i), time(i)));
+        step(i);
+    }
+    const int silent = i;
+    while (follower_.state() != StreamFollower::State::timed_out && i < silent + 1000) {
+        step(i++);
+    }
+    EXPECT_EQ(follower_.state(), StreamFollower::State::timed_out);
+    EXPECT_LE(worst_, 1.0);
+    // After the playout delay and the first missed cycle: v/a + a/j with the limits of axis 1.
+    EXPECT_LE((i - silent) * kCycle, (3 + 1 + 2) * kCycle + 1.0 / 5 + 5.0 / 50);
+    EXPECT_GT(follower_.missedCycles(), 0U);
+    EXPECT_EQ(follower_.accept(offset(0), time(i), time(i))->reason,
+              StreamRefusal::Reason::timed_out);
+}
+
+TEST_F(StreamFollowerTest, SmoothsIrregularArrival) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> jitter(0, 1.5 * kCycle);
+    const auto sine = [](double t) { return 0.3 * (1 - std::cos(std::numbers::pi * t)) / 2; };
+    std::vector<double> arrival;
+    for (int i = 0; i < 600; ++i) {
+        const double at = i * kCycle + (i == 0 ? 0.0 : jitter(random));
+        arrival.push_back(arrival.empty() ? at : std::max(at, arrival.back()));
+    }
+    std::size_t sent = 0;
+    for (int i = 0; i < 590; ++i) {
+        for (; sent < arrival.size() && arrival[sent] <= i * kCycle; ++sent) {
+            const double t = static_cast<double>(sent) * kCycle;
+            ASSERT_FALSE(follower_.accept(offset(sine(t)), Seconds(t), time(i)));
+        }
+        const JointVector q = step(i);
+        if (i > 100) {
+            EXPECT_NEAR(q[0] - model_.home()[0], sine((i - 3) * kCycle), 1e-5);
+        }
+    }
+    EXPECT_LE(worst_, 1.0);
+    EXPECT_EQ(follower_.missedCycles(), 0U);
+}
+
+TEST_F(StreamFollowerTest, RefusesOptionsThatMakeNoSense) {
+    EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0)}, model_.home()));
+    EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01), 0}, model_.home()));
+    EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01)}, JointVector(7)));
+}
+
+}  // namespace
+}  // namespace metier::motion
