@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstddef>
+#include <span>
+
+namespace metier::device {
+
+/// Most axes that one arm may have.
+inline constexpr std::size_t kMaxAxes = 8;
+
+/// One number per axis, axis 1 first: [rad] for positions, [rad/s] for velocities.
+///
+/// Fixed storage and trivially copyable, so that it may cross threads and never allocates.
+class JointArray {
+public:
+    JointArray() = default;
+    /// `size` zeros; `size` <= kMaxAxes.
+    explicit JointArray(std::size_t size) noexcept : size_(size) { assert(size <= kMaxAxes); }
+    /// A copy of `values`; at most kMaxAxes of them.
+    explicit JointArray(std::span<const double> values) noexcept : JointArray(values.size()) {
+        std::copy(values.begin(), values.end(), values_.begin());
+    }
+
+    std::size_t size() const noexcept { return size_; }
+    double& operator[](std::size_t axis) noexcept { return values_[axis]; }
+    double operator[](std::size_t axis) const noexcept { return values_[axis]; }
+    double* begin() noexcept { return values_.data(); }
+    double* end() noexcept { return values_.data() + size_; }
+    const double* begin() const noexcept { return values_.data(); }
+    const double* end() const noexcept { return values_.data() + size_; }
+    std::span<double> values() noexcept { return {values_.data(), size_}; }
+    std::span<const double> values() const noexcept { return {values_.data(), size_}; }
+
+    bool operator==(const JointArray& other) const noexcept {
+        return std::equal(begin(), end(), other.begin(), other.end());
+    }
+
+private:
+    std::array<double, kMaxAxes> values_{};
+    std::size_t size_ = 0;
+};
+
+/// Largest difference between two arrays of the same size in one axis.
+inline double largestDifference(const JointArray& a, const JointArray& b) noexcept {
+    double largest = 0.0;
+    for (std::size_t axis = 0; axis < std::min(a.size(), b.size()); ++axis) {
+        largest = std::max(largest, a[axis] > b[axis] ? a[axis] - b[axis] : b[axis] - a[axis]);
+    }
+    return largest;
+}
+
+}  // namespace metier::device

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace metier::device {
+
+/// Hands the newest value from one thread to any number of readers.
+///
+/// Threading: one writer, which never waits, so a cycle thread may write; readers take a value
+/// again while one is being written. Nobody locks or allocates.
+template <typename T>
+class SharedValue {
+    static_assert(std::is_trivially_copyable_v<T>, "copied between threads word by word");
+
+public:
+    explicit SharedValue(const T& initial = T{}) noexcept { write(initial); }
+
+    /// Publishes a value. Writer only.
+    void write(const T& value) noexcept {
+        std::array<std::uint64_t, kWords> words{};
+        std::memcpy(words.data(), &value, sizeof(T));
+        const auto version = version_.load(std::memory_order_relaxed);
+        version_.store(version + 1, std::memory_order_relaxed);  // odd: being written
+        for (std::size_t i = 0; i < kWords; ++i) {
+            words_[i].store(words[i], std::memory_order_release);
+        }
+        version_.store(version + 2, std::memory_order_release);
+    }
+
+    /// The newest published value.
+    T read() const noexcept {
+        std::array<std::uint64_t, kWords> words{};
+        std::uint64_t before = 0;
+        std::uint64_t after = 0;
+        do {
+            before = version_.load(std::memory_order_acquire);
+            for (std::size_t i = 0; i < kWords; ++i) {
+                words[i] = words_[i].load(std::memory_order_acquire);
+            }
+            after = version_.load(std::memory_order_relaxed);
+        } while (before != after || before % 2 != 0);
+        T value;
+        std::memcpy(static_cast<void*>(&value), words.data(), sizeof(T));
+        return value;
+    }
+
+private:
+    static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
+
+    std::array<std::atomic<std::uint64_t>, kWords> words_{};
+    std::atomic<std::uint64_t> version_{0};
+};
+
+}  // namespace metier::device

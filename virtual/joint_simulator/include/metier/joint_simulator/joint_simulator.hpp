@@ -1,0 +1,142 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "metier/base/latest_value.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/joint_simulator/guard.hpp"
+#include "metier/joint_simulator/lag.hpp"
+
+namespace metier::virtual_robots {
+
+/// What one simulated arm is like.
+struct JointSimulatorOptions {
+    std::string name;
+    std::vector<std::string> axis_names;  ///< 1 to device::kMaxAxes
+    std::vector<AxisLimits> limits;       ///< one per axis
+    std::vector<double> start_position;   ///< [rad], within the limits
+    std::chrono::nanoseconds cycle{};     ///< > 0
+    GuardTolerance tolerance;
+    std::size_t delay_cycles = 2;    ///< from set-point to measured arm, <= kMaxDelayCycles
+    double time_constant = 0.0;      ///< of the lag after that [s]; 0: none
+    double standstill_speed = 1e-3;  ///< below it the measured arm counts as standing [rad/s]
+};
+
+enum class EmergencyStop : std::uint8_t { released, pressed };
+
+/// A robot arm without a robot: follows set-points with a lag, judges each by its own guard and
+/// stops by itself when one breaks a limit.
+///
+/// It has no thread: cycle() is one period of the controller, and time passes by nothing else, so
+/// tests move it by hand with step(); SimulatorDrive runs it at its real rate.
+///
+/// After a violation each axis brakes at its acceleration limit, off the path as a real robot
+/// would, and the safety state is protective_stop until resetFault(). A set-point that breaks a
+/// limit is never taken.
+///
+/// Threading: as device::Arm; cycle() and dispatch() each from one thread.
+class JointSimulator final : public device::Arm {
+public:
+    /// Errors: invalid_argument if sizes differ, a limit or the cycle is not positive, or the start
+    ///         position is outside the limits.
+    static Result<std::unique_ptr<JointSimulator>> create(JointSimulatorOptions options);
+
+    /// Tells a source that is still attached that the arm is disconnected.
+    ~JointSimulator() override;
+    JointSimulator(const JointSimulator&) = delete;
+    JointSimulator& operator=(const JointSimulator&) = delete;
+
+    const device::ArmInfo& info() const noexcept override { return info_; }
+    device::ArmState state() const noexcept override { return published_.read(); }
+    device::Safety safety() const override;
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
+    void stop() noexcept override;
+    Result<void> resetFault() override;
+    device::Registration onSafetyChange(SafetyCallback callback) override;
+
+    /// One period of the controller. Neither locks, allocates, logs nor throws.
+    /// \param scheduled when the time base says it begins
+    /// \param missed    cycles so far that began more than one period late
+    /// \return whether dispatch() has something to tell
+    bool cycle(SteadyTime scheduled, std::uint64_t missed) noexcept;
+
+    /// Tells sources and callbacks what happened. Not from the cycle thread.
+    void dispatch();
+
+    /// cycle() on a time base of its own, then dispatch(): for tests with time moved by hand.
+    void step();
+
+    /// What people and accidents do to an arm; each takes effect in the next cycle. Any thread.
+    /// \param text the controller's reason
+    void protectiveStop(std::string text);
+    void emergencyStop(EmergencyStop button) noexcept;
+    void disconnect() noexcept;
+    /// The arm answers again; normal if nothing else holds it.
+    void reconnect() noexcept;
+    /// Someone pushes the arm there. Only while no source moves it; ignored otherwise.
+    /// \param position [rad], one value per axis
+    void moveByHand(const device::JointArray& position) noexcept;
+
+private:
+    enum class Cause : std::uint8_t { none, violation, external, emergency, disconnected };
+    struct StopReason {
+        Cause cause = Cause::none;
+        Violation violation;
+    };
+
+    explicit JointSimulator(JointSimulatorOptions options);
+
+    void takeRequests() noexcept;
+    void takeHandMove() noexcept;
+    void enter(device::SafetyState safety, const StopReason& reason) noexcept;
+    void move() noexcept;
+    void follow(device::SetPointSource& source) noexcept;
+    void judge(const device::JointArray& set_point) noexcept;
+    void endWhenDue() noexcept;
+    void end(device::EndCause cause) noexcept;
+    bool measuredStands() const noexcept;
+    bool cameToRest() const noexcept;
+    void publish(SteadyTime scheduled, std::uint64_t missed) noexcept;
+    void tellSafety();
+    void tellEnd();
+
+    const device::ArmInfo info_;
+    const double standstill_speed_;
+
+    // Of the cycle thread alone.
+    Guard guard_;
+    Lag lag_;
+    device::ArmState state_;
+    bool stopping_ = false;
+    device::SafetyState last_safety_ = device::SafetyState::normal;
+
+    // Between the cycle thread and the others.
+    device::SharedValue<device::ArmState> published_;
+    device::SharedValue<StopReason> reason_;
+    std::atomic<device::SafetyState> safety_{device::SafetyState::normal};
+    std::atomic<bool> standing_{true};
+    std::atomic<device::SetPointSource*> active_{nullptr};
+    std::atomic<device::SetPointSource*> stop_target_{nullptr};
+    std::atomic<bool> ended_{false};
+    std::atomic<device::EndCause> end_cause_{device::EndCause::done};
+    std::atomic<bool> protective_requested_{false};
+    std::atomic<bool> emergency_pressed_{false};
+    std::atomic<bool> link_cut_{false};
+    LatestValue<device::JointArray> hand_move_;
+
+    // Of everyone but the cycle thread.
+    mutable std::mutex mutex_;
+    std::shared_ptr<device::SetPointSource> owner_;  // shared with whoever attached it
+    std::string external_text_;
+    std::vector<std::pair<std::uint64_t, SafetyCallback>> callbacks_;
+    std::uint64_t next_callback_ = 1;
+    device::SafetyState told_safety_ = device::SafetyState::normal;
+    std::uint64_t steps_ = 0;
+};
+
+}  // namespace metier::virtual_robots

@@ -1,0 +1,27 @@
+#include "metier/joint_simulator/robot_options.hpp"
+
+#include <chrono>
+
+namespace metier::virtual_robots {
+
+namespace {
+
+constexpr double kDriveReserve = 2.0;
+
+}  // namespace
+
+JointSimulatorOptions optionsFor(const motion::RobotModel& model) {
+    JointSimulatorOptions options;
+    options.name = model.name();
+    options.cycle = std::chrono::round<std::chrono::nanoseconds>(
+        std::chrono::duration<double>(model.cycleTime()));
+    options.start_position.assign(model.home().begin(), model.home().end());
+    for (const auto& joint : model.chain().joints) {
+        options.axis_names.push_back(joint.name);
+        options.limits.push_back({joint.limits.lower, joint.limits.upper, joint.limits.velocity,
+                                  kDriveReserve * joint.limits.acceleration});
+    }
+    return options;
+}
+
+}  // namespace metier::virtual_robots
