@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "metier/device/arm.hpp"
+#include "metier/skill/executor.hpp"
+#include "metier/skill/program.hpp"
+
+namespace metier::robot_skills {
+
+/// Tells all Programs of an arm when its controller is gone: each is Halted, also from Ready.
+///
+/// Threading: made and destroyed on the owner's thread.
+class DeviceWatch {
+public:
+    /// \param arm      must outlive this
+    /// \param executor of the owner's thread; shared, since it is posted to from the arm's thread
+    /// \param programs must outlive this
+    DeviceWatch(device::Arm& arm, std::shared_ptr<skill::Executor> executor,
+                std::vector<skill::Program*> programs);
+
+private:
+    using Programs = std::vector<skill::Program*>;
+
+    // Shared with what was posted and has not run yet: it may find them gone.
+    std::shared_ptr<const Programs> programs_;
+    device::Registration registration_;
+};
+
+}  // namespace metier::robot_skills

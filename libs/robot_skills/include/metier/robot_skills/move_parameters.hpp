@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/motion/robot_model.hpp"
+#include "metier/skill/field_list.hpp"
+
+namespace metier::robot_skills {
+
+/// What the target is relative to: RelativeMode of the NodeSet.
+enum class Relative : std::int32_t {
+    absolute = 0,  ///< a pose in the base frame, or a joint position
+    base = 1,      ///< added to the start along the base axes, or to its joint position
+    tool = 2,      ///< added to the start along the axes of the tool frame; poses only
+};
+
+/// What every move takes, whatever its target.
+struct MoveParameters {
+    std::string tool_frame{};                  ///< "": the flange
+    std::vector<double> max_velocity{};        ///< all zero: the robot's own
+    std::vector<double> max_acceleration{};    ///< all zero: the robot's own
+    std::int32_t relative = 0;                 ///< a Relative
+    double blend_radius = 0.0;                 ///< [m]
+    double speed_override = 1.0;               ///< (0, 1]
+    std::optional<double> redundancy_angle{};  ///< [rad]
+};
+
+/// A move to a pose.
+struct CartesianMoveParameters : MoveParameters {
+    skill::Frame target_position;             ///< of the tool frame
+    std::vector<skill::Range> axis_bounds{};  ///< [rad]; all zero: the robot's own
+};
+
+/// A move to a joint position.
+struct JointMoveParameters : MoveParameters {
+    std::vector<double> target_joint_position{};  ///< [rad]
+};
+
+/// What a move tells when it is done.
+struct MoveResults {
+    skill::Frame reached_pose;                     ///< base_from_tool, measured
+    std::vector<double> reached_joint_position{};  ///< measured [rad]
+    double duration = 0.0;                         ///< in motion, without the time suspended [s]
+    double largest_path_deviation = 0.0;  ///< measured tool frame from the planned path [m]
+};
+
+/// What MaxVelocity and MaxAcceleration bound.
+enum class MoveKind : std::uint8_t {
+    ptp,     ///< each axis
+    linear,  ///< x, y, z, then rotation about x, y, z, of the tool frame
+};
+
+/// The parameters as a server offers them for `model`, with all checks that need no other
+/// parameter. `model` must outlive the lists.
+///
+/// MaxVelocity, MaxAcceleration and AxisBounds may have any length while all zero: published
+/// clients always send six values.
+skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::RobotModel& model,
+                                                              MoveKind kind);
+skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& model,
+                                                      MoveKind kind);
+const skill::FieldList<MoveResults>& moveResultFields();
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/skill/field_list.hpp"
+#include "metier/skill/skill.hpp"
+
+namespace metier::robot_skills {
+
+struct PositionStreamParameters {
+    std::optional<std::vector<double>> target_joint_position{};  ///< [rad]; live
+};
+
+struct PositionStreamResults {
+    std::uint64_t set_points = 0;     ///< that were followed
+    std::uint64_t missed_cycles = 0;  ///< without a set-point in time, up to the last set-point
+    double duration = 0.0;            ///< from Running to rest [s]
+};
+
+/// The parameters as a server offers them for `model`, which must outlive the list.
+skill::FieldList<PositionStreamParameters> positionStreamFields(const motion::RobotModel& model);
+const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
+
+/// Makes a skill that follows the joint positions that its client writes while it runs.
+///
+/// The arm plays the stream a few cycles after the times it was meant for (motion::StreamFollower),
+/// within the limits of its axes. It ends
+/// - by Halt or Suspend: brakes. The number of set-points is the IntermediateResult. After Resume
+///   the stream begins anew where the arm stands;
+/// - by silence while the stream stands, that is its last two set-points differ by less than
+///   0.02 rad/s: the arm goes to the last one, and after 0.5 s it is finished, with its results;
+/// - by silence of over 150 ms (and 6 cycles) while it moves: brakes, then Halted with an error;
+/// - by a set-point that no axis could follow (a jump): brakes, then Halted, limit_violated.
+///   A single set-point outside the axes' ranges is refused when it is written.
+/// A stream that never begins is finished after 10 s.
+///
+/// \param arm, model, clock must outlive the skill
+/// Errors: invalid_argument if arm and model differ in their number of axes.
+Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(device::Arm& arm,
+                                                              const motion::RobotModel& model,
+                                                              const Clock& clock);
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+
+#include "metier/base/clock.hpp"
+#include "metier/motion/joint_vector.hpp"
+#include "metier/motion/trajectory.hpp"
+
+namespace metier::robot_skills {
+
+/// One set-point of a stream on its way to the cycle thread.
+struct StreamedPosition {
+    motion::JointVector position;     ///< [rad]
+    motion::Seconds intended_time{};  ///< when it was meant, since the first of its stream
+};
+
+/// Brings streamed set-points from the server's thread to the arm's cycle thread.
+///
+/// Threading: one writer, one reader; neither locks, waits or allocates.
+class StreamQueue {
+public:
+    static constexpr std::size_t kCapacity = 256;
+
+    /// False when it is full. Writer only.
+    bool tryPush(const StreamedPosition& position) noexcept {
+        const auto end = written_.load(std::memory_order_relaxed);
+        if (end - read_.load(std::memory_order_acquire) == kCapacity) {
+            return false;
+        }
+        slots_[end % kCapacity] = position;
+        written_.store(end + 1, std::memory_order_release);
+        return true;
+    }
+
+    /// The oldest. Reader only.
+    std::optional<StreamedPosition> tryPop() noexcept {
+        const auto begin = read_.load(std::memory_order_relaxed);
+        if (begin == written_.load(std::memory_order_acquire)) {
+            return std::nullopt;
+        }
+        const auto position = slots_[begin % kCapacity];
+        read_.store(begin + 1, std::memory_order_release);
+        return position;
+    }
+
+private:
+    std::array<StreamedPosition, kCapacity> slots_{};
+    std::atomic<std::size_t> written_{0};
+    std::atomic<std::size_t> read_{0};
+};
+
+/// When streamed set-points are meant for: by the sender's clock where it tells, else by arrival.
+///
+/// Set-points without a time that arrive together are spread by half a cycle of the arm, so that a
+/// client that sends one per cycle is followed although the network bunches them.
+/// Threading: the owner's thread.
+class StreamTimes {
+public:
+    /// \param clock must outlive this
+    /// \param cycle of the arm
+    StreamTimes(const Clock& clock, std::chrono::nanoseconds cycle)
+        : clock_(clock), least_step_(cycle / 2) {}
+
+    /// A new stream begins with the next set-point.
+    void restart() noexcept;
+    /// The time of the set-point that arrives now, since the first of its stream.
+    /// \param meant_for by the sender's clock
+    motion::Seconds next(std::optional<UtcTime> meant_for) noexcept;
+
+private:
+    const Clock& clock_;
+    const std::chrono::nanoseconds least_step_;
+    std::chrono::nanoseconds last_{};
+    std::optional<UtcTime> sender_start_;
+    std::optional<SteadyTime> arrival_start_;
+};
+
+}  // namespace metier::robot_skills

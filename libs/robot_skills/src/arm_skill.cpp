@@ -1,0 +1,28 @@
+#include "arm_skill.hpp"
+
+#include <fmt/format.h>
+
+namespace metier::robot_skills {
+
+Result<void> checkReady(const device::Arm& arm) {
+    const auto safety = arm.safety();
+    if (safety.state != device::SafetyState::normal) {
+        return fail(Errc::device_fault,
+                    fmt::format("{} ({})", safety.text, device::toString(safety.state)));
+    }
+    if (!arm.state().standstill) {
+        return fail(Errc::invalid_state, arm.info().name + ": the arm still moves");
+    }
+    return {};
+}
+
+Result<void> checkSameAxes(const device::Arm& arm, const motion::RobotModel& model) {
+    if (arm.info().axisCount() != model.axisCount()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} has {} axes, the model {} has {}", arm.info().name,
+                                arm.info().axisCount(), model.name(), model.axisCount()));
+    }
+    return {};
+}
+
+}  // namespace metier::robot_skills

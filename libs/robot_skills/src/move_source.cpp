@@ -1,0 +1,126 @@
+#include "move_source.hpp"
+
+#include <algorithm>
+
+#include "conversions.hpp"
+
+namespace metier::robot_skills {
+
+namespace {
+
+// How long the way back to the path takes after a rest [s]. kMovedTolerance (arm_body.hpp) in this
+// time is at most 0.02 rad/s and 0.3 rad/s2, which every arm can.
+constexpr double kWayBack = 0.2;
+
+}  // namespace
+
+MoveSource::MoveSource(const device::ArmInfo& info, const motion::Trajectory& trajectory,
+                       PathDeviationMeter::Path path)
+    : cycle_(info.cycleSeconds()),
+      execution_(trajectory),
+      deviation_(trajectory, path),
+      offset_(info.axisCount()),
+      way_back_(kWayBack) {}
+
+device::JointArray MoveSource::restingPlace() const noexcept {
+    return toArray(execution_.current().position);
+}
+
+void MoveSource::goOnFrom(const device::JointArray& from) {
+    const auto rest = restingPlace();
+    for (std::size_t axis = 0; axis < offset_.size(); ++axis) {
+        offset_[axis] = from[axis] - rest[axis];
+    }
+    way_back_ = from == rest ? kWayBack : 0.0;
+    stop_asked_ = false;
+    outcome_ = Outcome::none;
+    settling_.restart();
+    execution_.resume();
+}
+
+device::SetPointSource::Next MoveSource::next(const device::ArmState& state,
+                                              device::JointArray& set_point) noexcept {
+    obey();
+    measure(state);
+    if (way_back_ < kWayBack) {
+        way_back_ += cycle_;
+        in_motion_ += cycle_;
+        set_point = wayBack();
+        return Next::set_point;
+    }
+    if (execution_.finished() || (stop_asked_ && execution_.atRest())) {
+        return settle(state);
+    }
+    in_motion_ += cycle_;
+    set_point = toArray(execution_.next(motion::Seconds(cycle_)).position);
+    return Next::set_point;
+}
+
+void MoveSource::obey() noexcept {
+    const auto request = takeRequest();
+    if (request == Request::none) {
+        return;
+    }
+    stop_asked_ = true;
+    if (request == Request::halt) {
+        execution_.halt();
+    } else {
+        execution_.stop();
+    }
+}
+
+void MoveSource::measure(const device::ArmState& state) noexcept {
+    reached_ = state.position;
+    deviation_.take(toVector(state.position));
+}
+
+device::SetPointSource::Next MoveSource::settle(const device::ArmState& state) noexcept {
+    switch (settling_.take(state, restingPlace(), cycle_)) {
+        case Settling::Status::waiting:
+            return Next::set_point;  // the one it holds
+        case Settling::Status::arrived:
+            outcome_ = execution_.finished() ? Outcome::finished : Outcome::at_rest;
+            break;
+        case Settling::Status::off_target:
+            outcome_ = Outcome::off_target;
+            break;
+    }
+    return Next::done;
+}
+
+device::JointArray MoveSource::wayBack() const noexcept {
+    const double time = std::min(way_back_ / kWayBack, 1.0);
+    const double done = time * time * time * (10.0 + time * (6.0 * time - 15.0));
+    auto place = restingPlace();
+    for (std::size_t axis = 0; axis < offset_.size(); ++axis) {
+        place[axis] += (1.0 - done) * offset_[axis];
+    }
+    return place;
+}
+
+MoveResults MoveSource::results() const {
+    MoveResults results;
+    results.reached_pose = frameOf(execution_.trajectory().toolPose(toVector(reached_)));
+    results.reached_joint_position.assign(reached_.begin(), reached_.end());
+    results.duration = in_motion_;
+    results.largest_path_deviation = deviation_.largest();
+    return results;
+}
+
+void MoveSource::tellDone(const skill::Execution& tell) {
+    switch (outcome_) {
+        case Outcome::finished:
+            tell.finish(moveResultFields().write(results()));
+            return;
+        case Outcome::none:
+        case Outcome::at_rest:
+            tell.progress(execution_.pathParameter());
+            tell.atRest();
+            return;
+        case Outcome::off_target:
+            settling_.tellOffTarget(tell);
+            return;
+    }
+}
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,189 @@
+#include "metier/robot_skills/position_stream_skill.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "arm_body.hpp"
+#include "arm_skill.hpp"
+#include "conversions.hpp"
+#include "metier/robot_skills/stream_input.hpp"
+#include "metier/skill/typed_skill.hpp"
+#include "stream_source.hpp"
+
+namespace metier::robot_skills {
+
+using motion::JointVector;
+using motion::RobotModel;
+using skill::Field;
+using skill::Value;
+
+namespace {
+
+constexpr std::string_view kTarget = "TargetJointPosition";
+
+Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double>& position) {
+    for (std::size_t axis = 0; axis < position.size(); ++axis) {
+        const auto& limits = model.limits(axis);
+        if (position[axis] < limits.lower || position[axis] > limits.upper) {
+            return fail(Errc::out_of_range,
+                        fmt::format("axis {}: {:.4f} rad is outside {:.4f} to {:.4f} rad", axis + 1,
+                                    position[axis], limits.lower, limits.upper));
+        }
+    }
+    return {};
+}
+
+/// A stream as an execution of its skill.
+class StreamBody final : public ArmBody {
+public:
+    /// Whom the set-points come from and where they go.
+    struct Stream {
+        std::shared_ptr<StreamSource> source;  // shared with the arm while it moves
+        StreamTimes times;
+        std::optional<std::vector<double>> first;
+    };
+
+    StreamBody(device::Arm& arm, Stream stream, ToolDistance tool_distance)
+        : ArmBody(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
+
+    void start(skill::Execution execution) override {
+        stream_.times.restart();
+        const auto begun = stream_.first ? push(*stream_.first, {}) : Result<void>{};
+        if (!begun) {
+            execution.fail(skill::Reason::error, begun.error().message);
+            return;
+        }
+        ArmBody::start(std::move(execution));
+    }
+
+    Result<void> resume() override {
+        stream_.times.restart();
+        return ArmBody::resume();
+    }
+
+    Result<void> input(std::string_view parameter, const skill::LiveValue& live) override {
+        const auto* values = std::get_if<std::vector<double>>(&live.value);
+        if (parameter != kTarget || values == nullptr) {
+            return Body::input(parameter, live);
+        }
+        return push(*values, live.meant_for);
+    }
+
+private:
+    Result<void> push(const std::vector<double>& values, std::optional<UtcTime> meant_for = {}) {
+        auto position = JointVector::from(values);
+        if (!position) {
+            return fail(std::move(position.error()));
+        }
+        if (!stream_.source->queue().tryPush({*position, stream_.times.next(meant_for)})) {
+            return fail(Errc::resource_unavailable,
+                        fmt::format("{}: {} set-points wait already, more than the arm can take",
+                                    kTarget, StreamQueue::kCapacity));
+        }
+        return {};
+    }
+
+    Stream stream_;
+};
+
+class PositionStreamSkill final
+    : public skill::TypedSkill<PositionStreamParameters, PositionStreamResults> {
+public:
+    PositionStreamSkill(device::Arm& arm, const RobotModel& model, const Clock& clock)
+        : TypedSkill({.name = "PositionStreamSkill",
+                      .type = "PositionStreamSkillType",
+                      .description = "Follows joint positions that are written while it runs"},
+                     positionStreamFields(model), positionStreamResultFields()),
+          arm_(arm),
+          model_(model),
+          clock_(clock) {}
+
+    Result<void> reset() override { return arm_.resetFault(); }
+
+protected:
+    Result<std::unique_ptr<skill::Body>> plan(const PositionStreamParameters& given) override {
+        if (auto ready = checkReady(arm_); !ready) {
+            return fail(std::move(ready.error()));
+        }
+        auto source = StreamSource::create(
+            model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position)});
+        if (!source) {
+            return fail(std::move(source.error()));
+        }
+        if (auto begins = checkBegins(**source, given); !begins) {
+            return fail(std::move(begins.error()));
+        }
+        return std::make_unique<StreamBody>(
+            arm_,
+            StreamBody::Stream{std::move(*source), StreamTimes(clock_, arm_.info().cycle),
+                               given.target_joint_position},
+            toolDistance());
+    }
+
+private:
+    static Result<void> checkBegins(const StreamSource& source,
+                                    const PositionStreamParameters& given) {
+        if (!given.target_joint_position) {
+            return {};
+        }
+        return JointVector::from(*given.target_joint_position)
+            .and_then([&](const JointVector& position) { return source.checkFirst(position); });
+    }
+
+    ArmBody::ToolDistance toolDistance() const {
+        return [&model = model_](const device::JointArray& a, const device::JointArray& b) {
+            const auto& kinematics = model.kinematics();
+            return geometry::distanceBetween(kinematics.forward(toVector(a)),
+                                             kinematics.forward(toVector(b)));
+        };
+    }
+
+    device::Arm& arm_;
+    const RobotModel& model_;
+    const Clock& clock_;
+};
+
+}  // namespace
+
+skill::FieldList<PositionStreamParameters> positionStreamFields(const RobotModel& model) {
+    const auto axes = model.axisCount();
+    skill::FieldList<PositionStreamParameters> fields;
+    fields.add(&PositionStreamParameters::target_joint_position,
+               Field{.name = std::string(kTarget),
+                     .description = "Joint position to follow, axis 1 first",
+                     .unit = skill::kRadian,
+                     .length = skill::LengthLimit{axes, axes},
+                     .input = skill::Input::live,
+                     .extra_check = [&model](const Value& value) {
+                         return checkWithinLimits(model, std::get<std::vector<double>>(value));
+                     }});
+    return fields;
+}
+
+const skill::FieldList<PositionStreamResults>& positionStreamResultFields() {
+    static const auto fields = [] {
+        skill::FieldList<PositionStreamResults> list;
+        list.add(&PositionStreamResults::set_points,
+                 Field{.name = "SetPoints", .description = "Number of set-points followed"});
+        list.add(&PositionStreamResults::missed_cycles,
+                 Field{.name = "MissedCycles",
+                       .description = "Control cycles without a set-point in time"});
+        list.add(&PositionStreamResults::duration, Field{.name = "Duration",
+                                                         .description = "Time from Running to rest",
+                                                         .unit = skill::kSecond});
+        return list;
+    }();
+    return fields;
+}
+
+Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(device::Arm& arm,
+                                                              const RobotModel& model,
+                                                              const Clock& clock) {
+    if (auto checked = checkSameAxes(arm, model); !checked) {
+        return fail(std::move(checked.error()));
+    }
+    return std::make_unique<PositionStreamSkill>(arm, model, clock);
+}
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,208 @@
+#include "stream_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "conversions.hpp"
+
+namespace metier::robot_skills {
+
+using motion::StreamFollower;
+using motion::StreamRefusal;
+
+namespace {
+
+// A stream slower than this stands, since every axis can stop from it within a few cycles; silence
+// then is no loss [rad/s].
+constexpr double kStanding = 0.02;
+// Silence of a moving stream: longer than this and than so many cycles is a loss.
+constexpr double kLostAfter = 0.15;  // [s]; a busy computer delays a thread by some 50 ms
+constexpr int kLostAfterCycles = 6;
+// Silence after which a standing stream is finished [s].
+constexpr double kFinishedAfter = 0.5;
+// How long a stream may take to begin [s].
+constexpr double kLongestWait = 10.0;
+// The delay of the play-out: what the network may be late [s], and at least so many cycles.
+constexpr double kPlayOutDelay = 0.02;
+constexpr int kPlayOutCycles = 3;
+
+int playOutCycles(double cycle) noexcept {
+    return std::max(kPlayOutCycles, static_cast<int>(std::ceil(kPlayOutDelay / cycle)));
+}
+
+// Room for following a stream that was planned with the axes' full jerk.
+constexpr double kJerkFactor = 4.0;
+
+motion::StreamOptions followerOptions(double cycle) {
+    motion::StreamOptions options;
+    options.cycle = motion::Seconds(cycle);
+    options.playout_delay_cycles = playOutCycles(cycle);
+    options.jerk_factor = kJerkFactor;
+    options.stale_cycles = std::numeric_limits<int>::max();  // silence is judged here
+    return options;
+}
+
+double fastestAxis(const StreamedPosition& from, const StreamedPosition& to) noexcept {
+    const double time = (to.intended_time - from.intended_time).count();
+    return time > 0.0 ? motion::maxDifference(from.position, to.position) / time : 0.0;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<StreamSource>> StreamSource::create(const motion::RobotModel& model,
+                                                           const Setup& setup) {
+    auto follower = StreamFollower::create(model, followerOptions(setup.cycle), setup.start);
+    if (!follower) {
+        return fail(std::move(follower.error()));
+    }
+    return std::make_shared<StreamSource>(model, setup, *follower);
+}
+
+StreamSource::StreamSource(const motion::RobotModel& model, const Setup& setup,
+                           const StreamFollower& follower)
+    : model_(model), setup_(setup), follower_(follower), commanded_(toArray(setup.start)) {}
+
+Result<void> StreamSource::checkFirst(const motion::JointVector& position) const {
+    auto trial = follower_;
+    if (const auto refused = trial.accept(position, {}, {})) {
+        return fail(motion::toError(*refused));
+    }
+    return {};
+}
+
+void StreamSource::goOnFrom(const device::JointArray& from) {
+    before_rest_ = results();
+    auto follower = StreamFollower::create(model_, followerOptions(setup_.cycle), toVector(from));
+    if (follower) {
+        follower_ = *follower;
+    }
+    commanded_ = from;
+    settling_.restart();
+    end_ = End::none;
+    cycles_ = 0;
+    last_.reset();
+    speed_ = 0.0;
+    silence_ = 0.0;
+    set_points_ = 0;
+    missed_cycles_ = 0;
+}
+
+device::SetPointSource::Next StreamSource::next(const device::ArmState& state,
+                                                device::JointArray& set_point) noexcept {
+    ++cycles_;
+    if (takeRequest() != Request::none) {
+        endBecause(End::asked);
+    }
+    takeSetPoints();
+    watchSilence();
+    const motion::Seconds now(static_cast<double>(cycles_) * setup_.cycle);
+    commanded_ = toArray(follower_.next(now).position);
+    set_point = commanded_;
+    if (end_ == End::none || !follower_.atRest()) {
+        return Next::set_point;
+    }
+    const auto status = settling_.take(state, commanded_, setup_.cycle);
+    if (status == Settling::Status::off_target) {
+        end_ = End::off_target;
+    }
+    return status == Settling::Status::waiting ? Next::set_point : Next::done;
+}
+
+void StreamSource::takeSetPoints() noexcept {
+    silence_ += setup_.cycle;
+    while (const auto set_point = queue_.tryPop()) {
+        if (end_ == End::none) {
+            take(*set_point);
+        }
+    }
+}
+
+void StreamSource::take(const StreamedPosition& set_point) noexcept {
+    const motion::Seconds now(static_cast<double>(cycles_) * setup_.cycle);
+    const auto refused = follower_.accept(set_point.position, set_point.intended_time, now);
+    if (refused && refused->reason == StreamRefusal::Reason::not_later) {
+        return;  // overtaken by a newer one on the way
+    }
+    if (refused) {
+        refusal_ = refused;
+        endBecause(End::refused);
+        return;
+    }
+    speed_ = last_ ? fastestAxis(*last_, set_point) : 0.0;
+    last_ = set_point;
+    silence_ = 0.0;
+    ++set_points_;
+    missed_cycles_ = follower_.missedCycles();
+}
+
+void StreamSource::watchSilence() noexcept {
+    const bool silent = silence_ > std::max(kLostAfter, kLostAfterCycles * setup_.cycle);
+    if (end_ == End::none && silent && speed_ > kStanding) {
+        endBecause(End::silent_moving);
+        return;
+    }
+    if (last_ && silence_ > setup_.cycle && speed_ <= kStanding) {
+        hold();
+    }
+    if (end_ == End::none && silence_ > (last_ ? kFinishedAfter : kLongestWait)) {
+        end_ = End::silent;
+    }
+}
+
+/// Repeats the last set-point of a standing stream, so that the arm gets there however far it is
+/// behind. As late as can be without delaying what follows: a newer set-point may be on its way.
+void StreamSource::hold() noexcept {
+    const double delay = (playOutCycles(setup_.cycle) - 1) * setup_.cycle;
+    const auto time = last_->intended_time + motion::Seconds(silence_ - delay);
+    const motion::Seconds now(static_cast<double>(cycles_) * setup_.cycle);
+    static_cast<void>(follower_.accept(last_->position, time, now));  // refused when it brakes
+}
+
+void StreamSource::endBecause(End end) noexcept {
+    if (end_ == End::none || end_ == End::silent) {
+        end_ = end;
+        follower_.stop();
+    }
+}
+
+PositionStreamResults StreamSource::results() const noexcept {
+    auto results = before_rest_;
+    results.set_points += set_points_;
+    results.missed_cycles += missed_cycles_;
+    results.duration += static_cast<double>(cycles_) * setup_.cycle;
+    return results;
+}
+
+void StreamSource::tellDone(const skill::Execution& tell) {
+    const auto counted = results();
+    tell.progress(counted.set_points);
+    switch (end_) {
+        case End::none:
+        case End::asked:
+            tell.atRest();
+            return;
+        case End::silent:
+            tell.finish(positionStreamResultFields().write(counted));
+            return;
+        case End::silent_moving:
+            tell.fail(
+                skill::Reason::error,
+                fmt::format("the stream fell silent while it moved at {:.3f} rad/s: no "
+                            "set-point for {:.0f} ms after {} of them",
+                            speed_, 1e3 * std::max(kLostAfter, kLostAfterCycles * setup_.cycle),
+                            counted.set_points));
+            return;
+        case End::refused:
+            tell.fail(skill::Reason::limit_violated, motion::toError(*refusal_).message);
+            return;
+        case End::off_target:
+            settling_.tellOffTarget(tell);
+            return;
+    }
+}
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+
+#include "execution_source.hpp"
+#include "metier/motion/stream_follower.hpp"
+#include "metier/robot_skills/position_stream_skill.hpp"
+#include "metier/robot_skills/stream_input.hpp"
+#include "settling.hpp"
+
+namespace metier::robot_skills {
+
+/// Gives an arm the set-points of a stream, as the stream follower allows them.
+class StreamSource final : public ExecutionSource {
+public:
+    struct Setup {
+        double cycle = 0.0;         ///< of the arm [s]
+        motion::JointVector start;  ///< where the arm is commanded to stand [rad]
+    };
+
+    /// \param model must outlive the source
+    /// Errors: those of motion::StreamFollower::create().
+    static Result<std::shared_ptr<StreamSource>> create(const motion::RobotModel& model,
+                                                        const Setup& setup);
+
+    StreamSource(const motion::RobotModel& model, const Setup& setup,
+                 const motion::StreamFollower& follower);
+
+    /// Whether the stream could begin with this set-point. Before begin().
+    Result<void> checkFirst(const motion::JointVector& position) const;
+
+    /// Where the owner's thread leaves the set-points.
+    StreamQueue& queue() noexcept { return queue_; }
+
+    Next next(const device::ArmState& state, device::JointArray& set_point) noexcept override;
+    device::JointArray restingPlace() const noexcept override { return commanded_; }
+
+private:
+    /// Why the stream comes to rest.
+    enum class End : std::uint8_t { none, asked, silent, silent_moving, refused, off_target };
+
+    void goOnFrom(const device::JointArray& from) override;
+    void tellDone(const skill::Execution& tell) override;
+
+    void takeSetPoints() noexcept;
+    void take(const StreamedPosition& set_point) noexcept;
+    void watchSilence() noexcept;
+    void hold() noexcept;
+    void endBecause(End end) noexcept;
+    PositionStreamResults results() const noexcept;
+
+    const motion::RobotModel& model_;
+    const Setup setup_;
+    motion::StreamFollower follower_;
+    StreamQueue queue_;
+    Settling settling_;
+    End end_ = End::none;
+    device::JointArray commanded_;
+
+    // Since the stream began, or began anew after a rest.
+    std::uint64_t cycles_ = 0;
+    std::optional<StreamedPosition> last_;
+    double speed_ = 0.0;    ///< of the stream in its fastest axis [rad/s]
+    double silence_ = 0.0;  ///< since the last set-point [s]
+    std::uint64_t set_points_ = 0;
+    std::uint64_t missed_cycles_ = 0;
+    std::optional<motion::StreamRefusal> refusal_;
+
+    PositionStreamResults before_rest_;
+};
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "metier/joint_simulator/joint_simulator.hpp"
+#include "metier/joint_simulator/robot_options.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/robot_skills/arm_skills.hpp"
+#include "metier/skill/program.hpp"
+#include "metier/skill/testing/manual_executor.hpp"
+
+namespace metier::robot_skills {
+
+inline motion::RobotModel modelOf(const std::string& robot) {
+    return motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/" + robot + ".toml").value();
+}
+
+/// Notes the states that a Program goes through.
+class States final : public skill::ProgramObserver {
+public:
+    void onTransition(const skill::TransitionEvent& event) override {
+        seen.push_back(event.to);
+        if (told) {
+            told(event);
+        }
+    }
+    void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
+    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
+    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
+    void onResult(const skill::ValueMap& /*result*/) override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
+
+    std::vector<skill::State> seen;
+    std::function<void(const skill::TransitionEvent&)> told;
+};
+
+using Change = std::function<void(virtual_robots::JointSimulatorOptions&)>;
+
+/// One simulated arm with all its skills as Programs, and time moved by hand.
+class Bench {
+public:
+    explicit Bench(const std::string& robot = "ur5", const Change& change = {})
+        : model_(modelOf(robot)), executor_(std::make_shared<skill::testing::ManualExecutor>()) {
+        auto options = virtual_robots::optionsFor(model_);
+        if (change) {
+            change(options);
+        }
+        arm_ = virtual_robots::JointSimulator::create(std::move(options)).value();
+        auto skills = makeArmSkills(*arm_, model_, executor_->clock()).value();
+        resource_ = skills.resource;
+        for (auto& move : skills.moves) {
+            add(std::move(move));
+        }
+        add(std::move(skills.position_stream));
+    }
+
+    const motion::RobotModel& model() const { return model_; }
+    virtual_robots::JointSimulator& arm() { return *arm_; }
+    skill::testing::ManualExecutor& executor() { return *executor_; }
+    std::shared_ptr<skill::Executor> sharedExecutor() { return executor_; }
+    skill::Program& program(const std::string& name) { return *programs_.at(name); }
+    void destroyProgram(const std::string& name) { programs_.erase(name); }
+    const skill::Caller& caller() const { return caller_; }
+
+    Result<void> write(const std::string& skill, const skill::ValueMap& values) {
+        for (const auto& [name, value] : values) {
+            if (auto written = program(skill).write(caller_, name, value); !written) {
+                return written;
+            }
+        }
+        return {};
+    }
+
+    /// Write, then Start, as a published client does.
+    Result<void> start(const std::string& skill, const skill::ValueMap& values) {
+        auto written = write(skill, values);
+        return written ? program(skill).start(caller_) : written;
+    }
+
+    /// One cycle of the arm, with all that follows from it.
+    void step() {
+        arm_->step();
+        executor_->advance(arm_->info().cycle);
+    }
+
+    /// Steps until `done`, at most 60 s of the arm's time; whether it is.
+    bool stepUntil(const std::function<bool()>& done) {
+        const auto most = static_cast<int>(60.0 / arm_->info().cycleSeconds());
+        for (int i = 0; i < most && !done(); ++i) {
+            step();
+        }
+        return done();
+    }
+
+    bool stepUntil(const std::string& skill, skill::State state) {
+        return stepUntil([&] { return program(skill).state() == state; });
+    }
+
+    void steps(int count) {
+        for (int i = 0; i < count; ++i) {
+            step();
+        }
+    }
+
+    motion::JointVector commanded() const {
+        const auto state = arm_->state();
+        return motion::JointVector::from(state.commanded_position.values()).value();
+    }
+    geometry::Pose commandedPose() const { return model_.kinematics().forward(commanded()); }
+
+private:
+    void add(std::unique_ptr<skill::Skill> skill) {
+        const auto name = skill->description().name;
+        skill::ProgramOptions options;
+        options.resource = resource_;
+        programs_[name] = std::make_unique<skill::Program>(options, std::move(skill), executor_,
+                                                           executor_->clock());
+    }
+
+    motion::RobotModel model_;
+    // Shared with the Programs, as they ask for.
+    std::shared_ptr<skill::testing::ManualExecutor> executor_;
+    std::unique_ptr<virtual_robots::JointSimulator> arm_;
+    std::shared_ptr<skill::Resource> resource_;
+    std::map<std::string, std::unique_ptr<skill::Program>> programs_;
+    skill::Caller caller_{"session", "client", "user"};
+};
+
+inline const std::string kCartesianPtp = "CartesianPtpMoveSkill";
+inline const std::string kCartesianLinear = "CartesianLinearMoveSkill";
+inline const std::string kJointPtp = "JointPtpMoveSkill";
+inline const std::string kJointLinear = "JointLinearMoveSkill";
+inline const std::string kPositionStream = "PositionStreamSkill";
+
+/// Distance of a point from the straight line through two others [m].
+inline double distanceFromLine(const Eigen::Vector3d& point, const Eigen::Vector3d& from,
+                               const Eigen::Vector3d& to) {
+    return (point - from).cross((to - from).normalized()).norm();
+}
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <utility>
+
+namespace metier::skill {
+
+/// A piece of work that is still to come; destroying the Timer cancels it.
+///
+/// Threading: the owner's thread.
+class Timer {
+public:
+    Timer() = default;
+    /// \param cancel called at most once, may be called while the work itself runs
+    explicit Timer(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
+    ~Timer() { cancel(); }
+    Timer(Timer&& other) noexcept : cancel_(std::exchange(other.cancel_, nullptr)) {}
+    Timer& operator=(Timer&& other) noexcept {
+        if (this != &other) {
+            cancel();
+            cancel_ = std::exchange(other.cancel_, nullptr);
+        }
+        return *this;
+    }
+    Timer(const Timer&) = delete;
+    Timer& operator=(const Timer&) = delete;
+
+    /// After it the work does not begin any more.
+    void cancel() {
+        if (auto cancel = std::exchange(cancel_, nullptr)) {
+            cancel();
+        }
+    }
+
+private:
+    std::function<void()> cancel_;
+};
+
+/// The thread that owns Programs; in a server, the server thread.
+///
+/// Shared by its Programs. Executions use it as long as it lives, so that it may die, and its queue
+/// with it, on any thread; once its own thread is gone it drops what it is given.
+class Executor {
+public:
+    virtual ~Executor() = default;
+    /// Runs `work` on the owner's thread, after all work posted before, never inside this call.
+    /// Threads: any; does not wait.
+    virtual void post(std::function<void()> work) = 0;
+    /// Runs `work` on the owner's thread once `delay` has passed and the Timer still exists.
+    /// Threads: the owner's.
+    [[nodiscard]] virtual Timer after(std::chrono::nanoseconds delay,
+                                      std::function<void()> work) = 0;
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "metier/skill/field.hpp"
+
+namespace metier::skill {
+
+namespace detail {
+
+template <typename T>
+struct StripOptional {
+    using Type = T;
+    static constexpr bool kOptional = false;
+};
+template <typename T>
+struct StripOptional<std::optional<T>> {
+    using Type = T;
+    static constexpr bool kOptional = true;
+};
+
+}  // namespace detail
+
+/// Declares the parameters or results of a skill once, as members of a plain struct:
+/// `FieldList<Grasp>().add(&Grasp::force, {.name = "Force", .unit = kNewton, .default_value
+/// = 20.0})`.
+///
+/// A member is one of Value's types, or std::optional of one for a field that may stay Null.
+/// Threading: read-only use from any thread.
+template <typename T>
+class FieldList {
+public:
+    /// Declares the next field; its type follows from the member.
+    template <typename Member>
+    FieldList& add(Member T::*member, Field field) {
+        using Plain = typename detail::StripOptional<Member>::Type;
+        field.type = typeOf(Value(std::in_place_type<Plain>));
+        field.optional = detail::StripOptional<Member>::kOptional;
+        fields_.push_back(std::move(field));
+        accessors_.push_back({
+            [member](T& target, const Value& value) { target.*member = std::get<Plain>(value); },
+            [member](const T& source) { return toValue(source.*member); },
+        });
+        return *this;
+    }
+
+    const std::vector<Field>& fields() const noexcept { return fields_; }
+
+    /// The struct that `values` stand for. A name that is missing, or Null, means the default;
+    /// names that are not declared are passed over.
+    /// Errors: as checkValue(); invalid_argument if a value without default is missing.
+    Result<T> read(const ValueMap& values) const {
+        T target{};
+        for (std::size_t i = 0; i < fields_.size(); ++i) {
+            const auto found = values.find(fields_[i].name);
+            const Value& given = found == values.end() ? kNull : found->second;
+            if (auto checked = checkValue(fields_[i], given); !checked) {
+                return fail(std::move(checked.error()));
+            }
+            auto value = valueOrDefault(fields_[i], given);
+            if (!value) {
+                return fail(std::move(value.error()));
+            }
+            if (!isNull(*value)) {
+                accessors_[i].set(target, *value);
+            }
+        }
+        return target;
+    }
+
+    /// The members by name; an empty optional gives Null.
+    ValueMap write(const T& source) const {
+        ValueMap values;
+        for (std::size_t i = 0; i < fields_.size(); ++i) {
+            values.emplace(fields_[i].name, accessors_[i].get(source));
+        }
+        return values;
+    }
+
+private:
+    struct Accessor {
+        std::function<void(T&, const Value&)> set;
+        std::function<Value(const T&)> get;
+    };
+
+    template <typename Plain>
+    static Value toValue(const Plain& value) {
+        return Value(std::in_place_type<Plain>, value);
+    }
+    template <typename Plain>
+    static Value toValue(const std::optional<Plain>& value) {
+        return value ? toValue(*value) : Value{};
+    }
+
+    inline static const Value kNull{};
+
+    std::vector<Field> fields_;
+    std::vector<Accessor> accessors_;
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,202 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/skill/executor.hpp"
+#include "metier/skill/parameter_set.hpp"
+#include "metier/skill/program_observer.hpp"
+#include "metier/skill/resource.hpp"
+#include "metier/skill/skill.hpp"
+
+namespace metier::skill {
+
+/// Who calls.
+struct Caller {
+    std::string session_id{};
+    std::string client_name{};
+    std::string user_name{};
+};
+
+struct ProgramOptions {
+    /// The device that the skill needs for itself; empty: none. Shared by the Programs of a device.
+    std::shared_ptr<Resource> resource{};
+    /// How long a session may leave a written parameter set without Start.
+    std::chrono::milliseconds configuration_timeout{10'000};
+    /// How long a body may take to come to rest before the device's own stop is used.
+    std::chrono::milliseconds rest_deadline{5'000};
+    /// Who made the Program; empty: the server itself.
+    Caller creator{};
+};
+
+/// The state machine of one skill, and the only one that changes its state.
+///
+/// It begins Ready. Halted and Suspended mean that the device stands still: Halt and Suspend of a
+/// running body return at once, and the transition follows when the body is at rest.
+/// Errors of every method: invalid_state if the current state does not allow it (nothing changes).
+/// Threading: every call on the owner's thread, which is the Executor's. Nothing blocks.
+class Program final : private ExecutionSink {
+public:
+    /// \param executor shared by the Programs of a thread
+    /// \param clock    must outlive the Program
+    Program(ProgramOptions options, std::unique_ptr<Skill> skill,
+            std::shared_ptr<Executor> executor, const Clock& clock);
+    /// Stops the device by Body::forceStop() if the Program is Running. No transition is told.
+    /// Not from inside a call of its own to a body or an observer.
+    ~Program() override;
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    /// `observer` must outlive the Program or be detached. Not from inside a notification.
+    void attach(ProgramObserver& observer);
+    void detach(ProgramObserver& observer);
+
+    /// Takes a parameter; Null means its default. Ready: binds the set to the caller's session
+    /// until Start, the session's end or the configuration timeout. Running: live parameters only.
+    /// \param meant_for when the writer meant a live value to hold, by its own clock
+    /// Errors: not_found; type_mismatch, out_of_range; locked (bound to, or started by, another
+    ///         session); invalid_state. The old value stays.
+    Result<void> write(const Caller& caller, std::string_view parameter, Value value,
+                       std::optional<UtcTime> meant_for = {});
+    /// The present value, Null if there is none.
+    /// Errors: not_found.
+    Result<Value> read(std::string_view parameter) const;
+
+    /// Checks the parameters as a whole and begins.
+    /// Errors: locked; resource_unavailable; invalid_argument (a parameter is missing); whatever
+    ///         Skill::prepare() says. Nothing has changed then, the written values stay.
+    Result<void> start(const Caller& caller);
+    /// Errors: not_supported; whatever Body::suspend() says.
+    Result<void> suspend(const Caller& caller);
+    /// Errors: whatever Body::resume() says; the Program stays Suspended.
+    Result<void> resume(const Caller& caller);
+    /// Allowed to any caller. A second Halt while the first is under way is accepted, too.
+    Result<void> halt(const Caller& caller);
+    /// From Halted, if the skill agrees; from Suspended, gives the execution up.
+    /// Errors: whatever Skill::reset() says; the Program stays Halted and tells why.
+    Result<void> reset(const Caller& caller);
+    /// Whether `caller` could call `method` now.
+    bool executable(Method method, const Caller& caller) const;
+
+    /// A session has ended: its binding, if any, ends.
+    void sessionClosed(std::string_view session_id);
+    /// Whoever commands is gone: a running body brakes, then Halted.
+    void ownerLost(std::string text);
+    /// The device is gone: Halted at once, from every state.
+    void deviceLost(std::string text);
+
+    const SkillDescription& description() const { return description_; }
+    State state() const noexcept { return state_; }
+    SubState subState() const noexcept { return sub_state_; }
+    /// The step of a sequence; empty unless an execution is under way.
+    const std::string& step() const noexcept { return step_; }
+    /// Why the Program is where it is: the reason of the last transition, or of a refused Reset.
+    Reason reason() const noexcept { return reason_; }
+    const std::string& reasonText() const noexcept { return reason_text_; }
+    /// The last transition; nothing before the first.
+    const std::optional<TransitionEvent>& lastTransition() const noexcept { return last_; }
+    const Diagnostic& diagnostic() const noexcept { return diagnostic_; }
+    /// Result of the last execution that finished, every declared field; Null before the first.
+    const ValueMap& finalResult() const noexcept { return final_result_; }
+    const ValueMap& parameters() const noexcept { return parameters_.values(); }
+
+private:
+    class Turn;
+    struct Cause {
+        Reason reason = Reason::by_client;
+        std::string text{};
+    };
+
+    void onFinish(ValueMap result) override;
+    void onFail(Reason reason, std::string text) override;
+    void onAtRest(std::uint32_t stop_request) override;
+    void onProgress(Value intermediate) override;
+    void onStep(std::string name) override;
+
+    /// Does `work` if `method` is allowed now; records who called it and how it went.
+    template <typename Work>
+    Result<void> command(Method method, const Caller& caller, Work work);
+    /// Does `work` now, or right after the call that is under way.
+    template <typename Work>
+    void inTurn(Work work);
+    template <typename Tell>
+    void notify(Tell tell);
+
+    bool allows(Method method) const noexcept;
+    void recordCall(Method method, const Caller& caller);
+    void recordStatus(const Result<void>& status);
+
+    Result<void> writeReady(const Caller& caller, const Field& field, Value value);
+    Result<void> writeLive(const Caller& caller, const Field& field, const LiveValue& live);
+    Result<void> startNow(const Caller& caller);
+    void startBody();
+    Result<void> suspendNow();
+    Result<void> resumeNow();
+    Result<void> haltNow();
+    Result<void> resetNow();
+
+    void finished(ValueMap result);
+    Result<void> takeResult(ValueMap& result);
+    void brake(Cause cause);
+    void requestRest();
+    void armRestDeadline();
+    void restDeadlinePassed();
+    void forceHalted(Cause cause);
+    void halted(Cause cause);
+    void giveUpSuspended();
+    void end(TransitionNumber transition, Cause cause);
+    void endExecution();
+
+    void armConfigurationTimeout(std::chrono::nanoseconds delay);
+    void configurationTimedOut();
+    void endConfiguration();
+    void releaseParameters();
+
+    void commit(TransitionNumber transition, Cause cause);
+    void setSubState(SubState sub_state);
+
+    ProgramOptions options_;
+    std::unique_ptr<Skill> skill_;
+    const SkillDescription& description_;
+    // Shared by the Programs of its thread.
+    std::shared_ptr<Executor> executor_;
+    const Clock& clock_;
+    std::vector<ProgramObserver*> observers_;
+    ParameterSet parameters_;
+    ValueMap final_result_;
+    Diagnostic diagnostic_;
+
+    State state_ = State::ready;
+    SubState sub_state_ = SubState::ready_not_configured;
+    std::string step_;
+    Reason reason_ = Reason::none;
+    std::string reason_text_;
+    std::optional<TransitionEvent> last_;
+
+    std::string boot_id_;
+    std::uint64_t execution_count_ = 0;
+    std::string owner_session_;
+    Value intermediate_;
+    // Shared with the body's handles; the Program takes itself out when the execution ends.
+    std::shared_ptr<ExecutionCore> execution_;
+    std::unique_ptr<Body> body_;
+    std::optional<Cause> halting_;
+    std::optional<ValueMap> finished_while_suspended_;
+
+    SteadyTime last_write_;
+    Timer configuration_timer_;
+    Timer rest_timer_;
+    bool busy_ = false;
+    bool diagnostic_told_ = true;
+    std::vector<std::function<void()>> deferred_;
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "metier/base/error.hpp"
+
+namespace metier::skill {
+
+/// A device that only one Program may use at a time: from its Start until it is Ready or Halted.
+///
+/// Threading: the owner's thread, which all its Programs share.
+class Resource {
+public:
+    /// \param name for texts: "arm ur5"
+    explicit Resource(std::string name) : name_(std::move(name)) {}
+    Resource(const Resource&) = delete;
+    Resource& operator=(const Resource&) = delete;
+
+    const std::string& name() const noexcept { return name_; }
+    /// Who holds it; empty if nobody does.
+    const std::string& holder() const noexcept { return holder_; }
+
+    /// Whether nobody holds it.
+    /// Errors: resource_unavailable, with the holder's name.
+    Result<void> checkFree() const;
+    /// Errors: resource_unavailable if it is held, also by `holder` itself.
+    Result<void> acquire(std::string_view holder);
+    void release() noexcept { holder_.clear(); }
+
+private:
+    std::string name_;
+    std::string holder_;
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/skill/execution.hpp"
+#include "metier/skill/field.hpp"
+#include "metier/skill/value.hpp"
+
+namespace metier::skill {
+
+/// What clients may know of a skill before they use it. Does not change.
+struct SkillDescription {
+    std::string name{};         ///< of the instance: "CartesianPtpMoveSkill"
+    std::string type{};         ///< of its type: "CartesianPtpMoveSkillType"
+    std::string description{};  ///< one line for a person
+    std::vector<Field> parameters{};
+    std::vector<Field> results{};
+    bool suspendable = true;  ///< false: Suspend is refused with not_supported
+};
+
+/// A value that was written while the skill runs.
+struct LiveValue {
+    Value value;
+    std::optional<UtcTime> meant_for{};  ///< by the writer's clock; nothing if it did not say
+};
+
+/// One execution of a skill, made by Skill::prepare().
+///
+/// The Program destroys it once the execution has ended; the destructor lets go of the device,
+/// which then stands still (or has been stopped by forceStop()), and waits for the body's own
+/// threads. Threading: all calls come from the owner's thread and must not block; none from inside
+/// another.
+class Body {
+public:
+    virtual ~Body() = default;
+    /// Begins the work. Running has been committed before. `execution` tells its outcome, also from
+    /// inside this call.
+    virtual void start(Execution execution) = 0;
+    /// Asks to come to rest on the path; answered by Execution::atRest(), finish() or fail().
+    /// Errors: nothing is stopped then, and the client gets the error.
+    virtual Result<void> suspend() = 0;
+    /// Goes on from rest, on the same path.
+    /// Errors: nothing moves then; if the arm was moved meanwhile, with the distance.
+    virtual Result<void> resume() = 0;
+    /// Brakes; answered by Execution::atRest(), finish() or fail(). May follow suspend() before its
+    /// answer: then one answer is enough. Also called when a suspended execution is given up; then
+    /// no answer is needed and the body is destroyed next.
+    virtual void halt() = 0;
+    /// The device's own stop: the deadline to come to rest has passed, the device was lost, or the
+    /// Program is destroyed while it runs.
+    virtual void forceStop() noexcept = 0;
+    /// A client wrote a live parameter while this runs; it was checked.
+    /// Errors: the client gets the error.
+    virtual Result<void> input(std::string_view parameter, const LiveValue& live) {
+        static_cast<void>(live);
+        return fail(Errc::not_supported, std::string(parameter) + " is not taken while Running");
+    }
+};
+
+/// A skill: what it is, and how to begin. Owned by its Program.
+///
+/// Threading: all calls come from the owner's thread and must not block.
+class Skill {
+public:
+    virtual ~Skill() = default;
+    /// The same for as long as the skill lives.
+    virtual const SkillDescription& description() const = 0;
+    /// Makes all checks of Start, planning included; nothing moves.
+    /// \param snapshot a value for every parameter, each checked; Null only for optional ones.
+    ///                 Valid during the call.
+    /// Errors: Start is refused with it, and nothing has changed.
+    virtual Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) = 0;
+    /// Clears a fault, as far as the device agrees that it is gone.
+    /// Errors: why not; the Program stays Halted and tells it.
+    virtual Result<void> reset() { return {}; }
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "metier/skill/field_list.hpp"
+#include "metier/skill/skill.hpp"
+
+namespace metier::skill {
+
+/// A skill whose parameters and results are plain structs; derive from it and override plan().
+template <typename Parameters, typename Results>
+class TypedSkill : public Skill {
+public:
+    /// \param description its parameters and results are taken from the lists
+    TypedSkill(SkillDescription description, FieldList<Parameters> parameters,
+               FieldList<Results> results)
+        : description_(std::move(description)),
+          parameters_(std::move(parameters)),
+          results_(std::move(results)) {
+        description_.parameters = parameters_.fields();
+        description_.results = results_.fields();
+        for (auto& result : description_.results) {
+            result.place = Place::final_result;
+        }
+    }
+
+    const SkillDescription& description() const final { return description_; }
+
+    Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) final {
+        auto parameters = parameters_.read(snapshot);
+        if (!parameters) {
+            return fail(std::move(parameters.error()));
+        }
+        return plan(*parameters);
+    }
+
+    /// For a body: `execution.finish(skill.results().write(result))`. Lives as long as the skill.
+    const FieldList<Results>& results() const noexcept { return results_; }
+
+protected:
+    /// As Skill::prepare().
+    virtual Result<std::unique_ptr<Body>> plan(const Parameters& parameters) = 0;
+
+private:
+    SkillDescription description_;
+    FieldList<Parameters> parameters_;
+    FieldList<Results> results_;
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace metier::skill {
+
+/// A pose: position [m] and rotations a, b, c about x, y, z [rad], R = Rz(c) Ry(b) Rx(a).
+struct Frame {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    double a = 0;
+    double b = 0;
+    double c = 0;
+    bool operator==(const Frame&) const = default;
+};
+
+/// An interval; both ends belong to it.
+struct Range {
+    double low = 0;
+    double high = 0;
+    bool operator==(const Range&) const = default;
+};
+
+/// Three components along x, y, z; the unit is that of the field that holds it.
+struct Vector3 {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    bool operator==(const Vector3&) const = default;
+};
+
+/// What a parameter or a result can hold. monostate is Null: not set.
+using Value = std::variant<std::monostate, bool, std::int32_t, std::uint32_t, std::uint64_t, double,
+                           std::string, Frame, Vector3, std::vector<double>,
+                           std::vector<std::string>, std::vector<Range>, std::vector<Frame>>;
+
+/// The alternatives of Value, in its order.
+enum class ValueType : std::uint8_t {
+    null,
+    boolean,
+    int32,
+    uint32,
+    uint64,
+    number,
+    text,
+    frame,
+    vector3,
+    numbers,
+    texts,
+    ranges,
+    frames,
+};
+
+/// Values by name.
+using ValueMap = std::map<std::string, Value, std::less<>>;
+
+inline ValueType typeOf(const Value& value) noexcept {
+    return static_cast<ValueType>(value.index());
+}
+
+inline bool isNull(const Value& value) noexcept {
+    return std::holds_alternative<std::monostate>(value);
+}
+
+/// The enumerator's name, for texts.
+std::string_view toString(ValueType type) noexcept;
+
+/// The value for a person: numbers in shortest form, lists in brackets, texts in quotes.
+std::string toString(const Value& value);
+
+}  // namespace metier::skill

@@ -1,0 +1,64 @@
+#include "metier/skill/lambda_skill.hpp"
+
+#include <utility>
+
+namespace metier::skill {
+
+namespace {
+
+class LambdaBody final : public Body {
+public:
+    /// \param functions must outlive the body
+    LambdaBody(const SkillFunctions& functions, ValueMap parameters)
+        : functions_(functions), parameters_(std::move(parameters)) {}
+
+    void start(Execution execution) override {
+        execution_ = std::move(execution);
+        if (functions_.start) {
+            functions_.start(parameters_, execution_);
+        } else {
+            execution_.finish();
+        }
+    }
+    Result<void> suspend() override { return functions_.suspend(execution_); }
+    Result<void> resume() override { return functions_.resume(execution_); }
+    void halt() override {
+        if (functions_.halt) {
+            functions_.halt(execution_);
+        } else {
+            execution_.atRest();
+        }
+    }
+    void forceStop() noexcept override {
+        if (functions_.force_stop) {
+            functions_.force_stop();
+        }
+    }
+
+private:
+    const SkillFunctions& functions_;
+    const ValueMap parameters_;
+    Execution execution_;
+};
+
+}  // namespace
+
+LambdaSkill::LambdaSkill(SkillDescription description, SkillFunctions functions)
+    : description_(std::move(description)), functions_(std::move(functions)) {
+    description_.suspendable = functions_.suspend && functions_.resume;
+}
+
+Result<std::unique_ptr<Body>> LambdaSkill::prepare(const ValueMap& snapshot) {
+    if (functions_.check) {
+        if (auto checked = functions_.check(snapshot); !checked) {
+            return fail(std::move(checked.error()));
+        }
+    }
+    return std::make_unique<LambdaBody>(functions_, snapshot);
+}
+
+Result<void> LambdaSkill::reset() {
+    return functions_.reset ? functions_.reset() : Result<void>{};
+}
+
+}  // namespace metier::skill

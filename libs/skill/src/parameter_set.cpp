@@ -1,0 +1,86 @@
+#include "metier/skill/parameter_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace metier::skill {
+
+ParameterSet::ParameterSet(const std::vector<Field>& fields) : fields_(fields) {
+    for (const auto& field : fields_) {
+        values_.emplace(field.name, field.default_value);
+    }
+}
+
+Result<const Field*> ParameterSet::field(std::string_view name) const {
+    const auto found = std::find_if(fields_.begin(), fields_.end(),
+                                    [&](const Field& field) { return field.name == name; });
+    if (found == fields_.end()) {
+        return fail(Errc::not_found, fmt::format("no parameter {}", name));
+    }
+    return &*found;
+}
+
+Result<void> ParameterSet::checkAccess(std::string_view session) const {
+    if (!bound_ || session_ == session) {
+        return {};
+    }
+    return fail(Errc::locked, "another session has configured the skill and not started it yet");
+}
+
+void ParameterSet::bind(std::string_view session) {
+    session_ = session;
+    bound_ = true;
+}
+
+const Value& ParameterSet::write(const Field& field, Value value) {
+    auto& held = values_.find(field.name)->second;
+    if (isNull(value)) {
+        held = field.default_value;
+    } else {
+        held = std::move(value);
+    }
+    if (std::find(written_.begin(), written_.end(), &field) == written_.end()) {
+        written_.push_back(&field);
+    }
+    return held;
+}
+
+Result<void> ParameterSet::checkComplete() const {
+    std::string missing;
+    for (const auto& field : fields_) {
+        if (!field.optional && isNull(values_.find(field.name)->second)) {
+            missing += (missing.empty() ? "" : ", ") + field.name;
+        }
+    }
+    if (missing.empty()) {
+        return {};
+    }
+    return fail(Errc::invalid_argument, fmt::format("a value is needed for {}", missing));
+}
+
+ValueMap ParameterSet::written() const {
+    ValueMap written;
+    for (const Field* field : written_) {
+        written.emplace(*values_.find(field->name));
+    }
+    return written;
+}
+
+std::vector<std::string_view> ParameterSet::release() {
+    std::vector<std::string_view> changed;
+    for (const Field* field : written_) {
+        auto& held = values_.find(field->name)->second;
+        if (held != field->default_value) {
+            held = field->default_value;
+            changed.emplace_back(field->name);
+        }
+    }
+    written_.clear();
+    session_.clear();
+    bound_ = false;
+    return changed;
+}
+
+}  // namespace metier::skill

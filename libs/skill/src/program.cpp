@@ -1,0 +1,238 @@
+#include "metier/skill/program.hpp"
+
+#include <fmt/format.h>
+
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "execution_core.hpp"
+#include "program_turn.hpp"
+
+namespace metier::skill {
+
+namespace {
+
+constexpr std::uint16_t kInformation = 100;
+constexpr std::uint16_t kWarning = 400;
+constexpr std::uint16_t kFault = 700;
+
+std::string newBootId() {
+    std::random_device device;
+    const auto high = static_cast<std::uint64_t>(device()) << 32U;
+    return fmt::format("{:016x}", high | device());
+}
+
+std::uint16_t severityOf(State to, Reason reason) noexcept {
+    if (to != State::halted) {
+        return kInformation;
+    }
+    return reason == Reason::by_client ? kWarning : kFault;
+}
+
+SubState subStateAfter(State to, Reason reason) noexcept {
+    switch (to) {
+        case State::ready:
+            return SubState::ready_not_configured;
+        case State::running:
+            return SubState::executing;
+        case State::suspended:
+            return SubState::none;
+        case State::halted:
+            break;
+    }
+    return haltedBecause(reason);
+}
+
+std::string messageOf(std::string_view name, TransitionNumber transition, std::string_view text) {
+    return fmt::format("{}: {} to {}{}{}", name, toString(fromState(transition)),
+                       toString(toState(transition)), text.empty() ? "" : ": ", text);
+}
+
+void checkFields(const std::vector<Field>& fields) {
+    for (auto field = fields.begin(); field != fields.end(); ++field) {
+        if (const auto checked = checkValue(*field, field->default_value); !checked) {
+            throw std::invalid_argument("default of " + checked.error().message);
+        }
+        for (auto other = fields.begin(); other != field; ++other) {
+            if (other->name == field->name) {
+                throw std::invalid_argument("two fields are called " + field->name);
+            }
+        }
+    }
+}
+
+std::unique_ptr<Skill> checkedSkill(std::unique_ptr<Skill> skill) {
+    if (!skill) {
+        throw std::invalid_argument("a Program needs a skill");
+    }
+    checkFields(skill->description().parameters);
+    checkFields(skill->description().results);
+    return skill;
+}
+
+ValueMap nullResult(const std::vector<Field>& fields) {
+    ValueMap result;
+    for (const auto& field : fields) {
+        result.emplace(field.name, Value{});
+    }
+    return result;
+}
+
+}  // namespace
+
+Program::Program(ProgramOptions options, std::unique_ptr<Skill> skill,
+                 std::shared_ptr<Executor> executor, const Clock& clock)
+    : options_(std::move(options)),
+      skill_(checkedSkill(std::move(skill))),
+      description_(skill_->description()),
+      executor_(std::move(executor)),
+      clock_(clock),
+      parameters_(description_.parameters),
+      final_result_(nullResult(description_.results)),
+      boot_id_(newBootId()) {
+    diagnostic_.create_session_id = options_.creator.session_id;
+    diagnostic_.create_client_name = options_.creator.client_name;
+    diagnostic_.invocation_creation_time = clock_.utcNow();
+}
+
+Program::~Program() {
+    busy_ = true;
+    if (body_ && state_ == State::running) {
+        body_->forceStop();
+    }
+    endExecution();
+}
+
+void Program::attach(ProgramObserver& observer) {
+    observers_.push_back(&observer);
+}
+
+void Program::detach(ProgramObserver& observer) {
+    std::erase(observers_, &observer);
+}
+
+template <typename Work>
+Result<void> Program::command(Method method, const Caller& caller, Work work) {
+    if (busy_) {
+        return metier::fail(Errc::invalid_state,
+                            fmt::format("{} from inside a notification", toString(method)));
+    }
+    const Turn turn(*this);
+    recordCall(method, caller);
+    auto status = allows(method)
+                      ? work()
+                      : Result<void>(metier::fail(
+                            Errc::invalid_state,
+                            fmt::format("{} is not possible while {}", toString(method),
+                                        sub_state_ == SubState::stopping ? toString(sub_state_)
+                                                                         : toString(state_))));
+    recordStatus(status);
+    return status;
+}
+
+bool Program::allows(Method method) const noexcept {
+    switch (method) {
+        case Method::start:
+            return state_ == State::ready;
+        case Method::suspend:
+            return sub_state_ == SubState::executing;
+        case Method::resume:
+            return state_ == State::suspended;
+        case Method::halt:
+            return state_ != State::halted;
+        case Method::reset:
+            return state_ == State::halted || state_ == State::suspended;
+    }
+    return false;
+}
+
+bool Program::executable(Method method, const Caller& caller) const {
+    if (!allows(method)) {
+        return false;
+    }
+    if (method == Method::suspend) {
+        return description_.suspendable;
+    }
+    return method != Method::start || (parameters_.checkAccess(caller.session_id) &&
+                                       (!options_.resource || options_.resource->checkFree()));
+}
+
+void Program::recordCall(Method method, const Caller& caller) {
+    diagnostic_.last_method_call = toString(method);
+    diagnostic_.last_method_session_id = caller.session_id;
+    diagnostic_.last_method_client_name = caller.client_name;
+    diagnostic_.last_method_inputs = method == Method::start ? parameters_.written() : ValueMap{};
+    diagnostic_.last_method_call_time = clock_.utcNow();
+    diagnostic_.last_method_status = {};
+    diagnostic_told_ = false;
+}
+
+void Program::recordStatus(const Result<void>& status) {
+    if (status && diagnostic_told_) {
+        return;
+    }
+    diagnostic_.last_method_status = status;
+    notify([this](ProgramObserver& observer) { observer.onDiagnostic(diagnostic_); });
+}
+
+Result<void> Program::start(const Caller& caller) {
+    return command(Method::start, caller, [&] { return startNow(caller); });
+}
+
+Result<void> Program::suspend(const Caller& caller) {
+    return command(Method::suspend, caller, [this] { return suspendNow(); });
+}
+
+Result<void> Program::resume(const Caller& caller) {
+    return command(Method::resume, caller, [this] { return resumeNow(); });
+}
+
+Result<void> Program::halt(const Caller& caller) {
+    return command(Method::halt, caller, [this] { return haltNow(); });
+}
+
+Result<void> Program::reset(const Caller& caller) {
+    return command(Method::reset, caller, [this] { return resetNow(); });
+}
+
+void Program::setSubState(SubState sub_state) {
+    sub_state_ = sub_state;
+    notify([this](ProgramObserver& observer) {
+        observer.onSubState(sub_state_, state_ == State::running ? step_ : std::string_view{});
+    });
+}
+
+/// The one place where the state changes.
+void Program::commit(TransitionNumber transition, Cause cause) {
+    state_ = toState(transition);
+    reason_ = cause.reason;
+    reason_text_ = std::move(cause.text);
+    diagnostic_.last_transition_time = clock_.utcNow();
+    diagnostic_told_ = true;
+    last_ = TransitionEvent{
+        .number = transition,
+        .from = fromState(transition),
+        .to = state_,
+        .time = diagnostic_.last_transition_time,
+        .execution_id = execution_ ? execution_->id : std::string{},
+        .reason = reason_,
+        .reason_text = reason_text_,
+        .intermediate_result = intermediate_,
+        .message = messageOf(description_.name, transition, reason_text_),
+        .severity = severityOf(state_, reason_),
+    };
+    if (!body_) {
+        execution_.reset();
+        intermediate_ = {};
+        step_.clear();
+    }
+    setSubState(subStateAfter(state_, reason_));
+    notify([this](ProgramObserver& observer) {
+        observer.onReason(reason_, reason_text_);
+        observer.onDiagnostic(diagnostic_);
+        observer.onTransition(*last_);
+    });
+}
+
+}  // namespace metier::skill

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "metier/skill/program.hpp"
+#include "program_turn.hpp"
+
+namespace metier::skill {
+
+Result<Value> Program::read(std::string_view parameter) const {
+    const auto found = parameters_.values().find(parameter);
+    if (found == parameters_.values().end()) {
+        return metier::fail(Errc::not_found, fmt::format("no parameter {}", parameter));
+    }
+    return found->second;
+}
+
+Result<void> Program::write(const Caller& caller, std::string_view parameter, Value value,
+                            std::optional<UtcTime> meant_for) {
+    const auto field = parameters_.field(parameter);
+    if (!field) {
+        return metier::fail(field.error());
+    }
+    if (busy_) {
+        return metier::fail(Errc::invalid_state,
+                            fmt::format("{} written from inside a notification", parameter));
+    }
+    const Turn turn(*this);
+    if (state_ == State::ready) {
+        return writeReady(caller, **field, std::move(value));
+    }
+    if ((*field)->input == Input::live && sub_state_ == SubState::executing) {
+        return writeLive(caller, **field, {std::move(value), meant_for});
+    }
+    return metier::fail(Errc::invalid_state,
+                        fmt::format("{} cannot be written while {}", parameter, toString(state_)));
+}
+
+Result<void> Program::writeReady(const Caller& caller, const Field& field, Value value) {
+    if (auto access = parameters_.checkAccess(caller.session_id); !access) {
+        return access;
+    }
+    if (auto checked = checkValue(field, value); !checked) {
+        return checked;
+    }
+    const Value& held = parameters_.write(field, std::move(value));
+    notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
+    last_write_ = clock_.now();
+    if (!parameters_.isBound()) {
+        parameters_.bind(caller.session_id);
+        armConfigurationTimeout(options_.configuration_timeout);
+        setSubState(SubState::ready_configured);
+    }
+    return {};
+}
+
+Result<void> Program::writeLive(const Caller& caller, const Field& field, const LiveValue& live) {
+    if (caller.session_id != owner_session_) {
+        return metier::fail(Errc::locked, "another session has started the skill");
+    }
+    if (auto checked = checkValue(field, live.value); !checked) {
+        return checked;
+    }
+    auto used = valueOrDefault(field, live.value);
+    if (!used) {
+        return metier::fail(std::move(used.error()));
+    }
+    LiveValue given{std::move(*used), live.meant_for};
+    if (auto taken = guarded([&] { return body_->input(field.name, given); }); !taken) {
+        return taken;
+    }
+    const Value& held = parameters_.write(field, std::move(given.value));
+    notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
+    return {};
+}
+
+void Program::armConfigurationTimeout(std::chrono::nanoseconds delay) {
+    configuration_timer_ =
+        executor_->after(delay, [this] { inTurn([this] { configurationTimedOut(); }); });
+}
+
+void Program::configurationTimedOut() {
+    const auto left = last_write_ + options_.configuration_timeout - clock_.now();
+    if (left > std::chrono::nanoseconds(0)) {
+        armConfigurationTimeout(left);
+    } else {
+        endConfiguration();
+    }
+}
+
+/// Ready stays, but nobody has configured it any more.
+void Program::endConfiguration() {
+    releaseParameters();
+    setSubState(SubState::ready_not_configured);
+}
+
+void Program::releaseParameters() {
+    configuration_timer_.cancel();
+    for (const auto name : parameters_.release()) {
+        const Value& value = parameters_.values().find(name)->second;
+        notify([&](ProgramObserver& observer) { observer.onParameter(name, value); });
+    }
+}
+
+void Program::sessionClosed(std::string_view session_id) {
+    inTurn([this, session = std::string(session_id)] {
+        if (parameters_.isBound() && parameters_.boundSession() == session) {
+            endConfiguration();
+        }
+    });
+}
+
+}  // namespace metier::skill

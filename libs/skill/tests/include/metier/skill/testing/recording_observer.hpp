@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "metier/skill/program_observer.hpp"
+
+namespace metier::skill::testing {
+
+/// Keeps all that a Program tells, in its order.
+class RecordingObserver final : public ProgramObserver {
+public:
+    void onTransition(const TransitionEvent& event) override {
+        events.push_back(event);
+        add(std::string(toString(event.number)));
+    }
+    void onSubState(SubState sub_state, std::string_view step) override {
+        add("sub-state " + std::string(toString(sub_state)) +
+            (step.empty() ? "" : " at " + std::string(step)));
+    }
+    void onReason(Reason reason, std::string_view text) override {
+        add("reason " + std::string(toString(reason)) +
+            (text.empty() ? "" : ": " + std::string(text)));
+    }
+    void onParameter(std::string_view name, const Value& value) override {
+        add(std::string(name) + " = " + toString(value));
+    }
+    void onResult(const ValueMap& result) override {
+        for (const auto& [name, value] : result) {
+            add("result " + name + " = " + toString(value));
+        }
+    }
+    void onProgress(const Value& intermediate) override {
+        add("progress " + toString(intermediate));
+    }
+    void onDiagnostic(const Diagnostic& diagnostic) override {
+        add("diagnostic " + diagnostic.last_method_call);
+    }
+
+    /// The names of the transitions so far.
+    std::vector<std::string> transitions() const {
+        std::vector<std::string> names;
+        for (const auto& event : events) {
+            names.emplace_back(toString(event.number));
+        }
+        return names;
+    }
+
+    void clear() {
+        log.clear();
+        events.clear();
+    }
+
+    std::vector<std::string> log;
+    std::vector<TransitionEvent> events;
+    /// Called with each entry of the log, if set.
+    std::function<void(const std::string&)> on_entry;
+
+private:
+    void add(std::string entry) {
+        log.push_back(std::move(entry));
+        if (on_entry) {
+            on_entry(log.back());
+        }
+    }
+};
+
+}  // namespace metier::skill::testing

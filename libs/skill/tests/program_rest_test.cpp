@@ -1,0 +1,204 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program_bench.hpp"
+
+namespace metier::skill::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+ProgramOptions quickRest() {
+    return {.rest_deadline = 200ms};
+}
+
+TEST(ComingToRest, OfASuspendTurnsIntoAHaltIfThatFollows) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    EXPECT_THAT(bench.script->calls, ElementsAre("suspend", "halt"));
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
+}
+
+TEST(ComingToRest, TakesAnAnswerToSuspendForTheHaltThatOvertookIt) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    bench.script->execution.atRest();  // still on its way when Halt comes
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.run();
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
+}
+
+TEST(ComingToRest, AcceptsASecondHaltWithoutAskingTheBodyAgain) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    EXPECT_TRUE(bench.program->halt(kBob));
+    EXPECT_THAT(bench.script->calls, ElementsAre("halt"));
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
+}
+
+TEST(ComingToRest, MayBeAnsweredInsideTheRequest) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->on_stop = [](const Execution& execution) { execution.atRest(); };
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    EXPECT_EQ(bench.program->state(), State::running);
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::suspended);
+    ASSERT_TRUE(bench.program->resume(kAlice));
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::halted);
+}
+
+TEST(ComingToRest, IsNotBelievedUnasked) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::running);
+    EXPECT_THAT(bench.observer.log, IsEmpty());
+}
+
+TEST(ComingToRest, IsNotBelievedFromASecondAnswerToAnEarlierSuspend) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    bench.script->execution.atRest();
+    bench.run();
+    ASSERT_TRUE(bench.program->resume(kAlice));
+    bench.script->execution.atRest();  // doubled, and late: it is still on its way
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), SubState::stopping);
+}
+
+TEST(ComingToRest, OfASuspendMayEndInTheWorkBeingDone) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    bench.script->execution.finish({{"Length", 0.4}});
+    bench.run();
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToReady"));
+    EXPECT_EQ(bench.program->finalResult().at("Length"), Value(0.4));
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST(ComingToRest, OfAHaltEndsHaltedAlsoIfTheWorkIsDoneMeanwhile) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.script->execution.finish({{"Length", 0.4}});
+    bench.run();
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
+    EXPECT_EQ(bench.program->finalResult().at("Length"), Value{});
+}
+
+TEST(ComingToRest, OfAHaltTellsTheErrorThatComesMeanwhile) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.script->execution.fail(Reason::force_exceeded, "40 N over 30 N");
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), SubState::halted_force);
+}
+
+TEST(ComingToRest, KeepsWorkDoneRightAfterTheSuspensionForTheResume) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    bench.script->execution.atRest();
+    bench.script->execution.finish({{"Length", 0.4}});
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::suspended);
+    ASSERT_TRUE(bench.program->resume(kAlice));
+    EXPECT_THAT(bench.observer.transitions(),
+                ElementsAre("RunningToSuspended", "SuspendedToRunning", "RunningToReady"));
+    EXPECT_EQ(bench.program->finalResult().at("Length"), Value(0.4));
+}
+
+TEST(ComingToRest, PastItsDeadlineUsesTheDevicesOwnStop) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.executor->advance(199ms);
+    EXPECT_EQ(bench.program->state(), State::running);
+    bench.executor->advance(1ms);
+    EXPECT_EQ(bench.program->subState(), SubState::halted_error);
+    EXPECT_THAT(bench.program->reasonText(), HasSubstr("200 ms"));
+    EXPECT_THAT(bench.script->calls, ElementsAre("halt", "forceStop", "destroyed"));
+}
+
+TEST(ComingToRest, OfASuspendPastItsDeadlineIsHalted) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    bench.executor->advance(200ms);
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
+    EXPECT_THAT(bench.script->calls, ElementsAre("suspend", "forceStop", "destroyed"));
+}
+
+TEST(ComingToRest, PastItsDeadlineStillTellsThatTheOwnerWasLost) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::running);
+    bench.program->ownerLost("lease ran out");
+    bench.executor->advance(200ms);
+    EXPECT_EQ(bench.program->subState(), SubState::halted_owner_lost);
+    EXPECT_THAT(bench.program->reasonText(), HasSubstr("lease ran out"));
+}
+
+TEST(ComingToRest, HasNoDeadlineLeftOnceAtRest) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::suspended);
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+    bench.executor->advance(1h);
+    EXPECT_EQ(bench.program->state(), State::suspended);
+}
+
+TEST(ComingToRest, HasANewDeadlineForTheHaltThatFollowsASuspend) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kAlice));
+    bench.executor->advance(150ms);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.executor->advance(199ms);
+    EXPECT_EQ(bench.program->state(), State::running);
+    bench.executor->advance(1ms);
+    EXPECT_EQ(bench.program->state(), State::halted);
+}
+
+TEST(Suspend, IsRefusedWithTheBodysReasonAndNothingStops) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->suspended = metier::fail(Errc::not_supported, "not while the arc burns");
+    const auto refused = bench.program->suspend(kAlice);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message, "not while the arc burns");
+    EXPECT_EQ(bench.program->subState(), SubState::executing);
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST(Suspend, IsNotExecutableForASkillThatCannot) {
+    auto description = weldDescription();
+    description.suspendable = false;
+    ProgramBench bench({}, description);
+    bench.enter(State::running);
+    EXPECT_FALSE(bench.program->executable(Method::suspend, kAlice));
+    const auto refused = bench.program->suspend(kAlice);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::not_supported);
+    EXPECT_THAT(bench.script->calls, IsEmpty());
+}
+
+}  // namespace
+}  // namespace metier::skill::testing
