@@ -1,0 +1,202 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/opcua/session.hpp"
+#include "metier/opcua/standard_ids.hpp"
+#include "metier/opcua/value.hpp"
+
+namespace metier::opcua {
+
+class ServerCore;  // of src/
+
+/// Names on the way from a node to one below it.
+using BrowsePath = std::vector<QualifiedName>;
+
+/// The id a child gets unless told otherwise: in the parent's namespace `<parent>.<name>`; below a
+/// parent of namespace 0 `<name>` in the namespace of the BrowseName. Says where a node is, and
+/// stays the same when a server is started again.
+NodeId childId(const NodeId& parent, const QualifiedName& browse_name);
+
+/// What every new node is given. The BrowseName also serves as DisplayName if that is empty.
+struct NodeSpec {
+    NodeId id;      ///< null: a string made of the parent's id and the BrowseName, see childId()
+    NodeId parent;  ///< null: hangs below nothing
+    NodeId reference = ids::kHasComponent;  ///< from the parent to it
+    QualifiedName browse_name;
+    LocalizedText display_name{};
+    LocalizedText description{};
+};
+
+/// Whether a new Object or Variable comes with the mandatory children of its type.
+enum class Children {
+    mandatory,
+    none,  ///< the caller adds them all, which is several times faster; types are not checked
+};
+
+/// What values a Variable may hold.
+struct VariableShape {
+    NodeId data_type;
+    std::int32_t value_rank = -1;  ///< as in VariableSpec
+    std::vector<std::uint32_t> array_dimensions{};
+};
+
+/// Whether clients may subscribe to the events of an Object.
+enum class EventNotifier { none, subscribable };
+
+struct ObjectSpec {
+    NodeSpec node;
+    NodeId type = ids::kBaseObjectType;
+    EventNotifier event_notifier = EventNotifier::none;
+    Children children = Children::mandatory;
+};
+
+/// What clients may do with the value of a Variable.
+enum class Access { read, read_write };
+
+struct VariableSpec {
+    NodeSpec node;
+    NodeId type = ids::kBaseDataVariableType;
+    NodeId data_type = ids::kBaseDataType;
+    std::int32_t value_rank = -1;  ///< -1 scalar, 1 one-dimensional array
+    std::vector<std::uint32_t> array_dimensions{};
+    Value value;  ///< empty: a zero of the data type
+    Access access = Access::read;
+    Children children = Children::mandatory;
+};
+
+/// Who calls which Method of which Object.
+struct CallContext {
+    const Session& session;
+    NodeId object;
+    NodeId method;
+};
+
+/// Does what a Method does. The stack has checked number and types of the arguments before,
+/// if the Method has InputArguments. Must return at once.
+using MethodHandler =
+    std::function<Result<std::vector<Value>>(const CallContext&, std::span<const Value>)>;
+
+struct MethodSpec {
+    NodeSpec node;
+    std::vector<Argument> inputs;
+    std::vector<Argument> outputs;
+    MethodHandler handler;
+};
+
+/// Who writes, and when the value was true by the writer's clock; nothing if it was not sent.
+struct WriteContext {
+    const Session& session;
+    std::optional<UtcTime> source_time;
+};
+
+/// A Variable whose value lives elsewhere. Both must return at once.
+struct DataSource {
+    std::function<DataValue(const Session&)> read;
+    /// Takes a client's value or refuses it; type and rank were checked before, but for Null,
+    /// which passes. None: the value is not writable.
+    std::function<Result<>(const WriteContext&, const Value&)> write;
+};
+
+/// Serves the values of many Variables, told apart by a tag; as DataSource, with a tenth of its
+/// memory.
+class VariableHandler {
+public:
+    virtual ~VariableHandler() = default;
+    virtual DataValue read(const Session& session, std::uint32_t tag) const = 0;
+    virtual Result<> write(const WriteContext& writer, std::uint32_t tag, const Value& value) = 0;
+};
+
+/// What leads from a Variable to its handler.
+struct VariableSlot {
+    VariableHandler* handler = nullptr;
+    std::uint32_t tag = 0;
+};
+
+/// What a reference leads to.
+struct Reference {
+    NodeId type;
+    NodeId target;
+    QualifiedName browse_name;
+    LocalizedText display_name{};
+    NodeClass node_class = NodeClass::unspecified;
+    NodeId type_definition;  ///< of Objects and Variables
+};
+
+/// Which references are followed: of `type` and its subtypes, away from the node or to it.
+struct BrowseFilter {
+    enum class Direction { forward, inverse };
+    NodeId type = ids::kHierarchicalReferences;
+    Direction direction = Direction::forward;
+};
+
+/// Whether an instance shares the Method nodes of its type or has Methods of its own.
+enum class MethodNodes {
+    shared,  ///< UserExecutable and arguments are the same for all instances
+    own,
+};
+
+/// The nodes of a server.
+///
+/// Threading: the server's own thread; before start() the thread that created it. Nothing waits.
+/// Errors of every function: those of the table in status_code.hpp, saying what was tried.
+class AddressSpace {
+public:
+    explicit AddressSpace(ServerCore& core) : core_(core) {}
+
+    /// The index of a namespace. Errors: not_found.
+    Result<std::uint16_t> namespaceIndex(std::string_view uri) const;
+
+    /// Adds an Object with all mandatory children of its type; their ids are childId()s.
+    /// Errors: not_found (parent, type), already_exists (id).
+    Result<NodeId> addObject(const ObjectSpec& spec, MethodNodes methods = MethodNodes::shared);
+    Result<NodeId> addVariable(const VariableSpec& spec);
+    Result<NodeId> addMethod(const MethodSpec& spec);
+    /// Adds a reference and its inverse. Errors: already_exists, not_found.
+    Result<> addReference(const NodeId& source, const NodeId& type, const NodeId& target);
+    /// Deletes a node, the children that only it has, and all references to them.
+    Result<> deleteNode(const NodeId& id);
+
+    /// The node at the end of a path of hierarchical references. Errors: not_found, naming the
+    /// path; invalid_argument (empty path).
+    Result<NodeId> find(const NodeId& start, std::span<const QualifiedName> path) const;
+    Result<NodeId> find(const NodeId& start, const QualifiedName& child) const;
+    Result<std::vector<Reference>> browse(const NodeId& id, const BrowseFilter& filter = {}) const;
+    bool exists(const NodeId& id) const;
+    /// Errors: not_found; invalid_argument (no Variable).
+    Result<VariableShape> shapeOf(const NodeId& variable) const;
+    /// Errors: not_found.
+    Result<LocalizedText> descriptionOf(const NodeId& id) const;
+
+    Result<DataValue> read(const NodeId& variable) const;
+    /// Sets a value, good and as of now; Subscriptions are told. A Variable with a DataSource is
+    /// asked to take it, by a Session with the null id.
+    Result<> write(const NodeId& variable, const Value& value);
+    Result<> write(const NodeId& variable, const DataValue& value);
+
+    Result<> setDataSource(const NodeId& variable, DataSource source);
+    /// `slot` stays where it is for as long as the server may be asked.
+    Result<> setHandler(const NodeId& variable, VariableSlot& slot);
+    Result<> setAccess(const NodeId& variable, Access access);
+    /// Gives a Method its work; for a shared Method node the context tells the Object.
+    Result<> setMethod(const NodeId& method, MethodHandler handler);
+    /// What clients read as UserExecutable. It forbids nothing: the handler answers why not.
+    Result<> setExecutable(const NodeId& method, std::function<bool(const Session&)> predicate);
+    Result<> setEventNotifier(const NodeId& object, EventNotifier notifier);
+    Result<> setDescription(const NodeId& id, const LocalizedText& text);
+
+private:
+    Result<> giveOwnMethods(const NodeId& object);
+    Result<> copyMethod(const NodeId& object, const Reference& method);
+
+    ServerCore& core_;
+};
+
+}  // namespace metier::opcua

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metier/opcua/address_space.hpp"
+
+namespace metier::opcua {
+
+class Server;
+
+/// One occurrence of an event.
+struct Event {
+    NodeId source;               ///< SourceNode, an Object below Objects
+    std::string source_name;     ///< SourceName
+    UtcTime time;                ///< when it happened
+    std::uint16_t severity = 0;  ///< 1 (least) .. 1000
+    LocalizedText message;
+    std::vector<Value> fields;  ///< in the order the emitter was created with
+};
+
+/// Raises events of one type.
+///
+/// The stack makes a node for an event and lets Subscriptions pick its fields; making it costs
+/// a hundred times what raising does. So one node is made here and used for every event, which
+/// is sound because Subscriptions copy the fields when the event is raised.
+///
+/// Threading: the server's thread; must not outlive the Server.
+class EventEmitter {
+public:
+    /// \param type    a subtype of BaseEventType
+    /// \param fields  paths of the type's own mandatory fields, e.g. {{0, "ToState"}, {0,
+    /// "Number"}} Errors: not_found (type, or a field, named), invalid_argument (not an event
+    /// type).
+    static Result<EventEmitter> create(Server& server, const NodeId& type,
+                                       const std::vector<BrowsePath>& fields);
+    ~EventEmitter();
+    EventEmitter(EventEmitter&&) noexcept;
+    EventEmitter& operator=(EventEmitter&&) noexcept;
+
+    /// Raises the event on its source, on every notifier above it and on the Server object, and
+    /// has it published at once if the server is so configured.
+    /// \return its EventId; empty if nobody watches a notifier that it would reach: then nothing is
+    ///         raised
+    /// Errors: invalid_argument (number of fields), type_mismatch (a field, named), not_found
+    ///         (source). Nothing is raised then.
+    Result<ByteString> emit(const Event& event);
+
+private:
+    struct State;
+    explicit EventEmitter(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace metier::opcua

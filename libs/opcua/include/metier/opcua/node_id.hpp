@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "metier/base/error.hpp"
+
+namespace metier::opcua {
+
+/// Bytes without a meaning to OPC UA.
+struct ByteString {
+    std::vector<std::uint8_t> bytes;
+
+    friend bool operator==(const ByteString&, const ByteString&) = default;
+    friend auto operator<=>(const ByteString&, const ByteString&) = default;
+};
+
+/// A 128-bit identifier in the four fields of OPC 10000-6, 5.1.3.
+struct Guid {
+    std::uint32_t data1 = 0;
+    std::uint16_t data2 = 0;
+    std::uint16_t data3 = 0;
+    std::array<std::uint8_t, 8> data4{};
+
+    friend bool operator==(const Guid&, const Guid&) = default;
+    friend auto operator<=>(const Guid&, const Guid&) = default;
+};
+
+/// Names a node of one server. The namespace index is that server's own: it differs between
+/// servers and may change when one restarts.
+///
+/// Threading: a value.
+class NodeId {
+public:
+    using Identifier = std::variant<std::uint32_t, std::string, Guid, ByteString>;
+
+    /// The null NodeId, i=0.
+    NodeId() = default;
+    NodeId(std::uint16_t namespace_index, std::uint32_t id)
+        : namespace_index_(namespace_index), identifier_(id) {}
+    NodeId(std::uint16_t namespace_index, std::string id)
+        : namespace_index_(namespace_index), identifier_(std::move(id)) {}
+    NodeId(std::uint16_t namespace_index, Guid id)
+        : namespace_index_(namespace_index), identifier_(id) {}
+    NodeId(std::uint16_t namespace_index, ByteString id)
+        : namespace_index_(namespace_index), identifier_(std::move(id)) {}
+
+    /// Reads the notation of OPC 10000-6, 5.3.1.10: `ns=2;i=5`, `i=85`, `ns=1;s=Name`,
+    /// `ns=1;g=<guid>`, `ns=1;b=<base64>`.
+    /// Errors: invalid_argument.
+    static Result<NodeId> parse(std::string_view text);
+
+    std::uint16_t namespaceIndex() const noexcept { return namespace_index_; }
+    const Identifier& identifier() const noexcept { return identifier_; }
+    /// Whether it is i=0, an empty string, ... in namespace 0, which names nothing.
+    bool isNull() const;
+    /// The notation that parse() reads; text of the network is made printable.
+    std::string toString() const;
+    std::size_t hash() const noexcept;
+
+    friend bool operator==(const NodeId&, const NodeId&) = default;
+    friend auto operator<=>(const NodeId&, const NodeId&) = default;
+
+private:
+    std::uint16_t namespace_index_ = 0;
+    Identifier identifier_ = std::uint32_t{0};
+};
+
+}  // namespace metier::opcua
+
+template <>
+struct std::hash<metier::opcua::NodeId> {
+    std::size_t operator()(const metier::opcua::NodeId& id) const noexcept { return id.hash(); }
+};

@@ -1,0 +1,212 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <spdlog/logger.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/opcua/address_space.hpp"
+#include "metier/opcua/session.hpp"
+
+namespace metier::opcua {
+
+/// When the notifications of an event leave the server.
+enum class EventPublishing {
+    at_once,      ///< right after it was raised, whatever publishing interval a client asked for
+    at_interval,  ///< strictly at the Subscription's publishing interval
+};
+
+/// What clients may ask of a server; beyond it they are refused or given less.
+struct ServerLimits {
+    std::uint16_t secure_channels = 150;
+    std::uint16_t sessions = 100;
+    std::chrono::milliseconds session_timeout{60'000};
+    std::uint32_t message_size = 1U << 20U;  ///< [byte]
+    std::uint32_t chunks_per_message = 32;
+    std::uint32_t subscriptions = 1000;
+    std::uint32_t subscriptions_per_session = 10;
+    std::uint32_t monitored_items = 10'000;
+    std::uint32_t monitored_items_per_subscription = 1'000;
+    std::uint32_t event_queue = 10'000;                    ///< of one monitored item
+    std::chrono::milliseconds min_publishing_interval{5};  ///< the stack can do 5 ms
+    std::chrono::milliseconds min_sampling_interval{5};    ///< the stack can do 5 ms
+    std::chrono::milliseconds max_publishing_interval{10'000};
+    std::uint32_t lifetime_count =
+        600;  ///< publishing intervals a Subscription waits for its client
+    std::uint32_t publish_requests_per_session = 20;
+    std::uint32_t retransmission_queue = 20;
+    std::uint32_t nodes_per_read = 1'000;
+    std::uint32_t nodes_per_write = 200;
+    std::uint32_t nodes_per_call = 10;
+    std::uint32_t nodes_per_browse = 1'000;
+};
+
+struct UserPassword {
+    std::string user;
+    std::string password;
+};
+
+struct ServerOptions {
+    std::string application_name = "metier";
+    std::string application_uri = "urn:metier:server";
+    std::uint16_t port = 4840;  ///< 0: a free one
+    /// Loopback addresses only: without security nothing else is offered.
+    std::vector<std::string> bind_addresses{"127.0.0.1"};
+    /// NodeSets by short name: any of device, robotics, metier brings the whole skill model with
+    /// the official ones it stands on; iiwa, edo, universal_robots add the instances of a robot.
+    std::vector<std::string> nodesets;
+    /// URIs of further namespaces, in the order of their indices.
+    std::vector<std::string> namespaces;
+    /// Users besides the anonymous one.
+    std::vector<UserPassword> users;
+    EventPublishing event_publishing = EventPublishing::at_once;
+    ServerLimits limits;
+    /// Shared with its other users, as spdlog does; null: spdlog's default logger.
+    std::shared_ptr<spdlog::logger> logger;
+};
+
+/// A timer that is cancelled at the end of its life.
+///
+/// Threading: the server's thread. May outlive the Server.
+class TimerHandle {
+public:
+    TimerHandle() = default;
+    explicit TimerHandle(std::function<void()> cancel) : cancel_(std::move(cancel)) {}
+    ~TimerHandle() { cancel(); }
+    TimerHandle(TimerHandle&& other) noexcept : cancel_(std::exchange(other.cancel_, nullptr)) {}
+    TimerHandle& operator=(TimerHandle&& other) noexcept;
+    void cancel() noexcept;
+
+private:
+    std::function<void()> cancel_;
+};
+
+template <typename T>
+struct AsResult {
+    using Type = Result<T>;
+};
+template <typename T>
+struct AsResult<Result<T>> {
+    using Type = Result<T>;
+};
+/// What Server::call() makes of the result R or Result<R> of some work: Result<R>.
+template <typename Work>
+using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
+
+/// An OPC UA server with the security of a lab: no encryption, anonymous users, loopback only.
+/// Its log says so when it starts.
+///
+/// Threading: between start() and stop() one thread of its own does all work and makes all calls
+/// of handlers. Before, and after, the thread that created it stands in for it. Functions say
+/// which thread may call them.
+class Server {
+public:
+    /// Errors: invalid_argument (an address that is not loopback, a limit of zero),
+    ///         not_found (NodeSet), internal (the stack).
+    static Result<std::unique_ptr<Server>> create(ServerOptions options);
+    /// Stops it.
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    /// Opens the port and serves clients. Creating thread; once.
+    /// Errors: already_exists (the port is taken), invalid_state (started before).
+    Result<> start();
+    /// Closes all sessions and ends the server's thread. Work posted and not begun is dropped.
+    /// Creating thread; may be called again.
+    void stop();
+
+    /// `opc.tcp://127.0.0.1:<port>` with the real port; empty before start(). Any thread.
+    std::string endpointUrl() const;
+    std::uint16_t port() const;
+
+    /// Runs work on the server's thread, in the order of posting. Any thread; does not wait.
+    /// Work posted before start() runs after it. An exception is logged and goes no further.
+    void post(std::function<void()> work);
+
+    /// Runs work on the server's thread and waits for its result, R or Result<R>. Any thread but
+    /// a cycle thread. At the deadline work that was not begun never will be; work that was goes
+    /// on alone, so it must own what it uses.
+    /// Errors: timeout, cancelled (the server stopped), and the work's own.
+    template <typename Work>
+    ResultOf<Work> call(Work work, std::chrono::milliseconds deadline = std::chrono::seconds(5));
+
+    /// Runs work once, unless the handle is cancelled or destroyed before. Server's thread.
+    [[nodiscard]] TimerHandle after(std::chrono::nanoseconds delay, std::function<void()> work);
+
+    /// Calls when a session ended, whether closed, timed out or at stop(). Handlers run on the
+    /// server's thread and stay for the server's life. Server's thread.
+    void onSessionClosed(std::function<void(const Session&)> handler);
+
+    /// The server's thread only.
+    AddressSpace& nodes();
+
+    /// When the server's thread was last seen working; it is at least every 100 ms. Any thread.
+    SteadyTime lastTick() const noexcept;
+    bool onServerThread() const noexcept;
+
+private:
+    friend class EventEmitter;
+    explicit Server(std::unique_ptr<ServerCore> core);
+
+    std::unique_ptr<ServerCore> core_;
+};
+
+template <typename Work>
+ResultOf<Work> runAsResult(Work& work) {
+    try {
+        if constexpr (std::is_void_v<std::invoke_result_t<Work&>>) {
+            work();
+            return {};
+        } else {
+            return work();
+        }
+    } catch (const std::exception& error) {
+        return fail(Errc::internal, error.what());
+    }
+}
+
+template <typename Work>
+ResultOf<Work> Server::call(Work work, std::chrono::milliseconds deadline) {
+    if (onServerThread()) {
+        return runAsResult(work);
+    }
+    struct Task {
+        Work work;
+        std::promise<ResultOf<Work>> outcome;
+    };
+    // Both are shared: the task because a posted function is copied, the mark with this function.
+    auto task = std::make_shared<Task>(std::move(work), std::promise<ResultOf<Work>>());
+    const auto taken = std::make_shared<std::atomic<bool>>(false);
+    auto outcome = task->outcome.get_future();
+    post([task = std::move(task), taken] {
+        if (!taken->exchange(true)) {
+            task->outcome.set_value(runAsResult(task->work));
+        }
+    });
+    if (outcome.wait_for(deadline) != std::future_status::ready) {
+        const bool begun = taken->exchange(true);
+        return fail(Errc::timeout, fmt::format("the server's thread did not {} within {} ms",
+                                               begun ? "finish" : "begin", deadline.count()));
+    }
+    try {
+        return outcome.get();
+    } catch (const std::future_error&) {
+        return fail(Errc::cancelled, "the server stopped");
+    }
+}
+
+}  // namespace metier::opcua

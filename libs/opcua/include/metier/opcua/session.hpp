@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "metier/opcua/node_id.hpp"
+
+namespace metier::opcua {
+
+/// A client's session as the server knows it. All text came from the client and is unchecked,
+/// but the user name, which was. The null id stands for the server itself.
+struct Session {
+    NodeId id;
+    std::string name;
+    std::string application_uri;
+    std::string application_name;
+    std::string user;  ///< empty: anonymous
+};
+
+}  // namespace metier::opcua

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "metier/opcua/node_id.hpp"
+
+/// Nodes of namespace 0 that this project uses (OPC 10000-5, NodeIds of the standard).
+namespace metier::opcua::ids {
+
+inline const NodeId kBoolean{0, 1U};
+inline const NodeId kInt32{0, 6U};
+inline const NodeId kUInt32{0, 7U};
+inline const NodeId kUInt64{0, 9U};
+inline const NodeId kDouble{0, 11U};
+inline const NodeId kString{0, 12U};
+inline const NodeId kUtcTime{0, 294U};
+inline const NodeId kNodeId{0, 17U};
+inline const NodeId kStatusCode{0, 19U};
+inline const NodeId kLocalizedText{0, 21U};
+inline const NodeId kBaseDataType{0, 24U};
+inline const NodeId kKeyValuePair{0, 14533U};
+
+inline const NodeId kOrganizes{0, 35U};
+inline const NodeId kHasEventSource{0, 36U};
+inline const NodeId kHasTypeDefinition{0, 40U};
+inline const NodeId kGeneratesEvent{0, 41U};
+inline const NodeId kHasSubtype{0, 45U};
+inline const NodeId kHasProperty{0, 46U};
+inline const NodeId kHasComponent{0, 47U};
+inline const NodeId kHasNotifier{0, 48U};
+inline const NodeId kHierarchicalReferences{0, 33U};
+inline const NodeId kHasInterface{0, 17603U};
+inline const NodeId kHasSubStateMachine{0, 117U};
+
+inline const NodeId kBaseObjectType{0, 58U};
+inline const NodeId kFolderType{0, 61U};
+inline const NodeId kBaseDataVariableType{0, 63U};
+inline const NodeId kPropertyType{0, 68U};
+inline const NodeId kBaseEventType{0, 2041U};
+inline const NodeId kProgramStateMachineType{0, 2391U};
+inline const NodeId kProgramTransitionEventType{0, 2378U};
+
+inline const NodeId kObjectsFolder{0, 85U};
+inline const NodeId kServer{0, 2253U};
+
+}  // namespace metier::opcua::ids

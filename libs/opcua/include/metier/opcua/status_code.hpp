@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "metier/base/error.hpp"
+
+namespace metier::opcua {
+
+/// The 32-bit outcome of an OPC UA service or operation (OPC 10000-4, 7.39).
+///
+/// Threading: a value.
+class StatusCode {
+public:
+    constexpr StatusCode() = default;
+    explicit constexpr StatusCode(std::uint32_t value) : value_(value) {}
+
+    constexpr std::uint32_t value() const noexcept { return value_; }
+    constexpr bool isGood() const noexcept { return (value_ >> 30U) == 0; }
+    constexpr bool isBad() const noexcept { return (value_ >> 31U) != 0; }
+    /// The symbol of the standard, `BadOutOfRange`; for an unknown code its hexadecimal value.
+    std::string name() const;
+
+    friend constexpr bool operator==(StatusCode, StatusCode) = default;
+    friend constexpr auto operator<=>(StatusCode, StatusCode) = default;
+
+private:
+    std::uint32_t value_ = 0;
+};
+
+namespace status {
+inline constexpr StatusCode kGood{0x00000000};
+inline constexpr StatusCode kBadUnexpectedError{0x80010000};
+inline constexpr StatusCode kBadInternalError{0x80020000};
+inline constexpr StatusCode kBadOutOfMemory{0x80030000};
+inline constexpr StatusCode kBadResourceUnavailable{0x80040000};
+inline constexpr StatusCode kBadCommunicationError{0x80050000};
+inline constexpr StatusCode kBadTimeout{0x800A0000};
+inline constexpr StatusCode kBadShutdown{0x800C0000};
+inline constexpr StatusCode kBadServerNotConnected{0x800D0000};
+inline constexpr StatusCode kBadUserAccessDenied{0x801F0000};
+inline constexpr StatusCode kBadIdentityTokenRejected{0x80210000};
+inline constexpr StatusCode kBadSessionIdInvalid{0x80250000};
+inline constexpr StatusCode kBadSessionClosed{0x80260000};
+inline constexpr StatusCode kBadNoCommunication{0x80310000};
+inline constexpr StatusCode kBadWaitingForInitialData{0x80320000};
+inline constexpr StatusCode kBadNodeIdUnknown{0x80340000};
+inline constexpr StatusCode kBadOutOfRange{0x803C0000};
+inline constexpr StatusCode kBadNotSupported{0x803D0000};
+inline constexpr StatusCode kBadNotFound{0x803E0000};
+inline constexpr StatusCode kBadNotWritable{0x803B0000};
+inline constexpr StatusCode kBadNodeIdExists{0x805E0000};
+inline constexpr StatusCode kBadNoMatch{0x806F0000};
+inline constexpr StatusCode kBadTypeMismatch{0x80740000};
+inline constexpr StatusCode kBadMethodInvalid{0x80750000};
+inline constexpr StatusCode kBadTooManySessions{0x80560000};
+inline constexpr StatusCode kBadConnectionRejected{0x80AC0000};
+inline constexpr StatusCode kBadConnectionClosed{0x80AE0000};
+inline constexpr StatusCode kBadInvalidArgument{0x80AB0000};
+inline constexpr StatusCode kBadInvalidState{0x80AF0000};
+inline constexpr StatusCode kBadRequestCancelledByClient{0x802C0000};
+inline constexpr StatusCode kBadDeviceFailure{0x808B0000};
+inline constexpr StatusCode kBadLocked{0x80E90000};
+inline constexpr StatusCode kBadStateNotActive{0x80BF0000};
+inline constexpr StatusCode kBadArgumentsMissing{0x80760000};
+inline constexpr StatusCode kBadTooManyArguments{0x80E50000};
+inline constexpr StatusCode kBadNotExecutable{0x81110000};
+inline constexpr StatusCode kBadSecurityChecksFailed{0x80130000};
+inline constexpr StatusCode kBadCertificateUntrusted{0x801A0000};
+inline constexpr StatusCode kBadRequestTimeout{0x80850000};
+inline constexpr StatusCode kBadSecureChannelClosed{0x80860000};
+inline constexpr StatusCode kBadNotConnected{0x808A0000};
+inline constexpr StatusCode kBadDisconnect{0x80AD0000};
+inline constexpr StatusCode kBadParentNodeIdInvalid{0x805B0000};
+inline constexpr StatusCode kBadSourceNodeIdInvalid{0x80640000};
+inline constexpr StatusCode kBadTargetNodeIdInvalid{0x80650000};
+inline constexpr StatusCode kBadTypeDefinitionInvalid{0x80630000};
+inline constexpr StatusCode kBadReferenceTypeIdInvalid{0x804C0000};
+inline constexpr StatusCode kBadDuplicateReferenceNotAllowed{0x80660000};
+inline constexpr StatusCode kBadBrowseNameDuplicated{0x80610000};
+inline constexpr StatusCode kBadNodeClassInvalid{0x805F0000};
+inline constexpr StatusCode kBadIdentityTokenInvalid{0x80200000};
+inline constexpr StatusCode kBadWriteNotSupported{0x80730000};
+}  // namespace status
+
+/// The one table of error codes: what a peer is told when a function of ours refuses.
+StatusCode statusFrom(Errc code) noexcept;
+
+/// The inverse: what a program does about a peer's refusal. Codes without an entry of their own
+/// are `connection_lost` for broken transports and sessions, otherwise `internal`.
+Errc errcFrom(StatusCode code) noexcept;
+
+/// A refusal of the stack or of a peer as an Error: "<doing>: BadOutOfRange".
+Error errorFrom(StatusCode code, std::string_view doing);
+
+}  // namespace metier::opcua

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "metier/opcua/node_id.hpp"
+
+namespace metier::opcua {
+
+/// A name that is unique among siblings; the index is a server's own.
+struct QualifiedName {
+    std::uint16_t namespace_index = 0;
+    std::string name;
+
+    /// `2:Skills`; text of the network is made printable.
+    std::string toString() const;
+    friend bool operator==(const QualifiedName&, const QualifiedName&) = default;
+    friend auto operator<=>(const QualifiedName&, const QualifiedName&) = default;
+};
+
+/// Text for people; the locale is empty or an RFC 3066 name such as `en`.
+struct LocalizedText {
+    std::string locale;
+    std::string text;
+
+    friend bool operator==(const LocalizedText&, const LocalizedText&) = default;
+};
+
+/// Both ends belong to it. The skill model reads 0..0 as "not set".
+struct Range {
+    double low = 0.0;
+    double high = 0.0;
+
+    friend bool operator==(const Range&, const Range&) = default;
+};
+
+/// An engineering unit (OPC 10000-8, 5.6.3), usually of UNECE Recommendation 20.
+struct EuInformation {
+    std::string namespace_uri;
+    std::int32_t unit_id = -1;
+    LocalizedText display_name{};
+    LocalizedText description{};
+
+    friend bool operator==(const EuInformation&, const EuInformation&) = default;
+};
+
+/// A pose: x, y, z in m; a, b, c are rotations about x, y, z in rad, R = Rz(c) Ry(b) Rx(a).
+struct ThreeDFrame {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+
+    friend bool operator==(const ThreeDFrame&, const ThreeDFrame&) = default;
+};
+
+/// The position in a ThreeDFrame [m].
+struct ThreeDCartesianCoordinates {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+
+    friend bool operator==(const ThreeDCartesianCoordinates&,
+                           const ThreeDCartesianCoordinates&) = default;
+};
+
+/// The orientation in a ThreeDFrame [rad].
+struct ThreeDOrientation {
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+
+    friend bool operator==(const ThreeDOrientation&, const ThreeDOrientation&) = default;
+};
+
+/// Three numbers along x, y, z.
+struct ThreeDVector {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+
+    friend bool operator==(const ThreeDVector&, const ThreeDVector&) = default;
+};
+
+/// One input or output argument of a Method (OPC 10000-3, 8.6).
+struct Argument {
+    std::string name;
+    NodeId data_type;
+    std::int32_t value_rank = -1;  ///< -1 scalar, 1 one-dimensional array
+    std::vector<std::uint32_t> array_dimensions{};
+    LocalizedText description{};
+
+    friend bool operator==(const Argument&, const Argument&) = default;
+};
+
+/// How a node takes part in the address space.
+enum class NodeClass {
+    unspecified = 0,
+    object = 1,
+    variable = 2,
+    method = 4,
+    object_type = 8,
+    variable_type = 16,
+    reference_type = 32,
+    data_type = 64,
+    view = 128,
+};
+
+}  // namespace metier::opcua

@@ -1,0 +1,72 @@
+#include "client_config.hpp"
+
+#include <open62541/client_config_default.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+
+#include "convert.hpp"
+#include "metier/opcua/text.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr std::string_view kNoSecurity = "http://opcfoundation.org/UA/SecurityPolicy#None";
+constexpr int kChecksPerSessionTimeout = 3;
+
+void setUser(const UserName& user, UA_ClientConfig& config) {
+    auto* token = UA_UserNameIdentityToken_new();
+    checkAllocated(token == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
+    UA_ExtensionObject_setValue(&config.userIdentityToken, token,
+                                &UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
+    toNative(user.name, token->userName);
+    toNative(user.password, token->password);
+}
+
+void setTimes(const ClientOptions& options, UA_ClientConfig& config) {
+    const auto check = options.session_timeout / kChecksPerSessionTimeout;
+    config.requestedSessionTimeout = static_cast<UA_UInt32>(options.session_timeout.count());
+    config.connectivityCheckInterval = static_cast<UA_UInt32>(check.count());
+    config.timeout = static_cast<UA_UInt32>(std::min(options.connect_timeout, check).count());
+}
+
+}  // namespace
+
+ClientComplaints::ClientComplaints() noexcept : logger_{&log, this, nullptr} {}
+
+// NOLINTNEXTLINE(readability-function-size): the stack gives the parameters
+void ClientComplaints::log(void* context, UA_LogLevel level, UA_LogCategory /*category*/,
+                           const char* format, va_list arguments) {
+    if (level < UA_LOGLEVEL_WARNING) {
+        return;
+    }
+    std::array<char, 512> text{};
+    std::vsnprintf(text.data(), text.size(), format, arguments);
+    static_cast<ClientComplaints*>(context)->last_ = sanitise(text.data());
+}
+
+UA_ClientConfig makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
+                                 ClientPlugins plugins) {
+    UA_ClientConfig config{};
+    config.eventLoop = plugins.loop;
+    config.externalEventLoop = false;
+    config.logging = plugins.logger;
+    toNative(options.application_uri, config.clientDescription.applicationUri);
+    toNative(options.application_name, config.clientDescription.applicationName.text);
+    toNative(options.application_name, config.sessionName);
+    toNative(kNoSecurity, config.securityPolicyUri);
+    config.securityMode = UA_MESSAGESECURITYMODE_NONE;
+    config.noSession = purpose == ClientPurpose::discovery;
+    config.noNewSession = true;
+    setTimes(options, config);
+    if (options.user) {
+        setUser(*options.user, config);
+    }
+    checkAllocated(UA_ClientConfig_setDefault(&config));
+    return config;
+}
+
+}  // namespace metier::opcua

@@ -1,0 +1,113 @@
+#include "metier/opcua/event_emitter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "convert.hpp"
+#include "metier/opcua/server.hpp"
+#include "server_core.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+/// The fields of BaseEventType that we set; the stack sets the others.
+enum BaseField { kTime, kSourceName, kSeverity, kMessage, kBaseFields };
+constexpr std::array<const char*, kBaseFields> kBaseFieldNames{"Time", "SourceName", "Severity",
+                                                               "Message"};
+
+}  // namespace
+
+struct EventEmitter::State {
+    explicit State(ServerCore& owner) : core(owner) {}
+    ~State() {
+        if (!node.isNull()) {
+            UA_Server_deleteNode(core.native(), viewOf(node), true);
+        }
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    Result<> addField(const BrowsePath& path) {
+        auto id = core.nodes().find(node, path);
+        if (!id) {
+            return fail(id.error());
+        }
+        fields.push_back(std::move(*id));
+        return {};
+    }
+
+    Result<> write(std::size_t field, const Value& value) {
+        const auto code =
+            UA_Server_writeValue(core.native(), viewOf(fields[field]), ValueAccess::native(value));
+        if (code == UA_STATUSCODE_GOOD) {
+            return {};
+        }
+        return fail(errorFrom(StatusCode(code),
+                              fmt::format("{} in event field {}", value.typeName(), names[field])));
+    }
+
+    ServerCore& core;
+    NodeId node;  ///< the event, reused
+    std::vector<NodeId> fields;
+    std::vector<std::string> names;
+};
+
+Result<EventEmitter> EventEmitter::create(Server& server, const NodeId& type,
+                                          const std::vector<BrowsePath>& fields) {
+    auto state = std::make_unique<State>(*server.core_);
+    Owned<UA_NodeId> node(UA_TYPES[UA_TYPES_NODEID]);
+    const auto code = UA_Server_createEvent(state->core.native(), viewOf(type), node.get());
+    if (code != UA_STATUSCODE_GOOD) {
+        return fail(errorFrom(StatusCode(code), "make an event of type " + type.toString()));
+    }
+    state->node = fromNative(*node);
+    std::vector<BrowsePath> paths;
+    for (const auto* name : kBaseFieldNames) {
+        paths.push_back({QualifiedName{0, name}});
+    }
+    paths.insert(paths.end(), fields.begin(), fields.end());
+    for (const auto& path : paths) {
+        if (auto added = state->addField(path); !added) {
+            return fail(added.error());
+        }
+        state->names.push_back(path.back().name);
+    }
+    return EventEmitter(std::move(state));
+}
+
+EventEmitter::EventEmitter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EventEmitter::EventEmitter(EventEmitter&&) noexcept = default;
+EventEmitter& EventEmitter::operator=(EventEmitter&&) noexcept = default;
+EventEmitter::~EventEmitter() = default;
+
+Result<ByteString> EventEmitter::emit(const Event& event) {
+    if (event.fields.size() + kBaseFields != state_->fields.size()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} event fields where {} are expected", event.fields.size(),
+                                state_->fields.size() - kBaseFields));
+    }
+    if (state_->core.nobodyHears(event.source)) {
+        return ByteString{};
+    }
+    const std::array<Value, kBaseFields> base{Value::of(event.time), Value::of(event.source_name),
+                                              Value::of(event.severity), Value::of(event.message)};
+    for (std::size_t i = 0; i < state_->fields.size(); ++i) {
+        const auto& value = i < kBaseFields ? base[i] : event.fields[i - kBaseFields];
+        if (auto written = state_->write(i, value); !written) {
+            return fail(written.error());
+        }
+    }
+    Owned<UA_ByteString> id(UA_TYPES[UA_TYPES_BYTESTRING]);
+    const auto code = UA_Server_triggerEvent(state_->core.native(), viewOf(state_->node),
+                                             viewOf(event.source), id.get(), false);
+    if (code != UA_STATUSCODE_GOOD) {
+        return fail(errorFrom(StatusCode(code), "raise an event of " + event.source.toString()));
+    }
+    state_->core.publishEventsOf(event.source);
+    return bytesFrom(*id);
+}
+
+}  // namespace metier::opcua

@@ -1,0 +1,81 @@
+#include "connection.hpp"
+
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
+
+#include <asio/buffer.hpp>
+#include <utility>
+
+namespace metier::opcua {
+
+Connection::Connection(ConnectionId id, asio::ip::tcp::socket socket, Application application,
+                       Origin origin)
+    : connected(origin == Origin::accepted),
+      id_(id),
+      socket_(std::move(socket)),
+      timer_(socket_.get_executor()),
+      application_(application),
+      origin_(origin) {}
+
+asio::error_code Connection::configure(int send_buffer) {
+    asio::error_code error;
+    socket_.non_blocking(true, error);
+    if (!error) {
+        socket_.set_option(asio::ip::tcp::no_delay(true), error);
+    }
+    if (!error && send_buffer > 0) {
+        socket_.set_option(asio::socket_base::send_buffer_size(send_buffer), error);
+    }
+    return error;
+}
+
+std::size_t Connection::receive(std::span<std::uint8_t> buffer, asio::error_code& error) {
+    return socket_.read_some(asio::buffer(buffer.data(), buffer.size()), error);
+}
+
+asio::error_code Connection::send(NetworkBuffer buffer) {
+    const bool first = queue_.empty();
+    queue_.push(std::move(buffer));
+    return first ? writeQueued() : asio::error_code{};
+}
+
+asio::error_code Connection::writeQueued() {
+    asio::error_code error;
+    while (!queue_.empty()) {
+        const auto bytes = queue_.front();
+        const auto sent = socket_.write_some(asio::buffer(bytes.data(), bytes.size()), error);
+        if (error == asio::error::would_block) {
+            return {};
+        }
+        if (error) {
+            return error;
+        }
+        written_ += sent;
+        queue_.consume(sent);
+    }
+    return error;
+}
+
+bool Connection::progressed() {
+    int unacknowledged = 0;
+    if (::ioctl(socket_.native_handle(), SIOCOUTQ, &unacknowledged) != 0) {
+        return false;
+    }
+    const auto now = written_ - static_cast<std::uint64_t>(unacknowledged);
+    return std::exchange(acknowledged_, now) != now;
+}
+
+void Connection::close() {
+    closing_ = true;
+    asio::error_code ignored;  // there is nobody left to tell
+    socket_.close(ignored);
+    timer_.cancel();
+    queue_.clear();
+}
+
+void Connection::forget() {
+    asio::error_code ignored;  // it is closed whether this worked or not
+    socket_.set_option(asio::socket_base::linger(true, 0), ignored);
+}
+
+}  // namespace metier::opcua

@@ -1,0 +1,206 @@
+#include "loop.hpp"
+
+#include <open62541/plugin/log.h>
+
+#include <algorithm>
+#include <asio/post.hpp>
+#include <utility>
+
+#include "loop_interface.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr int kHandlersPerIteration = 64;  // then timers get their turn
+constexpr std::chrono::microseconds kLongestCoalescing{100};
+
+}  // namespace
+
+Loop::Loop(EventLoopOptions options)
+    : options_(options), publisher_(options.publishing), tcp_(reactor_, publisher_, options_) {
+    handle_.loop = this;
+    handle_.logger = options_.logger;
+    handle_.params = &parameters_;
+    LoopInterface::fill(handle_);
+    LoopInterface::fill(*tcp_.handle(), handle_);
+    handle_.eventSources = &tcp_.handle()->eventSource;
+}
+
+Loop::~Loop() {
+    if (handle_.state == UA_EVENTLOOPSTATE_STARTED) {
+        stop();
+    }
+    while (handle_.state == UA_EVENTLOOPSTATE_STOPPING) {  // bounded: closing waits for nobody
+        run(std::chrono::milliseconds::zero());
+    }
+    release();
+}
+
+UA_StatusCode Loop::start() {
+    if (handle_.state != UA_EVENTLOOPSTATE_FRESH && handle_.state != UA_EVENTLOOPSTATE_STOPPED) {
+        return UA_STATUSCODE_BADINTERNALERROR;
+    }
+    tcp_.start();
+    setState(UA_EVENTLOOPSTATE_STARTED);
+    return UA_STATUSCODE_GOOD;
+}
+
+void Loop::stop() {
+    if (handle_.state != UA_EVENTLOOPSTATE_STARTED) {
+        return;
+    }
+    setState(UA_EVENTLOOPSTATE_STOPPING);
+    tcp_.stop();
+    checkStopped();
+}
+
+UA_StatusCode Loop::run(std::chrono::milliseconds timeout) {
+    auto held = lock();
+    const bool idle =
+        handle_.state == UA_EVENTLOOPSTATE_FRESH || handle_.state == UA_EVENTLOOPSTATE_STOPPED;
+    if (idle || running_) {
+        UA_LOG_WARNING(options_.logger, UA_LOGCATEGORY_EVENTLOOP, "The event loop cannot run %s",
+                       running_ ? "from one of its callbacks" : "before it is started");
+        return UA_STATUSCODE_BADINTERNALERROR;
+    }
+    running_ = true;
+    const auto result = guard(options_.logger, [&] { iterate(timeout, held); });
+    running_ = false;
+    return result;
+}
+
+void Loop::iterate(std::chrono::milliseconds timeout,
+                   std::unique_lock<std::recursive_mutex>& lock) {
+    ++iterations_;
+    const auto now = stamp();
+    runTimers(now);
+    if (tcp_.deliverLeftovers()) {
+        timeout = std::chrono::milliseconds::zero();  // what its owner waits for may have come
+    }
+    delayed_.run();
+    flush();
+    reactor_.waitUntil(waitingEnds(now, timeout), lock);
+    runReady();
+    flush();
+    if (handle_.state == UA_EVENTLOOPSTATE_STOPPING) {
+        checkStopped();
+    }
+}
+
+UA_StatusCode Loop::release() {
+    if (handle_.state != UA_EVENTLOOPSTATE_FRESH && handle_.state != UA_EVENTLOOPSTATE_STOPPED) {
+        return UA_STATUSCODE_BADINTERNALERROR;
+    }
+    timers_.clear();
+    while (!delayed_.empty()) {
+        delayed_.run();
+    }
+    return UA_STATUSCODE_GOOD;
+}
+
+TimerId Loop::addTimer(const Timer& timer, SteadyTime first) {
+    auto added = timer;
+    added.id = timers_.add(timer, first);
+    publisher_.timerAdded(added, tcp_.currentAccepted());
+    reactor_.wake();
+    return added.id;
+}
+
+bool Loop::modifyTimer(const Timer& changed, SteadyTime next) {
+    reactor_.wake();
+    return timers_.modify(changed, next);
+}
+
+void Loop::removeTimer(TimerId id) {
+    timers_.remove(id);
+    publisher_.timerRemoved(id);
+}
+
+SteadyTime Loop::nextTimer() const {
+    return delayed_.empty() ? timers_.next().value_or(SteadyTime::max())
+                            : std::chrono::steady_clock::now();
+}
+
+void Loop::addDelayed(UA_DelayedCallback* callback) {
+    delayed_.add(callback);
+    reactor_.wake();
+}
+
+void Loop::post(std::function<void()> work) {
+    asio::post(reactor_.io(), reactor_.guarded(std::move(work)));
+}
+
+void Loop::flushPublishing(std::span<const ConnectionId> connections) {
+    publisher_.request(connections, std::chrono::steady_clock::now());
+    reactor_.wake();
+}
+
+EventLoopStatistics Loop::statistics() {
+    EventLoopStatistics statistics;
+    tcp_.addTo(statistics);
+    statistics.flushes = publisher_.flushes();
+    statistics.fruitless_flushes = publisher_.fruitless();
+    statistics.iterations = iterations_;
+    return statistics;
+}
+
+SteadyTime Loop::lastIteration() const {
+    return SteadyTime(SteadyTime::duration(last_iteration_.load(std::memory_order_relaxed)));
+}
+
+SteadyTime Loop::stamp() {
+    const auto now = std::chrono::steady_clock::now();
+    last_iteration_.store(now.time_since_epoch().count(), std::memory_order_relaxed);
+    return now;
+}
+
+void Loop::setState(UA_EventLoopState state) {
+    // The interface declares the state const for its readers; only the loop behind it writes it.
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): see above
+    const_cast<volatile UA_EventLoopState&>(handle_.state) = state;
+}
+
+void Loop::runTimers(SteadyTime now) {
+    while (const auto due = timers_.takeDue(now)) {
+        publisher_.runTimer(*due);
+    }
+}
+
+SteadyTime Loop::waitingEnds(SteadyTime now, std::chrono::milliseconds timeout) const {
+    if (!delayed_.empty()) {
+        return now;
+    }
+    const auto next = std::min(timers_.next().value_or(SteadyTime::max()),
+                               publisher_.retryAt().value_or(SteadyTime::max()));
+    return std::min(next, now + timeout);
+}
+
+void Loop::runReady() {
+    for (int left = kHandlersPerIteration; left > 0; --left) {
+        const auto requested = publisher_.requestedAt();
+        if (requested && std::chrono::steady_clock::now() - *requested > kLongestCoalescing) {
+            flush();
+        }
+        if (!reactor_.runReady()) {
+            return;
+        }
+    }
+}
+
+void Loop::flush() {
+    const auto retry = publisher_.retryAt();
+    if (publisher_.requestedAt() || (retry && *retry <= std::chrono::steady_clock::now())) {
+        publisher_.flush(stamp());
+    }
+}
+
+void Loop::checkStopped() {
+    if (!tcp_.stopped() || !delayed_.empty()) {
+        return;
+    }
+    tcp_.handle()->eventSource.state = UA_EVENTSOURCESTATE_STOPPED;
+    setState(UA_EVENTLOOPSTATE_STOPPED);
+}
+
+}  // namespace metier::opcua

@@ -1,0 +1,143 @@
+#include "publisher.hpp"
+
+#include <algorithm>
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLongestRest{100};
+constexpr unsigned kDoublings = 7;  // to 128 ms, more than the longest
+
+std::chrono::milliseconds restAfter(unsigned fruitless_in_a_row) {
+    return std::min(kLongestRest,
+                    std::chrono::milliseconds{1U << std::min(fruitless_in_a_row, kDoublings)});
+}
+
+}  // namespace
+
+void Publisher::timerAdded(const Timer& timer, ConnectionId during) {
+    if (timer.data == nullptr || timer.interval == std::chrono::nanoseconds::zero()) {
+        return;
+    }
+    if (publish_callback_ == nullptr && during != 0) {
+        publish_callback_ = timer.callback;
+    }
+    if (timer.callback == publish_callback_) {
+        subscriptions_[timer.id] = {.publish = timer, .created_on = during, .connection = during};
+    }
+}
+
+void Publisher::runTimer(const Timer& timer) {
+    const auto found = subscriptions_.find(timer.id);
+    if (found == subscriptions_.end()) {
+        timer.callback(timer.application, timer.data);
+        return;
+    }
+    found->second.wanted =
+        false;  // this is the publishing, or the stack takes note that it is late
+    publish(timer);
+}
+
+void Publisher::received(ConnectionId connection, std::span<const std::uint8_t> bytes) {
+    const auto peer = peers_.find(connection);
+    if (peer == peers_.end()) {
+        return;
+    }
+    peer->second.open_requests += static_cast<long>(peer->second.incoming.feed(bytes));
+    if (!wanted_.empty() && !requested_at_) {
+        requested_at_ = std::chrono::steady_clock::now();
+    }
+}
+
+void Publisher::sent(ConnectionId connection, std::span<const std::uint8_t> chunk) {
+    const auto peer = peers_.find(connection);
+    if (peer == peers_.end()) {
+        return;
+    }
+    if (publishing_) {
+        sent_to_ = connection;
+    }
+    const auto answers = static_cast<long>(MessageCounter().feed(chunk));
+    peer->second.open_requests = std::max(0L, peer->second.open_requests - answers);
+}
+
+void Publisher::request(std::span<const ConnectionId> connections, SteadyTime now) {
+    if (mode_ == Publishing::at_interval || connections.empty()) {
+        return;
+    }
+    std::vector<ConnectionId> sorted(connections.begin(), connections.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto asked_for = [&](ConnectionId id) {
+        return std::binary_search(sorted.begin(), sorted.end(), id);
+    };
+    for (auto& [id, subscription] : subscriptions_) {
+        if (!subscription.wanted &&
+            (asked_for(subscription.connection) || asked_for(subscription.created_on))) {
+            subscription.wanted = true;
+            wanted_.push_back(id);
+        }
+    }
+    if (!wanted_.empty() && !requested_at_) {
+        requested_at_ = now;
+    }
+}
+
+void Publisher::flush(SteadyTime now) {
+    requested_at_.reset();
+    retry_at_.reset();
+    for (const auto id : std::exchange(wanted_, {})) {
+        const auto found = subscriptions_.find(id);
+        if (found == subscriptions_.end() || !found->second.wanted) {
+            continue;
+        }
+        if (canPublish(found->second, now)) {
+            publishNow(id, now);
+        } else {
+            wanted_.push_back(id);
+        }
+    }
+}
+
+bool Publisher::canPublish(const Subscription& subscription, SteadyTime now) {
+    const auto peer = peers_.find(subscription.connection);
+    if (peer == peers_.end() || peer->second.open_requests == 0) {
+        return false;  // tried again when a message arrives
+    }
+    if (now < subscription.rests_until) {
+        retry_at_ = std::min(retry_at_.value_or(SteadyTime::max()), subscription.rests_until);
+        return false;
+    }
+    return true;
+}
+
+void Publisher::publishNow(TimerId id, SteadyTime now) {
+    const Timer timer = subscriptions_.at(id).publish;
+    ++flushes_;
+    const bool fruitful = publish(timer);
+    fruitless_ += fruitful ? 0 : 1;
+    const auto found = subscriptions_.find(id);
+    if (found == subscriptions_.end()) {
+        return;  // deleted by its own callback
+    }
+    auto& subscription = found->second;
+    subscription.wanted = false;
+    if (!fruitful) {
+        subscription.rests_until = now + restAfter(subscription.fruitless_in_a_row++);
+    }
+}
+
+bool Publisher::publish(const Timer& timer) {
+    publishing_ = true;
+    sent_to_ = 0;
+    timer.callback(timer.application, timer.data);
+    publishing_ = false;
+    const auto found = subscriptions_.find(timer.id);
+    if (found != subscriptions_.end() && sent_to_ != 0) {
+        found->second.connection = sent_to_;
+        found->second.fruitless_in_a_row = 0;
+    }
+    return sent_to_ != 0;
+}
+
+}  // namespace metier::opcua

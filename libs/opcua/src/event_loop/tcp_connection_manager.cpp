@@ -1,0 +1,263 @@
+#include "tcp_connection_manager.hpp"
+
+#include <open62541/plugin/log.h>
+
+#include <asio/post.hpp>
+#include <utility>
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr std::size_t kReceiveBufferSize = std::size_t{64} << 10U;
+constexpr int kStallChecks = 8;  // within the stall limit
+
+}  // namespace
+
+TcpConnectionManager::TcpConnectionManager(Reactor& reactor, Publisher& publisher,
+                                           const EventLoopOptions& options)
+    : reactor_(reactor),
+      publisher_(publisher),
+      options_(options),
+      resolver_(reactor.io()),
+      receive_buffer_(kReceiveBufferSize) {}
+
+Result<> TcpConnectionManager::open(const UA_KeyValueMap* parameters,
+                                    const Application& application) {
+    if (handle_.eventSource.state != UA_EVENTSOURCESTATE_STARTED) {
+        return fail(Errc::cancelled, "the event loop is not running");
+    }
+    auto tcp = readTcpParameters(parameters);
+    if (!tcp) {
+        note(tcp.error().message);
+        return fail(tcp.error());
+    }
+    if (tcp->listen) {
+        return listen(*tcp, application);
+    }
+    if (!tcp->validate) {
+        connect(*tcp, application);
+    }
+    return {};
+}
+
+UA_StatusCode TcpConnectionManager::send(ConnectionId id, UA_ByteString* buffer) {
+    NetworkBuffer bytes(buffer);
+    auto* connection = find(id);
+    if (connection == nullptr) {
+        return UA_STATUSCODE_BADCONNECTIONCLOSED;
+    }
+    publisher_.sent(id, bytes.unsent());
+    if (connection->send(std::move(bytes))) {
+        closeLater(*connection);
+        return UA_STATUSCODE_BADCONNECTIONCLOSED;
+    }
+    if (connection->queuedBytes() > options_.send_queue_limit) {
+        cut(*connection, "is owed too much");
+        return UA_STATUSCODE_BADCONNECTIONCLOSED;
+    }
+    if (connection->queuedBytes() > 0 && !connection->awaits_writable) {
+        awaitWritable(*connection);
+        connection->progressed();
+        watchStall(*connection, std::chrono::steady_clock::now());
+    }
+    return UA_STATUSCODE_GOOD;
+}
+
+UA_StatusCode TcpConnectionManager::close(ConnectionId id) {
+    if (auto* connection = find(id)) {
+        closeLater(*connection);
+        return UA_STATUSCODE_GOOD;
+    }
+    const auto listener = listeners_.find(id);
+    if (listener == listeners_.end()) {
+        return UA_STATUSCODE_BADNOTFOUND;
+    }
+    closeListener(*listener->second);
+    return UA_STATUSCODE_GOOD;
+}
+
+void TcpConnectionManager::start() {
+    handle_.eventSource.state = UA_EVENTSOURCESTATE_STARTED;
+}
+
+void TcpConnectionManager::stop() {
+    handle_.eventSource.state = UA_EVENTSOURCESTATE_STOPPING;
+    for (auto& [id, connection] : connections_) {
+        closeLater(*connection);
+    }
+    for (auto& [id, listener] : listeners_) {
+        closeListener(*listener);
+    }
+    resolver_.cancel();
+}
+
+bool TcpConnectionManager::stopped() const {
+    return connections_.empty() && listeners_.empty();
+}
+
+bool TcpConnectionManager::deliverLeftovers() {
+    const auto with_leftovers = std::exchange(leftovers_, {});
+    for (const auto id : with_leftovers) {
+        if (auto* connection = find(id)) {
+            tell(*connection, UA_CONNECTIONSTATE_ESTABLISHED, UA_KEYVALUEMAP_NULL,
+                 UA_BYTESTRING_NULL);
+        }
+    }
+    return !with_leftovers.empty();
+}
+
+void TcpConnectionManager::addTo(EventLoopStatistics& statistics) const {
+    statistics.connections = connections_.size();
+    for (const auto& [id, connection] : connections_) {
+        statistics.queued_bytes += connection->queuedBytes();
+    }
+    statistics.accepted = counts_.accepted;
+    statistics.refused = counts_.refused;
+    statistics.cut_peers = counts_.cut_peers;
+}
+
+std::vector<ListenAddress> TcpConnectionManager::listening() const {
+    std::vector<ListenAddress> addresses;
+    for (const auto& [id, listener] : listeners_) {
+        addresses.push_back(listener->address());
+    }
+    return addresses;
+}
+
+Connection* TcpConnectionManager::find(ConnectionId id) {
+    const auto found = connections_.find(id);
+    const bool open = found != connections_.end() && !found->second->closing();
+    return open ? found->second.get() : nullptr;
+}
+
+Connection& TcpConnectionManager::add(asio::ip::tcp::socket socket, const Application& application,
+                                      Origin origin) {
+    const auto id = ++last_id_;
+    auto connection = std::make_unique<Connection>(id, std::move(socket), application, origin);
+    return *connections_.emplace(id, std::move(connection)).first->second;
+}
+
+void TcpConnectionManager::tell(Connection& connection, UA_ConnectionState state,
+                                const UA_KeyValueMap& parameters, UA_ByteString message) {
+    const auto current = connection.origin() == Origin::accepted ? connection.id() : 0;
+    const auto outer = std::exchange(current_accepted_, current);
+    auto& application = connection.application();
+    application.callback(&handle_, connection.id(), application.application, &application.context,
+                         state, &parameters, message);
+    current_accepted_ = outer;
+}
+
+void TcpConnectionManager::awaitReadable(Connection& connection) {
+    connection.socket().async_wait(
+        asio::ip::tcp::socket::wait_read,
+        reactor_.guarded([this, id = connection.id()](const asio::error_code& error) {
+            onReadable(id, error);
+        }));
+}
+
+void TcpConnectionManager::onReadable(ConnectionId id, const asio::error_code& error) {
+    auto* connection = find(id);
+    if (connection == nullptr) {
+        return;
+    }
+    auto failed = error;
+    const auto received = failed ? 0 : connection->receive(receive_buffer_, failed);
+    if (failed && failed != asio::error::would_block) {
+        closeLater(*connection);
+        return;
+    }
+    if (received > 0) {
+        deliver(*connection, std::span(receive_buffer_).first(received));
+    }
+    if (!connection->closing()) {  // it lives at least until its CLOSING callback
+        awaitReadable(*connection);
+    }
+}
+
+void TcpConnectionManager::deliver(Connection& connection, std::span<std::uint8_t> bytes) {
+    if (connection.origin() == Origin::accepted) {
+        publisher_.received(connection.id(), bytes);
+    } else if (connection.incoming.feed(bytes) > 1) {
+        leftovers_.push_back(connection.id());
+    }
+    tell(connection, UA_CONNECTIONSTATE_ESTABLISHED, UA_KEYVALUEMAP_NULL,
+         {bytes.size(), bytes.data()});
+}
+
+void TcpConnectionManager::awaitWritable(Connection& connection) {
+    connection.awaits_writable = true;
+    connection.socket().async_wait(
+        asio::ip::tcp::socket::wait_write,
+        reactor_.guarded(
+            [this, id = connection.id()](const asio::error_code&) { onWritable(id); }));
+}
+
+void TcpConnectionManager::onWritable(ConnectionId id) {
+    auto* connection = find(id);
+    if (connection == nullptr) {
+        return;
+    }
+    connection->awaits_writable = false;
+    if (connection->writeQueued()) {
+        closeLater(*connection);
+    } else if (connection->queuedBytes() > 0) {
+        awaitWritable(*connection);
+    } else {
+        connection->timer().cancel();
+    }
+}
+
+void TcpConnectionManager::watchStall(Connection& connection, SteadyTime progress) {
+    connection.timer().expires_after(options_.stall_limit / kStallChecks);
+    connection.timer().async_wait(
+        reactor_.guarded([this, id = connection.id(), progress](const asio::error_code& cancelled) {
+            auto* stalled = cancelled ? nullptr : find(id);
+            if (stalled == nullptr || stalled->queuedBytes() == 0) {
+                return;
+            }
+            const auto now = std::chrono::steady_clock::now();
+            const auto since = stalled->progressed() ? now : progress;
+            if (now - since >= options_.stall_limit) {
+                cut(*stalled, "takes nothing");
+            } else {
+                watchStall(*stalled, since);
+            }
+        }));
+}
+
+void TcpConnectionManager::closeLater(Connection& connection) {
+    if (connection.closing()) {
+        return;
+    }
+    connection.close();
+    publisher_.closed(connection.id());
+    asio::post(reactor_.io(), reactor_.guarded([this, id = connection.id()] { finish(id); }));
+}
+
+void TcpConnectionManager::cut(Connection& connection, const char* reason) {
+    ++counts_.cut_peers;
+    UA_LOG_WARNING(options_.logger, UA_LOGCATEGORY_NETWORK,
+                   "TCP %lu | the peer is cut: it %s (%lu bytes wait)",
+                   static_cast<unsigned long>(connection.id()), reason,
+                   static_cast<unsigned long>(connection.queuedBytes()));
+    connection.forget();
+    closeLater(connection);
+}
+
+void TcpConnectionManager::finish(ConnectionId id) {
+    const auto found = connections_.find(id);
+    if (found == connections_.end()) {
+        return;
+    }
+    const auto connection = std::move(found->second);
+    connections_.erase(found);
+    tell(*connection, UA_CONNECTIONSTATE_CLOSING, UA_KEYVALUEMAP_NULL, UA_BYTESTRING_NULL);
+}
+
+void TcpConnectionManager::note(std::string error) {
+    last_error_ = std::move(error);
+    UA_LOG_WARNING(options_.logger, UA_LOGCATEGORY_NETWORK, "TCP | %s", last_error_.c_str());
+}
+
+}  // namespace metier::opcua

@@ -1,0 +1,263 @@
+#include "server_core.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "convert.hpp"
+#include "guard.hpp"
+#include "nodesets.hpp"
+#include "server_config.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{100};
+
+EventLoopOptions loopOptions(const ServerOptions& options, const UA_Logger* logger) {
+    EventLoopOptions result;
+    result.max_connections = options.limits.secure_channels;
+    result.publishing = options.event_publishing == EventPublishing::at_once
+                            ? Publishing::at_once
+                            : Publishing::at_interval;
+    result.logger = logger;
+    return result;
+}
+
+}  // namespace
+
+/// What the stack calls about nodes and monitored items.
+struct ServerCore::Callbacks {
+    static void nodeDeleted(UA_Server* server, const UA_NodeId* /*session_id*/,
+                            void* /*session_context*/, const UA_NodeId* /*id*/,
+                            void* context) noexcept {
+        if (context != nullptr) {
+            ServerCore::of(server).hooks_.erase(context);
+        }
+    }
+
+    static UA_StatusCode nameChild(UA_Server* server, const UA_NodeId* /*session_id*/,
+                                   void* /*session_context*/, const UA_NodeId* source,
+                                   const UA_NodeId* parent, const UA_NodeId* /*reference*/,
+                                   UA_NodeId* target) noexcept {
+        if (parent->namespaceIndex == 0) {
+            return UA_STATUSCODE_GOOD;  // an event's node: any free id will do
+        }
+        return guarded([&] {
+            Owned<UA_QualifiedName> name(UA_TYPES[UA_TYPES_QUALIFIEDNAME]);
+            const auto read = UA_Server_readBrowseName(server, *source, name.get());
+            if (read == UA_STATUSCODE_GOOD) {
+                toNative(childId(fromNative(*parent), fromNative(*name)), *target);
+            }
+            return read;
+        });
+    }
+
+    static void monitored(UA_Server* server, const UA_NodeId* session, void* /*session_context*/,
+                          const UA_NodeId* node, void* /*node_context*/, UA_UInt32 attribute,
+                          UA_Boolean removed) noexcept {
+        if (attribute != UA_ATTRIBUTEID_EVENTNOTIFIER) {
+            return;
+        }
+        guarded([&] {
+            auto& watch = ServerCore::of(server).watch_;
+            const NodeId owner = session == nullptr ? NodeId() : fromNative(*session);
+            if (removed) {
+                watch.removed(fromNative(*node), owner);
+            } else {
+                watch.added(fromNative(*node), owner);
+            }
+            return UA_STATUSCODE_GOOD;
+        });
+    }
+};
+
+ServerCore& ServerCore::of(UA_Server* server) noexcept {
+    return *static_cast<ServerCore*>(UA_Server_getConfig(server)->context);
+}
+
+Result<std::unique_ptr<ServerCore>> ServerCore::create(ServerOptions options) {
+    if (auto valid = checkOptions(options); !valid) {
+        return fail(valid.error());
+    }
+    std::unique_ptr<ServerCore> core(new ServerCore(std::move(options)));
+    if (auto built = core->build(); !built) {
+        return fail(built.error());
+    }
+    return core;
+}
+
+ServerCore::ServerCore(ServerOptions options)
+    : options_(std::move(options)),
+      log_(options_.logger),
+      loop_(loopOptions(options_, log_.handle())),
+      sessions_(options_.users),
+      hooks_(*this),
+      nodes_(*this) {}
+
+ServerCore::~ServerCore() {
+    stop();
+}
+
+Result<> ServerCore::build() {
+    struct Config : UA_ServerConfig {
+        Config() : UA_ServerConfig{} {}
+        ~Config() { UA_ServerConfig_clean(this); }
+        Config(const Config&) = delete;
+        Config& operator=(const Config&) = delete;
+    } config;
+    config.logging = log_.handle();
+    config.eventLoop = loop_.handle();
+    config.context = this;
+    if (auto applied = applyOptions(options_, config); !applied) {
+        return applied;
+    }
+    sessions_.install(config);
+    config.accessControl.getUserExecutable = userExecutable;
+    config.nodeLifecycle.destructor = Callbacks::nodeDeleted;
+    config.nodeLifecycle.generateChildNodeId = Callbacks::nameChild;
+    config.monitoredItemRegisterCallback = Callbacks::monitored;
+    sessions_.onActivated([this](const Session& session) {
+        watch_.sessionOn(session.id, loop_.currentConnection());
+    });
+    sessions_.onClosed([this](const Session& session) { watch_.sessionClosed(session.id); });
+    server_.reset(UA_Server_newWithConfig(&config));
+    if (!server_) {
+        return fail(Errc::internal, "the stack could not make a server");
+    }
+    timers_ = std::make_shared<PendingTimers>(
+        native(), [this](const std::function<void()>& work) { runGuarded(work); });
+    if (auto loaded = loadNodesets(native(), options_.nodesets); !loaded) {
+        return loaded;
+    }
+    for (const auto& uri : options_.namespaces) {
+        UA_Server_addNamespace(native(), uri.c_str());
+    }
+    return {};
+}
+
+Result<> ServerCore::start() {
+    if (std::exchange(started_, true)) {
+        return fail(Errc::invalid_state, "the server was started before");
+    }
+    std::promise<Result<>> opened;
+    auto outcome = opened.get_future();
+    thread_ = std::jthread([this, &opened](const std::stop_token& stop) { run(stop, opened); });
+    auto result = outcome.get();
+    if (!result) {
+        stop();
+    }
+    return result;
+}
+
+void ServerCore::run(const std::stop_token& stop, std::promise<Result<>>& opened) {
+    owner_ = std::this_thread::get_id();
+    auto result = open();
+    const bool serving = result.has_value();
+    opened.set_value(std::move(result));  // start() may go on, and `opened` with it
+    if (!serving) {
+        return;
+    }
+    while (!stop.stop_requested()) {
+        if (auto iterated = loop_.runOnce(kLongestWait); !iterated) {
+            log().error("{}", iterated.error().message);
+        }
+    }
+    close();
+}
+
+Result<> ServerCore::open() {
+    const auto code = UA_Server_run_startup(native());
+    if (auto reason = loop_.lastNetworkError(); !reason.empty()) {
+        if (code == UA_STATUSCODE_GOOD) {
+            close();
+        }
+        return fail(Errc::already_exists, std::move(reason));
+    }
+    if (code != UA_STATUSCODE_GOOD) {
+        return fail(errorFrom(StatusCode(code), "start the server"));
+    }
+    port_ = loop_.listening().at(0).port;
+    log().warn("INSECURE LAB: {} at {} has no encryption and lets anonymous users in",
+               options_.application_name, endpointUrlOf(options_.bind_addresses.at(0), port_));
+    return {};
+}
+
+void ServerCore::close() {
+    sessions_.closeAll(native());
+    UA_Server_run_shutdown(native());
+}
+
+void ServerCore::stop() {
+    queue_.close();
+    if (thread_.joinable()) {
+        thread_.request_stop();
+        loop_.post([] {});  // wakes it
+        thread_.join();
+    }
+    owner_ = creator_;
+}
+
+void ServerCore::post(std::function<void()> work) {
+    if (queue_.push(std::move(work)) != WorkQueue::Pushed::first) {
+        return;
+    }
+    loop_.post(
+        [this] { queue_.drain([this](const std::function<void()>& each) { runGuarded(each); }); });
+}
+
+TimerHandle ServerCore::after(std::chrono::nanoseconds delay, std::function<void()> work) {
+    return PendingTimers::start(timers_, delay, std::move(work));
+}
+
+bool ServerCore::onServerThread() const noexcept {
+    return owner_ == std::this_thread::get_id();
+}
+
+void ServerCore::runGuarded(const std::function<void()>& work) noexcept {
+    const auto done = guarded([&] {
+        work();
+        return UA_STATUSCODE_GOOD;
+    });
+    if (done != UA_STATUSCODE_GOOD) {
+        log().error("posted work or a timer threw an exception");
+    }
+}
+
+bool ServerCore::nobodyHears(const NodeId& source) const {
+    const auto known = notifiers_.find(source);
+    return known != notifiers_.end() && !watch_.watchesAny(known->second);
+}
+
+void ServerCore::publishEventsOf(const NodeId& source) {
+    const auto& notifiers = notifiersAbove(source);
+    if (options_.event_publishing != EventPublishing::at_once || watch_.empty()) {
+        return;
+    }
+    const auto connections = watch_.connectionsOf(notifiers);
+    if (!connections.empty()) {
+        loop_.flushPublishing(connections);
+    }
+}
+
+const std::vector<NodeId>& ServerCore::notifiersAbove(const NodeId& source) {
+    const auto [entry, is_new] = notifiers_.try_emplace(source);
+    auto& found = entry->second;
+    if (!is_new) {
+        return found;
+    }
+    found = {source, ids::kServer};
+    for (std::size_t next = 0; next < found.size(); ++next) {
+        const auto above = nodes_.browse(
+            found[next], {ids::kHierarchicalReferences, BrowseFilter::Direction::inverse});
+        for (const auto& reference : above.value_or(std::vector<Reference>())) {
+            if (std::find(found.begin(), found.end(), reference.target) == found.end()) {
+                found.push_back(reference.target);
+            }
+        }
+    }
+    return found;
+}
+
+}  // namespace metier::opcua

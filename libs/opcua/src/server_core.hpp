@@ -1,0 +1,92 @@
+#pragma once
+
+#include <open62541/server.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <span>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "event_loop/event_loop.hpp"
+#include "event_watch.hpp"
+#include "log_bridge.hpp"
+#include "metier/opcua/server.hpp"
+#include "node_hooks.hpp"
+#include "pending_timers.hpp"
+#include "sessions.hpp"
+#include "work_queue.hpp"
+
+namespace metier::opcua {
+
+/// The stack's server and what belongs to it; the inside of Server.
+///
+/// Threading: as Server.
+class ServerCore {
+public:
+    static Result<std::unique_ptr<ServerCore>> create(ServerOptions options);
+    ~ServerCore();
+    ServerCore(const ServerCore&) = delete;
+    ServerCore& operator=(const ServerCore&) = delete;
+
+    /// The core of a server of the stack.
+    static ServerCore& of(UA_Server* server) noexcept;
+
+    Result<> start();
+    void stop();
+    void post(std::function<void()> work);
+    TimerHandle after(std::chrono::nanoseconds delay, std::function<void()> work);
+    bool onServerThread() const noexcept;
+    std::uint16_t port() const noexcept { return port_; }
+    SteadyTime lastTick() const noexcept { return loop_.lastIteration(); }
+    const ServerOptions& options() const noexcept { return options_; }
+
+    UA_Server* native() noexcept { return server_.get(); }
+    Sessions& sessions() noexcept { return sessions_; }
+    HookRegistry& hooks() noexcept { return hooks_; }
+    AddressSpace& nodes() noexcept { return nodes_; }
+    spdlog::logger& log() noexcept { return log_.target(); }
+
+    /// Nodes or references changed: what was learned about notifiers holds no more.
+    void structureChanged() { notifiers_.clear(); }
+    /// Publishes to those who watch the events of an Object, if the options ask for it.
+    void publishEventsOf(const NodeId& source);
+    /// Whether an event of a source that raised one before would reach nobody.
+    bool nobodyHears(const NodeId& source) const;
+
+private:
+    struct DeleteServer {
+        void operator()(UA_Server* server) const noexcept { UA_Server_delete(server); }
+    };
+    struct Callbacks;
+
+    explicit ServerCore(ServerOptions options);
+    Result<> build();
+    void run(const std::stop_token& stop, std::promise<Result<>>& opened);
+    Result<> open();
+    void close();
+    void runGuarded(const std::function<void()>& work) noexcept;
+    const std::vector<NodeId>& notifiersAbove(const NodeId& source);
+
+    ServerOptions options_;
+    LogBridge log_;
+    AsioEventLoop loop_;
+    Sessions sessions_;
+    EventWatch watch_;
+    HookRegistry hooks_;
+    AddressSpace nodes_;
+    std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;
+    std::unique_ptr<UA_Server, DeleteServer> server_;
+    std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
+    WorkQueue queue_;
+    std::atomic<std::uint16_t> port_{0};
+    const std::thread::id creator_ = std::this_thread::get_id();
+    std::atomic<std::thread::id> owner_ = creator_;
+    bool started_ = false;
+    std::jthread thread_;
+};
+
+}  // namespace metier::opcua

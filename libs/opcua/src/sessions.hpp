@@ -1,0 +1,50 @@
+#pragma once
+
+#include <open62541/server.h>
+
+#include <functional>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "metier/opcua/server.hpp"
+
+namespace metier::opcua {
+
+/// Who is logged in; decides who may. Installed as the stack's access control.
+///
+/// Clients may read, write, call and browse; nodes and references only the server itself changes.
+/// Threading: the server's thread.
+class Sessions {
+public:
+    using Handler = std::function<void(const Session&)>;
+
+    explicit Sessions(std::vector<UserPassword> users);
+    Sessions(const Sessions&) = delete;
+    Sessions& operator=(const Sessions&) = delete;
+
+    /// This object must outlive the server made with the configuration.
+    void install(UA_ServerConfig& config);
+    /// The session behind the context that the stack hands to callbacks; without one the server.
+    const Session& of(const void* context) const noexcept;
+    /// Calls whenever a session is activated: at first, and again on another connection.
+    void onActivated(Handler handler) { activated_ = std::move(handler); }
+    void onClosed(Handler handler) { closed_.push_back(std::move(handler)); }
+    void closeAll(UA_Server* server);
+
+private:
+    struct Callbacks;
+
+    StatusCode activate(UA_Server* server, const UA_NodeId& id, const UA_ExtensionObject& token,
+                        void** context);
+    void close(const UA_NodeId& id);
+    Result<std::string> userOf(const UA_ExtensionObject& token) const;
+
+    std::vector<UserPassword> users_;
+    std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;
+    Session server_session_{{}, "server", {}, {}, {}};
+    Handler activated_;
+    std::vector<Handler> closed_;
+};
+
+}  // namespace metier::opcua

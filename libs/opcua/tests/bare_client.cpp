@@ -1,0 +1,214 @@
+#include "bare_client.hpp"
+
+#include <open62541/client_config_default.h>
+#include <open62541/client_highlevel.h>
+#include <open62541/client_subscriptions.h>
+#include <spdlog/sinks/null_sink.h>
+
+#include <stdexcept>
+
+#include "convert.hpp"
+
+namespace metier::opcua::testing {
+
+namespace {
+
+void ignoreLog(void* /*context*/, UA_LogLevel /*level*/, UA_LogCategory /*category*/,
+               const char* /*text*/, va_list /*arguments*/) {}
+
+UA_Logger kSilent{ignoreLog, nullptr, nullptr};
+
+void eventArrived(UA_Client* /*client*/, UA_UInt32 /*subscription*/, void* /*context*/,
+                  UA_UInt32 /*item*/, void* context, std::size_t size, UA_Variant* fields) {
+    ReceivedEvent event;
+    for (std::size_t i = 0; i < size; ++i) {
+        event.push_back(ValueAccess::copyOf(fields[i]));
+    }
+    static_cast<std::vector<ReceivedEvent>*>(context)->push_back(std::move(event));
+}
+
+void valueArrived(UA_Client* /*client*/, UA_UInt32 /*subscription*/, void* /*context*/,
+                  UA_UInt32 /*item*/, void* context, UA_DataValue* value) {
+    static_cast<std::vector<DataValue>*>(context)->push_back(fromNative(*value));
+}
+
+/// The select clauses for some paths; borrows them.
+class Selection {
+public:
+    explicit Selection(const std::vector<BrowsePath>& fields) : names_(fields.size()) {
+        for (std::size_t i = 0; i < fields.size(); ++i) {
+            for (const auto& name : fields[i]) {
+                names_[i].push_back(viewOf(name));
+            }
+            UA_SimpleAttributeOperand operand{};
+            operand.typeDefinitionId = viewOf(ids::kBaseEventType);
+            operand.attributeId = UA_ATTRIBUTEID_VALUE;
+            operand.browsePath = names_[i].data();
+            operand.browsePathSize = names_[i].size();
+            operands_.push_back(operand);
+        }
+        filter_.selectClauses = operands_.data();
+        filter_.selectClausesSize = operands_.size();
+    }
+    UA_EventFilter& filter() { return filter_; }
+
+private:
+    std::vector<std::vector<UA_QualifiedName>> names_;
+    std::vector<UA_SimpleAttributeOperand> operands_;
+    UA_EventFilter filter_{};
+};
+
+}  // namespace
+
+BareClient::BareClient() : client_(nullptr) {
+    UA_ClientConfig config{};
+    config.logging = &kSilent;
+    UA_ClientConfig_setDefault(&config);
+    config.requestedSessionTimeout = 10'000;
+    UA_LocalizedText_clear(&config.clientDescription.applicationName);
+    config.clientDescription.applicationName = UA_LOCALIZEDTEXT_ALLOC("", "bare client");
+    client_ = UA_Client_newWithConfig(&config);
+}
+
+BareClient::~BareClient() {
+    UA_Client_delete(client_);
+}
+
+StatusCode BareClient::connect(const std::string& url) {
+    return StatusCode(UA_Client_connect(client_, url.c_str()));
+}
+
+StatusCode BareClient::login(const std::string& url, const UserPassword& user) {
+    return StatusCode(
+        UA_Client_connectUsername(client_, url.c_str(), user.user.c_str(), user.password.c_str()));
+}
+
+void BareClient::disconnect() {
+    UA_Client_disconnect(client_);
+}
+
+void BareClient::breakConnection() {
+    UA_Client_disconnectSecureChannel(client_);
+}
+
+DataValue BareClient::read(const NodeId& variable) {
+    UA_ReadValueId item{};
+    item.nodeId = viewOf(variable);
+    item.attributeId = UA_ATTRIBUTEID_VALUE;
+    UA_ReadRequest request{};
+    request.nodesToRead = &item;
+    request.nodesToReadSize = 1;
+    request.timestampsToReturn = UA_TIMESTAMPSTORETURN_BOTH;
+    Owned<UA_ReadResponse> response(UA_Client_Service_read(client_, request),
+                                    UA_TYPES[UA_TYPES_READRESPONSE]);
+    if (response->resultsSize != 1) {
+        return {Value(), StatusCode(response->responseHeader.serviceResult), {}, {}};
+    }
+    return fromNative(response->results[0]);
+}
+
+std::optional<bool> BareClient::readUserExecutable(const NodeId& method) {
+    UA_Boolean executable = false;
+    const auto code = UA_Client_readUserExecutableAttribute(client_, viewOf(method), &executable);
+    return code == UA_STATUSCODE_GOOD ? std::optional(executable) : std::nullopt;
+}
+
+StatusCode BareClient::write(const NodeId& variable, const Value& value) {
+    return StatusCode(
+        UA_Client_writeValueAttribute(client_, viewOf(variable), &ValueAccess::native(value)));
+}
+
+BareClient::CallResult BareClient::call(const NodeId& object, const NodeId& method,
+                                        const std::vector<Value>& inputs) {
+    std::vector<UA_Variant> arguments;
+    for (const auto& input : inputs) {
+        arguments.push_back(ValueAccess::native(input));
+    }
+    std::size_t size = 0;
+    UA_Variant* outputs = nullptr;
+    CallResult result;
+    result.status = StatusCode(UA_Client_call(client_, viewOf(object), viewOf(method),
+                                              arguments.size(), arguments.data(), &size, &outputs));
+    for (std::size_t i = 0; i < size; ++i) {
+        result.outputs.push_back(ValueAccess::copyOf(outputs[i]));
+    }
+    UA_Array_delete(outputs, size, &UA_TYPES[UA_TYPES_VARIANT]);
+    return result;
+}
+
+StatusCode BareClient::addFolder(const NodeId& parent) {
+    return StatusCode(
+        UA_Client_addObjectNode(client_, UA_NODEID_NULL, viewOf(parent), viewOf(ids::kOrganizes),
+                                UA_QualifiedName{1, viewOf("intruder")}, viewOf(ids::kFolderType),
+                                UA_ObjectAttributes_default, nullptr));
+}
+
+double BareClient::subscribe(double publishing_interval_ms) {
+    auto request = UA_CreateSubscriptionRequest_default();
+    request.requestedPublishingInterval = publishing_interval_ms;
+    request.maxNotificationsPerPublish = 0;
+    const auto response =
+        UA_Client_Subscriptions_create(client_, request, nullptr, nullptr, nullptr);
+    subscription_ = response.subscriptionId;
+    return response.responseHeader.serviceResult == UA_STATUSCODE_GOOD
+               ? response.revisedPublishingInterval
+               : 0.0;
+}
+
+StatusCode BareClient::watchEvents(const NodeId& notifier, const std::vector<BrowsePath>& fields,
+                                   std::vector<ReceivedEvent>& into) {
+    Selection selection(fields);
+    UA_MonitoredItemCreateRequest item{};
+    item.itemToMonitor.nodeId = viewOf(notifier);
+    item.itemToMonitor.attributeId = UA_ATTRIBUTEID_EVENTNOTIFIER;
+    item.monitoringMode = UA_MONITORINGMODE_REPORTING;
+    item.requestedParameters.queueSize = 10'000;
+    item.requestedParameters.discardOldest = true;
+    UA_ExtensionObject_setValueNoDelete(&item.requestedParameters.filter, &selection.filter(),
+                                        &UA_TYPES[UA_TYPES_EVENTFILTER]);
+    Owned<UA_MonitoredItemCreateResult> result(
+        UA_Client_MonitoredItems_createEvent(client_, subscription_, UA_TIMESTAMPSTORETURN_BOTH,
+                                             item, &into, eventArrived, nullptr),
+        UA_TYPES[UA_TYPES_MONITOREDITEMCREATERESULT]);
+    return StatusCode(result->statusCode);
+}
+
+StatusCode BareClient::watchValue(const NodeId& variable, double sampling_ms,
+                                  std::vector<DataValue>& into) {
+    auto item = UA_MonitoredItemCreateRequest_default(viewOf(variable));
+    item.requestedParameters.samplingInterval = sampling_ms;
+    item.requestedParameters.queueSize = 100;
+    Owned<UA_MonitoredItemCreateResult> result(
+        UA_Client_MonitoredItems_createDataChange(
+            client_, subscription_, UA_TIMESTAMPSTORETURN_BOTH, item, &into, valueArrived, nullptr),
+        UA_TYPES[UA_TYPES_MONITOREDITEMCREATERESULT]);
+    return StatusCode(result->statusCode);
+}
+
+bool BareClient::runUntil(const std::function<bool()>& done, std::chrono::milliseconds deadline) {
+    const auto end = std::chrono::steady_clock::now() + deadline;
+    while (!done() && std::chrono::steady_clock::now() < end) {
+        UA_Client_run_iterate(client_, 1);
+    }
+    return done();
+}
+
+ServerOptions testOptions() {
+    ServerOptions options;
+    options.application_uri = "urn:metier:test";
+    options.port = 0;
+    options.namespaces = {"urn:metier:test:a", "urn:metier:test:b"};
+    options.logger =
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::null_sink_mt>());
+    return options;
+}
+
+std::unique_ptr<Server> makeServer(const ServerOptions& options) {
+    auto server = Server::create(options);
+    if (!server) {
+        throw std::runtime_error(server.error().message);
+    }
+    return std::move(*server);
+}
+
+}  // namespace metier::opcua::testing

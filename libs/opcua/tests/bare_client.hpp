@@ -1,0 +1,67 @@
+#pragma once
+
+#include <open62541/client.h>
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/opcua/event_emitter.hpp"
+#include "metier/opcua/server.hpp"
+
+namespace metier::opcua::testing {
+
+using namespace std::chrono_literals;
+
+inline constexpr auto kDeadline = 10s;
+
+/// An event as a client got it: the values of the fields it selected.
+using ReceivedEvent = std::vector<Value>;
+
+/// A bare open62541 client, for tests of the server: it shares no code with ours but the values.
+class BareClient {
+public:
+    BareClient();
+    ~BareClient();
+    BareClient(const BareClient&) = delete;
+    BareClient& operator=(const BareClient&) = delete;
+
+    StatusCode connect(const std::string& url);
+    StatusCode login(const std::string& url, const UserPassword& user);
+    void disconnect();
+    /// Closes the connection and leaves the session to its time-out.
+    void breakConnection();
+
+    DataValue read(const NodeId& variable);
+    std::optional<bool> readUserExecutable(const NodeId& method);
+    StatusCode write(const NodeId& variable, const Value& value);
+    struct CallResult {
+        StatusCode status;
+        std::vector<Value> outputs;
+    };
+    CallResult call(const NodeId& object, const NodeId& method, const std::vector<Value>& inputs);
+    StatusCode addFolder(const NodeId& parent);
+
+    /// \return the publishing interval the server granted [ms], 0 if it refused
+    double subscribe(double publishing_interval_ms);
+    /// Selects fields of BaseEventType and its subtypes by path.
+    StatusCode watchEvents(const NodeId& notifier, const std::vector<BrowsePath>& fields,
+                           std::vector<ReceivedEvent>& into);
+    StatusCode watchValue(const NodeId& variable, double sampling_ms, std::vector<DataValue>& into);
+    /// Handles what comes until `done` or the deadline. \return done
+    bool runUntil(const std::function<bool()>& done,
+                  std::chrono::milliseconds deadline = kDeadline);
+
+private:
+    UA_Client* client_;
+    UA_UInt32 subscription_ = 0;
+};
+
+/// Options of a server for tests: a free port, two namespaces (2 and 3), and a silent log.
+ServerOptions testOptions();
+/// Made of testOptions(); fails the test's program if it cannot be.
+std::unique_ptr<Server> makeServer(const ServerOptions& options = testOptions());
+
+}  // namespace metier::opcua::testing

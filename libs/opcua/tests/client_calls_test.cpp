@@ -1,0 +1,79 @@
+#include "client_calls.hpp"
+
+#include <gtest/gtest.h>
+#include <open62541/types_generated.h>
+
+#include <vector>
+
+namespace metier::opcua {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr SteadyTime kStart{1h};
+
+class ClientCallsTest : public ::testing::Test {
+protected:
+    ClientCalls::Call& addCall(SteadyTime deadline) {
+        return calls.add(deadline, [this](StatusCode status, void* /*response*/) {
+            outcomes.push_back(status);
+        });
+    }
+    void answer(ClientCalls::Call& call, UA_StatusCode result) {
+        UA_ReadResponse response{};
+        response.responseHeader.serviceResult = result;
+        ClientCalls::onResponse(nullptr, &call, 1, &response);
+    }
+
+    ClientCalls calls;
+    std::vector<StatusCode> outcomes;
+};
+
+TEST_F(ClientCallsTest, HandsTheServiceResultOverOnce) {
+    answer(addCall(kStart + 1s), UA_STATUSCODE_BADNOTHINGTODO);
+    calls.expire(kStart + 2s);
+    EXPECT_EQ(outcomes, std::vector{StatusCode(UA_STATUSCODE_BADNOTHINGTODO)});
+    EXPECT_EQ(calls.size(), 0U);
+}
+
+TEST_F(ClientCallsTest, EndsACallAtItsDeadlineAndNotBefore) {
+    addCall(kStart + 1s);
+    calls.expire(kStart + 999ms);
+    EXPECT_TRUE(outcomes.empty());
+    EXPECT_EQ(calls.nextDeadline(), kStart + 1s);
+    calls.expire(kStart + 1s);
+    EXPECT_EQ(outcomes, std::vector{status::kBadTimeout});
+    EXPECT_FALSE(calls.nextDeadline());
+}
+
+TEST_F(ClientCallsTest, CountsACallUntilTheStackReturnsItAndTellsNoLateAnswer) {
+    auto& call = addCall(kStart + 1s);
+    calls.expire(kStart + 1s);
+    EXPECT_EQ(calls.size(), 1U);
+    answer(call, UA_STATUSCODE_GOOD);
+    EXPECT_EQ(calls.size(), 0U);
+    EXPECT_EQ(outcomes.size(), 1U);
+}
+
+TEST_F(ClientCallsTest, EndsAllCallsWithOneStatus) {
+    addCall(kStart + 1s);
+    addCall(kStart + 2s);
+    calls.failAll(status::kBadConnectionClosed);
+    EXPECT_EQ(outcomes, std::vector(2, status::kBadConnectionClosed));
+}
+
+TEST_F(ClientCallsTest, ForgetsWhatTheStackDidNotTake) {
+    calls.refuse(addCall(kStart + 1s), status::kBadNotConnected);
+    calls.drop(addCall(kStart + 1s));
+    EXPECT_EQ(calls.size(), 0U);
+    EXPECT_EQ(outcomes, std::vector{status::kBadNotConnected});
+}
+
+TEST_F(ClientCallsTest, MayBeAddedToWhileACallEnds) {
+    calls.add(kStart, [this](StatusCode /*status*/, void* /*response*/) { addCall(kStart + 1s); });
+    calls.expire(kStart);
+    EXPECT_EQ(calls.nextDeadline(), kStart + 1s);
+}
+
+}  // namespace
+}  // namespace metier::opcua

@@ -1,0 +1,209 @@
+#include "metier/opcua/value.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <open62541/types_generated.h>
+
+#include <chrono>
+#include <limits>
+#include <type_traits>
+
+#include "convert.hpp"
+
+namespace metier::opcua {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+template <typename T>
+class ValueOfEachType : public ::testing::Test {};
+
+template <typename T>
+T sample() {
+    return T(1);
+}
+template <>
+std::string sample() {
+    return "text";
+}
+template <>
+UtcTime sample() {
+    return UtcTime(1'700'000'000'123'456'700ns);
+}
+template <>
+Guid sample() {
+    return {1, 2, 3, {4, 5, 6, 7, 8, 9, 10, 11}};
+}
+template <>
+ByteString sample() {
+    return {{0, 255, 3}};
+}
+template <>
+NodeId sample() {
+    return {2, "Skills"};
+}
+template <>
+StatusCode sample() {
+    return status::kBadLocked;
+}
+template <>
+QualifiedName sample() {
+    return {3, "Start"};
+}
+template <>
+LocalizedText sample() {
+    return {"en", "Ready"};
+}
+template <>
+Range sample() {
+    return {-1.5, 2.5};
+}
+template <>
+EuInformation sample() {
+    return {
+        "http://www.opcfoundation.org/UA/units/un/cefact", 5067858, {"en", "m"}, {"en", "metre"}};
+}
+template <>
+ThreeDFrame sample() {
+    return {1, 2, 3, 4, 5, 6};
+}
+template <>
+ThreeDVector sample() {
+    return {1, 2, 3};
+}
+template <>
+Argument sample() {
+    return {"LeaseMs", NodeId(0, 7U), 1, {3}, {"", "Lease [ms]"}};
+}
+template <>
+KeyValue sample() {
+    return {{0, "MaxVelocity"}, Value::of(std::vector<double>{1.0, 2.0})};
+}
+
+using Types =
+    ::testing::Types<bool, std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
+                     std::uint32_t, std::int64_t, std::uint64_t, float, double, std::string,
+                     UtcTime, Guid, ByteString, NodeId, StatusCode, QualifiedName, LocalizedText,
+                     Range, EuInformation, ThreeDFrame, ThreeDVector, Argument, KeyValue>;
+TYPED_TEST_SUITE(ValueOfEachType, Types);
+
+TYPED_TEST(ValueOfEachType, KeepsAScalar) {
+    const auto value = Value::of(sample<TypeParam>());
+    EXPECT_FALSE(value.isArray());
+    const auto back = value.template as<TypeParam>();
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(*back, sample<TypeParam>());
+}
+
+TYPED_TEST(ValueOfEachType, KeepsAnArray) {
+    const std::vector<TypeParam> samples(3, sample<TypeParam>());
+    const auto value = Value::of(samples);
+    EXPECT_TRUE(value.isArray());
+    EXPECT_EQ(value.size(), 3U);
+    const auto back = value.template as<std::vector<TypeParam>>();
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(*back, samples);
+}
+
+TYPED_TEST(ValueOfEachType, KeepsAnEmptyArray) {
+    const auto value = Value::of(std::vector<TypeParam>{});
+    EXPECT_TRUE(value.isArray());
+    EXPECT_EQ(value.template as<std::vector<TypeParam>>()->size(), 0U);
+}
+
+TYPED_TEST(ValueOfEachType, CopiesAreEqualAndIndependent) {
+    auto value = Value::of(sample<TypeParam>());
+    const Value copy = value;
+    EXPECT_EQ(copy, value);
+    value = Value();
+    EXPECT_EQ(*copy.template as<TypeParam>(), sample<TypeParam>());
+    EXPECT_NE(copy, value);
+}
+
+TYPED_TEST(ValueOfEachType, IsPrintable) {
+    const std::string json = Value::of(sample<TypeParam>()).toJson();
+    EXPECT_FALSE(json.empty());
+    EXPECT_THAT(json, ::testing::Not(HasSubstr("unprintable")));
+}
+
+TEST(Value, IsNullAtFirst) {
+    const Value value;
+    EXPECT_TRUE(value.isEmpty());
+    EXPECT_EQ(value.size(), 0U);
+    EXPECT_EQ(value.typeName(), "Null");
+    EXPECT_EQ(value.toJson(), "null");
+    EXPECT_TRUE(value.dataType().isNull());
+    EXPECT_FALSE(value.as<double>());
+}
+
+TEST(Value, NamesBothTypesWhenTheyDiffer) {
+    const auto wrong = Value::of(std::vector<float>(6, 0.0F)).as<double>();
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().code, Errc::type_mismatch);
+    EXPECT_EQ(wrong.error().message, "Float[6] where Double is expected");
+    EXPECT_EQ(Value::of(true).as<std::vector<double>>().error().message,
+              "Boolean where Double[] is expected");
+}
+
+TEST(Value, DoesNotConvertNumbers) {
+    EXPECT_FALSE(Value::of(std::int32_t{5}).as<double>());
+    EXPECT_FALSE(Value::of(std::int32_t{5}).as<std::uint32_t>());
+}
+
+TEST(Value, PrintsForPeopleAndAsJson) {
+    EXPECT_EQ(Value::of("it's \"ok\"\n").toString(), "it's \"ok\"\xEF\xBF\xBD");
+    EXPECT_EQ(Value::of("it's \"ok\"\n").toJson(), "\"it's \\\"ok\\\"\xEF\xBF\xBD\"");
+    EXPECT_EQ(Value::of(std::vector<std::int32_t>{1, 2}).toString(), "[1,2]");
+    EXPECT_EQ(Value::of(Range{0.5, 1.5}).toJson(), R"({"Low":0.5,"High":1.5})");
+}
+
+TEST(Value, PrintsTextThatIsNotUtf8WellFormed) {
+    EXPECT_EQ(Value::of("a\xFF").toJson(), "\"a\xEF\xBF\xBD\"");
+    const std::string json = Value::of(LocalizedText{"", "a\xFF"}).toJson();
+    EXPECT_EQ(json.find('\xFF'), std::string::npos);
+    EXPECT_TRUE(json.starts_with('"'));
+}
+
+TEST(Value, PrintsNumbersThatAreNotFinite) {
+    EXPECT_FALSE(Value::of(std::numeric_limits<double>::quiet_NaN()).toJson().empty());
+    EXPECT_EQ(Value::of(std::numeric_limits<double>::quiet_NaN()),
+              Value::of(std::numeric_limits<double>::quiet_NaN()));
+}
+
+TEST(Value, ReadsAnEnumerationAsInt32) {
+    UA_ServerState state = UA_SERVERSTATE_SUSPENDED;
+    UA_Variant variant;
+    UA_Variant_setScalar(&variant, &state, &UA_TYPES[UA_TYPES_SERVERSTATE]);
+    EXPECT_EQ(*ValueAccess::copyOf(variant).as<std::int32_t>(), 3);
+}
+
+TEST(Value, TakesStructuresOutOfExtensionObjects) {
+    UA_Range range{1.0, 2.0};
+    UA_ExtensionObject object;
+    UA_ExtensionObject_setValueNoDelete(&object, &range, &UA_TYPES[UA_TYPES_RANGE]);
+    UA_Variant variant;
+    UA_Variant_setArray(&variant, &object, 1, &UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);
+    const Value value = ValueAccess::copyOf(variant);
+    EXPECT_EQ(value.as<std::vector<Range>>()->at(0), (Range{1.0, 2.0}));
+    EXPECT_FALSE(value.as<std::vector<ThreeDFrame>>());
+}
+
+TEST(Value, KeepsStructuresItDoesNotKnow) {
+    UA_ServerStatusDataType status{};
+    UA_Variant variant;
+    UA_Variant_setScalar(&variant, &status, &UA_TYPES[UA_TYPES_SERVERSTATUSDATATYPE]);
+    const Value value = ValueAccess::copyOf(variant);
+    EXPECT_EQ(value.typeName(), "ServerStatusDataType");
+    EXPECT_THAT(value.toJson(), HasSubstr("StartTime"));
+    EXPECT_EQ(value, Value(value));
+}
+
+TEST(Value, KeepsTheEndsOfTime) {
+    EXPECT_EQ(*Value::of(UtcTime::max()).as<UtcTime>(), UtcTime::max());
+    EXPECT_EQ(*Value::of(UtcTime::min()).as<UtcTime>(), UtcTime::min());
+    EXPECT_EQ(*Value::of(UtcTime{}).as<UtcTime>(), UtcTime{});
+}
+
+}  // namespace
+}  // namespace metier::opcua
