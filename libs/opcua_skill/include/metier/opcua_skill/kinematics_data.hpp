@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "metier/opcua/types.hpp"
+
+namespace metier::opcua_skill {
+
+/// What the Kinematics object of a motion device publishes and does not change while the server
+/// runs: enough for a client to compute poses, reach and limits of an arm it has never heard of.
+/// Lists hold one element per axis, axis 1 first.
+struct KinematicsData {
+    opcua::ThreeDFrame base_from_first_joint;      ///< at joint position 0 [m, rad]
+    opcua::ThreeDFrame last_joint_from_flange;     ///< [m, rad]
+    std::vector<opcua::ThreeDFrame> joint_frames;  ///< joint in the frame of the joint before, at
+                                                   ///< joint position 0; the first is the identity
+    std::vector<opcua::ThreeDVector> joint_axes;   ///< unit vectors in the joint's frame
+    std::vector<double> min_joint_position;        ///< [rad]
+    std::vector<double> max_joint_position;        ///< [rad]
+    std::vector<double> max_joint_velocity;        ///< [rad/s]
+    std::vector<double> max_joint_acceleration;    ///< [rad/s²]
+    std::vector<double> max_joint_jerk;            ///< [rad/s³]
+    std::vector<double> max_cartesian_velocity;    ///< [m/s], [rad/s]
+    std::vector<double> max_cartesian_acceleration;  ///< [m/s²], [rad/s²]
+    std::vector<double> max_cartesian_jerk;          ///< [m/s³], [rad/s³]
+    double cycle_time = 0;                           ///< of the controller [s]
+    std::vector<std::string> tool_frames;            ///< names that ToolFrame may hold
+
+    std::size_t axisCount() const noexcept { return joint_axes.size(); }
+};
+
+/// What the Kinematics object tells about the arm right now.
+struct KinematicsState {
+    std::vector<double> joint_position;  ///< measured [rad]
+    opcua::ThreeDFrame pose;             ///< measured, base from flange [m, rad]
+    std::int32_t safety_state = 0;       ///< SafetyStateKind of the Metier NodeSet
+    std::uint64_t missed_cycles = 0;     ///< since the server started
+};
+
+}  // namespace metier::opcua_skill

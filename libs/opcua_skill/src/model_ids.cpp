@@ -1,0 +1,128 @@
+#include "model_ids.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+namespace metier::opcua_skill {
+
+namespace {
+
+struct SubStateRow {
+    skill::SubState sub_state;
+    std::uint32_t number;
+    skill::State state;
+};
+
+constexpr std::array kSubStates{
+    SubStateRow{skill::SubState::ready_not_configured, 121, skill::State::ready},
+    SubStateRow{skill::SubState::ready_configured, 122, skill::State::ready},
+    SubStateRow{skill::SubState::executing, 131, skill::State::running},
+    SubStateRow{skill::SubState::stopping, 132, skill::State::running},
+    SubStateRow{skill::SubState::halted_by_client, 111, skill::State::halted},
+    SubStateRow{skill::SubState::halted_error, 112, skill::State::halted},
+    SubStateRow{skill::SubState::halted_force, 113, skill::State::halted},
+    SubStateRow{skill::SubState::halted_owner_lost, 114, skill::State::halted},
+    SubStateRow{skill::SubState::halted_device_lost, 115, skill::State::halted},
+    SubStateRow{skill::SubState::halted_limit, 116, skill::State::halted},
+};
+
+const SubStateRow* rowOf(skill::SubState sub_state) {
+    const auto* row =
+        std::find_if(kSubStates.begin(), kSubStates.end(),
+                     [&](const SubStateRow& entry) { return entry.sub_state == sub_state; });
+    return row == kSubStates.end() ? nullptr : row;
+}
+
+std::string_view machineOf(skill::State state) {
+    switch (state) {
+        case skill::State::ready:
+            return "ReadySubStateMachineType";
+        case skill::State::running:
+            return "RunningSubStateMachineType";
+        default:
+            return "HaltedSubStateMachineType";
+    }
+}
+
+/// The type of that name below one of the three base types that our own derive from.
+Result<opcua::NodeId> findSubtype(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
+                                  const opcua::QualifiedName& name) {
+    auto subtypes = nodes.browse(base, {opcua::ids::kHasSubtype});
+    if (!subtypes) {
+        return fail(std::move(subtypes.error()));
+    }
+    for (const auto& subtype : *subtypes) {
+        if (subtype.browse_name == name) {
+            return subtype.target;
+        }
+    }
+    return fail(Errc::not_found, "the server has no type " + name.name);
+}
+
+const opcua::NodeId kFiniteStateMachineType{0, 2771U};
+
+}  // namespace
+
+opcua::NodeId stateId(skill::State state) {
+    switch (state) {
+        case skill::State::ready:
+            return {0, 2400U};
+        case skill::State::running:
+            return {0, 2402U};
+        case skill::State::suspended:
+            return {0, 2404U};
+        case skill::State::halted:
+            break;
+    }
+    return {0, 2406U};
+}
+
+opcua::NodeId transitionId(skill::TransitionNumber number) {
+    constexpr std::uint32_t kHaltedToReady = 2408;  // the others follow in the order of numbers
+    return {0, kHaltedToReady + 2 * (static_cast<std::uint32_t>(number) - 1)};
+}
+
+std::uint32_t numberOf(skill::SubState sub_state) {
+    const auto* row = rowOf(sub_state);
+    return row == nullptr ? 0 : row->number;
+}
+
+skill::State stateOf(skill::SubState sub_state) {
+    const auto* row = rowOf(sub_state);
+    return row == nullptr ? skill::State::suspended : row->state;
+}
+
+Result<ModelIds> ModelIds::of(const opcua::AddressSpace& nodes) {
+    ModelIds ids;
+    const auto device = nodes.namespaceIndex(kDeviceUri);
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!device || !metier) {
+        return fail(Errc::not_found, "skills need the NodeSets device and metier");
+    }
+    ids.device = *device;
+    ids.metier = *metier;
+    ids.skill_type = opcua::NodeId(*device, kSkillTypeId);
+    auto event_type = findSubtype(nodes, opcua::ids::kProgramTransitionEventType,
+                                  {*device, "SkillTransitionEventType"});
+    if (!event_type) {
+        return fail(std::move(event_type.error()));
+    }
+    ids.transition_event_type = *event_type;
+    for (const auto& row : kSubStates) {
+        auto machine = findSubtype(nodes, kFiniteStateMachineType,
+                                   {*metier, std::string(machineOf(row.state))});
+        if (!machine) {
+            return fail(std::move(machine.error()));
+        }
+        auto state = nodes.find(*machine, {*metier, std::string(skill::toString(row.sub_state))});
+        if (!state) {
+            return fail(std::move(state.error()));
+        }
+        ids.sub_states.emplace(row.sub_state, *state);
+    }
+    return ids;
+}
+
+}  // namespace metier::opcua_skill

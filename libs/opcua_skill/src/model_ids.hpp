@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "metier/base/error.hpp"
+#include "metier/opcua/address_space.hpp"
+#include "metier/skill/state.hpp"
+
+namespace metier::opcua_skill {
+
+inline constexpr std::string_view kDeviceUri = "https://fortiss.org/UA/Device/";
+inline constexpr std::string_view kRoboticsUri = "https://fortiss.org/UA/Robotics/";
+inline constexpr std::string_view kMetierUri = "urn:metier:skills";
+inline constexpr std::string_view kDiUri = "http://opcfoundation.org/UA/DI/";
+inline constexpr std::string_view kOpcRoboticsUri = "http://opcfoundation.org/UA/Robotics/";
+
+/// SkillType in the Device namespace (published 2020).
+inline constexpr std::uint32_t kSkillTypeId = 15034;
+
+/// The state's node in ProgramStateMachineType.
+opcua::NodeId stateId(skill::State state);
+/// The transition's node in ProgramStateMachineType.
+opcua::NodeId transitionId(skill::TransitionNumber number);
+
+/// What a server's own namespaces make of the model.
+struct ModelIds {
+    std::uint16_t device = 0;
+    std::uint16_t metier = 0;
+    opcua::NodeId skill_type;
+    opcua::NodeId transition_event_type;
+    std::map<skill::SubState, opcua::NodeId> sub_states;
+
+    /// Errors: not_found, naming what the server's NodeSets lack.
+    static Result<ModelIds> of(const opcua::AddressSpace& nodes);
+};
+
+/// The number that the model gives to a sub-state; 0 for none.
+std::uint32_t numberOf(skill::SubState sub_state);
+/// The state that a sub-state belongs to; nothing but `none` belongs to Suspended.
+skill::State stateOf(skill::SubState sub_state);
+
+}  // namespace metier::opcua_skill

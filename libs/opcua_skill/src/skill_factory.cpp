@@ -1,0 +1,336 @@
+#include "skill_factory.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "metier/opcua_skill/values.hpp"
+#include "wiring.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+using opcua::NodeClass;
+using opcua::NodeId;
+
+constexpr std::string_view kDiagnosticParts = "ProgramDiagnostic/";
+constexpr std::uint32_t kHashBegin = 2166136261;  // FNV-1a
+constexpr std::uint32_t kHashPrime = 16777619;
+constexpr std::uint32_t kFirstCompactId = 0x8000'0000;  // below: ids that people give
+
+/// Two descriptions with the same key have the same nodes.
+std::string keyOf(const skill::SkillDescription& description) {
+    std::string key = description.type;
+    for (const auto* fields : {&description.parameters, &description.results}) {
+        for (const auto& field : *fields) {
+            key +=
+                fmt::format("\n{} {} {}", field.name, skill::toString(field.type), field.unit.code);
+            if (field.range) {
+                key += fmt::format(" {} {}", field.range->low, field.range->high);
+            }
+        }
+    }
+    return key;
+}
+
+std::string textOf(const NodeId& id) {
+    if (const auto* text = std::get_if<std::string>(&id.identifier())) {
+        return *text;
+    }
+    if (const auto* number = std::get_if<std::uint32_t>(&id.identifier())) {
+        return std::to_string(*number);
+    }
+    return id.toString();
+}
+
+bool isUnit(Role role) {
+    return role == Role::parameter_unit || role == Role::result_unit;
+}
+bool isRange(Role role) {
+    return role == Role::parameter_range || role == Role::result_range;
+}
+
+const skill::Field& fieldOf(const skill::SkillDescription& description, Purpose purpose) {
+    const bool is_result = purpose.role == Role::result_unit || purpose.role == Role::result_range;
+    return (is_result ? description.results : description.parameters)[purpose.field];
+}
+
+/// Which nodes of a layout an instance has: the mandatory ones, those with a purpose, and what
+/// these hang below.
+std::vector<bool> neededNodes(const SkillLayout& layout, const std::vector<UsedNode>& used) {
+    std::vector<bool> needed(layout.size());
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        const auto parent = layout[i].parent;
+        needed[i] = layout[i].rule == LayoutNode::Rule::mandatory &&
+                    (parent == LayoutNode::kSkill || needed[parent]);
+    }
+    for (const auto& node : used) {
+        for (auto i = node.index; i != LayoutNode::kSkill && !needed[i]; i = layout[i].parent) {
+            needed[i] = true;
+        }
+    }
+    // A mandatory child of a node that is needed only for another one.
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        const auto parent = layout[i].parent;
+        if (layout[i].rule == LayoutNode::Rule::mandatory && parent != LayoutNode::kSkill) {
+            needed[i] = needed[i] || needed[parent];
+        }
+    }
+    return needed;
+}
+
+/// A compact instance tells its diagnostic as one value only.
+void dropDiagnosticParts(SkillLayout& layout) {
+    for (auto& node : layout) {
+        if (node.path.substr(0, kDiagnosticParts.size()) == kDiagnosticParts) {
+            node.path.clear();
+            node.rule = LayoutNode::Rule::optional;
+        }
+    }
+}
+
+/// The type's own nodes, in the place of an instance's.
+SkillInstance declarationsOf(const SkillLayout& layout, const std::vector<UsedNode>& used) {
+    SkillInstance declarations;
+    for (const auto& node : used) {
+        declarations.nodes.push_back({layout[node.index].reference.target, node.purpose});
+    }
+    return declarations;
+}
+
+}  // namespace
+
+Result<SkillInstance> SkillFactory::make(const NodeId& skills,
+                                         const skill::SkillDescription& description,
+                                         NodeStyle style) {
+    auto plan = planFor(description, style);
+    if (!plan) {
+        return fail(std::move(plan.error()));
+    }
+    const std::string prefix = textOf(skills) + "/" + description.name;
+    SkillInstance instance{style == NodeStyle::readable
+                               ? NodeId(skills.namespaceIndex(), prefix)
+                               : compactId(skills.namespaceIndex(), prefix),
+                           {}};
+    if (auto added = addObject(skills, instance.id, description, (*plan)->type); !added) {
+        return fail(std::move(added.error()));
+    }
+    std::vector<NodeId> made;
+    made.reserve((*plan)->steps.size());
+    for (const auto& step : (*plan)->steps) {
+        const NodeId& parent = step.parent == LayoutNode::kSkill ? instance.id : made[step.parent];
+        auto node = addNode(step, parent, prefix, style);
+        if (!node) {
+            return fail(std::move(node.error()));
+        }
+        made.push_back(*node);
+        if (step.purpose && !step.shared) {
+            instance.nodes.push_back({std::move(*node), *step.purpose});
+        }
+    }
+    return instance;
+}
+
+Result<const SkillFactory::Plan*> SkillFactory::planFor(const skill::SkillDescription& description,
+                                                        NodeStyle style) {
+    auto key = keyOf(description) + (style == NodeStyle::compact ? "\ncompact" : "");
+    auto found = plans_.find(key);
+    if (found == plans_.end()) {
+        auto plan = makePlan(description, style);
+        if (!plan) {
+            return fail(std::move(plan.error()));
+        }
+        found = plans_.emplace(std::move(key), std::move(*plan)).first;
+    }
+    return &found->second;
+}
+
+Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription& description,
+                                                  NodeStyle style) {
+    auto type = findType(ids_.skill_type, description.type);
+    if (!type) {
+        return fail(std::move(type.error()));
+    }
+    auto layout = layoutOfType(nodes_, *type);
+    if (!layout) {
+        return fail(std::move(layout.error()));
+    }
+    if (style == NodeStyle::compact) {
+        dropDiagnosticParts(*layout);
+    }
+    auto used = assignPurposes(*layout, description);
+    if (!used) {
+        return fail(std::move(used.error()));
+    }
+    if (auto checked = checkTypes(nodes_, declarationsOf(*layout, *used), description); !checked) {
+        return fail(std::move(checked.error()));
+    }
+    const auto needed = neededNodes(*layout, *used);
+    std::vector<std::size_t> step_of(layout->size());
+    std::vector<bool> has_children(layout->size());
+    for (std::size_t i = 0; i < layout->size(); ++i) {
+        if (needed[i] && (*layout)[i].parent != LayoutNode::kSkill) {
+            has_children[(*layout)[i].parent] = true;
+        }
+    }
+    Plan plan{*type, {}};
+    auto next_used = used->begin();
+    for (std::size_t i = 0; i < layout->size(); ++i) {
+        auto& node = (*layout)[i];
+        Step step;
+        if (next_used != used->end() && next_used->index == i) {
+            step.purpose = next_used++->purpose;
+        }
+        if (!needed[i]) {
+            continue;
+        }
+        step.parent = node.parent == LayoutNode::kSkill ? node.parent : step_of[node.parent];
+        step.path = std::move(node.path);
+        step.declaration = std::move(node.reference);
+        if (auto described = describe(step); !described) {
+            return fail(std::move(described.error()));
+        }
+        step.shared = !has_children[i] && serves(step, description);
+        step_of[i] = plan.steps.size();
+        plan.steps.push_back(std::move(step));
+    }
+    return plan;
+}
+
+Result<void> SkillFactory::describe(Step& step) const {
+    auto description = nodes_.descriptionOf(step.declaration.target);
+    if (!description) {
+        return fail(std::move(description.error()));
+    }
+    step.description = std::move(*description);
+    if (step.declaration.node_class != NodeClass::variable) {
+        return {};
+    }
+    auto shape = nodes_.shapeOf(step.declaration.target);
+    auto value = nodes_.read(step.declaration.target);
+    if (!shape || !value) {
+        return fail(shape ? value.error() : shape.error());
+    }
+    step.shape = std::move(*shape);
+    step.value = std::move(value->value);
+    return {};
+}
+
+bool SkillFactory::serves(const Step& step, const skill::SkillDescription& description) {
+    if (step.declaration.node_class != NodeClass::variable) {
+        return false;
+    }
+    if (!step.purpose) {
+        return true;
+    }
+    if (isUnit(step.purpose->role)) {
+        const auto declared = step.value.as<opcua::EuInformation>();
+        const auto wanted = toOpcua(fieldOf(description, *step.purpose).unit);
+        return declared && declared->unit_id == wanted.unit_id;
+    }
+    if (isRange(step.purpose->role)) {
+        const auto declared = step.value.as<opcua::Range>();
+        const auto& wanted = *fieldOf(description, *step.purpose).range;
+        return declared && declared->low == wanted.low && declared->high == wanted.high;
+    }
+    return false;
+}
+
+Result<NodeId> SkillFactory::findType(const NodeId& base, std::string_view name) const {
+    auto subtypes = nodes_.browse(base, {opcua::ids::kHasSubtype});
+    if (!subtypes) {
+        return fail(std::move(subtypes.error()));
+    }
+    for (const auto& subtype : *subtypes) {
+        if (subtype.browse_name.name == name || subtype.browse_name.name + "Type" == name) {
+            return subtype.target;
+        }
+        if (auto found = findType(subtype.target, name)) {
+            return found;
+        }
+    }
+    return fail(Errc::not_found, "no skill type " + std::string(name));
+}
+
+Result<void> SkillFactory::addObject(const NodeId& skills, const NodeId& id,
+                                     const skill::SkillDescription& description,
+                                     const NodeId& type) {
+    opcua::ObjectSpec spec;
+    spec.node.id = id;
+    spec.node.parent = skills;
+    spec.node.browse_name = {id.namespaceIndex(), description.name};
+    spec.node.description = {"en", description.description};
+    spec.type = type;
+    spec.event_notifier = opcua::EventNotifier::subscribable;
+    spec.children = opcua::Children::none;
+    if (auto added = nodes_.addObject(spec); !added) {
+        return fail(std::move(added.error()));
+    }
+    auto owners =
+        nodes_.browse(skills, {opcua::ids::kHasComponent, opcua::BrowseFilter::Direction::inverse});
+    if (!owners || owners->empty()) {
+        return {};
+    }
+    return nodes_.addReference(owners->front().target, opcua::ids::kHasNotifier, id);
+}
+
+Result<NodeId> SkillFactory::addNode(const Step& step, const NodeId& parent,
+                                     const std::string& prefix, NodeStyle style) {
+    if (step.shared) {
+        return nodes_.addReference(parent, step.declaration.type, step.declaration.target).map([&] {
+            return step.declaration.target;
+        });
+    }
+    opcua::NodeSpec node;
+    const std::string path = prefix + "/" + step.path;
+    node.parent = parent;
+    node.reference = step.declaration.type;
+    node.browse_name = step.declaration.browse_name;
+    if (style == NodeStyle::readable) {
+        node.id = NodeId(parent.namespaceIndex(), path);
+        node.description = step.description;
+    } else {
+        node.id = compactId(parent.namespaceIndex(), path);
+    }
+    switch (step.declaration.node_class) {
+        case NodeClass::method:
+            return nodes_.addMethod({std::move(node), {}, {}, {}});
+        case NodeClass::object: {
+            opcua::ObjectSpec spec;
+            spec.node = std::move(node);
+            spec.type = step.declaration.type_definition;
+            spec.children = opcua::Children::none;
+            return nodes_.addObject(spec);
+        }
+        default:
+            break;
+    }
+    opcua::VariableSpec spec;
+    spec.node = std::move(node);
+    spec.type = step.declaration.type_definition;
+    spec.data_type = step.shape.data_type;
+    spec.value_rank = step.shape.value_rank;
+    spec.array_dimensions = step.shape.array_dimensions;
+    spec.access = step.purpose && step.purpose->role == Role::parameter ? opcua::Access::read_write
+                                                                        : opcua::Access::read;
+    spec.children = opcua::Children::none;
+    if (!step.purpose) {
+        spec.value = step.value;
+    }
+    return nodes_.addVariable(spec);
+}
+
+NodeId SkillFactory::compactId(std::uint16_t index, std::string_view path) const {
+    std::uint32_t hash = kHashBegin;
+    for (const char letter : path) {
+        hash = (hash ^ static_cast<unsigned char>(letter)) * kHashPrime;
+    }
+    NodeId id(index, hash | kFirstCompactId);
+    while (nodes_.exists(id)) {
+        id = NodeId(index, ++hash | kFirstCompactId);
+    }
+    return id;
+}
+
+}  // namespace metier::opcua_skill

@@ -1,0 +1,279 @@
+#include "skill_node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "diagnostic.hpp"
+#include "metier/opcua_skill/values.hpp"
+#include "value_part.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+using opcua::DataValue;
+using opcua::LocalizedText;
+using opcua::NodeId;
+using opcua::Session;
+using opcua::Value;
+
+template <typename Name>
+LocalizedText textOf(Name name) {
+    return {"en", std::string(skill::toString(name))};
+}
+
+const skill::Field& fieldOf(const skill::Program& program, Purpose purpose) {
+    const auto& description = program.description();
+    const bool is_result = purpose.role == Role::result || purpose.role == Role::result_unit ||
+                           purpose.role == Role::result_range;
+    return (is_result ? description.results : description.parameters)[purpose.field];
+}
+
+Value unitOf(const skill::Field& field) {
+    return Value::of(toOpcua(field.unit));
+}
+
+Value rangeOf(const skill::Field& field) {
+    return Value::of(opcua::Range{field.range->low, field.range->high});
+}
+
+/// A Purpose fits into the tag of its Variable.
+std::uint32_t tagOf(Purpose purpose) {
+    return static_cast<std::uint32_t>(purpose.role) << 24U |
+           static_cast<std::uint32_t>(purpose.detail) << 16U | purpose.field;
+}
+
+Purpose purposeOf(std::uint32_t tag) {
+    return {static_cast<Role>(tag >> 24U), static_cast<std::uint8_t>((tag >> 16U) & 0xFFU),
+            static_cast<std::uint16_t>(tag)};
+}
+
+Part partIn(Purpose purpose) {
+    return static_cast<Part>(purpose.detail);
+}
+
+}  // namespace
+
+void Refusals::refused(const Session& session, const SkillNode& skill, std::string text) {
+    last_.insert_or_assign(session.id, Entry{&skill, std::move(text)});
+}
+
+void Refusals::accepted(const Session& session, const SkillNode& skill) {
+    const auto found = last_.find(session.id);
+    if (found != last_.end() && found->second.skill == &skill) {
+        last_.erase(found);
+    }
+}
+
+const std::string* Refusals::find(const Session& session, const SkillNode& skill) const {
+    const auto found = last_.find(session.id);
+    return found == last_.end() || found->second.skill != &skill ? nullptr : &found->second.text;
+}
+
+skill::Caller callerOf(const Session& session) {
+    return {session.id.toString(), session.application_name, session.user};
+}
+
+SkillNode::SkillNode(NodeId id, std::unique_ptr<skill::Program> program, SkillContext& context)
+    : id_(std::move(id)), context_(context), program_(std::move(program)) {
+    program_->attach(*this);
+}
+
+SkillNode::~SkillNode() {
+    program_->detach(*this);
+}
+
+Result<void> SkillNode::bind(opcua::AddressSpace& nodes, const std::vector<BoundNode>& bound) {
+    slots_.reserve(bound.size());
+    for (const auto& [node, purpose] : bound) {
+        if (auto done = bindNode(nodes, node, purpose); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node, Purpose purpose) {
+    switch (purpose.role) {
+        case Role::method:
+            return bindMethod(nodes, node, static_cast<skill::Method>(purpose.detail));
+        case Role::parameter_unit:
+        case Role::result_unit:
+            return nodes.write(node, unitOf(fieldOf(*program_, purpose)));
+        case Role::parameter_range:
+        case Role::result_range:
+            return nodes.write(node, rangeOf(fieldOf(*program_, purpose)));
+        default:
+            slots_.push_back({this, tagOf(purpose)});
+            return nodes.setHandler(node, slots_.back());
+    }
+}
+
+Result<void> SkillNode::bindMethod(opcua::AddressSpace& nodes, const NodeId& node,
+                                   skill::Method method) {
+    auto set = nodes.setMethod(node, [this, method](const opcua::CallContext& context, auto) {
+        return call(context.session, method).map([] { return std::vector<Value>(); });
+    });
+    if (!set) {
+        return set;
+    }
+    return nodes.setExecutable(node, [this, method](const Session& session) {
+        return program_->executable(method, callerOf(session));
+    });
+}
+
+void SkillNode::sessionClosed(const Session& session) {
+    program_->sessionClosed(session.id.toString());
+}
+
+DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
+    const auto purpose = purposeOf(tag);
+    switch (purpose.role) {
+        case Role::state:
+        case Role::state_id:
+        case Role::state_number:
+            return {readState(purpose), {}, program_->diagnostic().last_transition_time, {}};
+        case Role::transition:
+        case Role::transition_id:
+        case Role::transition_number:
+        case Role::transition_time:
+            return {readTransition(purpose), {}, program_->diagnostic().last_transition_time, {}};
+        case Role::sub_state:
+        case Role::sub_state_id:
+        case Role::sub_state_number:
+            return readSubState(purpose);
+        case Role::parameter:
+            return {readParameter(purpose), {}, {}, {}};
+        case Role::result:
+            return {readResult(purpose), {}, {}, {}};
+        case Role::diagnostic:
+            return {
+                readDiagnostic(program_->diagnostic(), static_cast<DiagnosticItem>(purpose.detail)),
+                {},
+                {},
+                {}};
+        case Role::reason_text: {
+            const auto* refusal = context_.refusals.find(session, *this);
+            return {Value::of(refusal == nullptr ? program_->reasonText() : *refusal), {}, {}, {}};
+        }
+        default:
+            return {{}, opcua::status::kBadInternalError, {}, {}};
+    }
+}
+
+Value SkillNode::readState(Purpose purpose) const {
+    const auto state = program_->state();
+    switch (purpose.role) {
+        case Role::state_id:
+            return Value::of(stateId(state));
+        case Role::state_number:
+            return Value::of(static_cast<std::uint32_t>(state));
+        default:
+            return Value::of(textOf(state));
+    }
+}
+
+Value SkillNode::readTransition(Purpose purpose) const {
+    const auto& last = program_->lastTransition();
+    switch (purpose.role) {
+        case Role::transition_id:
+            return Value::of(last ? transitionId(last->number) : NodeId());
+        case Role::transition_number:
+            return Value::of(last ? static_cast<std::uint32_t>(last->number) : 0U);
+        case Role::transition_time:
+            return Value::of(last ? last->time : UtcTime::min());
+        default:
+            return Value::of(last ? textOf(last->number) : LocalizedText());
+    }
+}
+
+DataValue SkillNode::readSubState(Purpose purpose) const {
+    const auto sub_state = program_->subState();
+    const bool active = static_cast<std::uint8_t>(program_->state()) == purpose.detail &&
+                        sub_state != skill::SubState::none;
+    // A Bad status comes with a value all the same: 1.4.18 gives an empty one a status of its own.
+    const auto status = active ? opcua::StatusCode() : opcua::status::kBadStateNotActive;
+    switch (purpose.role) {
+        case Role::sub_state_id:
+            return {Value::of(active ? context_.ids.sub_states.at(sub_state) : NodeId()),
+                    status,
+                    {},
+                    {}};
+        case Role::sub_state_number:
+            return {Value::of(active ? numberOf(sub_state) : 0U), status, {}, {}};
+        default:
+            return {Value::of(active ? textOf(sub_state) : opcua::LocalizedText()), status, {}, {}};
+    }
+}
+
+Value SkillNode::readParameter(Purpose purpose) const {
+    const auto value = program_->read(fieldOf(*program_, purpose).name);
+    return value ? partOf(*value, partIn(purpose)) : Value();
+}
+
+Value SkillNode::readResult(Purpose purpose) const {
+    const auto& result = program_->finalResult();
+    const auto found = result.find(fieldOf(*program_, purpose).name);
+    return found == result.end() ? Value() : partOf(found->second, partIn(purpose));
+}
+
+Result<void> SkillNode::write(const opcua::WriteContext& writer, std::uint32_t tag,
+                              const Value& value) {
+    const auto& session = writer.session;
+    const auto purpose = purposeOf(tag);
+    if (purpose.role != Role::parameter) {
+        return fail(Errc::access_denied, "only parameters can be written");
+    }
+    const auto& field = fieldOf(*program_, purpose);
+    auto old = program_->read(field.name);
+    auto taken = withPart(field, old.value_or(skill::Value()), partIn(purpose), value);
+    if (!taken) {
+        return remember(session, fail(taken.error()));
+    }
+    return remember(session, program_->write(callerOf(session), field.name, std::move(*taken),
+                                             writer.source_time));
+}
+
+Result<void> SkillNode::call(const Session& session, skill::Method method) {
+    const auto caller = callerOf(session);
+    switch (method) {
+        case skill::Method::start:
+            return remember(session, program_->start(caller));
+        case skill::Method::suspend:
+            return remember(session, program_->suspend(caller));
+        case skill::Method::resume:
+            return remember(session, program_->resume(caller));
+        case skill::Method::halt:
+            return remember(session, program_->halt(caller));
+        case skill::Method::reset:
+            return remember(session, program_->reset(caller));
+    }
+    return fail(Errc::internal, "unknown method");
+}
+
+Result<void> SkillNode::remember(const Session& session, Result<void> outcome) {
+    if (outcome) {
+        context_.refusals.accepted(session, *this);
+    } else {
+        context_.refusals.refused(session, *this, outcome.error().message);
+    }
+    return outcome;
+}
+
+void SkillNode::onTransition(const skill::TransitionEvent& event) {
+    opcua::Event occurrence;
+    occurrence.source = id_;
+    occurrence.source_name = program_->description().name;
+    occurrence.time = event.time;
+    occurrence.severity = event.severity;
+    occurrence.message = {"en", event.message};
+    occurrence.fields = transitionValues(event);
+    const auto emitted = context_.emitter.emit(occurrence);
+    if (!emitted) {
+        context_.log->error("no event of {}: {}", id_.toString(), emitted.error().message);
+    }
+}
+
+}  // namespace metier::opcua_skill

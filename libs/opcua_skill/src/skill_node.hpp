@@ -1,0 +1,105 @@
+#pragma once
+
+#include <spdlog/logger.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metier/opcua/event_emitter.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/skill/program.hpp"
+#include "model_ids.hpp"
+#include "purpose.hpp"
+#include "skill_factory.hpp"
+
+namespace metier::opcua_skill {
+
+class SkillNode;
+
+/// Why the last command or value of each session was refused; kept for as long as the session.
+///
+/// Threading: the server's thread.
+class Refusals {
+public:
+    void refused(const opcua::Session& session, const SkillNode& skill, std::string text);
+    void accepted(const opcua::Session& session, const SkillNode& skill);
+    void sessionClosed(const opcua::Session& session) { last_.erase(session.id); }
+    /// Null if the last command of the session to that skill was not refused.
+    const std::string* find(const opcua::Session& session, const SkillNode& skill) const;
+
+private:
+    struct Entry {
+        const SkillNode* skill = nullptr;
+        std::string text;
+    };
+    std::map<opcua::NodeId, Entry> last_;
+};
+
+/// What all skills of one server share.
+struct SkillContext {
+    ModelIds ids;
+    opcua::EventEmitter emitter;
+    Refusals refusals;
+    std::shared_ptr<spdlog::logger> log;  // with its other users, as spdlog does
+};
+
+/// Serves one Program at the nodes of one skill: values are read from the Program when a client
+/// asks, so that no client ever sees them half changed; each transition raises one event.
+///
+/// Threading: the server's thread.
+class SkillNode final : public opcua::VariableHandler, private skill::ProgramObserver {
+public:
+    /// \param id   of the skill object
+    /// \param context must outlive the node
+    SkillNode(opcua::NodeId id, std::unique_ptr<skill::Program> program, SkillContext& context);
+    ~SkillNode() override;
+    SkillNode(const SkillNode&) = delete;
+    SkillNode& operator=(const SkillNode&) = delete;
+
+    /// Makes the nodes of the skill read from and write to the Program. Once.
+    Result<void> bind(opcua::AddressSpace& nodes, const std::vector<BoundNode>& bound);
+
+    const opcua::NodeId& id() const noexcept { return id_; }
+    skill::Program& program() noexcept { return *program_; }
+    void sessionClosed(const opcua::Session& session);
+
+    opcua::DataValue read(const opcua::Session& session, std::uint32_t tag) const override;
+    Result<void> write(const opcua::WriteContext& writer, std::uint32_t tag,
+                       const opcua::Value& value) override;
+
+private:
+    void onTransition(const skill::TransitionEvent& event) override;
+    void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
+    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
+    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
+    void onResult(const skill::ValueMap& /*result*/) override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
+
+    Result<void> call(const opcua::Session& session, skill::Method method);
+    Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose);
+    Result<void> bindMethod(opcua::AddressSpace& nodes, const opcua::NodeId& node,
+                            skill::Method method);
+    opcua::Value readState(Purpose purpose) const;
+    opcua::Value readTransition(Purpose purpose) const;
+    opcua::DataValue readSubState(Purpose purpose) const;
+    opcua::Value readParameter(Purpose purpose) const;
+    opcua::Value readResult(Purpose purpose) const;
+    Result<void> remember(const opcua::Session& session, Result<void> outcome);
+
+    opcua::NodeId id_;
+    SkillContext& context_;
+    std::unique_ptr<skill::Program> program_;
+    std::vector<opcua::VariableSlot> slots_;  ///< of all Variables; never moves
+};
+
+/// Who calls, as Programs know it.
+skill::Caller callerOf(const opcua::Session& session);
+
+/// The fields of the transition event, in the order of transitionFields().
+std::vector<opcua::Value> transitionValues(const skill::TransitionEvent& event);
+std::vector<opcua::BrowsePath> transitionFields(const ModelIds& ids);
+
+}  // namespace metier::opcua_skill

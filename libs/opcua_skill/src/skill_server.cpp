@@ -1,0 +1,148 @@
+#include "metier/opcua_skill/skill_server.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <set>
+#include <utility>
+
+#include "metier/opcua_skill/server_executor.hpp"
+#include "skill_factory.hpp"
+#include "skill_node.hpp"
+#include "wiring.hpp"
+
+namespace metier::opcua_skill {
+
+class SkillServer::State {
+public:
+    State(opcua::Server& server, const Clock& clock, SkillContext context)
+        : server_(server),
+          clock_(clock),
+          executor_(std::make_shared<ServerExecutor>(server)),
+          context_(std::move(context)),
+          factory_(server.nodes(), context_.ids) {
+        server.onSessionClosed([this](const opcua::Session& session) { sessionClosed(session); });
+    }
+
+    ~State() {
+        server_.stop();
+        executor_->close();
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    std::shared_ptr<skill::Executor> executor() const { return executor_; }
+
+    Result<skill::Program*> bind(const opcua::NodeId& skill_object,
+                                 std::unique_ptr<skill::Skill> skill,
+                                 skill::ProgramOptions options) {
+        if (bound_.contains(skill_object)) {
+            return fail(Errc::already_exists, skill_object.toString() + " has a skill already");
+        }
+        auto& nodes = server_.nodes();
+        auto instance = wireExisting(nodes, skill_object, skill->description());
+        if (!instance) {
+            return fail(std::move(instance.error()));
+        }
+        auto subscribable =
+            nodes.setEventNotifier(skill_object, opcua::EventNotifier::subscribable);
+        if (!subscribable) {
+            return fail(std::move(subscribable.error()));
+        }
+        return serve(*instance, std::move(skill), std::move(options));
+    }
+
+    Result<skill::Program*> publish(const opcua::NodeId& skills,
+                                    std::unique_ptr<skill::Skill> skill,
+                                    skill::ProgramOptions options, NodeStyle style) {
+        auto instance = factory_.make(skills, skill->description(), style);
+        if (!instance) {
+            return fail(std::move(instance.error()));
+        }
+        return serve(*instance, std::move(skill), std::move(options));
+    }
+
+    std::vector<skill::Program*> programs() const {
+        std::vector<skill::Program*> programs;
+        for (const auto& skill : skills_) {
+            programs.push_back(&skill->program());
+        }
+        return programs;
+    }
+
+private:
+    Result<skill::Program*> serve(const SkillInstance& instance,
+                                  std::unique_ptr<skill::Skill> skill,
+                                  skill::ProgramOptions options) {
+        auto program = std::make_unique<skill::Program>(std::move(options), std::move(skill),
+                                                        executor_, clock_);
+        // Kept even if a node refuses, since others lead to it by then.
+        skills_.push_back(std::make_unique<SkillNode>(instance.id, std::move(program), context_));
+        auto& node = *skills_.back();
+        bound_.insert(instance.id);
+        if (auto bound = node.bind(server_.nodes(), instance.nodes); !bound) {
+            return fail(std::move(bound.error()));
+        }
+        return &node.program();
+    }
+
+    void sessionClosed(const opcua::Session& session) {
+        context_.refusals.sessionClosed(session);
+        for (const auto& skill : skills_) {
+            skill->sessionClosed(session);
+        }
+    }
+
+    opcua::Server& server_;
+    const Clock& clock_;
+    // Shared with the Executions, which may outlive the Programs.
+    std::shared_ptr<ServerExecutor> executor_;
+    SkillContext context_;
+    SkillFactory factory_;
+    std::vector<std::unique_ptr<SkillNode>> skills_;
+    std::set<opcua::NodeId> bound_;
+};
+
+Result<std::unique_ptr<SkillServer>> SkillServer::create(opcua::Server& server, const Clock& clock,
+                                                         std::shared_ptr<spdlog::logger> logger) {
+    auto ids = ModelIds::of(server.nodes());
+    if (!ids) {
+        return fail(std::move(ids.error()));
+    }
+    auto emitter =
+        opcua::EventEmitter::create(server, ids->transition_event_type, transitionFields(*ids));
+    if (!emitter) {
+        return fail(std::move(emitter.error()));
+    }
+    SkillContext context{std::move(*ids),
+                         std::move(*emitter),
+                         {},
+                         logger ? std::move(logger) : spdlog::default_logger()};
+    return std::unique_ptr<SkillServer>(
+        new SkillServer(std::make_unique<State>(server, clock, std::move(context))));
+}
+
+SkillServer::SkillServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+SkillServer::~SkillServer() = default;
+
+std::shared_ptr<skill::Executor> SkillServer::executor() const {
+    return state_->executor();
+}
+
+Result<skill::Program*> SkillServer::bind(const opcua::NodeId& skill_object,
+                                          std::unique_ptr<skill::Skill> skill,
+                                          skill::ProgramOptions options) {
+    return state_->bind(skill_object, std::move(skill), std::move(options));
+}
+
+Result<skill::Program*> SkillServer::publish(const opcua::NodeId& skills,
+                                             std::unique_ptr<skill::Skill> skill,
+                                             skill::ProgramOptions options, NodeStyle style) {
+    return state_->publish(skills, std::move(skill), std::move(options), style);
+}
+
+std::vector<skill::Program*> SkillServer::programs() const {
+    return state_->programs();
+}
+
+}  // namespace metier::opcua_skill

@@ -1,0 +1,200 @@
+#include "metier/opcua_skill/values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+namespace metier::opcua_skill {
+
+namespace {
+
+constexpr std::string_view kUnitNamespace = "http://www.opcfoundation.org/UA/units/un/cefact";
+constexpr std::int32_t kScalar = -1;
+constexpr std::int32_t kArray = 1;
+
+// The form in which each type travels.
+bool wire(bool value) {
+    return value;
+}
+std::int32_t wire(std::int32_t value) {
+    return value;
+}
+std::uint32_t wire(std::uint32_t value) {
+    return value;
+}
+std::uint64_t wire(std::uint64_t value) {
+    return value;
+}
+double wire(double value) {
+    return value;
+}
+const std::string& wire(const std::string& value) {
+    return value;
+}
+opcua::ThreeDFrame wire(const skill::Frame& frame) {
+    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
+}
+opcua::ThreeDVector wire(const skill::Vector3& vector) {
+    return {vector.x, vector.y, vector.z};
+}
+opcua::Range wire(const skill::Range& range) {
+    return {range.low, range.high};
+}
+
+template <typename T>
+auto wire(const std::vector<T>& values) {
+    std::vector<std::decay_t<decltype(wire(values.front()))>> result;
+    result.reserve(values.size());
+    std::transform(values.begin(), values.end(), std::back_inserter(result),
+                   [](const auto& value) { return wire(value); });
+    return result;
+}
+
+template <typename T>
+T unwire(T value) {
+    return value;
+}
+skill::Frame unwire(const opcua::ThreeDFrame& frame) {
+    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
+}
+skill::Vector3 unwire(const opcua::ThreeDVector& vector) {
+    return {vector.x, vector.y, vector.z};
+}
+skill::Range unwire(const opcua::Range& range) {
+    return {range.low, range.high};
+}
+
+template <typename T>
+auto unwire(const std::vector<T>& values) {
+    std::vector<decltype(unwire(values.front()))> result;
+    result.reserve(values.size());
+    std::transform(values.begin(), values.end(), std::back_inserter(result),
+                   [](const auto& value) { return unwire(value); });
+    return result;
+}
+
+template <typename Wire>
+Result<skill::Value> take(const opcua::Value& value) {
+    auto taken = value.as<Wire>();
+    if (!taken) {
+        return fail(std::move(taken.error()));
+    }
+    return skill::Value(unwire(*taken));
+}
+
+/// One row per type of value: where to look it up by its data type.
+struct TypeRow {
+    skill::ValueType type;
+    std::uint32_t data_type;  ///< numeric id in namespace 0
+    std::int32_t rank;
+};
+
+constexpr std::array kTypes{
+    TypeRow{skill::ValueType::boolean, 1, kScalar},
+    TypeRow{skill::ValueType::int32, 6, kScalar},
+    TypeRow{skill::ValueType::uint32, 7, kScalar},
+    TypeRow{skill::ValueType::uint64, 9, kScalar},
+    TypeRow{skill::ValueType::number, 11, kScalar},
+    TypeRow{skill::ValueType::text, 12, kScalar},
+    TypeRow{skill::ValueType::frame, 18814, kScalar},
+    TypeRow{skill::ValueType::vector3, 18808, kScalar},
+    TypeRow{skill::ValueType::numbers, 11, kArray},
+    TypeRow{skill::ValueType::texts, 12, kArray},
+    TypeRow{skill::ValueType::ranges, 884, kArray},
+    TypeRow{skill::ValueType::frames, 18814, kArray},
+};
+
+std::int32_t unitId(std::string_view code) {
+    std::int32_t id = 0;
+    for (const char letter : code) {
+        id = id * 256 + static_cast<unsigned char>(letter);
+    }
+    return id;
+}
+
+}  // namespace
+
+opcua::Value toOpcua(const skill::Value& value) {
+    return std::visit(
+        [](const auto& held) {
+            using Held = std::decay_t<decltype(held)>;
+            if constexpr (std::is_same_v<Held, std::monostate>) {
+                return opcua::Value();
+            } else {
+                return opcua::Value::of(wire(held));
+            }
+        },
+        value);
+}
+
+Result<skill::Value> fromOpcua(const opcua::Value& value, skill::ValueType type) {
+    if (value.isEmpty()) {
+        return skill::Value();
+    }
+    switch (type) {
+        case skill::ValueType::boolean:
+            return take<bool>(value);
+        case skill::ValueType::int32:
+            return take<std::int32_t>(value);
+        case skill::ValueType::uint32:
+            return take<std::uint32_t>(value);
+        case skill::ValueType::uint64:
+            return take<std::uint64_t>(value);
+        case skill::ValueType::number:
+            return take<double>(value);
+        case skill::ValueType::text:
+            return take<std::string>(value);
+        case skill::ValueType::frame:
+            return take<opcua::ThreeDFrame>(value);
+        case skill::ValueType::vector3:
+            return take<opcua::ThreeDVector>(value);
+        case skill::ValueType::numbers:
+            return take<std::vector<double>>(value);
+        case skill::ValueType::texts:
+            return take<std::vector<std::string>>(value);
+        case skill::ValueType::ranges:
+            return take<std::vector<opcua::Range>>(value);
+        case skill::ValueType::frames:
+            return take<std::vector<opcua::ThreeDFrame>>(value);
+        case skill::ValueType::null:
+            break;
+    }
+    return fail(Errc::type_mismatch, fmt::format("{}: no skill takes it", value.typeName()));
+}
+
+skill::ValueType valueTypeOf(const opcua::Value& value) {
+    return valueTypeOf(VariableShape{value.dataType(), value.isArray() ? kArray : kScalar});
+}
+
+VariableShape shapeOf(skill::ValueType type) {
+    const auto* row = std::find_if(kTypes.begin(), kTypes.end(),
+                                   [&](const TypeRow& entry) { return entry.type == type; });
+    if (row == kTypes.end()) {
+        return {opcua::NodeId(0, 24), kScalar};
+    }
+    return {opcua::NodeId(0, row->data_type), row->rank};
+}
+
+skill::ValueType valueTypeOf(const VariableShape& shape) {
+    const auto* row = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeRow& entry) {
+        return shape == VariableShape{opcua::NodeId(0, entry.data_type), entry.rank};
+    });
+    return row == kTypes.end() ? skill::ValueType::null : row->type;
+}
+
+opcua::EuInformation toOpcua(const skill::Unit& unit) {
+    return {std::string(kUnitNamespace),
+            unitId(unit.code),
+            {"en", std::string(unit.symbol)},
+            {"en", std::string(unit.name)}};
+}
+
+std::string symbolOf(const opcua::EuInformation& unit) {
+    return unit.display_name.text;
+}
+
+}  // namespace metier::opcua_skill

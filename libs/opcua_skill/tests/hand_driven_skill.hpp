@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "metier/skill/skill.hpp"
+
+namespace metier::opcua_skill::testing {
+
+/// A test's hold on the body of a skill: sees what is asked of it, and answers by hand.
+///
+/// Threading: any; shared by the test and the skill on the server's thread.
+class Hand {
+public:
+    /// The execution that runs, once it was started.
+    skill::Execution execution() const;
+    /// What the skill was last started with.
+    skill::ValueMap snapshot() const;
+    /// Whether the body is asked to `what` ("start", "suspend", ...) within 5 s; each is told once.
+    bool await(const std::string& what);
+    /// From now on Start, or Reset, is refused with this.
+    void refuseStart(Error error);
+    void refuseReset(Error error);
+    void allowReset();
+
+    void told(const std::string& what);
+    void started(skill::Execution execution);
+    Result<void> prepared(const skill::ValueMap& snapshot);
+    Result<void> mayReset() const;
+
+private:
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<std::string> told_;
+    skill::Execution execution_;
+    skill::ValueMap snapshot_;
+    Result<void> start_answer_;
+    Result<void> reset_answer_;
+};
+
+/// A skill that does nothing by itself.
+class HandDrivenSkill final : public skill::Skill {
+public:
+    HandDrivenSkill(skill::SkillDescription description, std::shared_ptr<Hand> hand)
+        : description_(std::move(description)), hand_(std::move(hand)) {}
+
+    const skill::SkillDescription& description() const override { return description_; }
+    Result<std::unique_ptr<skill::Body>> prepare(const skill::ValueMap& snapshot) override;
+    Result<void> reset() override { return hand_->mayReset(); }
+
+private:
+    skill::SkillDescription description_;
+    std::shared_ptr<Hand> hand_;  // with the test
+};
+
+/// JointPtpMoveSkill of an arm with two axes.
+skill::SkillDescription jointMoveDescription();
+/// CartesianLinearMoveSkill, with a frame, axis bounds and an option.
+skill::SkillDescription linearMoveDescription();
+/// PositionStreamSkill with its live input.
+skill::SkillDescription streamDescription();
+
+}  // namespace metier::opcua_skill::testing

@@ -1,0 +1,206 @@
+#include <gmock/gmock.h>
+
+#include "metier/skill/lambda_skill.hpp"
+#include "served_skills.hpp"
+
+namespace metier::opcua_skill::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+KinematicsData twoAxes() {
+    KinematicsData data;
+    data.base_from_first_joint = {0, 0, 0.5, 0, 0, 0};
+    data.last_joint_from_flange = {0.25, 0, 0, 0, 0, 0};
+    data.joint_frames = {{}, {0.75, 0, 0, 0, 0, 0}};
+    data.joint_axes = {{0, 0, 1}, {0, 1, 0}};
+    data.min_joint_position = {-3, -2};
+    data.max_joint_position = {3, 2};
+    data.max_joint_velocity = {2, 2};
+    data.max_joint_acceleration = {10, 10};
+    data.max_joint_jerk = {100, 100};
+    data.max_cartesian_velocity = {1, 2};
+    data.max_cartesian_acceleration = {3, 4};
+    data.max_cartesian_jerk = {5, 6};
+    data.cycle_time = 0.008;
+    data.tool_frames = {"", "gripper"};
+    return data;
+}
+
+class Publishing : public ServedSkills {
+protected:
+    Result<skill::Program*> publish(skill::SkillDescription description) {
+        return skills().publish(
+            system().skills,
+            std::make_unique<skill::LambdaSkill>(std::move(description), skill::SkillFunctions{}));
+    }
+};
+
+TEST_F(Publishing, ReportsEveryFieldThatTheTypeLacks) {
+    auto description = jointMoveDescription();
+    description.parameters[0].name = "TargetJoint";
+    description.parameters[4].name = "Turbo";
+    const auto refused = publish(description);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::not_found);
+    EXPECT_THAT(refused.error().message,
+                AllOf(HasSubstr("ParameterSet/TargetJoint"), HasSubstr("Options/Turbo")));
+}
+
+TEST_F(Publishing, ReportsEveryFieldOfAnotherType) {
+    auto description = jointMoveDescription();
+    description.parameters[0].type = skill::ValueType::text;
+    description.parameters[4].type = skill::ValueType::int32;
+    const auto refused = publish(description);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::type_mismatch);
+    EXPECT_THAT(refused.error().message,
+                AllOf(HasSubstr("TargetJointPosition"), HasSubstr("SpeedOverride")));
+}
+
+TEST_F(Publishing, RefusesATypeThatIsNotThere) {
+    auto description = jointMoveDescription();
+    description.type = "DanceSkillType";
+    const auto refused = publish(description);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("DanceSkillType"));
+}
+
+TEST_F(Publishing, RefusesASecondSkillOfTheSameName) {
+    ASSERT_TRUE(publish(jointMoveDescription()));
+    const auto second = publish(jointMoveDescription());
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::already_exists);
+}
+
+TEST_F(Publishing, ACompactSkillServesTheSame) {
+    auto hand = std::make_shared<Hand>();
+    ASSERT_TRUE(skills().publish(system().skills,
+                                 std::make_unique<HandDrivenSkill>(streamDescription(), hand), {},
+                                 NodeStyle::compact));
+    serve();
+    const auto client = connect();
+    const auto index = system().skills.namespaceIndex();
+    const auto skill = client->translate(system().skills, {{index, "PositionStreamSkill"}});
+    ASSERT_TRUE(skill) << skill.error().message;
+    TransitionWatch watch(*client, *skill);
+    ASSERT_TRUE(client->call(*skill, *client->translate(*skill, {{0, "Start"}})));
+    EXPECT_EQ(watch.nextName(), "ReadyToRunning");
+    const auto number = client->translate(*skill, {{0, "CurrentState"}, {0, "Number"}});
+    ASSERT_TRUE(number);
+    EXPECT_EQ(client->read(*number)->as<std::uint32_t>(), 13U);
+    const auto diagnostic = client->translate(*skill, {{0, "ProgramDiagnostic"}});
+    ASSERT_TRUE(diagnostic);
+    EXPECT_EQ(client->read(*diagnostic)->as<opcua::ProgramDiagnostic>()->last_method_call, "Start");
+}
+
+TEST_F(Publishing, AnExecutionMayOutliveItsServer) {
+    const auto skill = add(streamDescription());
+    serve();
+    const auto client = connect();
+    ASSERT_EQ(call(*client, skill, "Start"), "Good");
+    ASSERT_TRUE(skill.hand->await("start"));
+    shutDown();
+    skill.hand->execution().finish();
+    EXPECT_TRUE(skill.hand->await("forceStop"));
+}
+
+TEST_F(Publishing, TheSystemIsFoundByItsTypes) {
+    const auto found = findMotionDeviceSystem(server().nodes());
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(found->skills, system().skills);
+    EXPECT_EQ(found->kinematics, system().kinematics);
+}
+
+TEST_F(Publishing, KinematicsAreReadBack) {
+    ASSERT_TRUE(publishKinematics(server().nodes(), system(), twoAxes(), [] {
+        return KinematicsState{{0.5, -0.5}, {1, 2, 3, 0, 0, 0}, 1, 7};
+    }));
+    serve();
+    const auto client = connect();
+    const auto metier = client->namespaceIndex("urn:metier:skills");
+    ASSERT_TRUE(metier);
+    const auto value = [&](std::vector<opcua::QualifiedName> path) {
+        const auto node = client->translate(system().kinematics, std::move(path));
+        return node ? client->read(*node).value_or(opcua::Value()) : opcua::Value();
+    };
+    EXPECT_EQ(value({{*metier, "AxisCount"}}), opcua::Value::of(std::uint32_t{2}));
+    EXPECT_EQ(value({{*metier, "MaxJointPosition"}}), opcua::Value::of(std::vector{3.0, 2.0}));
+    EXPECT_EQ(value({{*metier, "ActualJointPosition"}}), opcua::Value::of(std::vector{0.5, -0.5}));
+    EXPECT_EQ(value({{*metier, "ActualPose"}, {0, "CartesianCoordinates"}, {0, "Y"}}),
+              opcua::Value::of(2.0));
+    EXPECT_EQ(value({{*metier, "SafetyState"}}).as<std::int32_t>(), 1);
+    EXPECT_EQ(value({{*metier, "ToolFrames"}}),
+              opcua::Value::of(std::vector<std::string>{"", "gripper"}));
+}
+
+TEST_F(Publishing, KinematicsOfDifferentLengthsAreRefused) {
+    auto data = twoAxes();
+    data.max_joint_velocity.push_back(1.0);
+    const auto refused = publishKinematics(server().nodes(), system(), data, nullptr);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+}
+
+/// The server of a robot whose nodes come from its NodeSet.
+class NodeSetInstance : public ::testing::Test {
+protected:
+    NodeSetInstance() {
+        opcua::ServerOptions options;
+        options.port = 0;
+        options.nodesets = {"device", "robotics", "metier", "universal_robots"};
+        options.logger = std::make_shared<spdlog::logger>("quiet");
+        server_ = std::move(opcua::Server::create(options).value());
+        skills_ = std::move(SkillServer::create(*server_, clock_, options.logger).value());
+        system_ = findMotionDeviceSystem(server_->nodes()).value();
+    }
+
+    opcua::NodeId skill(const char* name) {
+        const auto children = server_->nodes().browse(system_.skills);
+        for (const auto& child : children.value()) {
+            if (child.browse_name.name == name) {
+                return child.target;
+            }
+        }
+        return {};
+    }
+
+    SystemClock clock_;
+    std::unique_ptr<opcua::Server> server_;
+    std::unique_ptr<SkillServer> skills_;
+    MotionDeviceSystem system_;
+};
+
+TEST_F(NodeSetInstance, ServesASkillAtItsPublishedNodes) {
+    const auto id = skill("PositionStreamSkill");
+    auto hand = std::make_shared<Hand>();
+    const auto program =
+        skills_->bind(id, std::make_unique<HandDrivenSkill>(streamDescription(), hand));
+    ASSERT_TRUE(program) << program.error().message;
+    ASSERT_TRUE(server_->start());
+    const auto client = opcua::Client::connect(server_->endpointUrl());
+    ASSERT_TRUE(client);
+    TransitionWatch watch(**client, id);
+    const auto start = (*client)->translate(id, {{0, "Start"}});
+    ASSERT_TRUE(start);
+    ASSERT_TRUE((*client)->call(id, *start));
+    EXPECT_EQ(watch.nextName(), "ReadyToRunning");
+    hand->execution().finish();
+    EXPECT_EQ(watch.nextName(), "RunningToReady");
+}
+
+TEST_F(NodeSetInstance, BindsAnObjectOnce) {
+    const auto id = skill("PositionStreamSkill");
+    const auto bind = [&] {
+        return skills_->bind(
+            id, std::make_unique<skill::LambdaSkill>(streamDescription(), skill::SkillFunctions{}));
+    };
+    ASSERT_TRUE(bind());
+    const auto second = bind();
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::already_exists);
+}
+
+}  // namespace
+}  // namespace metier::opcua_skill::testing

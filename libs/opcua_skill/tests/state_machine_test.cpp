@@ -1,0 +1,227 @@
+#include <gmock/gmock.h>
+
+#include "served_skills.hpp"
+
+namespace metier::opcua_skill::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class StateMachine : public ServedSkills {
+protected:
+    StateMachine() : skill_(add(jointMoveDescription())) {
+        serve();
+        client_ = connect();
+        watch_ = std::make_unique<TransitionWatch>(*client_, skill_.id);
+    }
+
+    std::string call(std::string_view method) { return testing::call(*client_, skill_, method); }
+    std::string state() {
+        return readAs<opcua::LocalizedText>(*client_, skill_, "CurrentState").text;
+    }
+    void writeTarget() {
+        ASSERT_EQ(write(*client_, skill_, "ParameterSet/TargetJointPosition",
+                        opcua::Value::of(std::vector{0.5, 1.0})),
+                  "Good");
+    }
+    void start() {
+        writeTarget();
+        ASSERT_EQ(call("Start"), "Good");
+        ASSERT_EQ(watch_->nextName(), "ReadyToRunning");
+        ASSERT_TRUE(skill_.hand->await("start"));
+    }
+    void suspend() {
+        start();
+        ASSERT_EQ(call("Suspend"), "Good");
+        ASSERT_TRUE(skill_.hand->await("suspend"));
+        skill_.hand->execution().atRest();
+        ASSERT_EQ(watch_->nextName(), "RunningToSuspended");
+    }
+    void halt() {
+        ASSERT_EQ(call("Halt"), "Good");
+        ASSERT_EQ(watch_->nextName(), "ReadyToHalted");
+    }
+    /// What each method answers in the present state, which must not change by it.
+    std::string refusals(std::initializer_list<const char*> methods) {
+        std::string answers;
+        for (const char* method : methods) {
+            answers += std::string(method) + " " + call(method) + "; ";
+        }
+        return answers;
+    }
+
+    ServedSkill skill_;
+    std::unique_ptr<opcua::Client> client_;
+    std::unique_ptr<TransitionWatch> watch_;
+};
+
+TEST_F(StateMachine, BeginsReady) {
+    EXPECT_EQ(state(), "Ready");
+    EXPECT_EQ(readAs<std::uint32_t>(*client_, skill_, "CurrentState/Number"), 12U);
+    EXPECT_EQ(readAs<opcua::NodeId>(*client_, skill_, "CurrentState/Id"), opcua::NodeId(0, 2400U));
+}
+
+TEST_F(StateMachine, RefusesInReadyWhatReadyDoesNotAllow) {
+    EXPECT_EQ(refusals({"Suspend", "Resume", "Reset"}),
+              "Suspend BadInvalidState; Resume BadInvalidState; Reset BadInvalidState; ");
+    EXPECT_EQ(state(), "Ready");
+}
+
+TEST_F(StateMachine, RefusesInRunningWhatRunningDoesNotAllow) {
+    start();
+    EXPECT_EQ(refusals({"Start", "Resume", "Reset"}),
+              "Start BadInvalidState; Resume BadInvalidState; Reset BadInvalidState; ");
+    EXPECT_EQ(state(), "Running");
+}
+
+TEST_F(StateMachine, RefusesInSuspendedWhatSuspendedDoesNotAllow) {
+    suspend();
+    EXPECT_EQ(refusals({"Start", "Suspend"}), "Start BadInvalidState; Suspend BadInvalidState; ");
+    EXPECT_EQ(state(), "Suspended");
+}
+
+TEST_F(StateMachine, RefusesInHaltedWhatHaltedDoesNotAllow) {
+    halt();
+    EXPECT_EQ(refusals({"Start", "Suspend", "Resume", "Halt"}),
+              "Start BadInvalidState; Suspend BadInvalidState; Resume BadInvalidState; "
+              "Halt BadInvalidState; ");
+    EXPECT_EQ(state(), "Halted");
+}
+
+TEST_F(StateMachine, RunsToReadyWithTheResultBeforeTheEvent) {
+    start();
+    skill_.hand->execution().finish(
+        {{"Duration", 1.5}, {"ReachedJointPosition", std::vector{0.5, 1.0}}});
+    ASSERT_EQ(watch_->nextName(), "RunningToReady");
+    EXPECT_EQ(readAs<double>(*client_, skill_, "FinalResultData/Duration"), 1.5);
+    EXPECT_EQ(readAs<std::vector<double>>(*client_, skill_, "FinalResultData/ReachedJointPosition"),
+              (std::vector{0.5, 1.0}));
+    EXPECT_EQ(state(), "Ready");
+}
+
+TEST_F(StateMachine, HaltIsCommittedAtStandstill) {
+    start();
+    ASSERT_EQ(call("Halt"), "Good");
+    ASSERT_TRUE(skill_.hand->await("halt"));
+    EXPECT_EQ(state(), "Running");
+    EXPECT_EQ(readAs<opcua::LocalizedText>(*client_, skill_, "RunningSubStates/CurrentState").text,
+              "Stopping");
+    skill_.hand->execution().atRest();
+    EXPECT_EQ(watch_->nextName(), "RunningToHalted");
+    EXPECT_EQ(state(), "Halted");
+}
+
+TEST_F(StateMachine, ResumesAndHaltsFromSuspended) {
+    suspend();
+    ASSERT_EQ(call("Resume"), "Good");
+    EXPECT_EQ(watch_->nextName(), "SuspendedToRunning");
+    ASSERT_EQ(call("Suspend"), "Good");
+    ASSERT_TRUE(skill_.hand->await("suspend"));
+    skill_.hand->execution().atRest();
+    EXPECT_EQ(watch_->nextName(), "RunningToSuspended");
+    ASSERT_EQ(call("Halt"), "Good");
+    EXPECT_EQ(watch_->nextName(), "SuspendedToHalted");
+}
+
+TEST_F(StateMachine, ResetLeadsFromSuspendedAndHaltedToReady) {
+    suspend();
+    ASSERT_EQ(call("Reset"), "Good");
+    EXPECT_EQ(watch_->nextName(), "SuspendedToReady");
+    halt();
+    ASSERT_EQ(call("Reset"), "Good");
+    EXPECT_EQ(watch_->nextName(), "HaltedToReady");
+}
+
+TEST_F(StateMachine, StaysHaltedAndSaysWhyIfTheDeviceDoesNotAgreeToReset) {
+    halt();
+    skill_.hand->refuseReset({Errc::device_fault, "axis 2: brake still closed"});
+    EXPECT_EQ(call("Reset"), "BadDeviceFailure");
+    EXPECT_EQ(state(), "Halted");
+    EXPECT_THAT(read(*client_, skill_, "ReasonText"), HasSubstr("axis 2: brake still closed"));
+}
+
+TEST_F(StateMachine, TellsTheCallerWhyStartWasRefused) {
+    writeTarget();
+    skill_.hand->refuseStart({Errc::unreachable, "axis 1 would need 3.4 rad, limit 2.9 rad"});
+    const auto refused = call("Start");
+    EXPECT_EQ(refused, opcua::statusFrom(Errc::unreachable).name());
+    EXPECT_EQ(read(*client_, skill_, "ReasonText"), "axis 1 would need 3.4 rad, limit 2.9 rad");
+    const auto other = connect("bystander");
+    EXPECT_EQ(read(*other, skill_, "ReasonText"), "");
+    EXPECT_EQ(state(), "Ready");
+}
+
+TEST_F(StateMachine, InactiveSubStatesAnswerBadStateNotActive) {
+    EXPECT_EQ(readAs<opcua::LocalizedText>(*client_, skill_, "ReadySubStates/CurrentState").text,
+              "ReadyNotConfigured");
+    EXPECT_EQ(read(*client_, skill_, "RunningSubStates/CurrentState"), "BadStateNotActive");
+    EXPECT_EQ(read(*client_, skill_, "HaltedSubStates/CurrentState/Number"), "BadStateNotActive");
+    halt();
+    EXPECT_EQ(read(*client_, skill_, "ReadySubStates/CurrentState/Id"), "BadStateNotActive");
+    EXPECT_EQ(readAs<opcua::LocalizedText>(*client_, skill_, "HaltedSubStates/CurrentState").text,
+              "HaltedByClient");
+    EXPECT_EQ(readAs<std::uint32_t>(*client_, skill_, "HaltedSubStates/CurrentState/Number"), 111U);
+}
+
+TEST_F(StateMachine, AnErrorHaltsWithItsReason) {
+    start();
+    skill_.hand->execution().fail(skill::Reason::limit_violated,
+                                  "axis 1: 2.6 rad/s over 2.5 rad/s");
+    const auto seen = watch_->next();
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->transition, "RunningToHalted");
+    EXPECT_EQ(seen->reason, 7);
+    EXPECT_EQ(seen->reason_text, "axis 1: 2.6 rad/s over 2.5 rad/s");
+    EXPECT_EQ(readAs<opcua::LocalizedText>(*client_, skill_, "HaltedSubStates/CurrentState").text,
+              "HaltedLimit");
+}
+
+TEST_F(StateMachine, UserExecutableTellsBeforehand) {
+    const auto executable = [&](std::string_view method) {
+        return client_->readUserExecutable(skill_.node(method)).value_or(false);
+    };
+    writeTarget();
+    EXPECT_TRUE(executable("Start"));
+    EXPECT_TRUE(executable("Halt"));
+    EXPECT_FALSE(executable("Resume"));
+    EXPECT_FALSE(executable("Reset"));
+    const auto other = connect("other");
+    EXPECT_FALSE(other->readUserExecutable(skill_.node("Start")).value_or(true));
+    halt();
+    EXPECT_FALSE(executable("Start"));
+    EXPECT_TRUE(executable("Reset"));
+}
+
+TEST_F(StateMachine, LastTransitionIsKept) {
+    start();
+    EXPECT_EQ(readAs<opcua::LocalizedText>(*client_, skill_, "LastTransition").text,
+              "ReadyToRunning");
+    EXPECT_EQ(readAs<std::uint32_t>(*client_, skill_, "LastTransition/Number"), 2U);
+    EXPECT_EQ(readAs<opcua::NodeId>(*client_, skill_, "LastTransition/Id"),
+              opcua::NodeId(0, 2410U));
+    EXPECT_GT(readAs<UtcTime>(*client_, skill_, "LastTransition/TransitionTime"), UtcTime{});
+}
+
+TEST_F(StateMachine, TheDiagnosticTellsWhoCalledWhatWithWhichOutcome) {
+    start();
+    EXPECT_EQ(call("Reset"), "BadInvalidState");
+    EXPECT_EQ(read(*client_, skill_, "ProgramDiagnostic/LastMethodCall"), "Reset");
+    EXPECT_EQ(
+        readAs<opcua::StatusCode>(*client_, skill_, "ProgramDiagnostic/LastMethodReturnStatus"),
+        opcua::status::kBadInvalidState);
+    const auto whole = readAs<opcua::ProgramDiagnostic>(*client_, skill_, "ProgramDiagnostic");
+    EXPECT_FALSE(whole.last_method_session_id.isNull());
+    EXPECT_GT(whole.last_method_call_time, whole.invocation_creation_time);
+    EXPECT_EQ(whole.last_method_return_status, opcua::status::kBadInvalidState);
+}
+
+TEST_F(StateMachine, TheDiagnosticKeepsWhatStartWasCalledWith) {
+    start();
+    const auto whole = readAs<opcua::ProgramDiagnostic>(*client_, skill_, "ProgramDiagnostic");
+    ASSERT_EQ(whole.last_method_input_arguments.size(), 1U);
+    EXPECT_EQ(whole.last_method_input_arguments[0].name, "TargetJointPosition");
+    EXPECT_EQ(whole.last_method_input_values[0], opcua::Value::of(std::vector{0.5, 1.0}));
+}
+
+}  // namespace
+}  // namespace metier::opcua_skill::testing

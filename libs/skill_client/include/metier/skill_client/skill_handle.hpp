@@ -1,0 +1,110 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/opcua/client.hpp"
+#include "metier/skill/field.hpp"
+#include "metier/skill/field_list.hpp"
+#include "metier/skill/program_observer.hpp"
+#include "metier/skill/state.hpp"
+#include "metier/skill/value.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::skill_client {
+
+/// One skill of a server, as a client commands and watches it.
+///
+/// It hears of every transition by events, so nothing polls. Errors of every call: what the server
+/// said, with the server's own reason (value, limit, unit) where it gives one; connection_lost;
+/// timeout.
+///
+/// Threading: any thread but the client's own; calls of one handle one at a time. Must end before
+/// its Client.
+class SkillHandle {
+public:
+    /// Reads what the skill is like and subscribes to its transitions. `client` must outlive it.
+    static opcua::Answer<SkillHandle> open(opcua::Client& client, SkillAddress address);
+
+    SkillHandle(SkillHandle&&) noexcept;
+    SkillHandle& operator=(SkillHandle&&) noexcept;
+    ~SkillHandle();
+
+    const SkillAddress& address() const noexcept;
+    /// Parameters, of ParameterSet and of Options, with unit, range and present value as default.
+    const std::vector<skill::Field>& parameters() const noexcept;
+    const std::vector<skill::Field>& results() const noexcept;
+
+    /// Writes one parameter; Null asks for its default.
+    /// Errors: not_found (unknown name, with the known), and the server's refusal.
+    opcua::Answer<> set(std::string_view name, const skill::Value& value);
+    /// Writes a live parameter without waiting, with the time it is meant for; for position
+    /// streams. `done` runs on the client's thread.
+    opcua::Answer<> setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
+                             std::function<void(opcua::Answer<>)> done);
+
+    opcua::Answer<> start();
+    opcua::Answer<> suspend();
+    opcua::Answer<> resume();
+    opcua::Answer<> halt();
+    opcua::Answer<> reset();
+    opcua::Answer<> call(skill::Method method);
+    /// Whether this session may call the method now.
+    opcua::Answer<bool> executable(skill::Method method);
+
+    opcua::Answer<skill::State> state();
+    /// FinalResultData of the last execution that finished.
+    opcua::Answer<skill::ValueMap> result();
+    /// The server's reason for the last refusal to this session, or for the present state.
+    std::string reasonText();
+
+    /// Waits until the skill is in `state`.
+    /// Errors: timeout at the deadline; connection_lost.
+    opcua::Answer<> awaitState(skill::State state, SteadyTime deadline);
+    /// Waits for the end of an execution: the next transition to Ready or Halted.
+    /// \return that transition
+    opcua::Answer<skill::TransitionEvent> awaitEnd(SteadyTime deadline);
+
+    /// Sets the parameters, starts, and waits for the end of this execution.
+    /// At the deadline it halts the skill and reports timeout.
+    /// Errors: as above; device_fault, limit_violated, connection_lost or cancelled if it ended in
+    /// Halted, with the reason.
+    opcua::Answer<skill::ValueMap> run(const skill::ValueMap& parameters, SteadyTime deadline);
+    /// The same for parameters and results declared as plain structs.
+    template <typename Parameters, typename Results>
+    opcua::Answer<Results> run(const skill::FieldList<Parameters>& parameter_list,
+                               const Parameters& parameters,
+                               const skill::FieldList<Results>& result_list, SteadyTime deadline);
+
+    /// Called on the client's thread for each transition from now on; an empty function ends it.
+    void onTransition(std::function<void(const skill::TransitionEvent&)> callback);
+
+private:
+    struct Impl;
+    explicit SkillHandle(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+template <typename Parameters, typename Results>
+opcua::Answer<Results> SkillHandle::run(const skill::FieldList<Parameters>& parameter_list,
+                                        const Parameters& parameters,
+                                        const skill::FieldList<Results>& result_list,
+                                        SteadyTime deadline) {
+    auto values = run(parameter_list.write(parameters), deadline);
+    if (!values) {
+        return tl::unexpected(values.error());
+    }
+    auto results = result_list.read(*values);
+    if (!results) {
+        return tl::unexpected(opcua::Failure{results.error(), opcua::status::kBadTypeMismatch, {}});
+    }
+    return std::move(*results);
+}
+
+}  // namespace metier::skill_client

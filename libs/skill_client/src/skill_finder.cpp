@@ -1,0 +1,160 @@
+#include "metier/skill_client/skill_finder.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace metier::skill_client {
+namespace {
+
+using opcua::Answer;
+using opcua::BrowseQuery;
+using opcua::Client;
+using opcua::NodeClass;
+using opcua::NodeId;
+using opcua::ReferenceDescription;
+
+constexpr std::size_t kMaxDepth = 12;
+
+/// Walks the objects of a server, each once.
+class Walk {
+public:
+    explicit Walk(Client& client) : client_(client) {}
+
+    Answer<> below(const NodeId& node, std::vector<SkillAddress::Above>& above) {
+        if (above.size() > kMaxDepth) {
+            return {};
+        }
+        auto children = client_.browse({.node = node, .node_classes = {NodeClass::object}});
+        if (!children) {
+            return tl::unexpected(children.error());
+        }
+        for (const auto& child : *children) {
+            if (auto visited = visit(child, above); !visited) {
+                return visited;
+            }
+        }
+        return {};
+    }
+
+    std::vector<SkillAddress> found;
+
+private:
+    Answer<> visit(const ReferenceDescription& child, std::vector<SkillAddress::Above>& above) {
+        if (child.target == opcua::ids::kServer || !seen_.insert(child.target).second) {
+            return {};
+        }
+        const auto is_program = isProgram(child.type_definition);
+        if (!is_program) {
+            return tl::unexpected(is_program.error());
+        }
+        if (*is_program) {
+            return add(child, above);
+        }
+        above.push_back({child.browse_name.name, child.target});
+        auto walked = below(child.target, above);
+        above.pop_back();
+        return walked;
+    }
+
+    Answer<> add(const ReferenceDescription& skill, const std::vector<SkillAddress::Above>& above) {
+        const auto type_name = client_.read(skill.type_definition, opcua::AttributeId::browse_name);
+        if (!type_name) {
+            return tl::unexpected(type_name.error());
+        }
+        found.push_back(
+            {skill.browse_name.name, skill.display_name.text, skill.target, skill.type_definition,
+             type_name->as<opcua::QualifiedName>().value_or(opcua::QualifiedName{}).name, above});
+        return {};
+    }
+
+    Answer<bool> isProgram(const NodeId& type) {
+        if (type == opcua::ids::kProgramStateMachineType) {
+            return true;
+        }
+        if (type == NodeId{} || type == opcua::ids::kBaseObjectType) {
+            return false;
+        }
+        if (const auto known = is_program_.find(type); known != is_program_.end()) {
+            return known->second;
+        }
+        const auto parents = client_.browse({.node = type,
+                                             .reference_type = opcua::ids::kHasSubtype,
+                                             .direction = BrowseQuery::Direction::inverse,
+                                             .node_classes = {}});
+        if (!parents) {
+            return tl::unexpected(parents.error());
+        }
+        const auto result =
+            parents->empty() ? Answer<bool>(false) : isProgram(parents->front().target);
+        if (result) {
+            is_program_[type] = *result;
+        }
+        return result;
+    }
+
+    Client& client_;
+    std::set<NodeId> seen_;
+    std::map<NodeId, bool> is_program_;
+};
+
+bool matches(const SkillAddress& skill, std::string_view name) {
+    return skill.name == name || fmt::format("{}/{}", skill.controllerName(), skill.name) == name;
+}
+
+std::vector<std::string> namesOf(const std::vector<SkillAddress>& skills) {
+    std::vector<std::string> names;
+    for (const auto& skill : skills) {
+        names.push_back(skill.name);
+    }
+    return names;
+}
+
+tl::unexpected<opcua::Failure> refusal(Errc code, std::string text) {
+    return tl::unexpected(opcua::Failure{{code, std::move(text)}, opcua::status::kBadNoMatch, {}});
+}
+
+}  // namespace
+
+std::string SkillAddress::controllerName() const {
+    const auto skills = std::find_if(above.rbegin(), above.rend(),
+                                     [](const Above& object) { return object.name == "Skills"; });
+    return skills == above.rend() || std::next(skills) == above.rend() ? ""
+                                                                       : std::next(skills)->name;
+}
+
+Answer<std::vector<SkillAddress>> findSkills(Client& client) {
+    Walk walk(client);
+    std::vector<SkillAddress::Above> above;
+    if (auto walked = walk.below(opcua::ids::kObjectsFolder, above); !walked) {
+        return tl::unexpected(walked.error());
+    }
+    return std::move(walk.found);
+}
+
+Answer<SkillAddress> findSkill(Client& client, std::string_view name) {
+    auto skills = findSkills(client);
+    if (!skills) {
+        return tl::unexpected(skills.error());
+    }
+    std::vector<SkillAddress> matching;
+    std::copy_if(skills->begin(), skills->end(), std::back_inserter(matching),
+                 [&](const auto& skill) { return matches(skill, name); });
+    if (matching.empty()) {
+        return refusal(Errc::not_found, fmt::format("no skill '{}'; there are: {}", name,
+                                                    fmt::join(namesOf(*skills), ", ")));
+    }
+    if (matching.size() > 1) {
+        return refusal(Errc::invalid_argument,
+                       fmt::format("{} controllers have a skill '{}'; say Controller/{}",
+                                   matching.size(), name, name));
+    }
+    return std::move(matching.front());
+}
+
+}  // namespace metier::skill_client

@@ -1,0 +1,146 @@
+#include "transition_log.hpp"
+
+#include <utility>
+
+#include "metier/opcua_skill/values.hpp"
+
+namespace metier::skill_client {
+namespace {
+
+using skill::TransitionEvent;
+
+constexpr std::size_t kKept = 1000;
+
+/// The fields of transitionFilter(), in its order.
+enum Field : std::size_t {
+    kNumber,
+    kTime,
+    kMessage,
+    kSeverity,
+    kIntermediate,
+    kExecutionId,
+    kReason,
+    kReasonText,
+    kFieldCount,
+};
+
+template <typename T>
+T fieldOr(const std::vector<opcua::Value>& fields, Field field, T fallback) {
+    return fields[field].as<T>().value_or(std::move(fallback));
+}
+
+std::optional<TransitionEvent> eventFrom(const std::vector<opcua::Value>& fields) {
+    if (fields.size() != kFieldCount) {
+        return std::nullopt;
+    }
+    const auto number = fieldOr<std::uint32_t>(fields, kNumber, 0);
+    if (number < 1 || number > 9) {
+        return std::nullopt;
+    }
+    TransitionEvent event;
+    event.number = static_cast<skill::TransitionNumber>(number);
+    event.from = skill::fromState(event.number);
+    event.to = skill::toState(event.number);
+    event.time = fieldOr(fields, kTime, UtcTime{});
+    event.message = fieldOr(fields, kMessage, opcua::LocalizedText{}).text;
+    event.severity = fieldOr<std::uint16_t>(fields, kSeverity, 0);
+    event.execution_id = fieldOr(fields, kExecutionId, std::string{});
+    event.reason = static_cast<skill::Reason>(fieldOr<std::int32_t>(fields, kReason, 0));
+    event.reason_text = fieldOr(fields, kReasonText, std::string{});
+    const auto& intermediate = fields[kIntermediate];
+    event.intermediate_result =
+        opcua_skill::fromOpcua(intermediate, opcua_skill::valueTypeOf(intermediate))
+            .value_or(skill::Value{});
+    return event;
+}
+
+}  // namespace
+
+opcua::EventFilter transitionFilter(std::uint16_t device_namespace) {
+    return {.fields = {{{0, "Transition"}, {0, "Number"}},
+                       {{0, "Time"}},
+                       {{0, "Message"}},
+                       {{0, "Severity"}},
+                       {{0, "IntermediateResult"}},
+                       {{device_namespace, "ExecutionId"}},
+                       {{device_namespace, "Reason"}},
+                       {{device_namespace, "ReasonText"}}},
+            .of_type = opcua::ids::kProgramTransitionEventType};
+}
+
+void TransitionLog::append(TransitionEvent event) {
+    events_.push_back(std::move(event));
+    if (events_.size() > kKept) {
+        events_.pop_front();
+        ++first_number_;
+    }
+}
+
+void TransitionLog::add(const opcua::EventNotice& notice) {
+    const auto event =
+        notice.kind == opcua::EventNotice::Kind::event ? eventFrom(notice.fields) : std::nullopt;
+    Callback callback;
+    {
+        const std::lock_guard lock(mutex_);
+        if (event) {
+            append(*event);
+            callback = callback_;
+        } else if (notice.kind == opcua::EventNotice::Kind::ended) {
+            ended_ = notice.status;
+        } else {
+            overflow_at_ = first_number_ + events_.size() + 1;
+        }
+    }
+    changed_.notify_all();
+    if (callback) {
+        callback(*event);
+    }
+}
+
+void TransitionLog::onTransition(Callback callback) {
+    const std::lock_guard lock(mutex_);
+    callback_ = std::move(callback);
+}
+
+std::uint64_t TransitionLog::next() const {
+    const std::lock_guard lock(mutex_);
+    return first_number_ + events_.size();
+}
+
+std::optional<TransitionLog::Found> TransitionLog::findFrom(
+    std::uint64_t from, const std::function<bool(const TransitionEvent&)>& wanted) const {
+    for (auto number = std::max(from, first_number_); number < first_number_ + events_.size();
+         ++number) {
+        const auto& event = events_[number - first_number_];
+        if (wanted(event)) {
+            return Found{number, event};
+        }
+    }
+    return std::nullopt;
+}
+
+opcua::Answer<TransitionLog::Found> TransitionLog::await(
+    std::uint64_t from, SteadyTime deadline,
+    const std::function<bool(const TransitionEvent&)>& wanted) {
+    std::optional<Found> found;
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, deadline, [&] {
+        found = findFrom(from, wanted);
+        return found || ended_ || overflow_at_ > from;
+    });
+    if (found) {
+        return std::move(*found);
+    }
+    if (ended_) {
+        return opcua::failed(*ended_, "waiting for a transition");
+    }
+    if (overflow_at_ > from) {
+        return tl::unexpected(opcua::Failure{
+            {Errc::resource_unavailable, "the server lost transitions of this skill"},
+            opcua::status::kBadResourceUnavailable,
+            {}});
+    }
+    return opcua::failed(opcua::status::kBadTimeout, "waiting for a transition");
+}
+
+}  // namespace metier::skill_client

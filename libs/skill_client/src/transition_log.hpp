@@ -1,0 +1,58 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/skill/program_observer.hpp"
+
+namespace metier::skill_client {
+
+/// The transitions of one skill as they arrive, numbered from 0; the newest thousand are kept.
+///
+/// Threading: add...() on the client's thread, the rest on any.
+class TransitionLog {
+public:
+    using Callback = std::function<void(const skill::TransitionEvent&)>;
+
+    void add(const opcua::EventNotice& notice);
+    void onTransition(Callback callback);
+
+    /// Number of the next transition to arrive.
+    std::uint64_t next() const;
+
+    struct Found {
+        std::uint64_t number = 0;
+        skill::TransitionEvent event;
+    };
+    /// The first transition from number `from` on that `wanted` accepts.
+    /// Errors: timeout at the deadline; connection_lost when nothing will come any more;
+    ///         resource_unavailable if transitions were lost meanwhile.
+    opcua::Answer<Found> await(std::uint64_t from, SteadyTime deadline,
+                               const std::function<bool(const skill::TransitionEvent&)>& wanted);
+
+private:
+    std::optional<Found> findFrom(
+        std::uint64_t from, const std::function<bool(const skill::TransitionEvent&)>& wanted) const;
+    void append(skill::TransitionEvent event);
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<skill::TransitionEvent> events_;
+    std::uint64_t first_number_ = 0;
+    std::uint64_t overflow_at_ = 0;  // number of the first transition after the last loss
+    std::optional<opcua::StatusCode> ended_;
+    Callback callback_;
+};
+
+/// What to ask of an event so that TransitionLog understands it.
+/// \param device_namespace index of the Device namespace on this server
+opcua::EventFilter transitionFilter(std::uint16_t device_namespace);
+
+}  // namespace metier::skill_client
