@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "metier/path_evaluation/square.hpp"
+
+namespace metier::path_evaluation {
+
+/// One robot's path around its square, as a client measured it.
+struct DrawnPath {
+    std::string name;  ///< any text; escaped for XML
+    Square square;
+    std::vector<Eigen::Vector3d> positions;  ///< [m], base frame, in the order of time
+    SquareMeasurement measurement;
+};
+
+/// An SVG picture with a panel for each path: above, the path on its square in mm; below, its
+/// distance from the straight side along the way.
+std::string drawSvg(std::span<const DrawnPath> paths);
+
+}  // namespace metier::path_evaluation

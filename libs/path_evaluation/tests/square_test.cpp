@@ -1,0 +1,58 @@
+#include "metier/path_evaluation/square.hpp"
+
+#include <gtest/gtest.h>
+
+namespace metier::path_evaluation {
+namespace {
+
+Square unitSquare() {
+    Square square;
+    square.start.translation = {0.5, 0.1, 0.3};
+    return square;  // right is y, up is z, 0.1 m
+}
+
+TEST(Square, StandsUprightAndClosesAtItsStart) {
+    const auto square = unitSquare();
+    EXPECT_TRUE(square.corner(1).translation.isApprox(Eigen::Vector3d(0.5, 0.2, 0.3)));
+    EXPECT_TRUE(square.corner(2).translation.isApprox(Eigen::Vector3d(0.5, 0.2, 0.4)));
+    EXPECT_TRUE(square.corner(3).translation.isApprox(Eigen::Vector3d(0.5, 0.1, 0.4)));
+    EXPECT_TRUE(square.corner(4).translation.isApprox(square.corner(0).translation));
+}
+
+TEST(Square, KeepsTheOrientationOfItsStart) {
+    auto square = unitSquare();
+    square.start.rotation = Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX());
+    for (const auto& corner : square.corners()) {
+        EXPECT_TRUE(corner.rotation.isApprox(square.start.rotation));
+    }
+}
+
+TEST(DistanceFromSegment, IsMeasuredToTheNearestPointOfTheLine) {
+    const Eigen::Vector3d from(0, 0, 0);
+    const Eigen::Vector3d to(1, 0, 0);
+    EXPECT_DOUBLE_EQ(distanceFromSegment({0.5, 0.2, 0}, from, to), 0.2);
+    EXPECT_DOUBLE_EQ(distanceFromSegment({2, 0, 0}, from, to), 1.0);
+    EXPECT_DOUBLE_EQ(distanceFromSegment({0, 3, 4}, from, from), 5.0);
+}
+
+TEST(Measure, FindsTheLargestDeviationAndTheGapAtTheEnd) {
+    const auto square = unitSquare();
+    const std::vector<Eigen::Vector3d> positions{
+        {0.5, 0.1, 0.3}, {0.502, 0.15, 0.3}, {0.5, 0.2, 0.35}, {0.5, 0.1, 0.301}};
+    const auto measured = measure(square, positions);
+    EXPECT_NEAR(measured.largest_deviation, 0.002, 1e-12);
+    EXPECT_NEAR(measured.closure_error, 0.001, 1e-12);
+}
+
+TEST(Measure, SeesACornerThatWasCut) {
+    const auto square = unitSquare();
+    const std::vector<Eigen::Vector3d> positions{{0.5, 0.19, 0.31}};
+    EXPECT_NEAR(measure(square, positions).largest_deviation, 0.01, 1e-12);
+}
+
+TEST(Measure, OfNothingIsZero) {
+    EXPECT_DOUBLE_EQ(measure(unitSquare(), {}).largest_deviation, 0.0);
+}
+
+}  // namespace
+}  // namespace metier::path_evaluation

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "metier/device/arm.hpp"
+#include "metier/opcua_skill/kinematics_data.hpp"
+
+namespace metier::remote_arm {
+
+struct RemoteArmOptions {
+    /// Address of the server that has the arm's PositionStreamSkill.
+    std::string url;
+    /// Pause between tries to reach a server that was lost.
+    std::chrono::milliseconds retry_interval{500};
+};
+
+/// An arm behind another OPC UA server: its set-points go out as the position stream of that
+/// server, each with the time it is meant for, one per cycle of the arm.
+///
+/// The stream is started with the first motion and kept, at rest, for half a second after the
+/// last one, so that motions in close succession share it. Its loss, a lost connection, and every
+/// safety state but normal end the motion; the server's arm brakes by itself then. A lost server
+/// is sought again until it is back.
+///
+/// Threading: as device::Arm. One thread of its own is the cycle; it sends messages, so unlike
+/// that of a driver it may allocate. resetFault() waits, at most 500 ms.
+class RemoteArm final : public device::Arm {
+public:
+    /// Connects and reads what the arm is like.
+    /// Errors: connection_lost, timeout; not_found if the server has no PositionStreamSkill or
+    ///         publishes no Kinematics for it.
+    static Result<std::unique_ptr<RemoteArm>> connect(RemoteArmOptions options);
+    ~RemoteArm() override;
+    RemoteArm(const RemoteArm&) = delete;
+    RemoteArm& operator=(const RemoteArm&) = delete;
+
+    /// Chain and limits, as the server publishes them.
+    const opcua_skill::KinematicsData& kinematics() const noexcept;
+
+    const device::ArmInfo& info() const noexcept override;
+    device::ArmState state() const noexcept override;
+    device::Safety safety() const override;
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
+    void stop() noexcept override;
+    Result<void> resetFault() override;
+    device::Registration onSafetyChange(SafetyCallback callback) override;
+
+private:
+    class Worker;
+    explicit RemoteArm(std::unique_ptr<Worker> worker);
+    std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace metier::remote_arm

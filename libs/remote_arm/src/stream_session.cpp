@@ -1,0 +1,239 @@
+#include "stream_session.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+namespace metier::remote_arm {
+namespace {
+
+using namespace std::chrono_literals;
+using device::SafetyState;
+
+constexpr const char* kStreamType = "PositionStreamSkillType";
+constexpr const char* kTarget = "TargetJointPosition";
+constexpr auto kConnectTimeout = 2s;
+constexpr auto kPublishingInterval = 10ms;
+constexpr auto kSafetyInterval = 20ms;
+// A change of the measured arm between two samples that counts as motion [rad].
+constexpr double kMotion = 1e-5;
+
+Result<skill_client::SkillAddress> findStream(opcua::Client& client) {
+    const auto skills = skill_client::findSkills(client);
+    if (!skills) {
+        return fail(skills.error());
+    }
+    for (const auto& skill : *skills) {
+        if (skill.type_name == kStreamType) {
+            return skill;
+        }
+    }
+    return fail(Errc::not_found, "the server has no PositionStreamSkill");
+}
+
+/// SafetyStateKind of the Metier NodeSet.
+SafetyState safetyFrom(std::int32_t kind) {
+    switch (kind) {
+        case 1:
+        case 2:
+            return SafetyState::normal;
+        case 3:
+            return SafetyState::protective_stop;
+        case 4:
+            return SafetyState::emergency_stop;
+        case 5:
+            return SafetyState::fault;
+        default:
+            return SafetyState::disconnected;
+    }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<StreamSession>> StreamSession::open(const std::string& url,
+                                                           std::shared_ptr<Doorbell> bell) {
+    opcua::ClientOptions options;
+    options.application_name = "metier move component";
+    options.connect_timeout = kConnectTimeout;
+    options.publishing_interval = kPublishingInterval;
+    auto client = opcua::Client::connect(url, options);
+    if (!client) {
+        return fail(client.error());
+    }
+    auto address = findStream(**client);
+    if (!address) {
+        return fail(address.error());
+    }
+    auto nodes = skill_client::findKinematics(**client, *address);
+    if (!nodes) {
+        return fail(nodes.error());
+    }
+    auto kinematics = skill_client::readKinematics(**client, *nodes);
+    if (!kinematics) {
+        return fail(kinematics.error());
+    }
+    if (kinematics->axisCount() > device::kMaxAxes || kinematics->cycle_time <= 0) {
+        return fail(Errc::not_supported,
+                    fmt::format("an arm of {} axes, at most {}; cycle {} s",
+                                kinematics->axisCount(), device::kMaxAxes, kinematics->cycle_time));
+    }
+    auto stream = skill_client::SkillHandle::open(**client, std::move(*address));
+    if (!stream) {
+        return fail(stream.error());
+    }
+    std::unique_ptr<StreamSession> session(new StreamSession(std::move(*client), std::move(*nodes),
+                                                             std::move(*kinematics),
+                                                             std::move(*stream), std::move(bell)));
+    if (auto subscribed = session->subscribe(); !subscribed) {
+        return fail(subscribed.error());
+    }
+    return session;
+}
+
+StreamSession::StreamSession(std::unique_ptr<opcua::Client> client,
+                             skill_client::KinematicsNodes nodes,
+                             opcua_skill::KinematicsData kinematics,
+                             skill_client::SkillHandle stream, std::shared_ptr<Doorbell> bell)
+    : client_(std::move(client)),
+      nodes_(std::move(nodes)),
+      kinematics_(std::move(kinematics)),
+      stream_(std::move(stream)) {
+    notes_->bell = std::move(bell);
+}
+
+void StreamSession::Notes::notePosition(const device::JointArray& position) {
+    note([&](Observed& seen) {
+        seen.sampled = std::chrono::steady_clock::now();
+        if (device::largestDifference(seen.position, position) > kMotion) {
+            seen.moved = seen.sampled;
+        }
+        seen.position = position;
+    });
+}
+
+void StreamSession::Notes::noteBroken(const std::string& why) {
+    note([&](Observed& seen) {
+        if (seen.broken.empty()) {
+            seen.broken = why;
+        }
+    });
+}
+
+void StreamSession::Notes::noteAnswer(const opcua::Answer<>& answer) {
+    // A stream that ended meanwhile refuses: its transition tells why.
+    if (answer || answer.error().status == opcua::status::kBadInvalidState) {
+        return;
+    }
+    if (answer.error().code == Errc::connection_lost || answer.error().code == Errc::timeout) {
+        noteBroken(answer.error().message);
+        return;
+    }
+    note([&](Observed& seen) { seen.refused = answer.error().message; });
+}
+
+Result<void> StreamSession::subscribe() {
+    client_->onConnectionLost(
+        [notes = notes_](const opcua::Failure& failure) { notes->noteBroken(failure.message); });
+    stream_.onTransition([notes = notes_](const skill::TransitionEvent& event) {
+        if (event.from == skill::State::running) {
+            notes->note([&](Observed& seen) { seen.stream_end = event; });
+        }
+    });
+    const auto interval = std::chrono::milliseconds(
+        static_cast<std::int64_t>(std::max(kinematics_.cycle_time * 1000.0, 5.0)));
+    auto joints = skill_client::subscribeJointPosition(
+        *client_, nodes_, interval,
+        [notes = notes_, axes = kinematics_.axisCount()](const std::vector<double>& values) {
+            if (values.size() == axes) {
+                notes->notePosition(device::JointArray(values));
+            }
+        });
+    if (!joints) {
+        return fail(joints.error());
+    }
+    joints_ = std::move(*joints);
+    const auto now = skill_client::readJointPosition(*client_, nodes_);
+    if (!now || now->size() != kinematics_.axisCount()) {
+        return fail(now ? Error{Errc::type_mismatch, "ActualJointPosition has another length"}
+                        : static_cast<const Error&>(now.error()));
+    }
+    notes_->notePosition(device::JointArray(*now));
+    return subscribeState();
+}
+
+Result<void> StreamSession::subscribeState() {
+    auto safety = client_->subscribeData(
+        nodes_.safety_state, {.sampling_interval = kSafetyInterval},
+        [notes = notes_](const opcua::DataValue& value) {
+            const auto kind = value.value.as<std::int32_t>();
+            const auto state = kind ? safetyFrom(*kind) : SafetyState::disconnected;
+            notes->note([&](Observed& seen) { seen.safety = state; });
+        });
+    if (!safety) {
+        return fail(safety.error());
+    }
+    auto missed = client_->subscribeData(
+        nodes_.missed_cycles, {.sampling_interval = kSafetyInterval},
+        [notes = notes_](const opcua::DataValue& value) {
+            if (const auto cycles = value.value.as<std::uint64_t>()) {
+                notes->note([&](Observed& seen) { seen.missed_cycles = *cycles; });
+            }
+        });
+    if (!missed) {
+        return fail(missed.error());
+    }
+    safety_ = std::move(*safety);
+    missed_cycles_ = std::move(*missed);
+    return {};
+}
+
+StreamSession::Observed StreamSession::observed() const {
+    const std::lock_guard lock(notes_->mutex);
+    return notes_->observed;
+}
+
+Result<void> StreamSession::startStream() {
+    notes_->note([](Observed& seen) {
+        seen.stream_end.reset();
+        seen.refused.clear();
+    });
+    if (auto started = stream_.start(); !started) {
+        return fail(started.error());
+    }
+    return {};
+}
+
+void StreamSession::send(const device::JointArray& set_point, UtcTime meant_for) {
+    const std::vector<double> joints(set_point.begin(), set_point.end());
+    const auto sent = stream_.setAsync(
+        kTarget, joints, meant_for,
+        [notes = notes_](const opcua::Answer<>& answer) { notes->noteAnswer(answer); });
+    if (!sent) {
+        notes_->noteBroken(sent.error().message);
+    }
+}
+
+Result<skill::State> StreamSession::streamState() {
+    auto state = stream_.state();
+    if (!state) {
+        return fail(state.error());
+    }
+    return *state;
+}
+
+Result<void> StreamSession::haltStream() {
+    if (auto halted = stream_.halt(); !halted) {
+        return fail(halted.error());
+    }
+    return {};
+}
+
+Result<void> StreamSession::resetStream() {
+    if (auto reset = stream_.reset(); !reset) {
+        return fail(reset.error());
+    }
+    return {};
+}
+
+}  // namespace metier::remote_arm

@@ -1,0 +1,406 @@
+#include "worker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace metier::remote_arm {
+namespace {
+
+using namespace std::chrono_literals;
+using device::EndCause;
+using device::Safety;
+using device::SafetyState;
+
+constexpr auto kIdlePause = 100ms;
+constexpr auto kResetWait = 250ms;
+// How long a stream goes on at rest after a motion, so that the next one finds it.
+constexpr auto kLinger = 500ms;
+// How long a silent stream may take to be Ready again.
+constexpr auto kLongestEnding = 2s;
+// Without a change of the measured position for so long, the arm stands.
+constexpr auto kStandstillAfter = 60ms;
+// After a longer pause of this thread it does not catch up set-point by set-point.
+constexpr std::uint64_t kMostCyclesBehind = 50;
+// Where the measured arm is farther from the last set-point, it was moved by someone else [rad].
+constexpr double kMoved = 2e-3;
+
+device::ArmInfo infoOf(const StreamSession& session) {
+    device::ArmInfo info;
+    info.name = session.deviceName();
+    for (std::size_t axis = 1; axis <= session.kinematics().axisCount(); ++axis) {
+        info.axis_names.push_back(fmt::format("Axis {}", axis));
+    }
+    info.cycle = std::chrono::duration_cast<std::chrono::nanoseconds>(
+        std::chrono::duration<double>(session.kinematics().cycle_time));
+    return info;
+}
+
+}  // namespace
+
+RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> bell,
+                          std::unique_ptr<StreamSession> session)
+    : options_(std::move(options)),
+      bell_(std::move(bell)),
+      session_(std::move(session)),
+      kinematics_(session_->kinematics()),
+      info_(infoOf(*session_)) {
+    observe();
+    publish();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+RemoteArm::Worker::~Worker() {
+    thread_.request_stop();
+    bell_->ring();
+    thread_ = {};
+}
+
+Safety RemoteArm::Worker::safety() const {
+    const std::lock_guard lock(mutex_);
+    return safety_;
+}
+
+Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> source) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (safety_.state != SafetyState::normal) {
+            return fail(Errc::device_fault, safety_.text);
+        }
+        if (taken_) {
+            return fail(Errc::resource_unavailable, info_.name + ": something moves it already");
+        }
+        taken_ = true;
+        stop_asked_ = false;
+        pending_ = std::move(source);
+    }
+    bell_->ring();
+    return {};
+}
+
+void RemoteArm::Worker::stop() noexcept {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_asked_ = taken_;
+    }
+    bell_->ring();
+}
+
+Result<void> RemoteArm::Worker::resetFault() {
+    std::promise<Result<void>> promise;
+    auto answer = promise.get_future();
+    {
+        const std::lock_guard lock(mutex_);
+        if (safety_.state == SafetyState::disconnected) {
+            return fail(Errc::connection_lost, safety_.text);
+        }
+        asked_reset_ =
+            PendingReset{std::move(promise), std::chrono::steady_clock::now() + kResetWait};
+    }
+    bell_->ring();
+    if (answer.wait_for(2 * kResetWait) != std::future_status::ready) {
+        return fail(Errc::timeout, fmt::format("{}: {} did not answer Reset within {} ms",
+                                               info_.name, options_.url, 2 * kResetWait.count()));
+    }
+    return answer.get();
+}
+
+device::Registration RemoteArm::Worker::onSafetyChange(device::Arm::SafetyCallback callback) {
+    const auto listeners = listeners_;
+    const std::lock_guard lock(listeners->first);
+    listeners->second.push_back({std::move(callback)});
+    return device::Registration([listeners, entry = std::prev(listeners->second.end())] {
+        const std::lock_guard erase_lock(listeners->first);
+        listeners->second.erase(entry);
+    });
+}
+
+void RemoteArm::Worker::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        if (session_ == nullptr) {
+            reconnect(stop);
+        } else {
+            observe();
+        }
+        takeRequests();
+        serveSource();
+        if (stream_ == Stream::running) {
+            cycle();
+        }
+        publish();
+        if (session_ != nullptr) {
+            bell_->wait(stop, nextWake());
+        }
+    }
+    letGo(EndCause::disconnected);
+}
+
+void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
+    auto session = StreamSession::open(options_.url, bell_);
+    if (!session) {
+        bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
+        return;
+    }
+    session_ = std::move(*session);
+    fault_.clear();
+    fault_is_limit_ = false;
+    halted_by_stop_ = false;
+}
+
+void RemoteArm::Worker::observe() {
+    const auto seen = session_->observed();
+    observeStream(seen);
+    observeArm(seen);
+    enter(judge(seen));
+    if (!seen.broken.empty()) {
+        stream_ = Stream::none;
+        letGo(EndCause::disconnected);
+        session_.reset();
+        return;
+    }
+    if (state_.safety != SafetyState::normal) {
+        letGo(state_.safety == SafetyState::disconnected ? EndCause::disconnected
+                                                         : EndCause::safety);
+    }
+    answerReset();
+}
+
+void RemoteArm::Worker::observeStream(const StreamSession::Observed& seen) {
+    if (stream_ == Stream::none) {
+        return;
+    }
+    if (seen.stream_end) {
+        const auto& end = *seen.stream_end;
+        const bool expected = end.to == skill::State::ready && stream_ == Stream::ending;
+        stream_ = Stream::none;
+        if (!expected && !halted_by_stop_) {
+            fault_ = fmt::format("{}: the position stream ended ({}): {}", info_.name,
+                                 toString(end.reason), end.reason_text);
+            fault_is_limit_ = end.reason == skill::Reason::limit_violated;
+        }
+    } else if (!seen.refused.empty()) {
+        fault_ = fmt::format("{}: {}", info_.name, seen.refused);
+        stream_ = Stream::ending;
+        ending_since_ = std::chrono::steady_clock::now();
+    }
+}
+
+void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
+    const double time = std::chrono::duration<double>(seen.sampled - sampled_).count();
+    if (state_.velocity.size() != seen.position.size()) {
+        state_.velocity = device::JointArray(seen.position.size());
+    } else if (time > 0) {
+        for (std::size_t axis = 0; axis < seen.position.size(); ++axis) {
+            state_.velocity[axis] = (seen.position[axis] - state_.position[axis]) / time;
+        }
+    }
+    sampled_ = seen.sampled;
+    state_.position = seen.position;
+    state_.standstill = std::chrono::steady_clock::now() - seen.moved > kStandstillAfter;
+    state_.missed_cycles = seen.missed_cycles;
+}
+
+Safety RemoteArm::Worker::judge(const StreamSession::Observed& seen) const {
+    if (!seen.broken.empty()) {
+        return {SafetyState::disconnected, fmt::format("{}: the connection to {} is lost: {}",
+                                                       info_.name, options_.url, seen.broken)};
+    }
+    if (!fault_.empty()) {
+        const auto state = seen.safety == SafetyState::normal ? SafetyState::fault : seen.safety;
+        return {state, fault_, fault_is_limit_};
+    }
+    if (seen.safety != SafetyState::normal) {
+        return {seen.safety, fmt::format("{}: {}", info_.name, toString(seen.safety))};
+    }
+    return {};
+}
+
+void RemoteArm::Worker::enter(Safety safety) {
+    bool changed = false;
+    {
+        const std::lock_guard lock(mutex_);
+        changed = safety_.state != safety.state || safety_.text != safety.text;
+        safety_ = safety;
+    }
+    state_.safety = safety.state;
+    if (!changed) {
+        return;
+    }
+    std::vector<device::Arm::SafetyCallback> callbacks;
+    {
+        const std::lock_guard lock(listeners_->first);
+        for (const auto& listener : listeners_->second) {
+            callbacks.push_back(listener.callback);
+        }
+    }
+    for (const auto& callback : callbacks) {
+        callback(safety);
+    }
+}
+
+void RemoteArm::Worker::publish() {
+    const bool moved_by_others =
+        state_.commanded_position.size() != state_.position.size() ||
+        device::largestDifference(state_.commanded_position, state_.position) > kMoved;
+    if (stream_ == Stream::none && moved_by_others) {
+        state_.commanded_position = state_.position;
+    }
+    state_.stamp = std::chrono::steady_clock::now();
+    published_.write(state_);
+}
+
+void RemoteArm::Worker::takeRequests() {
+    bool stop_asked = false;
+    std::optional<PendingReset> asked;
+    {
+        const std::lock_guard lock(mutex_);
+        stop_asked = std::exchange(stop_asked_, false);
+        asked = std::exchange(asked_reset_, std::nullopt);
+        if (pending_ != nullptr) {
+            source_ = std::exchange(pending_, nullptr);
+        }
+    }
+    if (asked) {
+        reset_ = std::move(asked);
+        beginReset();
+    }
+    if (stop_asked && source_ != nullptr) {
+        stopNow();
+    }
+}
+
+void RemoteArm::Worker::beginReset() {
+    if (session_ == nullptr) {
+        return;  // answered at the deadline or once connected
+    }
+    const auto state = session_->streamState();
+    // A skill that is Ready while its arm is stopped resets the arm by way of Halted.
+    const bool stopped = session_->observed().safety != SafetyState::normal;
+    auto reset =
+        state && *state == skill::State::ready && stopped ? session_->haltStream() : Result<void>();
+    if (reset && state && (*state == skill::State::halted || stopped)) {
+        reset = session_->resetStream();
+    }
+    if (!state || !reset) {
+        reset_->answer.set_value(fail(state ? reset.error() : state.error()));
+        reset_.reset();
+        return;
+    }
+    fault_.clear();
+    fault_is_limit_ = false;
+}
+
+/// The server's safety state follows its Reset a moment later: only then the fault is gone.
+void RemoteArm::Worker::answerReset() {
+    if (!reset_) {
+        return;
+    }
+    if (state_.safety == SafetyState::normal) {
+        reset_->answer.set_value({});
+    } else if (std::chrono::steady_clock::now() > reset_->deadline) {
+        reset_->answer.set_value(fail(Errc::device_fault, safety().text));
+    } else {
+        return;
+    }
+    reset_.reset();
+}
+
+void RemoteArm::Worker::stopNow() {
+    if (stream_ == Stream::running && session_ != nullptr) {
+        halted_by_stop_ = true;
+        if (const auto halted = session_->haltStream(); !halted) {
+            fault_ = halted.error().message;
+        }
+        stream_ = Stream::ending;
+        ending_since_ = std::chrono::steady_clock::now();
+    }
+    letGo(EndCause::stopped);
+}
+
+void RemoteArm::Worker::serveSource() {
+    if (source_ == nullptr || stream_ == Stream::running) {
+        return;
+    }
+    if (session_ == nullptr) {
+        letGo(EndCause::disconnected);
+    } else if (stream_ == Stream::none) {
+        startStream();
+    } else if (std::chrono::steady_clock::now() - ending_since_ > kLongestEnding) {
+        fault_ = fmt::format("{}: the position stream before did not end", info_.name);
+    }
+}
+
+void RemoteArm::Worker::startStream() {
+    if (std::exchange(halted_by_stop_, false)) {
+        if (const auto reset = session_->resetStream(); !reset) {
+            fault_ = reset.error().message;
+            return;
+        }
+    }
+    if (const auto started = session_->startStream(); !started) {
+        fault_ = started.error().message;  // the next look at it ends the motion
+        return;
+    }
+    stream_ = Stream::running;
+    stream_start_ = std::chrono::steady_clock::now();
+    stream_start_utc_ = std::chrono::system_clock::now();
+    sent_ = 0;
+    idle_cycles_ = 0;
+}
+
+SteadyTime RemoteArm::Worker::nextWake() const {
+    if (stream_ == Stream::running) {
+        return stream_start_ + sent_ * info_.cycle;
+    }
+    // What is under way is looked at often, so that its end and its deadline are seen in time.
+    const bool busy = source_ != nullptr || reset_ || state_.safety != SafetyState::normal;
+    return std::chrono::steady_clock::now() + (busy ? 10ms : kIdlePause);
+}
+
+UtcTime RemoteArm::Worker::meantFor() const {
+    return stream_start_utc_ + std::chrono::duration_cast<UtcTime::duration>(sent_ * info_.cycle);
+}
+
+void RemoteArm::Worker::cycle() {
+    const auto now = std::chrono::steady_clock::now();
+    const auto due = static_cast<std::uint64_t>((now - stream_start_) / info_.cycle) + 1;
+    if (due > sent_ + kMostCyclesBehind) {
+        sent_ = due - 1;  // the stream paused: it goes on from here, the path is not jumped over
+    }
+    while (stream_ == Stream::running && sent_ < due) {
+        nextSetPoint();
+    }
+}
+
+void RemoteArm::Worker::nextSetPoint() {
+    state_.cycle = sent_;
+    auto set_point = state_.commanded_position;
+    if (source_ != nullptr) {
+        idle_cycles_ = 0;
+        if (source_->next(state_, set_point) == device::SetPointSource::Next::done) {
+            letGo(EndCause::done);
+        }
+    } else if (++idle_cycles_ * info_.cycle > kLinger) {
+        stream_ = Stream::ending;
+        ending_since_ = std::chrono::steady_clock::now();
+        return;
+    }
+    state_.commanded_position = set_point;
+    session_->send(set_point, meantFor());
+    ++sent_;
+}
+
+void RemoteArm::Worker::letGo(EndCause cause) {
+    const auto source = std::exchange(source_, nullptr);
+    if (source == nullptr) {
+        return;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        taken_ = false;
+    }
+    source->ended(cause, safety());
+}
+
+}  // namespace metier::remote_arm

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <future>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+#include "doorbell.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/remote_arm/remote_arm.hpp"
+#include "stream_session.hpp"
+
+namespace metier::remote_arm {
+
+/// The thread of a RemoteArm: keeps the connection, and is the cycle while something moves.
+class RemoteArm::Worker {
+public:
+    Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> bell,
+           std::unique_ptr<StreamSession> session);
+    ~Worker();
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+
+    const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }
+    const device::ArmInfo& info() const noexcept { return info_; }
+    device::ArmState state() const noexcept { return published_.read(); }
+    device::Safety safety() const;
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source);
+    void stop() noexcept;
+    Result<void> resetFault();
+    device::Registration onSafetyChange(device::Arm::SafetyCallback callback);
+
+private:
+    enum class Stream {
+        none,
+        running,
+        ending,  ///< silent; the skill is Ready soon
+    };
+    struct PendingReset {
+        std::promise<Result<void>> answer;
+        SteadyTime deadline;
+    };
+
+    void run(const std::stop_token& stop);
+    void reconnect(const std::stop_token& stop);
+    void observe();
+    void observeStream(const StreamSession::Observed& seen);
+    void observeArm(const StreamSession::Observed& seen);
+    device::Safety judge(const StreamSession::Observed& seen) const;
+    void enter(device::Safety safety);
+    void publish();
+    void takeRequests();
+    void serveSource();
+    void beginReset();
+    void answerReset();
+    void stopNow();
+
+    void startStream();
+    void cycle();
+    /// One set-point of the source, or of holding still.
+    void nextSetPoint();
+    void letGo(device::EndCause cause);
+    SteadyTime nextWake() const;
+    UtcTime meantFor() const;
+
+    const RemoteArmOptions options_;
+    const std::shared_ptr<Doorbell> bell_;  // rung by the session's late answers, too
+    std::unique_ptr<StreamSession> session_;
+    const opcua_skill::KinematicsData kinematics_;
+    const device::ArmInfo info_;
+    device::SharedValue<device::ArmState> published_;
+
+    mutable std::mutex mutex_;
+    bool stop_asked_ = false;
+    bool taken_ = false;  // a source is attached or about to be
+    std::shared_ptr<device::SetPointSource> pending_;
+    std::optional<PendingReset> asked_reset_;
+    device::Safety safety_;
+    struct Listener {
+        device::Arm::SafetyCallback callback;
+    };
+    // Shared with the registrations, which may outlive this.
+    std::shared_ptr<std::pair<std::mutex, std::list<Listener>>> listeners_ =
+        std::make_shared<std::pair<std::mutex, std::list<Listener>>>();
+
+    // Of the thread alone.
+    device::ArmState state_;
+    SteadyTime sampled_;  // when its position was measured
+    std::shared_ptr<device::SetPointSource> source_;
+    std::optional<PendingReset> reset_;
+    Stream stream_ = Stream::none;
+    bool halted_by_stop_ = false;
+    SteadyTime ending_since_;
+    SteadyTime stream_start_;
+    UtcTime stream_start_utc_;
+    std::uint64_t sent_ = 0;
+    std::uint64_t idle_cycles_ = 0;
+    std::string fault_;  // a stop of the stream that only resetFault() ends
+    bool fault_is_limit_ = false;
+    std::jthread thread_;  // last: it uses everything above
+};
+
+}  // namespace metier::remote_arm

@@ -1,0 +1,198 @@
+#include "metier/remote_arm/remote_arm.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "served_arm.hpp"
+
+namespace metier::remote_arm {
+namespace {
+
+using namespace std::chrono_literals;
+using device::EndCause;
+using device::SafetyState;
+using ::testing::HasSubstr;
+
+SteadyTime soon() {
+    return std::chrono::steady_clock::now() + 10s;
+}
+
+/// Moves axis 1 by `distance` [rad] within `cycles`, smoothly, and waits there for the arm.
+class SmoothMove final : public device::SetPointSource {
+public:
+    SmoothMove(double distance, int cycles) : distance_(distance), cycles_(cycles) {}
+
+    Next next(const device::ArmState& state, device::JointArray& set_point) noexcept override {
+        if (!start_) {
+            start_ = set_point;
+        }
+        if (cycle_ >= cycles_) {
+            return arrived(state) ? Next::done : Next::set_point;
+        }
+        ++cycle_;
+        const double part = static_cast<double>(cycle_) / cycles_;
+        set_point[0] =
+            (*start_)[0] + distance_ * part * part * part * (10.0 + part * (6.0 * part - 15.0));
+        return Next::set_point;
+    }
+
+    void ended(EndCause cause, const device::Safety& safety) override {
+        {
+            const std::lock_guard lock(mutex_);
+            cause_ = cause;
+            text_ = safety.text;
+        }
+        changed_.notify_all();
+    }
+
+    /// Why the arm let go; nothing within 10 s.
+    std::optional<EndCause> awaitEnd() {
+        std::unique_lock lock(mutex_);
+        changed_.wait_until(lock, soon(), [this] { return cause_.has_value(); });
+        return cause_;
+    }
+    std::string text() {
+        const std::lock_guard lock(mutex_);
+        return text_;
+    }
+
+private:
+    bool arrived(const device::ArmState& state) const noexcept {
+        return state.standstill && std::abs(state.position[0] - (*start_)[0] - distance_) < 1e-3;
+    }
+
+    const double distance_;
+    const int cycles_;
+    int cycle_ = 0;
+    std::optional<device::JointArray> start_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<EndCause> cause_;
+    std::string text_;
+};
+
+/// Waits until the arm is in that safety state; false after 10 s.
+bool awaitSafety(RemoteArm& arm, SafetyState wanted) {
+    std::mutex mutex;
+    std::condition_variable changed;
+    const auto watch = arm.onSafetyChange([&](const device::Safety&) {
+        const std::lock_guard lock(mutex);
+        changed.notify_all();
+    });
+    std::unique_lock lock(mutex);
+    return changed.wait_until(lock, soon(), [&] { return arm.safety().state == wanted; });
+}
+
+TEST(RemoteArm, ReadsWhatTheArmIsLikeFromItsServer) {
+    const ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()});
+    ASSERT_TRUE(arm) << arm.error().message;
+    EXPECT_EQ((*arm)->info().axisCount(), 6U);
+    EXPECT_EQ((*arm)->info().cycle, 8ms);
+    EXPECT_EQ((*arm)->state().position.size(), 6U);
+    EXPECT_EQ((*arm)->kinematics().axisCount(), 6U);
+}
+
+TEST(RemoteArm, MovesTheArmAndEndsAtStandstill) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    const double start = served.arm().state().position[0];
+    // Shared with the arm until it lets go, as device::Arm asks.
+    const auto move = std::make_shared<SmoothMove>(0.2, 100);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_EQ(move->awaitEnd(), EndCause::done) << move->text();
+    EXPECT_NEAR(served.arm().state().position[0], start + 0.2, 1e-3);
+    EXPECT_EQ(served.arm().safety().state, SafetyState::normal);
+}
+
+TEST(RemoteArm, MovesAgainWithinOneStreamAndAfterItsEnd) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    for (const double distance : {0.1, -0.1, 0.1}) {
+        const auto move = std::make_shared<SmoothMove>(distance, 60);
+        ASSERT_TRUE(arm->attach(move));
+        ASSERT_EQ(move->awaitEnd(), EndCause::done) << move->text();
+    }
+    ASSERT_TRUE(served.awaitStreamEnd());
+    const auto move = std::make_shared<SmoothMove>(-0.1, 60);
+    ASSERT_TRUE(arm->attach(move));
+    EXPECT_EQ(move->awaitEnd(), EndCause::done) << move->text();
+}
+
+TEST(RemoteArm, LetsOnlyOneSourceMoveIt) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    const auto first = std::make_shared<SmoothMove>(0.1, 60);
+    ASSERT_TRUE(arm->attach(first));
+    const auto second = arm->attach(std::make_shared<SmoothMove>(0.1, 60));
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::resource_unavailable);
+    EXPECT_EQ(first->awaitEnd(), EndCause::done);
+}
+
+TEST(RemoteArm, EndsTheMotionAtAProtectiveStopAndMovesAgainAfterReset) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    const auto move = std::make_shared<SmoothMove>(0.5, 500);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_TRUE(served.awaitStreamStart());
+    served.arm().protectiveStop("a hand in the light curtain");
+    ASSERT_EQ(move->awaitEnd(), EndCause::safety);
+    EXPECT_NE(arm->safety().state, SafetyState::normal);
+    EXPECT_FALSE(arm->safety().text.empty());
+    EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 60)));
+    const auto reset = arm->resetFault();
+    ASSERT_TRUE(reset) << reset.error().message;
+    const auto again = std::make_shared<SmoothMove>(0.1, 60);
+    ASSERT_TRUE(arm->attach(again));
+    EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+TEST(RemoteArm, TellsThatItsServerIsGoneAndFindsItAgain) {
+    auto served = std::make_unique<ServedArm>();
+    const auto url = served->url();
+    const auto port = served->port();
+    const auto arm = RemoteArm::connect({.url = url, .retry_interval = 20ms}).value();
+    const auto move = std::make_shared<SmoothMove>(0.5, 500);
+    ASSERT_TRUE(arm->attach(move));
+    served.reset();
+    ASSERT_EQ(move->awaitEnd(), EndCause::disconnected);
+    EXPECT_THAT(arm->safety().text, HasSubstr(url));
+    EXPECT_EQ(arm->resetFault().error().code, Errc::connection_lost);
+    served = std::make_unique<ServedArm>(port);
+    ASSERT_TRUE(awaitSafety(*arm, SafetyState::normal));
+    const auto again = std::make_shared<SmoothMove>(0.1, 60);
+    ASSERT_TRUE(arm->attach(again));
+    EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+TEST(RemoteArm, StopsTheStreamOfItsServer) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    const auto move = std::make_shared<SmoothMove>(0.5, 500);
+    ASSERT_TRUE(arm->attach(move));
+    ASSERT_TRUE(served.awaitStreamStart());
+    arm->stop();
+    EXPECT_EQ(move->awaitEnd(), EndCause::stopped);
+    ASSERT_TRUE(served.awaitStreamEnd());
+    const auto again = std::make_shared<SmoothMove>(0.1, 60);
+    ASSERT_TRUE(arm->attach(again));
+    EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+TEST(RemoteArm, RefusesAServerThatIsNotThere) {
+    const auto arm = RemoteArm::connect({.url = "opc.tcp://127.0.0.1:1"});
+    ASSERT_FALSE(arm);
+    EXPECT_EQ(arm.error().code, Errc::connection_lost);
+}
+
+}  // namespace
+}  // namespace metier::remote_arm

@@ -1,0 +1,110 @@
+#include "served_arm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "metier/geometry/frame.hpp"
+#include "metier/opcua_skill/motion_device_system.hpp"
+#include "metier/robot_skills/arm_skills.hpp"
+
+namespace metier::remote_arm {
+namespace {
+
+using namespace std::chrono_literals;
+
+motion::RobotModel loadModel() {
+    return motion::RobotModel::load(std::filesystem::path(METIER_MODELS) / "ur5.toml").value();
+}
+
+virtual_robots::JointSimulatorOptions simulatorOptions(const motion::RobotModel& model) {
+    virtual_robots::JointSimulatorOptions options;
+    options.name = "ur5";
+    for (const auto& joint : model.chain().joints) {
+        const auto& limits = joint.limits;
+        options.axis_names.push_back(joint.name);
+        options.limits.push_back(
+            {limits.lower, limits.upper, limits.velocity, limits.acceleration});
+    }
+    options.start_position.assign(model.home().begin(), model.home().end());
+    options.cycle = 8ms;
+    return options;
+}
+
+opcua::ThreeDFrame frameOf(const geometry::Pose& pose) {
+    const auto frame = geometry::toFrame(pose);
+    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
+}
+
+opcua_skill::KinematicsData dataOf(const motion::RobotModel& model) {
+    const auto& chain = model.chain();
+    opcua_skill::KinematicsData data;
+    data.base_from_first_joint = frameOf(chain.joints.front().parent_from_joint);
+    data.last_joint_from_flange = frameOf(chain.last_from_flange);
+    for (const auto& joint : chain.joints) {
+        data.joint_frames.push_back(data.joint_frames.empty() ? opcua::ThreeDFrame{}
+                                                              : frameOf(joint.parent_from_joint));
+        data.joint_axes.push_back({joint.axis.x(), joint.axis.y(), joint.axis.z()});
+        data.min_joint_position.push_back(joint.limits.lower);
+        data.max_joint_position.push_back(joint.limits.upper);
+        data.max_joint_velocity.push_back(joint.limits.velocity);
+        data.max_joint_acceleration.push_back(joint.limits.acceleration);
+        data.max_joint_jerk.push_back(joint.limits.jerk);
+    }
+    data.max_cartesian_velocity = {1, 2};
+    data.max_cartesian_acceleration = {2, 5};
+    data.max_cartesian_jerk = {50, 100};
+    data.cycle_time = model.cycleTime();
+    data.tool_frames = {"flange"};
+    return data;
+}
+
+opcua_skill::KinematicsState stateOf(const device::Arm& arm) {
+    const auto state = arm.state();
+    opcua_skill::KinematicsState result;
+    result.joint_position.assign(state.position.begin(), state.position.end());
+    result.safety_state = state.safety == device::SafetyState::normal ? 1 : 3;
+    result.missed_cycles = state.missed_cycles;
+    return result;
+}
+
+}  // namespace
+
+ServedArm::ServedArm(std::uint16_t port) : model_(loadModel()) {
+    arm_ = virtual_robots::JointSimulator::create(simulatorOptions(model_)).value();
+    opcua::ServerOptions options;
+    options.port = port;
+    options.nodesets = {"device", "robotics", "metier", "universal_robots"};
+    server_ = opcua::Server::create(options).value();
+    skills_ = opcua_skill::SkillServer::create(*server_, clock_).value();
+    const auto system = opcua_skill::findMotionDeviceSystem(server_->nodes()).value();
+    auto skills = robot_skills::makeArmSkills(*arm_, model_, clock_).value();
+    const auto node = server_->nodes().browse(system.skills).value().front().target;
+    auto* program = skills_->bind(node, std::move(skills.position_stream)).value();
+    program->attach(*this);
+    const auto published = opcua_skill::publishKinematics(server_->nodes(), system, dataOf(model_),
+                                                          [this] { return stateOf(*arm_); });
+    EXPECT_TRUE(published);
+    drive_ = std::make_unique<virtual_robots::SimulatorDrive>(*arm_);
+    const auto started = server_->start();
+    EXPECT_TRUE(started) << (started ? "" : started.error().message);
+}
+
+ServedArm::~ServedArm() {
+    skills_.reset();
+}
+
+void ServedArm::onTransition(const skill::TransitionEvent& event) {
+    {
+        const std::lock_guard lock(mutex_);
+        running_ = event.to == skill::State::running;
+    }
+    changed_.notify_all();
+}
+
+bool ServedArm::awaitRunning(bool wanted) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 10s, [&] { return running_ == wanted; });
+}
+
+}  // namespace metier::remote_arm
