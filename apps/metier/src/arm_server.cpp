@@ -1,0 +1,120 @@
+#include "arm_server.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "metier/joint_simulator/robot_options.hpp"
+
+namespace metier::app {
+namespace {
+
+using opcua_skill::MotionDeviceSystem;
+using virtual_robots::JointSimulator;
+
+virtual_robots::JointSimulatorOptions simulatorOptions(const std::string& name,
+                                                       const motion::RobotModel& model) {
+    auto options = virtual_robots::optionsFor(model);
+    options.name = name;
+    return options;
+}
+
+using SkillsByName = std::map<std::string, std::unique_ptr<skill::Skill>, std::less<>>;
+
+SkillsByName byName(robot_skills::ArmSkills skills) {
+    SkillsByName result;
+    for (auto& move : skills.moves) {
+        const auto name = move->description().name;
+        result.emplace(name, std::move(move));
+    }
+    const auto name = skills.position_stream->description().name;
+    result.emplace(name, std::move(skills.position_stream));
+    return result;
+}
+
+/// The skill objects of the NodeSet must be just those that the cell file asks for.
+Result<void> checkSameSkills(const std::vector<opcua::Reference>& nodes,
+                             const configuration::ArmServer& config) {
+    std::vector<std::string> in_nodeset;
+    for (const auto& node : nodes) {
+        in_nodeset.push_back(node.browse_name.name);
+    }
+    auto wanted = config.skills;
+    std::sort(in_nodeset.begin(), in_nodeset.end());
+    std::sort(wanted.begin(), wanted.end());
+    if (in_nodeset == wanted) {
+        return {};
+    }
+    return fail(Errc::invalid_argument,
+                fmt::format("skills = [{}], but the NodeSet '{}' has [{}]", fmt::join(wanted, ", "),
+                            config.nodeset, fmt::join(in_nodeset, ", ")));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerConfig& config) {
+    auto model = motion::RobotModel::load(config.arm.model);
+    if (!model) {
+        return fail(model.error());
+    }
+    auto arm = JointSimulator::create(simulatorOptions(config.name, *model));
+    if (!arm) {
+        return fail(arm.error());
+    }
+    auto host = SkillHost::create(config, {config.arm.nodeset});
+    if (!host) {
+        return fail(host.error());
+    }
+    std::unique_ptr<ArmServer> server(
+        new ArmServer(std::move(*model), std::move(*arm), std::move(*host)));
+    if (auto offered = server->offer(config.arm); !offered) {
+        return fail(offered.error());
+    }
+    if (auto started = server->host_->start(); !started) {
+        return fail(started.error());
+    }
+    return server;
+}
+
+ArmServer::ArmServer(motion::RobotModel model, std::unique_ptr<JointSimulator> arm,
+                     std::unique_ptr<SkillHost> host)
+    : model_(std::move(model)), arm_(std::move(arm)), host_(std::move(host)), drive_(*arm_) {}
+
+Result<void> ArmServer::offer(const configuration::ArmServer& config) {
+    const auto system = opcua_skill::findMotionDeviceSystem(host_->nodes());
+    if (!system) {
+        return fail(system.error());
+    }
+    const auto nodes = host_->nodes().browse(system->skills);
+    if (!nodes) {
+        return fail(nodes.error());
+    }
+    if (auto same = checkSameSkills(*nodes, config); !same) {
+        return same;
+    }
+    auto arm_skills = robot_skills::makeArmSkills(*arm_, model_, host_->clock());
+    if (!arm_skills) {
+        return fail(arm_skills.error());
+    }
+    const auto resource = arm_skills->resource;
+    auto skills = byName(std::move(*arm_skills));
+    for (const auto& node : *nodes) {
+        auto found = skills.find(node.browse_name.name);
+        if (found == skills.end()) {
+            return fail(Errc::not_supported,
+                        fmt::format("no skill '{}' for this arm", node.browse_name.name));
+        }
+        const auto bound =
+            host_->skills().bind(node.target, std::move(found->second), {.resource = resource});
+        if (!bound) {
+            return fail(bound.error());
+        }
+    }
+    host_->haltOnLossOf(*arm_);
+    return host_->publishArm(*system, *arm_, model_);
+}
+
+}  // namespace metier::app

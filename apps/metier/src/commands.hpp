@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "metier/base/error.hpp"
+
+namespace metier::app {
+
+/// What the program returns to the shell.
+enum class Exit : int {
+    success = 0,
+    failed = 1,  ///< a server, a skill or a device refused, failed or was not there
+    usage = 2,   ///< the command line or a file is wrong
+};
+
+/// Prints the error to standard error and gives the exit status that fits it.
+Exit report(const Error& error);
+/// The same for what is wrong with the command line or with a file it names.
+Exit reportUsage(const Error& error);
+
+// Each adds one subcommand, which stores in `exit` how it ended.
+void addUp(CLI::App& app, Exit& exit);
+void addServe(CLI::App& app, Exit& exit);
+void addList(CLI::App& app, Exit& exit);
+void addRun(CLI::App& app, Exit& exit);
+void addWatch(CLI::App& app, Exit& exit);
+void addHalt(CLI::App& app, Exit& exit);
+void addSquare(CLI::App& app, Exit& exit);
+void addDemo(CLI::App& app, Exit& exit);
+void addCompletion(CLI::App& app, Exit& exit);
+
+}  // namespace metier::app

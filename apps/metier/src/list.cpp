@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "metier/skill_client/skill_finder.hpp"
+#include "metier/skill_client/skill_handle.hpp"
+#include "servers.hpp"
+
+namespace metier::app {
+namespace {
+
+struct ListOptions {
+    ServerChoice servers;
+    bool json = false;
+};
+
+struct ListedSkill {
+    std::string controller;
+    std::string name;
+    std::string type;
+    std::string state;
+};
+
+Result<std::vector<ListedSkill>> listSkills(const std::string& url) {
+    auto client = connectTo(url);
+    if (!client) {
+        return fail(client.error());
+    }
+    const auto skills = skill_client::findSkills(**client);
+    if (!skills) {
+        return fail(skills.error());
+    }
+    std::vector<ListedSkill> listed;
+    for (const auto& skill : *skills) {
+        const auto state = (*client)->translate(skill.node, {{0, "CurrentState"}});
+        const auto value = state ? (*client)->read(*state) : opcua::Answer<opcua::Value>();
+        const auto text =
+            value ? value->as<opcua::LocalizedText>() : Result<opcua::LocalizedText>();
+        listed.push_back(
+            {skill.controllerName(), skill.name, skill.type_name, text ? text->text : "unknown"});
+    }
+    return listed;
+}
+
+void print(const std::string& url, const std::vector<ListedSkill>& skills) {
+    fmt::print("{}\n", url);
+    for (const auto& skill : skills) {
+        fmt::print("  {:<18} {:<28} {}\n", skill.controller, skill.name, skill.state);
+    }
+    if (skills.empty()) {
+        fmt::print("  no skills\n");
+    }
+}
+
+nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& skills) {
+    auto list = nlohmann::json::array();
+    for (const auto& skill : skills) {
+        list.push_back({{"controller", skill.controller},
+                        {"skill", skill.name},
+                        {"type", skill.type},
+                        {"state", skill.state}});
+    }
+    return {{"url", url}, {"skills", list}};
+}
+
+/// A server that does not answer is told of, and the others are listed all the same.
+Exit runList(const ListOptions& options) {
+    const auto urls = addressesOf(options.servers);
+    if (!urls) {
+        return reportUsage(urls.error());
+    }
+    auto exit = Exit::success;
+    auto json = nlohmann::json::array();
+    for (const auto& url : *urls) {
+        const auto skills = listSkills(url);
+        if (!skills) {
+            exit = report(skills.error());
+            json.push_back({{"url", url}, {"error", skills.error().message}});
+        } else if (options.json) {
+            json.push_back(jsonOf(url, *skills));
+        } else {
+            print(url, *skills);
+        }
+    }
+    if (options.json) {
+        fmt::print("{}\n", json.dump(2));
+    }
+    return exit;
+}
+
+}  // namespace
+
+void addList(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callback, which reads it.
+    auto options = std::make_shared<ListOptions>();
+    auto* command = app.add_subcommand("list", "List servers, their skills and the skills' states");
+    addServerChoice(*command, options->servers);
+    command->add_flag("--json", options->json, "Print JSON");
+    command->callback([options, &exit] { exit = runList(*options); });
+}
+
+}  // namespace metier::app

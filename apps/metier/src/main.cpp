@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <exception>
+
+#include "commands.hpp"
+
+namespace {
+
+constexpr const char* kAbout =
+    "Skills of robots and tools over OPC UA.\n"
+    "metier is not safety-rated: the safety of a cell must never depend on it.\n\n"
+    "A first look:\n"
+    "  metier up cells/demo.toml                       start the demo cell\n"
+    "  metier list --cell cells/demo.toml              what it offers\n"
+    "  metier run opc.tcp://127.0.0.1:48421 JointPtpMoveSkill --fields\n"
+    "  metier square --cell cells/demo.toml            move every arm along a square";
+
+void addCommands(CLI::App& app, metier::app::Exit& exit) {
+    metier::app::addDemo(app, exit);
+    metier::app::addUp(app, exit);
+    metier::app::addServe(app, exit);
+    metier::app::addList(app, exit);
+    metier::app::addRun(app, exit);
+    metier::app::addWatch(app, exit);
+    metier::app::addHalt(app, exit);
+    metier::app::addSquare(app, exit);
+    metier::app::addCompletion(app, exit);
+}
+
+/// Standard output belongs to results: the log goes to standard error.
+void setUpLog(const std::string& level) {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("metier"));
+    spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_level(spdlog::level::from_str(level));
+}
+
+int run(int argc, char** argv) {
+    using metier::app::Exit;
+    auto exit = Exit::success;
+    std::string log_level = "warning";
+    CLI::App app(kAbout, "metier");
+    app.set_version_flag("--version", METIER_VERSION);
+    app.require_subcommand(1);
+    app.failure_message(CLI::FailureMessage::help);
+    app.add_option("--log", log_level, "Least severity to log: debug, info, warning or error")
+        ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
+        ->capture_default_str();
+    // The log must be set up before a subcommand runs; its callback comes after this one.
+    app.parse_complete_callback([&log_level] { setUpLog(log_level); });
+    addCommands(app, exit);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? static_cast<int>(Exit::success)
+                                    : static_cast<int>(Exit::usage);
+    }
+    return static_cast<int>(exit);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "metier: {}\n", error.what());
+        return static_cast<int>(metier::app::Exit::failed);
+    }
+}

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "metier/skill_client/skill_handle.hpp"
+#include "servers.hpp"
+#include "stop_signal.hpp"
+#include "value_json.hpp"
+#include "value_text.hpp"
+
+namespace metier::app {
+namespace {
+
+using skill_client::SkillHandle;
+
+struct RunOptions {
+    std::string url;
+    std::string skill;
+    std::vector<std::string> settings;
+    double timeout = 60.0;
+    bool fields = false;
+    bool json = false;
+};
+
+void printField(const skill::Field& field) {
+    std::string range;
+    if (field.range) {
+        range = fmt::format("{:g} to {:g}", field.range->low, field.range->high);
+    }
+    fmt::print("  {:<22} {:<34} {:<8} {:<18} {}\n", field.name, notation(field.type),
+               field.unit.symbol, range, field.description);
+}
+
+void printFields(const SkillHandle& skill) {
+    fmt::print("{} ({})\nparameters, for --set Name=value:\n", skill.address().name,
+               skill.address().type_name);
+    for (const auto& field : skill.parameters()) {
+        printField(field);
+    }
+    fmt::print("results:\n");
+    for (const auto& field : skill.results()) {
+        printField(field);
+    }
+}
+
+/// "Name=value" as a parameter of the skill.
+Result<std::pair<std::string, skill::Value>> parseSetting(const SkillHandle& skill,
+                                                          const std::string& setting) {
+    const auto equals = setting.find('=');
+    const auto name = setting.substr(0, equals);
+    if (equals == std::string::npos) {
+        return fail(Errc::invalid_argument, fmt::format("'{}' is not Name=value", setting));
+    }
+    for (const auto& field : skill.parameters()) {
+        if (field.name != name) {
+            continue;
+        }
+        auto value = parseValue(field.type, setting.substr(equals + 1));
+        if (!value) {
+            return fail(Errc::invalid_argument, fmt::format("{}: {}", name, value.error().message));
+        }
+        return std::pair(name, std::move(*value));
+    }
+    return fail(Errc::invalid_argument,
+                fmt::format("{} has no parameter '{}'; see --fields", skill.address().name, name));
+}
+
+Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
+                                      const std::vector<std::string>& settings) {
+    skill::ValueMap values;
+    for (const auto& setting : settings) {
+        auto parsed = parseSetting(skill, setting);
+        if (!parsed) {
+            return fail(parsed.error());
+        }
+        values.insert_or_assign(parsed->first, std::move(parsed->second));
+    }
+    return values;
+}
+
+void printResult(const skill::ValueMap& result, const RunOptions& options) {
+    if (options.json) {
+        fmt::print("{}\n", toJson(result).dump(2));
+        return;
+    }
+    fmt::print("done\n");
+    for (const auto& [name, value] : result) {
+        fmt::print("  {:<22} {}\n", name, skill::toString(value));
+    }
+}
+
+/// Ctrl-C halts the skill; the run then ends with the Halted that follows.
+class HaltOnSignal {
+public:
+    HaltOnSignal(const StopSignal& signal, opcua::Client& client, skill_client::SkillAddress skill)
+        : thread_([&signal, &client, skill = std::move(skill)](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  if (signal.waitUntil(std::chrono::steady_clock::now() + kLook)) {
+                      halt(client, skill);
+                      return;
+                  }
+              }
+          }) {}
+
+private:
+    static constexpr std::chrono::milliseconds kLook{100};
+
+    static void halt(opcua::Client& client, const skill_client::SkillAddress& skill) {
+        const auto method = client.translate(skill.node, {{0, "Halt"}});
+        const auto called = method
+                                ? client.call(skill.node, *method)
+                                : opcua::Answer<opcua::CallResult>(tl::unexpected(method.error()));
+        if (!called) {
+            fmt::print(stderr, "metier: Halt was refused: {}\n", called.error().message);
+        }
+    }
+
+    std::jthread thread_;
+};
+
+void showTransitions(SkillHandle& skill) {
+    skill.onTransition([](const skill::TransitionEvent& event) {
+        fmt::print(stderr, "{} to {}{}{}\n", toString(event.from), toString(event.to),
+                   event.reason_text.empty() ? "" : ": ", event.reason_text);
+    });
+}
+
+Exit runRun(const RunOptions& options) {
+    const StopSignal signal;
+    auto client = connectTo(options.url);
+    if (!client) {
+        return report(client.error());
+    }
+    auto address = skill_client::findSkill(**client, options.skill);
+    if (!address) {
+        return report(address.error());
+    }
+    auto skill = SkillHandle::open(**client, *address);
+    if (!skill) {
+        return report(skill.error());
+    }
+    if (options.fields) {
+        printFields(*skill);
+        return Exit::success;
+    }
+    const auto values = parseSettings(*skill, options.settings);
+    if (!values) {
+        return reportUsage(values.error());
+    }
+    showTransitions(*skill);
+    const HaltOnSignal halt_on_signal(signal, **client, *address);
+    const auto deadline =
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                               std::chrono::duration<double>(options.timeout));
+    const auto result = skill->run(*values, deadline);
+    if (!result) {
+        report(result.error());
+        return Exit::failed;
+    }
+    printResult(*result, options);
+    return Exit::success;
+}
+
+}  // namespace
+
+void addRun(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callback, which reads it.
+    auto options = std::make_shared<RunOptions>();
+    auto* command = app.add_subcommand(
+        "run", "Set a skill's parameters, start it and wait for its end; Ctrl-C halts it");
+    command->add_option("url", options->url, "Address of the server: opc.tcp://host:port")
+        ->required();
+    command
+        ->add_option("skill", options->skill,
+                     "Name of the skill, or Controller/Name if several have it")
+        ->required();
+    command->add_option("--set", options->settings, "A parameter: Name=value, as --fields says")
+        ->type_name("Name=value")
+        ->allow_extra_args(false);
+    command->add_flag("--fields", options->fields,
+                      "Only show the skill's parameters and results with units and ranges");
+    command->add_option("--timeout", options->timeout, "Halt the skill after so long [s]")
+        ->check(CLI::Range(0.1, 86'400.0))
+        ->capture_default_str();
+    command->add_flag("--json", options->json, "Print the result as JSON");
+    command->callback([options, &exit] { exit = runRun(*options); });
+}
+
+}  // namespace metier::app

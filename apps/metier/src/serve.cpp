@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <optional>
+
+#include "arm_server.hpp"
+#include "commands.hpp"
+#include "move_server.hpp"
+#include "ready_line.hpp"
+#include "stop_signal.hpp"
+
+namespace metier::app {
+namespace {
+
+struct ServeOptions {
+    std::string cell;
+    std::string server;
+    std::optional<std::uint16_t> port;
+    std::string robot;
+};
+
+Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig& cell,
+                                                 const ServeOptions& options) {
+    const auto* server = options.server.empty() && cell.servers.size() == 1
+                             ? &cell.servers.front()
+                             : cell.find(options.server);
+    if (server == nullptr) {
+        std::string names;
+        for (const auto& known : cell.servers) {
+            names += (names.empty() ? "" : ", ") + known.name;
+        }
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: no server '{}'; choose one with --server: {}",
+                                cell.file.string(), options.server, names));
+    }
+    auto config = *server;
+    config.port = options.port.value_or(config.port);
+    if (!options.robot.empty()) {
+        config.move.robot = options.robot;
+    }
+    return config;
+}
+
+/// A component of the same file is reached at its configured port.
+void resolveRobot(const configuration::CellConfig& cell, configuration::ServerConfig& config) {
+    if (const auto* robot = cell.find(config.move.robot)) {
+        config.move.robot = fmt::format("opc.tcp://{}:{}", robot->address, robot->port);
+    }
+}
+
+template <typename Server>
+Exit serveUntil(const StopSignal& stop, Result<std::unique_ptr<Server>> server) {
+    if (!server) {
+        return report(server.error());
+    }
+    fmt::print("{}\n", readyLine((*server)->url()));
+    std::fflush(stdout);
+    stop.wait();
+    return Exit::success;
+}
+
+Exit runServe(const ServeOptions& options) {
+    const StopSignal stop;
+    const auto cell = configuration::loadCell(options.cell);
+    if (!cell) {
+        return reportUsage(cell.error());
+    }
+    auto config = chosenServer(*cell, options);
+    if (!config) {
+        return reportUsage(config.error());
+    }
+    if (config->kind == configuration::ServerKind::arm) {
+        return serveUntil(stop, ArmServer::start(*config));
+    }
+    resolveRobot(*cell, *config);
+    return serveUntil(stop, MoveServer::start(*config));
+}
+
+}  // namespace
+
+void addServe(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callback, which reads it.
+    auto options = std::make_shared<ServeOptions>();
+    auto* command = app.add_subcommand(
+        "serve", "Start one server of a cell, until Ctrl-C; prints 'ready URL' once it serves");
+    command->add_option("cell", options->cell, "The cell's file")->required();
+    command->add_option("--server", options->server, "Name of the server, if the file has several");
+    command->add_option("--port", options->port, "Another TCP port than the file's; 0: a free one");
+    command->add_option("--robot", options->robot,
+                        "Another opc.tcp:// address of the robot than the file's");
+    command->callback([options, &exit] { exit = runServe(*options); });
+}
+
+}  // namespace metier::app

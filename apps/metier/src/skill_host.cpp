@@ -1,0 +1,95 @@
+#include "skill_host.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "kinematics_conversion.hpp"
+#include "metier/geometry/frame.hpp"
+
+namespace metier::app {
+namespace {
+
+/// SafetyStateKind of the Metier NodeSet.
+std::int32_t safetyKind(device::SafetyState state) {
+    switch (state) {
+        case device::SafetyState::normal:
+            return 1;
+        case device::SafetyState::protective_stop:
+            return 3;
+        case device::SafetyState::emergency_stop:
+            return 4;
+        case device::SafetyState::fault:
+            return 5;
+        case device::SafetyState::disconnected:
+            return 0;
+    }
+    return 0;
+}
+
+opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::RobotModel& model) {
+    const auto state = arm.state();
+    opcua_skill::KinematicsState result;
+    result.joint_position.assign(state.position.begin(), state.position.end());
+    if (const auto joints = motion::JointVector::from(result.joint_position);
+        joints && joints->size() == model.axisCount()) {
+        const auto frame = geometry::toFrame(model.kinematics().forward(*joints));
+        result.pose = {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
+    }
+    result.safety_state = safetyKind(state.safety);
+    result.missed_cycles = state.missed_cycles;
+    return result;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::ServerConfig& config,
+                                                     std::vector<std::string> nodesets) {
+    opcua::ServerOptions options;
+    options.application_name = "metier " + config.name;
+    options.application_uri = "urn:metier:" + config.name;
+    options.port = config.port;
+    options.bind_addresses = {config.address};
+    options.nodesets = std::move(nodesets);
+    options.nodesets.insert(options.nodesets.begin(), {"device", "robotics", "metier"});
+    options.event_publishing = config.publish_at_once ? opcua::EventPublishing::at_once
+                                                      : opcua::EventPublishing::at_interval;
+    auto server = opcua::Server::create(std::move(options));
+    if (!server) {
+        return fail(server.error());
+    }
+    std::unique_ptr<SkillHost> host(new SkillHost(std::move(*server)));
+    auto skills = opcua_skill::SkillServer::create(*host->server_, host->clock_);
+    if (!skills) {
+        return fail(skills.error());
+    }
+    host->skills_ = std::move(*skills);
+    return host;
+}
+
+SkillHost::SkillHost(std::unique_ptr<opcua::Server> server) : server_(std::move(server)) {}
+
+SkillHost::~SkillHost() = default;
+
+Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system,
+                                   const device::Arm& arm, const motion::RobotModel& model) {
+    return opcua_skill::publishKinematics(server_->nodes(), system, toKinematicsData(model),
+                                          [&arm, &model] { return stateOf(arm, model); });
+}
+
+void SkillHost::haltOnLossOf(device::Arm& arm) {
+    // The callback may still run while this ends: it uses nothing of it but on the server's thread.
+    loss_watch_ = arm.onSafetyChange(
+        [executor = skills_->executor(), skills = skills_.get()](const device::Safety& safety) {
+            if (safety.state != device::SafetyState::disconnected) {
+                return;
+            }
+            executor->post([skills, text = safety.text] {
+                for (auto* program : skills->programs()) {
+                    program->deviceLost(text);
+                }
+            });
+        });
+}
+
+}  // namespace metier::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/opcua_skill/motion_device_system.hpp"
+#include "metier/opcua_skill/skill_server.hpp"
+#include "metier/robot_skills/arm_skills.hpp"
+
+namespace metier::app {
+
+/// An OPC UA server with the skills of one arm: what all servers of arms have in common.
+///
+/// Threading: one thread makes, starts and ends it.
+class SkillHost {
+public:
+    /// \param nodesets besides those that every skill needs
+    static Result<std::unique_ptr<SkillHost>> create(const configuration::ServerConfig& config,
+                                                     std::vector<std::string> nodesets);
+    ~SkillHost();
+    SkillHost(const SkillHost&) = delete;
+    SkillHost& operator=(const SkillHost&) = delete;
+
+    const Clock& clock() const noexcept { return clock_; }
+    opcua::AddressSpace& nodes() { return server_->nodes(); }
+    opcua_skill::SkillServer& skills() { return *skills_; }
+    std::string url() const { return server_->endpointUrl(); }
+
+    /// Shows what is known of the arm, and its live state. `arm` and `model` must outlive this.
+    Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const device::Arm& arm,
+                            const motion::RobotModel& model);
+    /// Halts every skill when the arm is lost. `arm` must outlive this.
+    void haltOnLossOf(device::Arm& arm);
+    Result<void> start() { return server_->start(); }
+
+private:
+    explicit SkillHost(std::unique_ptr<opcua::Server> server);
+
+    SystemClock clock_;
+    std::unique_ptr<opcua::Server> server_;
+    std::unique_ptr<opcua_skill::SkillServer> skills_;
+    device::Registration loss_watch_;
+};
+
+}  // namespace metier::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "square_run.hpp"
+
+namespace metier::app {
+
+struct SquareOutput {
+    std::string svg = "square.svg";
+    bool json = false;
+};
+
+/// Adds the options of a square to a command.
+void addSquareOptions(CLI::App& command, SquareSettings& settings, SquareOutput& output);
+
+/// Moves every arm that the servers have along its square, all at the same time, shows how it
+/// goes, and prints the result.
+Exit moveAlongSquares(const std::vector<std::string>& urls, const SquareSettings& settings,
+                      const SquareOutput& output);
+
+}  // namespace metier::app

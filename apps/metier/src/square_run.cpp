@@ -1,0 +1,258 @@
+#include "square_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "kinematics_conversion.hpp"
+#include "metier/geometry/frame.hpp"
+#include "metier/motion/kinematics.hpp"
+#include "metier/path_evaluation/placement.hpp"
+#include "metier/skill_client/kinematics_reader.hpp"
+#include "metier/skill_client/skill_handle.hpp"
+
+namespace metier::app {
+namespace {
+
+using path_evaluation::kCorners;
+using path_evaluation::Square;
+using skill_client::SkillAddress;
+using skill_client::SkillHandle;
+
+constexpr const char* kPtpType = "CartesianPtpMoveSkillType";
+constexpr const char* kLinearType = "CartesianLinearMoveSkillType";
+constexpr std::chrono::milliseconds kSampling{10};
+
+/// The measured path of the flange; filled by the client's thread.
+class PathRecorder {
+public:
+    explicit PathRecorder(const motion::ChainDescription& chain) : kinematics_(chain) {}
+
+    void add(const std::vector<double>& joints) {
+        const auto position = motion::JointVector::from(joints);
+        if (!position || position->size() != kinematics_.axisCount()) {
+            return;
+        }
+        const auto pose = kinematics_.forward(*position);
+        const std::lock_guard lock(mutex_);
+        if (recording_) {
+            positions_.push_back(pose.translation);
+        }
+    }
+
+    void begin() {
+        const std::lock_guard lock(mutex_);
+        recording_ = true;
+    }
+
+    std::vector<Eigen::Vector3d> end() {
+        const std::lock_guard lock(mutex_);
+        recording_ = false;
+        return std::move(positions_);
+    }
+
+private:
+    const motion::Kinematics kinematics_;
+    std::mutex mutex_;
+    bool recording_ = false;
+    std::vector<Eigen::Vector3d> positions_;
+};
+
+/// One arm on its way around one square.
+class SquareRun {
+public:
+    SquareRun(opcua::Client& client, const SquareArm& arm, const SquareSettings& settings,
+              const SquareProgress& progress)
+        : client_(client), arm_(arm), settings_(settings), progress_(progress) {}
+
+    Result<SquareResult> run() {
+        if (auto prepared = prepare(); !prepared) {
+            return fail(prepared.error());
+        }
+        progress_(0.0, "to the first corner");
+        if (auto moved = move(*ptp_, 0); !moved) {
+            return fail(moved.error());
+        }
+        return goAround();
+    }
+
+private:
+    Result<void> prepare() {
+        auto nodes = skill_client::findKinematics(client_, arm_.linear);
+        if (!nodes) {
+            return fail(nodes.error());
+        }
+        nodes_ = std::move(*nodes);
+        if (auto placed = place(); !placed) {
+            return placed;
+        }
+        auto ptp = SkillHandle::open(client_, arm_.ptp);
+        auto linear = SkillHandle::open(client_, arm_.linear);
+        if (!ptp || !linear) {
+            return fail(ptp ? linear.error() : ptp.error());
+        }
+        ptp_ = std::move(*ptp);
+        linear_ = std::move(*linear);
+        return {};
+    }
+
+    /// Knows nothing of the robot but what its server publishes.
+    Result<void> place() {
+        const auto data = skill_client::readKinematics(client_, nodes_);
+        if (!data) {
+            return fail(data.error());
+        }
+        const auto joints = skill_client::readJointPosition(client_, nodes_);
+        if (!joints) {
+            return fail(joints.error());
+        }
+        const auto chain = toChain(*data, *joints);
+        if (!chain) {
+            return fail(chain.error());
+        }
+        const auto square = path_evaluation::placeSquare(*chain, chain->home, settings_.side);
+        if (!square) {
+            return fail(square.error());
+        }
+        square_ = *square;
+        // Shared with the subscription's callback.
+        recorder_ = std::make_shared<PathRecorder>(*chain);
+        return {};
+    }
+
+    Result<void> move(SkillHandle& skill, std::size_t corner) {
+        const auto frame = geometry::toFrame(square_.corner(corner));
+        const skill::ValueMap target{
+            {"TargetPosition", skill::Frame{frame.x, frame.y, frame.z, frame.a, frame.b, frame.c}}};
+        const auto deadline = std::chrono::steady_clock::now() + settings_.move_timeout;
+        const auto result = skill.run(target, deadline);
+        if (!result) {
+            return fail(result.error());
+        }
+        const auto deviation = result->find("LargestPathDeviation");
+        if (&skill == &*linear_ && deviation != result->end()) {
+            if (const auto* value = std::get_if<double>(&deviation->second)) {
+                reported_deviation_ = std::max(reported_deviation_, *value);
+            }
+        }
+        return {};
+    }
+
+    Result<SquareResult> goAround() {
+        auto subscription = skill_client::subscribeJointPosition(
+            client_, nodes_, kSampling,
+            [recorder = recorder_](const auto& joints) { recorder->add(joints); });
+        const auto missed_before = skill_client::readMissedCycles(client_, nodes_);
+        if (!subscription || !missed_before) {
+            return fail(subscription ? missed_before.error() : subscription.error());
+        }
+        if (auto noted = noteNow(); !noted) {
+            return fail(noted.error());
+        }
+        const auto start = std::chrono::steady_clock::now();
+        for (int lap = 0; lap < settings_.laps; ++lap) {
+            if (auto done = goOneLap(lap); !done) {
+                return fail(done.error());
+            }
+        }
+        const auto time = std::chrono::steady_clock::now() - start;
+        if (auto noted = noteNow(); !noted) {
+            return fail(noted.error());
+        }
+        const auto missed = skill_client::readMissedCycles(client_, nodes_);
+        if (!missed) {
+            return fail(missed.error());
+        }
+        return result(time, *missed - *missed_before);
+    }
+
+    Result<void> goOneLap(int lap) {
+        for (std::size_t side = 1; side <= kCorners; ++side) {
+            const auto sides_done = static_cast<double>(lap) * kCorners + static_cast<double>(side);
+            if (auto moved = move(*linear_, side); !moved) {
+                return moved;
+            }
+            progress_(sides_done / (kCorners * static_cast<double>(settings_.laps)),
+                      fmt::format("lap {} of {}, side {} of {}", lap + 1, settings_.laps, side,
+                                  kCorners));
+        }
+        return {};
+    }
+
+    /// Takes the arm's place at a standstill into the recorded path.
+    Result<void> noteNow() {
+        const auto joints = skill_client::readJointPosition(client_, nodes_);
+        if (!joints) {
+            return fail(joints.error());
+        }
+        recorder_->begin();
+        recorder_->add(*joints);
+        return {};
+    }
+
+    SquareResult result(std::chrono::duration<double> time, std::uint64_t missed_cycles) {
+        SquareResult result;
+        result.path.name = arm_.name;
+        result.path.square = square_;
+        result.path.positions = recorder_->end();
+        result.path.measurement = path_evaluation::measure(square_, result.path.positions);
+        result.laps = settings_.laps;
+        result.time = time;
+        result.missed_cycles = missed_cycles;
+        result.reported_deviation = reported_deviation_;
+        return result;
+    }
+
+    opcua::Client& client_;
+    const SquareArm& arm_;
+    const SquareSettings& settings_;
+    const SquareProgress& progress_;
+    skill_client::KinematicsNodes nodes_;
+    Square square_;
+    std::shared_ptr<PathRecorder> recorder_;
+    std::optional<SkillHandle> ptp_;
+    std::optional<SkillHandle> linear_;
+    double reported_deviation_ = 0;
+};
+
+}  // namespace
+
+Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url) {
+    const auto skills = skill_client::findSkills(client);
+    if (!skills) {
+        return fail(skills.error());
+    }
+    std::map<std::string, SquareArm> by_controller;
+    for (const auto& skill : *skills) {
+        auto& arm = by_controller[skill.controllerName()];
+        if (skill.type_name == kPtpType) {
+            arm.ptp = skill;
+        } else if (skill.type_name == kLinearType) {
+            arm.linear = skill;
+        }
+    }
+    std::vector<SquareArm> arms;
+    for (auto& [controller, arm] : by_controller) {
+        if (arm.ptp.name.empty() || arm.linear.name.empty()) {
+            continue;
+        }
+        const auto nodes = skill_client::findKinematics(client, arm.linear);
+        if (!nodes) {
+            return fail(nodes.error());
+        }
+        arm.name = nodes->device_name;
+        arm.url = url;
+        arms.push_back(std::move(arm));
+    }
+    return arms;
+}
+
+Result<SquareResult> runSquare(opcua::Client& client, const SquareArm& arm,
+                               const SquareSettings& settings, const SquareProgress& progress) {
+    return SquareRun(client, arm, settings, progress).run();
+}
+
+}  // namespace metier::app

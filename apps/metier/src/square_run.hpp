@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/path_evaluation/drawing.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::app {
+
+/// An arm that a client found: its two skills for a square, whatever robot it is.
+struct SquareArm {
+    std::string name;  ///< of its motion device
+    std::string url;
+    skill_client::SkillAddress ptp;
+    skill_client::SkillAddress linear;
+};
+
+struct SquareSettings {
+    int laps = 3;
+    double side = 0.1;  ///< [m]
+    /// Longest time for one move.
+    std::chrono::seconds move_timeout{60};
+};
+
+struct SquareResult {
+    path_evaluation::DrawnPath path;
+    int laps = 0;
+    std::chrono::duration<double> time{};
+    std::uint64_t missed_cycles = 0;
+    double reported_deviation = 0;  ///< largest that the server itself measured [m]
+};
+
+/// \param fraction done, 0 to 1
+using SquareProgress = std::function<void(double fraction, const std::string& text)>;
+
+/// Every controller of a server that has both skills.
+Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url);
+
+/// Places a square where the arm has room, goes to its first corner by PTP and around it by LIN.
+/// Waits until it is done. Errors: the first move that was refused or failed, with its reason.
+Result<SquareResult> runSquare(opcua::Client& client, const SquareArm& arm,
+                               const SquareSettings& settings, const SquareProgress& progress);
+
+}  // namespace metier::app

@@ -1,0 +1,194 @@
+#include "value_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <vector>
+
+namespace metier::app {
+namespace {
+
+using skill::Value;
+using skill::ValueType;
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    if (text.empty()) {
+        return parts;
+    }
+    for (;;) {
+        const auto end = text.find(separator);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) {
+            return parts;
+        }
+        text.remove_prefix(end + 1);
+    }
+}
+
+template <typename T>
+std::optional<T> numberIn(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') {
+        text.remove_prefix(1);
+    }
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+std::optional<std::vector<double>> numbersIn(std::string_view text) {
+    std::vector<double> values;
+    for (const auto part : split(text, ',')) {
+        const auto value = numberIn<double>(part);
+        if (!value) {
+            return std::nullopt;
+        }
+        values.push_back(*value);
+    }
+    return values;
+}
+
+std::optional<skill::Frame> frameIn(std::string_view text) {
+    const auto values = numbersIn(text);
+    if (!values || values->size() != 6) {
+        return std::nullopt;
+    }
+    const auto& v = *values;
+    return skill::Frame{v[0], v[1], v[2], v[3], v[4], v[5]};
+}
+
+std::optional<Value> vectorIn(std::string_view text) {
+    const auto values = numbersIn(text);
+    if (!values || values->size() != 3) {
+        return std::nullopt;
+    }
+    return skill::Vector3{(*values)[0], (*values)[1], (*values)[2]};
+}
+
+std::optional<Value> rangesIn(std::string_view text) {
+    std::vector<skill::Range> ranges;
+    for (const auto part : split(text, ',')) {
+        const auto ends = split(part, ':');
+        const auto low = ends.size() == 2 ? numberIn<double>(ends[0]) : std::nullopt;
+        const auto high = ends.size() == 2 ? numberIn<double>(ends[1]) : std::nullopt;
+        if (!low || !high) {
+            return std::nullopt;
+        }
+        ranges.push_back({*low, *high});
+    }
+    return ranges;
+}
+
+std::optional<Value> framesIn(std::string_view text) {
+    std::vector<skill::Frame> frames;
+    for (const auto part : split(text, ';')) {
+        const auto frame = frameIn(part);
+        if (!frame) {
+            return std::nullopt;
+        }
+        frames.push_back(*frame);
+    }
+    return frames;
+}
+
+std::optional<Value> booleanIn(std::string_view text) {
+    if (text == "true" || text == "false") {
+        return text == "true";
+    }
+    return std::nullopt;
+}
+
+std::optional<Value> textsIn(std::string_view text) {
+    std::vector<std::string> texts;
+    for (const auto part : split(text, ',')) {
+        texts.emplace_back(part);
+    }
+    return texts;
+}
+
+template <typename T>
+std::optional<Value> asValue(const std::optional<T>& value) {
+    return value ? std::optional<Value>(Value(*value)) : std::nullopt;
+}
+
+std::optional<Value> valueIn(ValueType type, std::string_view text) {
+    switch (type) {
+        case ValueType::null:
+            return std::nullopt;
+        case ValueType::boolean:
+            return booleanIn(text);
+        case ValueType::int32:
+            return asValue(numberIn<std::int32_t>(text));
+        case ValueType::uint32:
+            return asValue(numberIn<std::uint32_t>(text));
+        case ValueType::uint64:
+            return asValue(numberIn<std::uint64_t>(text));
+        case ValueType::number:
+            return asValue(numberIn<double>(text));
+        case ValueType::text:
+            return Value(std::string(text));
+        case ValueType::frame:
+            return asValue(frameIn(text));
+        case ValueType::vector3:
+            return vectorIn(text);
+        case ValueType::numbers:
+            return asValue(numbersIn(text));
+        case ValueType::texts:
+            return textsIn(text);
+        case ValueType::ranges:
+            return rangesIn(text);
+        case ValueType::frames:
+            return framesIn(text);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Result<Value> parseValue(ValueType type, std::string_view text) {
+    if (text == "null") {
+        return Value{};
+    }
+    if (auto value = valueIn(type, text)) {
+        return std::move(*value);
+    }
+    return fail(Errc::invalid_argument,
+                fmt::format("'{}' is not written as {}", text, notation(type)));
+}
+
+std::string_view notation(ValueType type) noexcept {
+    switch (type) {
+        case ValueType::null:
+            return "null";
+        case ValueType::boolean:
+            return "true|false";
+        case ValueType::int32:
+            return "whole number";
+        case ValueType::uint32:
+        case ValueType::uint64:
+            return "whole number, not negative";
+        case ValueType::number:
+            return "number";
+        case ValueType::text:
+            return "text";
+        case ValueType::frame:
+            return "x,y,z,a,b,c";
+        case ValueType::vector3:
+            return "x,y,z";
+        case ValueType::numbers:
+            return "number,number,...";
+        case ValueType::texts:
+            return "text,text,...";
+        case ValueType::ranges:
+            return "low:high,low:high,...";
+        case ValueType::frames:
+            return "x,y,z,a,b,c;x,y,z,a,b,c;...";
+    }
+    return "";
+}
+
+}  // namespace metier::app

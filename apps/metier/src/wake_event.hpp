@@ -1,0 +1,25 @@
+#pragma once
+
+#include "stop_signal.hpp"
+
+namespace metier::app {
+
+/// Ends the wait of one thread from another.
+///
+/// Threading: ring() on any thread; wait() on one.
+class WakeEvent {
+public:
+    WakeEvent();
+    ~WakeEvent();
+    WakeEvent(const WakeEvent&) = delete;
+    WakeEvent& operator=(const WakeEvent&) = delete;
+
+    void ring() noexcept;
+    /// Until it was rung or the user ends the program.
+    void wait(const StopSignal& signal) const;
+
+private:
+    int descriptor_;
+};
+
+}  // namespace metier::app
