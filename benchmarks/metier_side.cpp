@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+#include <spdlog/logger.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "both_sides.hpp"
+#include "metier/base/queue.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/opcua_skill/motion_device_system.hpp"
+#include "metier/opcua_skill/skill_server.hpp"
+#include "metier/skill/lambda_skill.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::benchmarks {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr const char* kStarted = "StartedSkill";
+constexpr std::chrono::seconds kPatience{5};
+
+template <typename Answer>
+auto orThrow(Answer answer) {
+    if (!answer) {
+        throw std::runtime_error(answer.error().message);
+    }
+    return std::move(*answer);
+}
+
+skill::Field field(const char* name, skill::Unit unit, skill::Value default_value) {
+    skill::Field result;
+    result.name = name;
+    result.type = skill::typeOf(default_value);
+    result.unit = unit;
+    result.default_value = std::move(default_value);
+    return result;
+}
+
+/// A move with six parameters, with all that the model asks of a skill, and no work to do.
+skill::SkillDescription moveDescription(std::string name) {
+    const std::vector<double> zeros(6);
+    skill::SkillDescription description;
+    description.name = std::move(name);
+    description.type = "JointPtpMoveSkillType";
+    description.parameters = {field("TargetJointPosition", skill::kRadian, zeros),
+                              field("MaxVelocity", skill::kRadianPerSecond, zeros),
+                              field("MaxAcceleration", skill::kRadianPerSecondSquared, zeros),
+                              field("ToolFrame", skill::kOne, std::string()),
+                              field("SpeedOverride", skill::kOne, 1.0),
+                              field("BlendRadius", skill::kMetre, 0.0)};
+    description.parameters[4].place = skill::Place::options;
+    description.parameters[5].place = skill::Place::options;
+    return description;
+}
+
+/// An OPC UA server with skills that end as soon as they are started.
+class SkillServers {
+public:
+    SkillServers(std::size_t idle, opcua_skill::NodeStyle style) {
+        auto& nodes = server_->nodes();
+        const auto index = orThrow(nodes.namespaceIndex("urn:benchmark"));
+        const auto system = orThrow(opcua_skill::publishMotionDeviceSystem(
+            nodes, {"Benchmark", "", "metier", "benchmark", {"A1"}, index}));
+        publish(system.skills, kStarted, style);
+        for (std::size_t i = 0; i < idle; ++i) {
+            publish(system.skills, fmt::format("JointPtpMoveSkill{}", i), style);
+        }
+        orThrow(server_->start().map([] { return true; }));
+    }
+    std::string url() const { return server_->endpointUrl(); }
+
+private:
+    static opcua::ServerOptions options() {
+        opcua::ServerOptions options;
+        options.port = 0;
+        options.nodesets = {"device", "robotics", "metier"};
+        options.namespaces = {"urn:benchmark"};
+        options.logger = std::make_shared<spdlog::logger>("quiet");
+        return options;
+    }
+    void publish(const opcua::NodeId& folder, std::string name, opcua_skill::NodeStyle style) {
+        auto skill = std::make_unique<skill::LambdaSkill>(moveDescription(std::move(name)),
+                                                          skill::SkillFunctions{});
+        orThrow(skills_->publish(folder, std::move(skill), {}, style));
+    }
+
+    SystemClock clock_;
+    std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(options()));
+    std::unique_ptr<opcua_skill::SkillServer> skills_ = orThrow(opcua_skill::SkillServer::create(
+        *server_, clock_, std::make_shared<spdlog::logger>("quiet")));
+};
+
+class MetierCaller final : public Caller {
+public:
+    explicit MetierCaller(const std::string& url) : client_(connect(url)) {
+        skill_ = orThrow(skill_client::findSkill(*client_, kStarted)).node;
+        start_ = orThrow(client_->translate(skill_, {{0, "Start"}}));
+    }
+
+    /// Another client's execution may just run: then it is asked again.
+    void call() override {
+        auto answer = client_->call(skill_, start_);
+        while (!answer && answer.error().status == opcua::status::kBadInvalidState) {
+            answer = client_->call(skill_, start_);
+        }
+        orThrow(std::move(answer));
+    }
+    void start() override { call(); }
+
+    void subscribe() override {
+        opcua::EventFilter filter;
+        filter.fields = {{{0, "Transition"}, {0, "Number"}}};
+        subscription_ = orThrow(client_->subscribeEvents(
+            skill_, filter, [this](const opcua::EventNotice& notice) { heard(notice); }));
+    }
+
+    std::chrono::nanoseconds startUntilRunning() override {
+        while (seen_.popUntil(steady_clock::time_point{})) {
+        }
+        watching_ = true;
+        const auto begin = steady_clock::now();
+        start();
+        const auto running = seen_.popUntil(begin + kPatience);
+        const auto ready = seen_.popUntil(begin + kPatience);
+        watching_ = false;
+        if (!running || !ready) {
+            throw std::runtime_error("no event came");
+        }
+        return *running - begin;
+    }
+
+    void idleUntil(steady_clock::time_point end) override { std::this_thread::sleep_until(end); }
+
+private:
+    static std::unique_ptr<opcua::Client> connect(const std::string& url) {
+        opcua::ClientOptions options;
+        options.publishing_interval = kPublishingInterval;
+        return orThrow(opcua::Client::connect(url, options));
+    }
+    void heard(const opcua::EventNotice& notice) {
+        if (watching_ && notice.kind == opcua::EventNotice::Kind::event) {
+            seen_.tryPush(steady_clock::now());
+        }
+    }
+
+    Queue<steady_clock::time_point> seen_{1'000};
+    std::atomic<bool> watching_{false};
+    opcua::NodeId skill_;
+    opcua::NodeId start_;
+    std::unique_ptr<opcua::Client> client_;
+    opcua::Subscription subscription_;
+};
+
+}  // namespace
+
+Side metierSide(opcua_skill::NodeStyle style) {
+    return {[style](std::size_t idle) {
+                const auto server = std::make_shared<SkillServers>(idle, style);
+                return Served{server->url(), server};
+            },
+            [](const std::string& url) { return std::make_unique<MetierCaller>(url); }};
+}
+
+}  // namespace metier::benchmarks

@@ -1,0 +1,113 @@
+#include "server_process.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+
+namespace metier::benchmarks {
+namespace {
+
+/// What the child tells once it serves.
+struct Report {
+    std::array<char, 128> url;
+    double seconds;
+    double bytes;
+};
+
+struct Pipe {
+    int read_end = -1;
+    int write_end = -1;
+};
+
+Pipe makePipe() {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) {
+        throw std::runtime_error(std::strerror(errno));
+    }
+    return {ends[0], ends[1]};
+}
+
+double residentBytes() {
+    std::ifstream file("/proc/self/statm");
+    double all = 0;
+    double resident = 0;
+    file >> all >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+Served serveAndReport(const std::function<Served()>& serve, int output) {
+    const double before = residentBytes();
+    const auto begin = std::chrono::steady_clock::now();
+    auto served = serve();
+    Report report{};
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.bytes = residentBytes() - before;
+    served.url.copy(report.url.data(), report.url.size() - 1);
+    if (write(output, &report, sizeof report) != sizeof report) {
+        throw std::runtime_error(std::strerror(errno));
+    }
+    return served;
+}
+
+/// The child's whole life: it serves until the other end of `control` is closed.
+[[noreturn]] void live(const std::function<Served()>& serve, int output, int control) {
+    try {
+        const auto served = serveAndReport(serve, output);
+        char nothing = 0;
+        static_cast<void>(read(control, &nothing, 1));
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "server: {}\n", error.what());
+        _exit(EXIT_FAILURE);
+    }
+    _exit(EXIT_SUCCESS);
+}
+
+}  // namespace
+
+ServerProcess::ServerProcess(const std::function<Served()>& serve) {
+    const auto output = makePipe();
+    const auto control = makePipe();
+    pid_ = fork();
+    if (pid_ == 0) {
+        close(output.read_end);
+        close(control.write_end);
+        live(serve, output.write_end, control.read_end);
+    }
+    close(output.write_end);
+    close(control.read_end);
+    control_ = control.write_end;
+    Report report{};
+    const auto got = read(output.read_end, &report, sizeof report);
+    close(output.read_end);
+    if (pid_ < 0 || got != sizeof report) {
+        throw std::runtime_error("the server's process did not begin to serve");
+    }
+    url_ = report.url.data();
+    start_time_ = std::chrono::duration<double>(report.seconds);
+    memory_ = report.bytes;
+}
+
+ServerProcess::~ServerProcess() {
+    close(control_);
+    waitpid(pid_, nullptr, 0);
+}
+
+std::chrono::nanoseconds ServerProcess::cpuTime() const {
+    clockid_t clock{};
+    timespec time{};
+    if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &time) != 0) {
+        throw std::runtime_error("the CPU time of the server's process cannot be read");
+    }
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+}  // namespace metier::benchmarks

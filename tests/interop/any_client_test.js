@@ -1,0 +1,233 @@
+// What a person does with UaExpert, done by node-opcua, which knows nothing of metier: browse from
+// Objects to a skill, write its parameter, call Start, watch the events.
+'use strict';
+
+const assert = require('node:assert');
+const path = require('node:path');
+const { after, before, test } = require('node:test');
+const {
+  AttributeIds, BrowseDirection, ClientMonitoredItem, ClientSubscription, DataType, MessageSecurityMode,
+  NodeClass, OPCUAClient, SecurityPolicy, StatusCodes, TimestampsToReturn, VariantArrayType,
+  constructEventFilter, resolveNodeId,
+} = require('node-opcua');
+const { startServer } = require('./metier_process');
+
+const kCell = path.join(__dirname, '..', '..', 'cells', 'demo.toml');
+const kProgramStateMachineType = 'ns=0;i=2391';
+const kEventDeadlineMs = 20000;
+
+let server;
+let client;
+let session;
+
+before(async () => {
+  server = await startServer(['serve', kCell, '--server', 'iiwa', '--port', '0']);
+  client = OPCUAClient.create({
+    endpointMustExist: false,
+    securityMode: MessageSecurityMode.None,
+    securityPolicy: SecurityPolicy.None,
+  });
+  await client.connect(server.url);
+  session = await client.createSession();
+});
+
+after(async () => {
+  await session?.close();
+  await client?.disconnect();
+  await server?.stop();
+});
+
+/** Children of a node by hierarchical references. */
+async function children(nodeId) {
+  const result = await session.browse({
+    nodeId,
+    referenceTypeId: 'HierarchicalReferences',
+    browseDirection: BrowseDirection.Forward,
+    includeSubtypes: true,
+    nodeClassMask: 0,
+    resultMask: 63,
+  });
+  assert.strictEqual(result.statusCode, StatusCodes.Good);
+  return result.references;
+}
+
+async function child(nodeId, name) {
+  const found = (await children(nodeId)).find((r) => r.browseName.name === name);
+  assert.ok(found, `no ${name} below ${nodeId}`);
+  return found.nodeId;
+}
+
+async function isProgram(typeId) {
+  for (let type = typeId; type; ) {
+    if (type.toString() === kProgramStateMachineType) {
+      return true;
+    }
+    const above = await session.browse({
+      nodeId: type,
+      referenceTypeId: 'HasSubtype',
+      browseDirection: BrowseDirection.Inverse,
+      includeSubtypes: true,
+      nodeClassMask: 0,
+      resultMask: 63,
+    });
+    type = above.references[0]?.nodeId;
+  }
+  return false;
+}
+
+/** Every Program below a node, by name; each with the chain of objects that leads there. */
+async function findPrograms(nodeId, trail = [], seen = new Set()) {
+  const found = new Map();
+  for (const reference of await children(nodeId)) {
+    const id = reference.nodeId.toString();
+    if (reference.nodeClass !== NodeClass.Object || seen.has(id)) {
+      continue;
+    }
+    seen.add(id);
+    if (await isProgram(reference.typeDefinition)) {
+      found.set(reference.browseName.name, { nodeId: reference.nodeId, trail });
+      continue;
+    }
+    const below = await findPrograms(reference.nodeId, [...trail, reference.nodeId], seen);
+    below.forEach((program, name) => found.set(name, program));
+  }
+  return found;
+}
+
+async function deviceSet() {
+  return child(resolveNodeId('ObjectsFolder'), 'DeviceSet');
+}
+
+async function callMethod(objectId, name) {
+  const result = await session.call({ objectId, methodId: await child(objectId, name), inputArguments: [] });
+  return result.statusCode;
+}
+
+async function read(nodeId) {
+  const value = await session.read({ nodeId, attributeId: AttributeIds.Value });
+  assert.strictEqual(value.statusCode, StatusCodes.Good);
+  return value.value.value;
+}
+
+/** Collects transition events at a notifier; `until(n)` waits for the n-th with a deadline. */
+async function collectEvents(subscription, nodeId) {
+  const events = [];
+  const waiting = [];
+  const filter = constructEventFilter(
+    ['SourceNode', 'Message', 'Severity', 'Time', 'FromState', 'ToState', 'Transition', 'Transition.Number'],
+    resolveNodeId('ProgramTransitionEventType'));
+  const item = ClientMonitoredItem.create(
+    subscription, { nodeId, attributeId: AttributeIds.EventNotifier },
+    { samplingInterval: 0, discardOldest: true, queueSize: 100, filter }, TimestampsToReturn.Both);
+  await new Promise((resolve, reject) => {
+    item.once('initialized', resolve);
+    item.once('err', reject);
+  });
+  item.on('changed', (fields) => {
+    events.push({
+      source: fields[0].value.toString(),
+      message: fields[1].value.text,
+      severity: fields[2].value,
+      time: fields[3].value,
+      from: fields[4].value.text,
+      to: fields[5].value.text,
+      transition: fields[6].value.text,
+      number: fields[7].value,
+    });
+    waiting.filter((w) => events.length >= w.count).forEach((w) => w.resolve());
+  });
+  const until = (count) => new Promise((resolve, reject) => {
+    if (events.length >= count) {
+      resolve(events);
+      return;
+    }
+    const timer = setTimeout(
+      () => reject(new Error(`${events.length} of ${count} events at ${nodeId}`)), kEventDeadlineMs);
+    waiting.push({ count, resolve: () => { clearTimeout(timer); resolve(events); } });
+  });
+  return { events, until };
+}
+
+test('a skill is found by browsing from Objects alone', async () => {
+  const programs = await findPrograms(await deviceSet());
+  assert.deepStrictEqual([...programs.keys()].sort(), [
+    'CartesianLinearMoveSkill', 'CartesianPtpMoveSkill', 'JointLinearMoveSkill', 'JointPtpMoveSkill']);
+});
+
+test('write, Start, and the events arrive at the skill, the device and the Server', async () => {
+  const programs = await findPrograms(await deviceSet());
+  const skill = programs.get('JointPtpMoveSkill');
+  const subscription = ClientSubscription.create(session, {
+    requestedPublishingInterval: 100, requestedLifetimeCount: 1000, requestedMaxKeepAliveCount: 10,
+    maxNotificationsPerPublish: 0, publishingEnabled: true, priority: 1,
+  });
+  const notifiers = [skill.nodeId, skill.trail[0], resolveNodeId('Server')];
+  const collected = [];
+  for (const notifier of notifiers) {
+    collected.push(await collectEvents(subscription, notifier));
+  }
+  const target = await child(await child(skill.nodeId, 'ParameterSet'), 'TargetJointPosition');
+  const statusCode = await session.write({
+    nodeId: target,
+    attributeId: AttributeIds.Value,
+    value: {
+      value: { dataType: DataType.Double, arrayType: VariantArrayType.Array,
+        value: new Float64Array([0.1, 0.5, 0.1, -1.4, 0.1, 0.9, 0.1]) },
+    },
+  });
+  assert.strictEqual(statusCode, StatusCodes.Good);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Start'), StatusCodes.Good);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Start'), StatusCodes.BadInvalidState);
+  for (const { until } of collected) {
+    const events = await until(2);
+    assert.deepStrictEqual(events.map((e) => [e.from, e.to]), [['Ready', 'Running'], ['Running', 'Ready']]);
+    assert.deepStrictEqual(events.map((e) => e.transition), ['ReadyToRunning', 'RunningToReady']);
+    assert.deepStrictEqual(events.map((e) => e.number), [2, 4]);
+    assert.ok(events.every((e) => e.source === skill.nodeId.toString()));
+    assert.ok(events[0].time <= events[1].time);
+  }
+  await subscription.terminate();
+  const state = await child(skill.nodeId, 'CurrentState');
+  assert.strictEqual((await read(state)).text, 'Ready');
+  assert.strictEqual(await read(await child(state, 'Number')), 12);
+});
+
+test('UserExecutable and ProgramDiagnostic tell what may be called and what was called', async () => {
+  const programs = await findPrograms(await deviceSet());
+  const skill = programs.get('CartesianPtpMoveSkill');
+  const executable = async (method) => {
+    const value = await session.read({
+      nodeId: await child(skill.nodeId, method), attributeId: AttributeIds.UserExecutable });
+    return value.value.value;
+  };
+  const allowed = async () => {
+    const methods = ['Start', 'Suspend', 'Resume', 'Halt', 'Reset'];
+    const answers = await Promise.all(methods.map(executable));
+    return methods.filter((_, index) => answers[index]);
+  };
+  assert.deepStrictEqual(await allowed(), ['Start', 'Halt']);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Resume'), StatusCodes.BadInvalidState);
+  const diagnostic = await child(skill.nodeId, 'ProgramDiagnostic');
+  const whole = await read(diagnostic);
+  assert.strictEqual(whole.lastMethodCall, 'Resume');
+  assert.strictEqual(whole.lastMethodReturnStatus, StatusCodes.BadInvalidState);
+  assert.strictEqual(whole.lastMethodSessionId.toString(), session.sessionId.toString());
+  assert.strictEqual(await read(await child(diagnostic, 'LastMethodCall')), 'Resume');
+  assert.strictEqual(await callMethod(skill.nodeId, 'Halt'), StatusCodes.Good);
+  assert.deepStrictEqual(await allowed(), ['Reset']);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Reset'), StatusCodes.Good);
+});
+
+test('a bad parameter is refused in the write, and the skill stays usable', async () => {
+  const programs = await findPrograms(await deviceSet());
+  const skill = programs.get('JointPtpMoveSkill');
+  const target = await child(await child(skill.nodeId, 'ParameterSet'), 'TargetJointPosition');
+  const write = (value) => session.write({ nodeId: target, attributeId: AttributeIds.Value, value: { value } });
+  const doubles = (values) => ({
+    dataType: DataType.Double, arrayType: VariantArrayType.Array, value: new Float64Array(values) });
+  assert.strictEqual(await write(doubles([0, 0, NaN, 0, 0, 0, 0])), StatusCodes.BadOutOfRange);
+  assert.strictEqual(await write(doubles([0, 0, 0])), StatusCodes.BadOutOfRange);
+  assert.strictEqual(await write({ dataType: DataType.String, value: 'home' }), StatusCodes.BadTypeMismatch);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Halt'), StatusCodes.Good);
+  assert.strictEqual(await callMethod(skill.nodeId, 'Reset'), StatusCodes.Good);
+});

@@ -1,0 +1,250 @@
+// The demo cell as its users run it: processes of `metier`, clients over OPC UA, and what happens
+// when one of the processes dies.
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "metier/base/queue.hpp"
+#include "metier/skill_client/kinematics_reader.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+#include "metier_program.hpp"
+
+namespace metier::system_tests {
+namespace {
+
+using skill::State;
+using skill::TransitionEvent;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Lt;
+using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
+
+constexpr const char* kUp = "the cell is up; Ctrl-C ends it";
+
+/// `metier up` with the demo cell.
+class RunningCell {
+public:
+    RunningCell()
+        : process_(
+              process::ChildProcess::start(metierCommand({"up", demoCell().string(), "--free-ports",
+                                                          "--endpoints", endpoints_.string()}))
+                  .value()) {
+        for (std::string line; line != kUp;) {
+            line = process_.readLine(inAMinute()).value();
+        }
+        std::ifstream file(endpoints_);
+        for (const auto& server : nlohmann::json::parse(file)) {
+            urls_[server.at("name")] = server.at("url");
+        }
+    }
+
+    const std::map<std::string, std::string>& urls() const { return urls_; }
+    process::ChildProcess& process() { return process_; }
+
+    /// Handles of the servers' processes, readable once they have ended.
+    std::vector<pollfd> children() const {
+        const auto task = "/proc/" + std::to_string(process_.pid()) + "/task/" +
+                          std::to_string(process_.pid()) + "/children";
+        std::ifstream file(task);
+        std::vector<pollfd> handles;
+        for (pid_t pid = 0; file >> pid;) {
+            handles.push_back({static_cast<int>(syscall(SYS_pidfd_open, pid, 0)), POLLIN, 0});
+        }
+        return handles;
+    }
+
+private:
+    std::filesystem::path endpoints_ = std::filesystem::path(::testing::TempDir()) /
+                                       ("endpoints_" + std::to_string(getpid()) + ".json");
+    process::ChildProcess process_;
+    std::map<std::string, std::string> urls_;
+};
+
+TEST(Cell, MovesEveryArmAlongItsSquareWithinFiveHundredthsOfAMillimetre) {
+    const RunningCell cell;
+    std::vector<std::string> command{"square", "--json", "--laps",
+                                     "1",      "--svg",  ::testing::TempDir() + "square.svg"};
+    for (const auto& [name, url] : cell.urls()) {
+        command.push_back(url);
+    }
+    const auto run = runMetier(command, Errors::left_out);
+    EXPECT_EQ(run.status, 0) << run.output;
+    const auto arms = nlohmann::json::parse(run.output);
+    ASSERT_THAT(arms, SizeIs(3)) << run.output;
+    for (const auto& arm : arms) {
+        ASSERT_FALSE(arm.contains("error")) << arm.dump(2);
+        EXPECT_EQ(arm.at("laps"), 1);
+        EXPECT_THAT(arm.at("deviation_mm").get<double>(), Lt(0.05)) << arm.dump(2);
+        EXPECT_THAT(arm.at("closure_mm").get<double>(), Lt(0.05)) << arm.dump(2);
+    }
+}
+
+TEST(Cell, IsFoundByBrowsing) {
+    const ServerProcess iiwa("iiwa");
+    const auto client = connectTo(iiwa.url());
+    const auto skills = skill_client::findSkills(*client);
+    ASSERT_TRUE(skills) << skills.error().message;
+    std::vector<std::string> names;
+    for (const auto& skill : *skills) {
+        names.push_back(skill.name);
+        EXPECT_EQ(skill.type_name, skill.name + "Type");
+        EXPECT_NE(skill.controllerName(), "");
+    }
+    EXPECT_THAT(names, UnorderedElementsAre("CartesianLinearMoveSkill", "CartesianPtpMoveSkill",
+                                            "JointLinearMoveSkill", "JointPtpMoveSkill"));
+}
+
+TEST(Cell, EndsAllItsServersWhenItIsKilled) {
+    RunningCell cell;
+    auto children = cell.children();
+    ASSERT_THAT(children, SizeIs(cell.urls().size()));
+    cell.process().signal(SIGKILL);
+    for (auto& child : children) {
+        ASSERT_GE(child.fd, 0);
+        EXPECT_EQ(poll(&child, 1, 10'000), 1) << "a server outlives its cell";
+        close(child.fd);
+    }
+}
+
+TEST(Cell, GoesDownAndSaysWhichServerEnded) {
+    RunningCell cell;
+    const auto task = "/proc/" + std::to_string(cell.process().pid()) + "/task/" +
+                      std::to_string(cell.process().pid()) + "/children";
+    pid_t first = 0;
+    std::ifstream(task) >> first;
+    ASSERT_GT(first, 0);
+    ASSERT_EQ(kill(first, SIGKILL), 0);
+    EXPECT_EQ(cell.process().waitUntil(inAMinute()), 1);
+}
+
+/// A robot's server, and the move component in front of it.
+class MoveComponent : public ::testing::Test {
+protected:
+    MoveComponent() {
+        skill_.onTransition([this](const TransitionEvent& event) {
+            transitions_.tryPush({event, std::chrono::steady_clock::now()});
+        });
+        home_ = jointPosition(*client_, skill_);
+    }
+
+    struct Seen {
+        TransitionEvent event;
+        SteadyTime when;
+    };
+    Seen next() { return transitions_.popUntil(inAMinute()).value(); }
+
+    /// A move of axis 1 that takes a second or more.
+    void startLongMove() {
+        auto target = home_;
+        target.front() += 1.0;
+        ASSERT_TRUE(skill_.set("TargetJointPosition", target));
+        ASSERT_TRUE(skill_.set("SpeedOverride", 0.3));
+        const auto started = skill_.start();
+        ASSERT_TRUE(started) << started.error().message;
+        ASSERT_EQ(next().event.to, State::running);
+    }
+
+    /// Until the arm really moves.
+    void awaitMotion() {
+        Queue<double> positions(1'000);
+        const auto nodes = skill_client::findKinematics(*client_, skill_.address());
+        ASSERT_TRUE(nodes);
+        const auto subscription = skill_client::subscribeJointPosition(
+            *client_, *nodes, std::chrono::milliseconds(10),
+            [&positions](const auto& joints) { positions.tryPush(joints.front()); });
+        ASSERT_TRUE(subscription);
+        std::optional<double> position;
+        do {
+            position = positions.popUntil(inAMinute());
+            ASSERT_TRUE(position);
+        } while (*position < home_.front() + 0.01);
+    }
+
+    /// Until the component says that its arm has this safety state.
+    void awaitSafetyState(std::int32_t wanted) {
+        Queue<std::int32_t> states(1'000);
+        const auto nodes = skill_client::findKinematics(*client_, skill_.address());
+        ASSERT_TRUE(nodes);
+        const auto subscription =
+            client_->subscribeData(nodes->safety_state, {std::chrono::milliseconds(50), 10},
+                                   [&states](const opcua::DataValue& value) {
+                                       states.tryPush(value.value.as<std::int32_t>().value_or(-1));
+                                   });
+        ASSERT_TRUE(subscription);
+        std::optional<std::int32_t> state;
+        do {
+            state = states.popUntil(inAMinute());
+            ASSERT_TRUE(state) << "no safety state " << wanted;
+        } while (*state != wanted);
+    }
+
+    static constexpr std::int32_t kNormal = 1;
+
+    ServerProcess robot_{"ur5"};
+    ServerProcess component_{"ur5-move", {"--port", "0", "--robot", robot_.url()}};
+    Queue<Seen> transitions_{100};
+    std::unique_ptr<opcua::Client> client_ = connectTo(component_.url());
+    skill_client::SkillHandle skill_ = openSkill(*client_, "JointPtpMoveSkill");
+    std::vector<double> home_;
+};
+
+TEST_F(MoveComponent, HaltsWithinASecondOfTheRobotsDeathAndGoesOnOnceItIsBack) {
+    startLongMove();
+    awaitMotion();
+    const auto killed = std::chrono::steady_clock::now();
+    robot_.kill();
+    const auto halted = next();
+    EXPECT_EQ(halted.event.to, State::halted);
+    EXPECT_EQ(halted.event.reason, skill::Reason::device_lost);
+    EXPECT_THAT(halted.event.reason_text, AllOf(HasSubstr("Ur:"), HasSubstr(robot_.url())));
+    EXPECT_THAT(halted.when - killed, Lt(std::chrono::seconds(1)));
+    EXPECT_FALSE(skill_.reset());
+    EXPECT_EQ(*skill_.state(), State::halted);
+
+    const ServerProcess back("ur5", {"--port", robot_.port()});
+    awaitSafetyState(kNormal);
+    const auto reset = skill_.reset();
+    ASSERT_TRUE(reset) << reset.error().message;
+    EXPECT_EQ(next().event.to, State::ready);
+    auto target = home_;
+    target.back() += 0.1;
+    const auto moved = skill_.run({{"TargetJointPosition", target}}, inAMinute());
+    ASSERT_TRUE(moved) << moved.error().message;
+    EXPECT_NEAR(jointPosition(*client_, skill_).back(), target.back(), 1e-3);
+}
+
+TEST_F(MoveComponent, HaltsOnThePathAndReadiesAgain) {
+    startLongMove();
+    awaitMotion();
+    ASSERT_TRUE(skill_.halt());
+    EXPECT_EQ(next().event.to, State::halted);
+    const auto resting = jointPosition(*client_, skill_);
+    for (std::size_t axis = 1; axis < home_.size(); ++axis) {
+        EXPECT_NEAR(resting[axis], home_[axis], 1e-3) << "axis " << axis + 1;
+    }
+    EXPECT_LT(resting.front(), home_.front() + 1.0);
+    ASSERT_TRUE(skill_.reset());
+    EXPECT_EQ(next().event.to, State::ready);
+}
+
+TEST_F(MoveComponent, SuspendsAndResumesToTheTarget) {
+    startLongMove();
+    awaitMotion();
+    ASSERT_TRUE(skill_.suspend());
+    EXPECT_EQ(next().event.to, State::suspended);
+    ASSERT_TRUE(skill_.resume());
+    EXPECT_EQ(next().event.to, State::running);
+    EXPECT_EQ(next().event.to, State::ready);
+    EXPECT_NEAR(jointPosition(*client_, skill_).front(), home_.front() + 1.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace metier::system_tests

@@ -1,0 +1,88 @@
+#include "metier_program.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <stdexcept>
+
+#include "metier/skill_client/kinematics_reader.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::system_tests {
+namespace {
+
+template <typename Answer>
+auto orThrow(Answer answer) {
+    if (!answer) {
+        throw std::runtime_error(answer.error().message);
+    }
+    return std::move(*answer);
+}
+
+std::vector<std::string> serveArguments(const std::string& name,
+                                        const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"serve", demoCell().string(), "--server", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return metierCommand(arguments);
+}
+
+}  // namespace
+
+std::vector<std::string> metierCommand(const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{METIER_PROGRAM};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return command;
+}
+
+Finished runMetier(const std::vector<std::string>& arguments, Errors errors) {
+    auto child = orThrow(process::ChildProcess::start(
+        metierCommand(arguments), errors == Errors::with_output ? process::ErrorOutput::with_output
+                                                                : process::ErrorOutput::inherited));
+    Finished finished;
+    const auto deadline = inAMinute();
+    auto line = child.readLine(deadline);
+    for (; line; line = child.readLine(deadline)) {
+        finished.output += *line + "\n";
+    }
+    const auto status = child.waitUntil(deadline);
+    if (!status) {
+        throw std::runtime_error(fmt::format("metier {} did not end; it printed:\n{}",
+                                             arguments.front(), finished.output));
+    }
+    finished.status = *status;
+    return finished;
+}
+
+std::filesystem::path demoCell() {
+    return std::filesystem::path(METIER_SOURCE_DIR) / "cells" / "demo.toml";
+}
+
+ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more)
+    : process_(orThrow(process::ChildProcess::start(serveArguments(name, more)))) {
+    const std::string ready = "ready ";
+    const auto line = orThrow(process_.readLine(inAMinute()));
+    if (!line.starts_with(ready)) {
+        throw std::runtime_error(fmt::format("{} said: {}", name, line));
+    }
+    url_ = line.substr(ready.size());
+}
+
+void ServerProcess::kill() {
+    process_.signal(SIGKILL);
+}
+
+std::unique_ptr<opcua::Client> connectTo(const std::string& url) {
+    return orThrow(opcua::Client::connect(url));
+}
+
+skill_client::SkillHandle openSkill(opcua::Client& client, const std::string& name) {
+    return orThrow(
+        skill_client::SkillHandle::open(client, orThrow(skill_client::findSkill(client, name))));
+}
+
+std::vector<double> jointPosition(opcua::Client& client, const skill_client::SkillHandle& skill) {
+    const auto nodes = orThrow(skill_client::findKinematics(client, skill.address()));
+    return orThrow(skill_client::readJointPosition(client, nodes));
+}
+
+}  // namespace metier::system_tests

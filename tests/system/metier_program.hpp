@@ -1,0 +1,63 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/process/child_process.hpp"
+#include "metier/skill_client/skill_handle.hpp"
+
+namespace metier::system_tests {
+
+/// Longest wait for a process: it starts on a machine that is busy with other tests.
+inline SteadyTime inAMinute() {
+    return std::chrono::steady_clock::now() + std::chrono::seconds(60);
+}
+
+/// The command line of the `metier` that was built with these tests.
+std::vector<std::string> metierCommand(const std::vector<std::string>& arguments);
+
+/// A run of `metier` that came to its end.
+struct Finished {
+    int status = -1;  ///< exit status; 128 + signal
+    std::string output;
+};
+
+enum class Errors { left_out, with_output };
+
+/// Runs `metier` to its end. Throws at a deadline of a minute.
+Finished runMetier(const std::vector<std::string>& arguments, Errors errors = Errors::with_output);
+
+/// The demo's cell file.
+std::filesystem::path demoCell();
+
+/// One server of the demo cell in a process of its own.
+class ServerProcess {
+public:
+    /// \param more arguments of `metier serve`, such as a port; without it a free one
+    /// Errors: throws unless it serves within a minute.
+    explicit ServerProcess(const std::string& name,
+                           const std::vector<std::string>& more = {"--port", "0"});
+
+    const std::string& url() const noexcept { return url_; }
+    std::string port() const { return url_.substr(url_.rfind(':') + 1); }
+    /// Ends it as a crash does.
+    void kill();
+
+private:
+    process::ChildProcess process_;
+    std::string url_;
+};
+
+/// A client of that server. Throws if it cannot connect.
+std::unique_ptr<opcua::Client> connectTo(const std::string& url);
+/// The skill of that name. Throws if there is none.
+skill_client::SkillHandle openSkill(opcua::Client& client, const std::string& name);
+/// Measured joint positions [rad] of the arm that a skill moves.
+std::vector<double> jointPosition(opcua::Client& client, const skill_client::SkillHandle& skill);
+
+}  // namespace metier::system_tests

@@ -1,0 +1,40 @@
+#include "served_contract.hpp"
+
+#include <stdexcept>
+
+namespace metier::system_tests {
+
+namespace {
+
+template <typename T>
+T orThrow(opcua::Answer<T> answer) {
+    if (!answer) {
+        throw std::runtime_error(answer.error().message);
+    }
+    return std::move(*answer);
+}
+
+}  // namespace
+
+opcua::Client& ServedContract::client() {
+    if (!client_) {
+        client_ = connect();
+    }
+    return *client_;
+}
+
+skill_client::SkillHandle ServedContract::openSkill(opcua::Client& client,
+                                                    const std::string& name) {
+    return orThrow(
+        skill_client::SkillHandle::open(client, orThrow(skill_client::findSkill(client, name))));
+}
+
+skill_client::SkillHandle ServedContract::openSkill(const std::string& name) {
+    return openSkill(client(), name);
+}
+
+std::string ServedContract::textAt(const served::ServedSkill& skill, std::string_view path) {
+    return served::readAs<opcua::LocalizedText>(client(), skill, path).text;
+}
+
+}  // namespace metier::system_tests
