@@ -141,12 +141,12 @@ protected:
     };
     Seen next() { return transitions_.popUntil(inAMinute()).value(); }
 
-    /// A move of axis 1 that takes a second or more.
+    /// A move of axis 1 that takes some seconds.
     void startLongMove() {
         auto target = home_;
         target.front() += 1.0;
         ASSERT_TRUE(skill_.set("TargetJointPosition", target));
-        ASSERT_TRUE(skill_.set("SpeedOverride", 0.3));
+        ASSERT_TRUE(skill_.set("SpeedOverride", 0.1));
         const auto started = skill_.start();
         ASSERT_TRUE(started) << started.error().message;
         ASSERT_EQ(next().event.to, State::running);

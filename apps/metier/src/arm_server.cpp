@@ -95,7 +95,8 @@ Result<void> ArmServer::offer(const configuration::ArmServer& config) {
     if (auto same = checkSameSkills(*nodes, config); !same) {
         return same;
     }
-    auto arm_skills = robot_skills::makeArmSkills(*arm_, model_, host_->clock());
+    auto arm_skills = robot_skills::makeArmSkills(*arm_, model_, host_->clock(),
+                                                  {.longest_silence = config.stream_silence});
     if (!arm_skills) {
         return fail(arm_skills.error());
     }

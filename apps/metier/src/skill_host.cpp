@@ -78,18 +78,7 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
 }
 
 void SkillHost::haltOnLossOf(device::Arm& arm) {
-    // The callback may still run while this ends: it uses nothing of it but on the server's thread.
-    loss_watch_ = arm.onSafetyChange(
-        [executor = skills_->executor(), skills = skills_.get()](const device::Safety& safety) {
-            if (safety.state != device::SafetyState::disconnected) {
-                return;
-            }
-            executor->post([skills, text = safety.text] {
-                for (auto* program : skills->programs()) {
-                    program->deviceLost(text);
-                }
-            });
-        });
+    device_watch_.emplace(arm, skills_->executor(), skills_->programs());
 }
 
 }  // namespace metier::app

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
+#include "metier/robot_skills/device_watch.hpp"
 
 namespace metier::app {
 
@@ -37,7 +39,7 @@ public:
     /// Shows what is known of the arm, and its live state. `arm` and `model` must outlive this.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const device::Arm& arm,
                             const motion::RobotModel& model);
-    /// Halts every skill when the arm is lost. `arm` must outlive this.
+    /// Halts every skill that is offered by now when the arm is lost. `arm` must outlive this.
     void haltOnLossOf(device::Arm& arm);
     Result<void> start() { return server_->start(); }
 
@@ -47,7 +49,7 @@ private:
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
-    device::Registration loss_watch_;
+    std::optional<robot_skills::DeviceWatch> device_watch_;
 };
 
 }  // namespace metier::app

@@ -11,6 +11,9 @@ namespace metier::configuration {
 namespace {
 
 constexpr std::int64_t kMaxPort = 65535;
+// A shorter silence is within the jitter of a network, a longer one leaves an arm to itself [s].
+constexpr double kShortestSilence = 0.02;
+constexpr double kLongestSilence = 2.0;
 
 std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
                              const std::filesystem::path& folder) {
@@ -31,6 +34,12 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     arm.model = pathIn(table, "model", folder);
     arm.nodeset = table.text("nodeset");
     arm.skills = table.texts("skills");
+    arm.stream_silence = table.numberOr("stream_silence", arm.stream_silence);
+    if (!(arm.stream_silence >= kShortestSilence && arm.stream_silence <= kLongestSilence)) {
+        table.reject("stream_silence",
+                     fmt::format("{} is not within {} to {} s", arm.stream_silence,
+                                 kShortestSilence, kLongestSilence));
+    }
     return arm;
 }
 

@@ -94,6 +94,21 @@ port = 70000
     EXPECT_THAT(cell.error().message, HasSubstr("server[0].port: 70000 is not within 0 to 65535"));
 }
 
+TEST_F(CellFile, RefusesASilenceOutOfRangeWithItsUnit) {
+    const auto cell = load(R"(name = "a"
+[[server]]
+name = "m"
+kind = "arm"
+model = "none.toml"
+nodeset = "iiwa"
+skills = []
+stream_silence = 5.0
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message,
+                HasSubstr("cell.toml:8: server[0].stream_silence: 5 is not within 0.02 to 2 s"));
+}
+
 TEST_F(CellFile, NeedsAServer) {
     const auto cell = load("name = \"empty\"\n");
     ASSERT_FALSE(cell);

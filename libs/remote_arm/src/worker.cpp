@@ -19,8 +19,12 @@ constexpr auto kResetWait = 250ms;
 constexpr auto kLinger = 500ms;
 // How long a silent stream may take to be Ready again.
 constexpr auto kLongestEnding = 2s;
-// Without a change of the measured position for so long, the arm stands.
-constexpr auto kStandstillAfter = 60ms;
+// Without a change of the measured position for so long, the arm stands: the shorter time where it
+// is at its last set-point, the longer one elsewhere, since news of its motion may be late.
+constexpr auto kStandstillAtTarget = 60ms;
+constexpr auto kStandstill = 300ms;
+// How near its last set-point an arm is there [rad].
+constexpr double kAtTarget = 1e-3;
 // After a longer pause of this thread it does not catch up set-point by set-point.
 constexpr std::uint64_t kMostCyclesBehind = 50;
 // Where the measured arm is farther from the last set-point, it was moved by someone else [rad].
@@ -197,7 +201,11 @@ void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
     }
     sampled_ = seen.sampled;
     state_.position = seen.position;
-    state_.standstill = std::chrono::steady_clock::now() - seen.moved > kStandstillAfter;
+    const bool at_target =
+        state_.commanded_position.size() == state_.position.size() &&
+        device::largestDifference(state_.commanded_position, state_.position) < kAtTarget;
+    const auto unmoved = std::chrono::steady_clock::now() - seen.moved;
+    state_.standstill = unmoved > (at_target ? kStandstillAtTarget : kStandstill);
     state_.missed_cycles = seen.missed_cycles;
 }
 

@@ -1,12 +1,11 @@
 #include "metier/robot_skills/arm_skills.hpp"
 
 #include "metier/robot_skills/move_skills.hpp"
-#include "metier/robot_skills/position_stream_skill.hpp"
 
 namespace metier::robot_skills {
 
 Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
-                                const Clock& clock) {
+                                const Clock& clock, const PositionStreamOptions& stream_options) {
     ArmSkills skills;
     skills.resource = std::make_shared<skill::Resource>("arm " + arm.info().name);
     for (auto* make : {makeCartesianPtpMoveSkill, makeCartesianLinearMoveSkill,
@@ -17,7 +16,7 @@ Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& mode
         }
         skills.moves.push_back(std::move(*move));
     }
-    auto stream = makePositionStreamSkill(arm, model, clock);
+    auto stream = makePositionStreamSkill(arm, model, clock, stream_options);
     if (!stream) {
         return fail(std::move(stream.error()));
     }

@@ -90,14 +90,16 @@ private:
 class PositionStreamSkill final
     : public skill::TypedSkill<PositionStreamParameters, PositionStreamResults> {
 public:
-    PositionStreamSkill(device::Arm& arm, const RobotModel& model, const Clock& clock)
+    PositionStreamSkill(device::Arm& arm, const RobotModel& model, const Clock& clock,
+                        const PositionStreamOptions& options)
         : TypedSkill({.name = "PositionStreamSkill",
                       .type = "PositionStreamSkillType",
                       .description = "Follows joint positions that are written while it runs"},
                      positionStreamFields(model), positionStreamResultFields()),
           arm_(arm),
           model_(model),
-          clock_(clock) {}
+          clock_(clock),
+          options_(options) {}
 
     Result<void> reset() override { return arm_.resetFault(); }
 
@@ -107,7 +109,8 @@ protected:
             return fail(std::move(ready.error()));
         }
         auto source = StreamSource::create(
-            model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position)});
+            model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position),
+                     options_.longest_silence});
         if (!source) {
             return fail(std::move(source.error()));
         }
@@ -142,6 +145,7 @@ private:
     device::Arm& arm_;
     const RobotModel& model_;
     const Clock& clock_;
+    const PositionStreamOptions options_;
 };
 
 }  // namespace
@@ -177,13 +181,13 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields() {
     return fields;
 }
 
-Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(device::Arm& arm,
-                                                              const RobotModel& model,
-                                                              const Clock& clock) {
+Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(
+    device::Arm& arm, const RobotModel& model, const Clock& clock,
+    const PositionStreamOptions& options) {
     if (auto checked = checkSameAxes(arm, model); !checked) {
         return fail(std::move(checked.error()));
     }
-    return std::make_unique<PositionStreamSkill>(arm, model, clock);
+    return std::make_unique<PositionStreamSkill>(arm, model, clock, options);
 }
 
 }  // namespace metier::robot_skills

@@ -19,8 +19,7 @@ namespace {
 // A stream slower than this stands, since every axis can stop from it within a few cycles; silence
 // then is no loss [rad/s].
 constexpr double kStanding = 0.02;
-// Silence of a moving stream: longer than this and than so many cycles is a loss.
-constexpr double kLostAfter = 0.15;  // [s]; a busy computer delays a thread by some 50 ms
+// Silence of a moving stream of no more than so many cycles is no loss.
 constexpr int kLostAfterCycles = 6;
 // Silence after which a standing stream is finished [s].
 constexpr double kFinishedAfter = 0.5;
@@ -139,8 +138,12 @@ void StreamSource::take(const StreamedPosition& set_point) noexcept {
     missed_cycles_ = follower_.missedCycles();
 }
 
+double StreamSource::longestSilence() const noexcept {
+    return std::max(setup_.longest_silence, kLostAfterCycles * setup_.cycle);
+}
+
 void StreamSource::watchSilence() noexcept {
-    const bool silent = silence_ > std::max(kLostAfter, kLostAfterCycles * setup_.cycle);
+    const bool silent = silence_ > longestSilence();
     if (end_ == End::none && silent && speed_ > kStanding) {
         endBecause(End::silent_moving);
         return;
@@ -189,12 +192,10 @@ void StreamSource::tellDone(const skill::Execution& tell) {
             tell.finish(positionStreamResultFields().write(counted));
             return;
         case End::silent_moving:
-            tell.fail(
-                skill::Reason::error,
-                fmt::format("the stream fell silent while it moved at {:.3f} rad/s: no "
-                            "set-point for {:.0f} ms after {} of them",
-                            speed_, 1e3 * std::max(kLostAfter, kLostAfterCycles * setup_.cycle),
-                            counted.set_points));
+            tell.fail(skill::Reason::error,
+                      fmt::format("the stream fell silent while it moved at {:.3f} rad/s: no "
+                                  "set-point for {:.0f} ms after {} of them",
+                                  speed_, 1e3 * longestSilence(), counted.set_points));
             return;
         case End::refused:
             tell.fail(skill::Reason::limit_violated, motion::toError(*refusal_).message);

@@ -16,6 +16,7 @@ public:
     struct Setup {
         double cycle = 0.0;         ///< of the arm [s]
         motion::JointVector start;  ///< where the arm is commanded to stand [rad]
+        double longest_silence = PositionStreamOptions{}.longest_silence;  ///< [s]
     };
 
     /// \param model must outlive the source
@@ -45,6 +46,8 @@ private:
     void takeSetPoints() noexcept;
     void take(const StreamedPosition& set_point) noexcept;
     void watchSilence() noexcept;
+    /// Silence of a moving stream that ends it [s].
+    double longestSilence() const noexcept;
     void hold() noexcept;
     void endBecause(End end) noexcept;
     PositionStreamResults results() const noexcept;

@@ -17,6 +17,8 @@ struct ArmServer {
     std::string nodeset;
     /// Skills that the server offers, such as `PositionStreamSkill`; all are in its NodeSet.
     std::vector<std::string> skills;
+    /// Silence of a moving stream that ends it [s].
+    double stream_silence = 0.15;
 };
 
 /// Move skills over the PositionStreamSkill of another server.

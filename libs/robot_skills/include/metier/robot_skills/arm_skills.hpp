@@ -6,6 +6,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "metier/robot_skills/position_stream_skill.hpp"
 #include "metier/skill/resource.hpp"
 #include "metier/skill/skill.hpp"
 
@@ -23,6 +24,6 @@ struct ArmSkills {
 /// \param arm, model, clock must outlive the skills
 /// Errors: invalid_argument if arm and model differ in their number of axes.
 Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
-                                const Clock& clock);
+                                const Clock& clock, const PositionStreamOptions& stream = {});
 
 }  // namespace metier::robot_skills

@@ -17,6 +17,13 @@ struct PositionStreamParameters {
     std::optional<std::vector<double>> target_joint_position{};  ///< [rad]; live
 };
 
+struct PositionStreamOptions {
+    /// Silence of a moving stream that ends it [s]; at least 6 cycles are waited for. The arm goes
+    /// on to its last set-points meanwhile. A busy computer without a real-time kernel delays a
+    /// thread by some 50 ms.
+    double longest_silence = 0.15;
+};
+
 struct PositionStreamResults {
     std::uint64_t set_points = 0;     ///< that were followed
     std::uint64_t missed_cycles = 0;  ///< without a set-point in time, up to the last set-point
@@ -35,15 +42,16 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 ///   the stream begins anew where the arm stands;
 /// - by silence while the stream stands, that is its last two set-points differ by less than
 ///   0.02 rad/s: the arm goes to the last one, and after 0.5 s it is finished, with its results;
-/// - by silence of over 150 ms (and 6 cycles) while it moves: brakes, then Halted with an error;
+/// - by silence of over PositionStreamOptions::longest_silence while it moves: brakes, then Halted
+/// with an error;
 /// - by a set-point that no axis could follow (a jump): brakes, then Halted, limit_violated.
 ///   A single set-point outside the axes' ranges is refused when it is written.
 /// A stream that never begins is finished after 10 s.
 ///
 /// \param arm, model, clock must outlive the skill
 /// Errors: invalid_argument if arm and model differ in their number of axes.
-Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(device::Arm& arm,
-                                                              const motion::RobotModel& model,
-                                                              const Clock& clock);
+Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(
+    device::Arm& arm, const motion::RobotModel& model, const Clock& clock,
+    const PositionStreamOptions& options = {});
 
 }  // namespace metier::robot_skills
