@@ -42,5 +42,7 @@ inline constexpr std::chrono::milliseconds kPublishingInterval{100};
 /// Errors of the functions that they hold: exceptions.
 Side metierSide(opcua_skill::NodeStyle style = opcua_skill::NodeStyle::readable);
 Side bareSide();
+/// metier's server with open62541 alone as its client; can only call().
+Side metierServerBareClient();
 
 }  // namespace metier::benchmarks

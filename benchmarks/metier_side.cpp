@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bare.hpp"
 #include "both_sides.hpp"
 #include "metier/base/queue.hpp"
 #include "metier/opcua/client.hpp"
@@ -39,20 +40,27 @@ skill::Field field(const char* name, skill::Unit unit, skill::Value default_valu
     return result;
 }
 
+skill::Fields moveParameters() {
+    const std::vector<double> zeros(6);
+    std::vector<skill::Field> fields{
+        field("TargetJointPosition", skill::kRadian, zeros),
+        field("MaxVelocity", skill::kRadianPerSecond, zeros),
+        field("MaxAcceleration", skill::kRadianPerSecondSquared, zeros),
+        field("ToolFrame", skill::kOne, std::string()),
+        field("SpeedOverride", skill::kOne, 1.0),
+        field("BlendRadius", skill::kMetre, 0.0)};
+    fields[4].place = skill::Place::options;
+    fields[5].place = skill::Place::options;
+    return fields;
+}
+
 /// A move with six parameters, with all that the model asks of a skill, and no work to do.
 skill::SkillDescription moveDescription(std::string name) {
-    const std::vector<double> zeros(6);
+    static const auto kParameters = moveParameters();
     skill::SkillDescription description;
     description.name = std::move(name);
     description.type = "JointPtpMoveSkillType";
-    description.parameters = {field("TargetJointPosition", skill::kRadian, zeros),
-                              field("MaxVelocity", skill::kRadianPerSecond, zeros),
-                              field("MaxAcceleration", skill::kRadianPerSecondSquared, zeros),
-                              field("ToolFrame", skill::kOne, std::string()),
-                              field("SpeedOverride", skill::kOne, 1.0),
-                              field("BlendRadius", skill::kMetre, 0.0)};
-    description.parameters[4].place = skill::Place::options;
-    description.parameters[5].place = skill::Place::options;
+    description.parameters = kParameters;
     return description;
 }
 
@@ -154,7 +162,35 @@ private:
     opcua::Subscription subscription_;
 };
 
+/// A client that knows nothing of metier but where Start is.
+class BareCallerOfMetier final : public Caller {
+public:
+    explicit BareCallerOfMetier(const std::string& url) : client_(url) {
+        const auto finder = orThrow(opcua::Client::connect(url, {}));
+        const auto skill = orThrow(skill_client::findSkill(*finder, kStarted)).node;
+        skill_ = skill.toString();
+        start_ = orThrow(finder->translate(skill, {{0, "Start"}})).toString();
+    }
+
+    void call() override { client_.call(skill_, start_); }
+    void start() override { call(); }
+    void subscribe() override { throw std::logic_error("only calls"); }
+    std::chrono::nanoseconds startUntilRunning() override { throw std::logic_error("only calls"); }
+    void idleUntil(steady_clock::time_point /*end*/) override {}
+
+private:
+    opcua::bare::Client client_;
+    std::string skill_;
+    std::string start_;
+};
+
 }  // namespace
+
+Side metierServerBareClient() {
+    auto side = metierSide();
+    side.connect = [](const std::string& url) { return std::make_unique<BareCallerOfMetier>(url); };
+    return side;
+}
 
 Side metierSide(opcua_skill::NodeStyle style) {
     return {[style](std::size_t idle) {

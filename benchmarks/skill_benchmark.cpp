@@ -5,7 +5,8 @@
 // that slows down slows down both. Both clients ask for events every 100 ms.
 //
 //   Start call        metier's Start, two transitions included, against a bare method without
-//                     arguments that does nothing; one client, nobody subscribed
+//                     arguments that does nothing; one client, nobody subscribed. The same bare
+//                     client for both servers, then metier's own, which waits for its thread
 //   Start to Running  from before the call until the subscriber's callback has the event; the next
 //                     Start follows at once, so the stock server's timer has always just fired
 //   executions        eight clients call Start of one Program for two seconds; the bare method
@@ -77,10 +78,10 @@ struct Both {
     Samples bare;
 };
 
-/// Measures both sides in turn, with one client each on a server with one Program.
+/// Measures a side of metier and the bare one in turn, with one client each on a server with one
+/// Program.
 template <typename Prepare, typename Measure>
-Both inTurn(std::size_t per_round, Prepare prepare, Measure measure) {
-    const auto metier_side = metierSide();
+Both inTurn(const Side& metier_side, std::size_t per_round, Prepare prepare, Measure measure) {
     const auto bare_side = bareSide();
     const ServerProcess metier_server([&] { return metier_side.serve(0); });
     const ServerProcess bare_server([&] { return bare_side.serve(0); });
@@ -102,22 +103,21 @@ Both inTurn(std::size_t per_round, Prepare prepare, Measure measure) {
     return both;
 }
 
-void callLatency() {
+void callLatency(const std::string& name, const Side& metier, const std::string& goal) {
     auto both = inTurn(
-        kCallsPerRound, [](Caller&) {},
+        metier, kCallsPerRound, [](Caller&) {},
         [](Caller& caller) {
             const auto begin = steady_clock::now();
             caller.call();
             return steady_clock::now() - begin;
         });
-    print(
-        {"Start call p50", "us", both.metier.quantile(0.5), both.bare.quantile(0.5), "ratio <= 2"});
-    print({"Start call p99", "us", both.metier.quantile(0.99), both.bare.quantile(0.99), ""});
+    print({name + " p50", "us", both.metier.quantile(0.5), both.bare.quantile(0.5), goal});
+    print({name + " p99", "us", both.metier.quantile(0.99), both.bare.quantile(0.99), ""});
 }
 
 void eventLatency() {
     auto both = inTurn(
-        kEventsPerRound, [](Caller& caller) { caller.subscribe(); },
+        metierSide(), kEventsPerRound, [](Caller& caller) { caller.subscribe(); },
         [](Caller& caller) { return caller.startUntilRunning(); });
     print({"Start to Running event p50", "us", both.metier.quantile(0.5), both.bare.quantile(0.5),
            "< 500 us"});
@@ -223,7 +223,8 @@ int main(int argc, char** argv) {
     try {
         fmt::print("{:<32} {:>11} {:>11} {:>9}  {:<9} {}\n", "", "metier", "bare", "ratio", "unit",
                    "goal");
-        callLatency();
+        callLatency("Start call, bare client", metierServerBareClient(), "ratio <= 2");
+        callLatency("Start call, metier's client", metierSide(), "");
         eventLatency();
         executions();
         manySkills(argc > 1 ? std::stoul(argv[1]) : 10'000);

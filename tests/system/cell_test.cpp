@@ -125,10 +125,11 @@ TEST(Cell, GoesDownAndSaysWhichServerEnded) {
     EXPECT_EQ(cell.process().waitUntil(inAMinute()), 1);
 }
 
-/// A robot's server, and the move component in front of it.
-class MoveComponent : public ::testing::Test {
-protected:
-    MoveComponent() {
+/// A client of a server with move skills, while its arm moves.
+class Mover {
+public:
+    explicit Mover(const std::string& url)
+        : client_(connectTo(url)), skill_(openSkill(*client_, "JointPtpMoveSkill")) {
         skill_.onTransition([this](const TransitionEvent& event) {
             transitions_.tryPush({event, std::chrono::steady_clock::now()});
         });
@@ -140,11 +141,15 @@ protected:
         SteadyTime when;
     };
     Seen next() { return transitions_.popUntil(inAMinute()).value(); }
+    opcua::Client& client() { return *client_; }
+    skill_client::SkillHandle& skill() { return skill_; }
+    const std::vector<double>& home() const { return home_; }
+    std::vector<double> position() { return jointPosition(*client_, skill_); }
 
-    /// A move of axis 1 that takes some seconds.
+    /// A move of axis 1 by `kLongMove` that takes some seconds.
     void startLongMove() {
         auto target = home_;
-        target.front() += 1.0;
+        target.front() += kLongMove;
         ASSERT_TRUE(skill_.set("TargetJointPosition", target));
         ASSERT_TRUE(skill_.set("SpeedOverride", 0.1));
         const auto started = skill_.start();
@@ -168,7 +173,7 @@ protected:
         } while (*position < home_.front() + 0.01);
     }
 
-    /// Until the component says that its arm has this safety state.
+    /// Until the server says that its arm has this safety state.
     void awaitSafetyState(std::int32_t wanted) {
         Queue<std::int32_t> states(1'000);
         const auto nodes = skill_client::findKinematics(*client_, skill_.address());
@@ -186,64 +191,86 @@ protected:
         } while (*state != wanted);
     }
 
-    static constexpr std::int32_t kNormal = 1;
+    static constexpr double kLongMove = 1.0;  // [rad]
 
-    ServerProcess robot_{"ur5"};
-    ServerProcess component_{"ur5-move", {"--port", "0", "--robot", robot_.url()}};
+private:
     Queue<Seen> transitions_{100};
-    std::unique_ptr<opcua::Client> client_ = connectTo(component_.url());
-    skill_client::SkillHandle skill_ = openSkill(*client_, "JointPtpMoveSkill");
+    std::unique_ptr<opcua::Client> client_;
+    skill_client::SkillHandle skill_;
     std::vector<double> home_;
 };
 
+constexpr std::int32_t kNormal = 1;
+
+void haltsOnThePathAndReadiesAgain(Mover& mover) {
+    mover.startLongMove();
+    mover.awaitMotion();
+    ASSERT_TRUE(mover.skill().halt());
+    const auto halted = mover.next();
+    EXPECT_EQ(halted.event.to, State::halted);
+    EXPECT_EQ(halted.event.reason, skill::Reason::by_client) << halted.event.reason_text;
+    const auto resting = mover.position();
+    for (std::size_t axis = 1; axis < resting.size(); ++axis) {
+        EXPECT_NEAR(resting[axis], mover.home()[axis], 1e-3) << "axis " << axis + 1;
+    }
+    EXPECT_LT(resting.front(), mover.home().front() + Mover::kLongMove);
+    mover.awaitSafetyState(kNormal);
+    ASSERT_TRUE(mover.skill().reset());
+    EXPECT_EQ(mover.next().event.to, State::ready);
+}
+
+/// A robot's server, and the move component in front of it.
+class MoveComponent : public ::testing::Test {
+protected:
+    ServerProcess robot_{"ur5"};
+    ServerProcess component_{"ur5-move", {"--port", "0", "--robot", robot_.url()}};
+    Mover mover_{component_.url()};
+};
+
 TEST_F(MoveComponent, HaltsWithinASecondOfTheRobotsDeathAndGoesOnOnceItIsBack) {
-    startLongMove();
-    awaitMotion();
+    mover_.startLongMove();
+    mover_.awaitMotion();
     const auto killed = std::chrono::steady_clock::now();
     robot_.kill();
-    const auto halted = next();
+    const auto halted = mover_.next();
     EXPECT_EQ(halted.event.to, State::halted);
-    EXPECT_EQ(halted.event.reason, skill::Reason::device_lost);
+    EXPECT_EQ(halted.event.reason, skill::Reason::device_lost) << halted.event.reason_text;
     EXPECT_THAT(halted.event.reason_text, AllOf(HasSubstr("Ur:"), HasSubstr(robot_.url())));
     EXPECT_THAT(halted.when - killed, Lt(std::chrono::seconds(1)));
-    EXPECT_FALSE(skill_.reset());
-    EXPECT_EQ(*skill_.state(), State::halted);
+    EXPECT_FALSE(mover_.skill().reset());
+    EXPECT_EQ(*mover_.skill().state(), State::halted);
 
     const ServerProcess back("ur5", {"--port", robot_.port()});
-    awaitSafetyState(kNormal);
-    const auto reset = skill_.reset();
+    mover_.awaitSafetyState(kNormal);
+    const auto reset = mover_.skill().reset();
     ASSERT_TRUE(reset) << reset.error().message;
-    EXPECT_EQ(next().event.to, State::ready);
-    auto target = home_;
+    EXPECT_EQ(mover_.next().event.to, State::ready);
+    auto target = mover_.home();
     target.back() += 0.1;
-    const auto moved = skill_.run({{"TargetJointPosition", target}}, inAMinute());
+    const auto moved = mover_.skill().run({{"TargetJointPosition", target}}, inAMinute());
     ASSERT_TRUE(moved) << moved.error().message;
-    EXPECT_NEAR(jointPosition(*client_, skill_).back(), target.back(), 1e-3);
+    EXPECT_NEAR(mover_.position().back(), target.back(), 1e-3);
 }
 
 TEST_F(MoveComponent, HaltsOnThePathAndReadiesAgain) {
-    startLongMove();
-    awaitMotion();
-    ASSERT_TRUE(skill_.halt());
-    EXPECT_EQ(next().event.to, State::halted);
-    const auto resting = jointPosition(*client_, skill_);
-    for (std::size_t axis = 1; axis < home_.size(); ++axis) {
-        EXPECT_NEAR(resting[axis], home_[axis], 1e-3) << "axis " << axis + 1;
-    }
-    EXPECT_LT(resting.front(), home_.front() + 1.0);
-    ASSERT_TRUE(skill_.reset());
-    EXPECT_EQ(next().event.to, State::ready);
+    haltsOnThePathAndReadiesAgain(mover_);
+}
+
+TEST(RobotWithItsOwnMoves, HaltsOnThePathAndReadiesAgain) {
+    const ServerProcess iiwa("iiwa");
+    Mover mover(iiwa.url());
+    haltsOnThePathAndReadiesAgain(mover);
 }
 
 TEST_F(MoveComponent, SuspendsAndResumesToTheTarget) {
-    startLongMove();
-    awaitMotion();
-    ASSERT_TRUE(skill_.suspend());
-    EXPECT_EQ(next().event.to, State::suspended);
-    ASSERT_TRUE(skill_.resume());
-    EXPECT_EQ(next().event.to, State::running);
-    EXPECT_EQ(next().event.to, State::ready);
-    EXPECT_NEAR(jointPosition(*client_, skill_).front(), home_.front() + 1.0, 1e-3);
+    mover_.startLongMove();
+    mover_.awaitMotion();
+    ASSERT_TRUE(mover_.skill().suspend());
+    EXPECT_EQ(mover_.next().event.to, State::suspended);
+    ASSERT_TRUE(mover_.skill().resume());
+    EXPECT_EQ(mover_.next().event.to, State::running);
+    EXPECT_EQ(mover_.next().event.to, State::ready);
+    EXPECT_NEAR(mover_.position().front(), mover_.home().front() + Mover::kLongMove, 1e-3);
 }
 
 }  // namespace

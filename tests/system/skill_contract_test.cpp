@@ -344,7 +344,9 @@ protected:
     skill_client::SkillHandle serveSkill(skill::SkillFunctions functions,
                                          skill::ProgramOptions options = {}) {
         auto description = served::streamDescription();
-        description.parameters.front().default_value = std::vector{0.0, 0.0};
+        auto fields = description.parameters.toVector();
+        fields.front().default_value = std::vector{0.0, 0.0};
+        description.parameters = std::move(fields);
         const auto program = skills().publish(
             system().skills,
             std::make_unique<skill::LambdaSkill>(std::move(description), std::move(functions)),

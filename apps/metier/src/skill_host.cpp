@@ -33,8 +33,7 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::Robot
     result.joint_position.assign(state.position.begin(), state.position.end());
     if (const auto joints = motion::JointVector::from(result.joint_position);
         joints && joints->size() == model.axisCount()) {
-        const auto frame = geometry::toFrame(model.kinematics().forward(*joints));
-        result.pose = {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
+        result.pose = geometry::toFrame(model.kinematics().forward(*joints));
     }
     result.safety_state = safetyKind(state.safety);
     result.missed_cycles = state.missed_cycles;

@@ -124,9 +124,7 @@ private:
     }
 
     Result<void> move(SkillHandle& skill, std::size_t corner) {
-        const auto frame = geometry::toFrame(square_.corner(corner));
-        const skill::ValueMap target{
-            {"TargetPosition", skill::Frame{frame.x, frame.y, frame.z, frame.a, frame.b, frame.c}}};
+        const skill::ValueMap target{{"TargetPosition", geometry::toFrame(square_.corner(corner))}};
         const auto deadline = std::chrono::steady_clock::now() + settings_.move_timeout;
         const auto result = skill.run(target, deadline);
         if (!result) {

@@ -37,6 +37,18 @@ void require(UA_StatusCode status, const char* what) {
     }
 }
 
+struct ParsedId {
+    explicit ParsedId(const std::string& text) {
+        const auto ascii = UA_STRING(const_cast<char*>(text.c_str()));  // NOLINT: only read
+        require(UA_NodeId_parse(&id, ascii), "parsing a NodeId");
+    }
+    ~ParsedId() { UA_NodeId_clear(&id); }
+    ParsedId(const ParsedId&) = delete;
+    ParsedId& operator=(const ParsedId&) = delete;
+
+    UA_NodeId id{};
+};
+
 UA_QualifiedName name(const std::string& text) {
     return UA_QUALIFIEDNAME(1, const_cast<char*>(text.c_str()));  // NOLINT: the stack copies it
 }
@@ -160,9 +172,8 @@ struct Client::Impl {
     UA_Client* client = UA_Client_new();
     std::function<void()> on_event;
 
-    void call(UA_UInt32 method) const {
-        require(UA_Client_call(client, own(kProgram), own(method), 0, nullptr, nullptr, nullptr),
-                "call");
+    void call(const UA_NodeId& object, const UA_NodeId& method) const {
+        require(UA_Client_call(client, object, method, 0, nullptr, nullptr, nullptr), "call");
     }
 };
 
@@ -178,10 +189,14 @@ Client::~Client() {
 }
 
 void Client::callNothing() {
-    impl_->call(kNothing);
+    impl_->call(own(kProgram), own(kNothing));
 }
 void Client::callStart() {
-    impl_->call(kStart);
+    impl_->call(own(kProgram), own(kStart));
+}
+
+void Client::call(const std::string& object, const std::string& method) {
+    impl_->call(ParsedId(object).id, ParsedId(method).id);
 }
 
 void Client::subscribe(std::chrono::milliseconds publishing_interval,

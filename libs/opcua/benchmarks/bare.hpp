@@ -42,6 +42,8 @@ public:
 
     /// Calls a method without arguments that does nothing.
     void callNothing();
+    /// Calls a method without arguments of another server. Ids as text, such as `ns=2;i=1`.
+    void call(const std::string& object, const std::string& method);
     /// Calls the Program's Start, which raises two events.
     void callStart();
     /// Subscribes to the Program's events.

@@ -36,10 +36,6 @@ constexpr std::array kFrameParts{
     FramePart{"Orientation", "C", Part::c},
 };
 
-skill::Value frameOf(const opcua::ThreeDFrame& frame) {
-    return skill::Frame{frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
-}
-
 /// Runs `work` for the Variable of a 3DFrame and for each Variable of its parts.
 template <typename Work>
 Result<void> forEachPart(AddressSpace& nodes, const NodeId& frame, Work work) {
@@ -75,7 +71,7 @@ public:
     void setFrame(const char* name, const opcua::ThreeDFrame& frame) {
         with(name, [&](const NodeId& node) {
             return forEachPart(nodes_, node, [&](const NodeId& variable, Part part) {
-                return nodes_.write(variable, partOf(frameOf(frame), part));
+                return nodes_.write(variable, partOf(frame, part));
             });
         });
     }
@@ -87,7 +83,7 @@ public:
     void liveFrame(const char* name, const std::function<opcua::ThreeDFrame()>& read) {
         with(name, [&](const NodeId& node) {
             return forEachPart(nodes_, node, [&](const NodeId& variable, Part part) {
-                return source(variable, [read, part] { return partOf(frameOf(read()), part); });
+                return source(variable, [read, part] { return partOf(read(), part); });
             });
         });
     }

@@ -36,7 +36,7 @@ Value unitOf(const skill::Field& field) {
 }
 
 Value rangeOf(const skill::Field& field) {
-    return Value::of(opcua::Range{field.range->low, field.range->high});
+    return Value::of(*field.range);
 }
 
 /// A Purpose fits into the tag of its Variable.

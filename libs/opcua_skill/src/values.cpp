@@ -16,74 +16,13 @@ constexpr std::string_view kUnitNamespace = "http://www.opcfoundation.org/UA/uni
 constexpr std::int32_t kScalar = -1;
 constexpr std::int32_t kArray = 1;
 
-// The form in which each type travels.
-bool wire(bool value) {
-    return value;
-}
-std::int32_t wire(std::int32_t value) {
-    return value;
-}
-std::uint32_t wire(std::uint32_t value) {
-    return value;
-}
-std::uint64_t wire(std::uint64_t value) {
-    return value;
-}
-double wire(double value) {
-    return value;
-}
-const std::string& wire(const std::string& value) {
-    return value;
-}
-opcua::ThreeDFrame wire(const skill::Frame& frame) {
-    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
-}
-opcua::ThreeDVector wire(const skill::Vector3& vector) {
-    return {vector.x, vector.y, vector.z};
-}
-opcua::Range wire(const skill::Range& range) {
-    return {range.low, range.high};
-}
-
 template <typename T>
-auto wire(const std::vector<T>& values) {
-    std::vector<std::decay_t<decltype(wire(values.front()))>> result;
-    result.reserve(values.size());
-    std::transform(values.begin(), values.end(), std::back_inserter(result),
-                   [](const auto& value) { return wire(value); });
-    return result;
-}
-
-template <typename T>
-T unwire(T value) {
-    return value;
-}
-skill::Frame unwire(const opcua::ThreeDFrame& frame) {
-    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
-}
-skill::Vector3 unwire(const opcua::ThreeDVector& vector) {
-    return {vector.x, vector.y, vector.z};
-}
-skill::Range unwire(const opcua::Range& range) {
-    return {range.low, range.high};
-}
-
-template <typename T>
-auto unwire(const std::vector<T>& values) {
-    std::vector<decltype(unwire(values.front()))> result;
-    result.reserve(values.size());
-    std::transform(values.begin(), values.end(), std::back_inserter(result),
-                   [](const auto& value) { return unwire(value); });
-    return result;
-}
-
-template <typename Wire>
 Result<skill::Value> take(const opcua::Value& value) {
-    auto taken = value.as<Wire>();
+    auto taken = value.as<T>();
     if (!taken) {
         return fail(std::move(taken.error()));
     }
-    return skill::Value(unwire(*taken));
+    return skill::Value(std::move(*taken));
 }
 
 /// One row per type of value: where to look it up by its data type.
@@ -125,7 +64,7 @@ opcua::Value toOpcua(const skill::Value& value) {
             if constexpr (std::is_same_v<Held, std::monostate>) {
                 return opcua::Value();
             } else {
-                return opcua::Value::of(wire(held));
+                return opcua::Value::of(held);
             }
         },
         value);

@@ -39,8 +39,10 @@ protected:
 
 TEST_F(Publishing, ReportsEveryFieldThatTheTypeLacks) {
     auto description = jointMoveDescription();
-    description.parameters[0].name = "TargetJoint";
-    description.parameters[4].name = "Turbo";
+    auto fields = description.parameters.toVector();
+    fields[0].name = "TargetJoint";
+    fields[4].name = "Turbo";
+    description.parameters = std::move(fields);
     const auto refused = publish(description);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::not_found);
@@ -50,8 +52,10 @@ TEST_F(Publishing, ReportsEveryFieldThatTheTypeLacks) {
 
 TEST_F(Publishing, ReportsEveryFieldOfAnotherType) {
     auto description = jointMoveDescription();
-    description.parameters[0].type = skill::ValueType::text;
-    description.parameters[4].type = skill::ValueType::int32;
+    auto fields = description.parameters.toVector();
+    fields[0].type = skill::ValueType::text;
+    fields[4].type = skill::ValueType::int32;
+    description.parameters = std::move(fields);
     const auto refused = publish(description);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::type_mismatch);

@@ -3,10 +3,7 @@
 #include <algorithm>
 
 #include "metier/device/joint_array.hpp"
-#include "metier/geometry/frame.hpp"
-#include "metier/geometry/pose.hpp"
 #include "metier/motion/joint_vector.hpp"
-#include "metier/skill/value.hpp"
 
 namespace metier::robot_skills {
 
@@ -19,15 +16,6 @@ inline motion::JointVector toVector(const device::JointArray& joints) noexcept {
 
 inline device::JointArray toArray(const motion::JointVector& joints) noexcept {
     return device::JointArray(joints.span());
-}
-
-inline geometry::Pose poseOf(const skill::Frame& frame) {
-    return geometry::toPose(geometry::Frame{frame.x, frame.y, frame.z, frame.a, frame.b, frame.c});
-}
-
-inline skill::Frame frameOf(const geometry::Pose& pose) {
-    const auto frame = geometry::toFrame(pose);
-    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
 }
 
 }  // namespace metier::robot_skills

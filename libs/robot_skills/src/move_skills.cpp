@@ -9,6 +9,7 @@
 #include "arm_body.hpp"
 #include "arm_skill.hpp"
 #include "conversions.hpp"
+#include "metier/geometry/frame.hpp"
 #include "metier/motion/planner.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/typed_skill.hpp"
@@ -154,7 +155,7 @@ motion::LinRequest linRequest(const JointVector& start, const MoveParameters& pa
 Result<Trajectory> planCartesianPtp(const RobotModel& model, const JointVector& start,
                                     const CartesianMoveParameters& parameters) {
     auto request = ptpRequest(start, parameters);
-    request.target = poseOf(parameters.target_position);
+    request.target = geometry::toPose(parameters.target_position);
     request.reference = reference(parameters);
     request.axis_bounds = axisBounds(parameters.axis_bounds);
     return motion::planPtp(model, request);
@@ -163,7 +164,7 @@ Result<Trajectory> planCartesianPtp(const RobotModel& model, const JointVector& 
 Result<Trajectory> planCartesianLinear(const RobotModel& model, const JointVector& start,
                                        const CartesianMoveParameters& parameters) {
     auto request = linRequest(start, parameters);
-    request.target = poseOf(parameters.target_position);
+    request.target = geometry::toPose(parameters.target_position);
     request.reference = reference(parameters);
     request.axis_bounds = axisBounds(parameters.axis_bounds);
     return motion::planLin(model, request);

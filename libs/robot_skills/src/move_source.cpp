@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conversions.hpp"
+#include "metier/geometry/frame.hpp"
 
 namespace metier::robot_skills {
 
@@ -100,7 +101,7 @@ device::JointArray MoveSource::wayBack() const noexcept {
 
 MoveResults MoveSource::results() const {
     MoveResults results;
-    results.reached_pose = frameOf(execution_.trajectory().toolPose(toVector(reached_)));
+    results.reached_pose = geometry::toFrame(execution_.trajectory().toolPose(toVector(reached_)));
     results.reached_joint_position.assign(reached_.begin(), reached_.end());
     results.duration = in_motion_;
     results.largest_path_deviation = deviation_.largest();

@@ -7,7 +7,7 @@
 
 namespace metier::skill {
 
-ParameterSet::ParameterSet(const std::vector<Field>& fields) : fields_(fields) {
+ParameterSet::ParameterSet(const Fields& fields) : fields_(fields) {
     for (const auto& field : fields_) {
         values_.emplace(field.name, field.default_value);
     }

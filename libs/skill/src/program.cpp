@@ -49,7 +49,7 @@ std::string messageOf(std::string_view name, TransitionNumber transition, std::s
                        toString(toState(transition)), text.empty() ? "" : ": ", text);
 }
 
-void checkFields(const std::vector<Field>& fields) {
+void checkFields(const Fields& fields) {
     for (auto field = fields.begin(); field != fields.end(); ++field) {
         if (const auto checked = checkValue(*field, field->default_value); !checked) {
             throw std::invalid_argument("default of " + checked.error().message);
@@ -71,7 +71,7 @@ std::unique_ptr<Skill> checkedSkill(std::unique_ptr<Skill> skill) {
     return skill;
 }
 
-ValueMap nullResult(const std::vector<Field>& fields) {
+ValueMap nullResult(const Fields& fields) {
     ValueMap result;
     for (const auto& field : fields) {
         result.emplace(field.name, Value{});

@@ -1,19 +1,11 @@
 #pragma once
 
+#include "metier/base/quantities.hpp"
 #include "metier/geometry/pose.hpp"
 
 namespace metier::geometry {
 
-/// A pose as OPC UA's 3DFrame carries it: position [m] and rotations a, b, c about x, y, z [rad]
-/// with R = Rz(c) * Ry(b) * Rx(a).
-struct Frame {
-    double x = 0;
-    double y = 0;
-    double z = 0;
-    double a = 0;
-    double b = 0;
-    double c = 0;
-};
+using metier::Frame;
 
 /// The pose of a frame; any finite angles.
 Pose toPose(const Frame& frame);

@@ -4,9 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "metier/base/quantities.hpp"
 #include "metier/opcua/node_id.hpp"
 
 namespace metier::opcua {
+
+using metier::Range;
+using ThreeDFrame = metier::Frame;
+using ThreeDVector = metier::Vector3;
 
 /// A name that is unique among siblings; the index is a server's own.
 struct QualifiedName {
@@ -27,14 +32,6 @@ struct LocalizedText {
     friend bool operator==(const LocalizedText&, const LocalizedText&) = default;
 };
 
-/// Both ends belong to it. The skill model reads 0..0 as "not set".
-struct Range {
-    double low = 0.0;
-    double high = 0.0;
-
-    friend bool operator==(const Range&, const Range&) = default;
-};
-
 /// An engineering unit (OPC 10000-8, 5.6.3), usually of UNECE Recommendation 20.
 struct EuInformation {
     std::string namespace_uri;
@@ -43,18 +40,6 @@ struct EuInformation {
     LocalizedText description{};
 
     friend bool operator==(const EuInformation&, const EuInformation&) = default;
-};
-
-/// A pose: x, y, z in m; a, b, c are rotations about x, y, z in rad, R = Rz(c) Ry(b) Rx(a).
-struct ThreeDFrame {
-    double x = 0.0;
-    double y = 0.0;
-    double z = 0.0;
-    double a = 0.0;
-    double b = 0.0;
-    double c = 0.0;
-
-    friend bool operator==(const ThreeDFrame&, const ThreeDFrame&) = default;
 };
 
 /// The position in a ThreeDFrame [m].
@@ -74,15 +59,6 @@ struct ThreeDOrientation {
     double c = 0.0;
 
     friend bool operator==(const ThreeDOrientation&, const ThreeDOrientation&) = default;
-};
-
-/// Three numbers along x, y, z.
-struct ThreeDVector {
-    double x = 0.0;
-    double y = 0.0;
-    double z = 0.0;
-
-    friend bool operator==(const ThreeDVector&, const ThreeDVector&) = default;
 };
 
 /// One input or output argument of a Method (OPC 10000-3, 8.6).

@@ -3,10 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "metier/base/error.hpp"
 #include "metier/skill/value.hpp"
@@ -66,6 +70,37 @@ struct Field {
     Input input = Input::snapshot;
     std::function<Result<void>(const Value&)>
         extra_check{};  ///< after the checks above, never Null
+};
+
+/// Fields in their order. Copies share them, so that ten thousand skills of one type hold one list.
+///
+/// Threading: as std::shared_ptr; the fields themselves do not change.
+class Fields {
+public:
+    using const_iterator = std::vector<Field>::const_iterator;
+
+    Fields() = default;
+    Fields(std::initializer_list<Field> fields) : Fields(std::vector<Field>(fields)) {}
+    Fields(std::vector<Field> fields)  // NOLINT: implicit, as a list of fields is meant
+        : fields_(std::make_shared<const std::vector<Field>>(std::move(fields))) {}
+
+    const_iterator begin() const noexcept { return fields_->begin(); }
+    const_iterator end() const noexcept { return fields_->end(); }
+    std::size_t size() const noexcept { return fields_->size(); }
+    bool empty() const noexcept { return fields_->empty(); }
+    const Field& operator[](std::size_t index) const noexcept { return (*fields_)[index]; }
+    /// A copy that may be changed.
+    std::vector<Field> toVector() const { return *fields_; }
+    /// Changes this copy alone.
+    void push_back(Field field) {
+        auto fields = toVector();
+        fields.push_back(std::move(field));
+        *this = Fields(std::move(fields));
+    }
+
+private:
+    std::shared_ptr<const std::vector<Field>> fields_ =
+        std::make_shared<const std::vector<Field>>();
 };
 
 /// Whether `value` may be written to `field`. Null always may: it stands for the default.

@@ -15,8 +15,8 @@ namespace metier::skill {
 /// Threading: the owner's thread.
 class ParameterSet {
 public:
-    /// \param fields as declared; must outlive this
-    explicit ParameterSet(const std::vector<Field>& fields);
+    /// \param fields as declared
+    explicit ParameterSet(const Fields& fields);
 
     /// The field of that name.
     /// Errors: not_found.
@@ -47,7 +47,7 @@ public:
     std::vector<std::string_view> release();
 
 private:
-    const std::vector<Field>& fields_;
+    const Fields fields_;
     ValueMap values_;
     std::vector<const Field*> written_;
     std::string session_;

@@ -19,8 +19,8 @@ struct SkillDescription {
     std::string name{};         ///< of the instance: "CartesianPtpMoveSkill"
     std::string type{};         ///< of its type: "CartesianPtpMoveSkillType"
     std::string description{};  ///< one line for a person
-    std::vector<Field> parameters{};
-    std::vector<Field> results{};
+    Fields parameters{};
+    Fields results{};
     bool suspendable = true;  ///< false: Suspend is refused with not_supported
 };
 

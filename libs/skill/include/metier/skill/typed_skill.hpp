@@ -19,10 +19,11 @@ public:
           parameters_(std::move(parameters)),
           results_(std::move(results)) {
         description_.parameters = parameters_.fields();
-        description_.results = results_.fields();
-        for (auto& result : description_.results) {
+        auto results_in_place = results_.fields();
+        for (auto& result : results_in_place) {
             result.place = Place::final_result;
         }
+        description_.results = std::move(results_in_place);
     }
 
     const SkillDescription& description() const final { return description_; }

@@ -8,33 +8,13 @@
 #include <variant>
 #include <vector>
 
+#include "metier/base/quantities.hpp"
+
 namespace metier::skill {
 
-/// A pose: position [m] and rotations a, b, c about x, y, z [rad], R = Rz(c) Ry(b) Rx(a).
-struct Frame {
-    double x = 0;
-    double y = 0;
-    double z = 0;
-    double a = 0;
-    double b = 0;
-    double c = 0;
-    bool operator==(const Frame&) const = default;
-};
-
-/// An interval; both ends belong to it.
-struct Range {
-    double low = 0;
-    double high = 0;
-    bool operator==(const Range&) const = default;
-};
-
-/// Three components along x, y, z; the unit is that of the field that holds it.
-struct Vector3 {
-    double x = 0;
-    double y = 0;
-    double z = 0;
-    bool operator==(const Vector3&) const = default;
-};
+using metier::Frame;
+using metier::Range;
+using metier::Vector3;
 
 /// What a parameter or a result can hold. monostate is Null: not set.
 using Value = std::variant<std::monostate, bool, std::int32_t, std::uint32_t, std::uint64_t, double,

@@ -1,0 +1,35 @@
+#pragma once
+
+namespace metier {
+
+/// A pose as OPC UA's 3DFrame carries it: position [m] and rotations a, b, c about x, y, z [rad]
+/// with R = Rz(c) * Ry(b) * Rx(a).
+struct Frame {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+
+    friend bool operator==(const Frame&, const Frame&) = default;
+};
+
+/// Three numbers along x, y, z; the unit is that of what holds them.
+struct Vector3 {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+
+    friend bool operator==(const Vector3&, const Vector3&) = default;
+};
+
+/// An interval; both ends belong to it. The skill model reads 0..0 as "not set".
+struct Range {
+    double low = 0.0;
+    double high = 0.0;
+
+    friend bool operator==(const Range&, const Range&) = default;
+};
+
+}  // namespace metier
