@@ -1,19 +1,92 @@
 // Reads models/*.toml; models/README.md tells every key.
 
+#include <algorithm>
 #include <numbers>
 
+#include "metier/configuration/toml_file.hpp"
 #include "metier/geometry/frame.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "toml_reader.hpp"
 
 namespace metier::motion {
 
 namespace {
 
+using configuration::TomlFile;
+using configuration::TomlTable;
 using geometry::Pose;
 
-Pose readFrame(TomlReader::Table& table, std::string_view key) {
-    const std::vector<double> v = table.numbers(key, 6);
+/// A required list of so many numbers.
+std::vector<double> numbers(const TomlTable& table, std::string_view key, std::size_t count) {
+    std::vector<double> values = table.numbers(key);
+    if (table.has(key) && values.size() != count) {
+        table.reject(key, fmt::format("not {} finite numbers", count));
+    }
+    values.resize(count);
+    return values;
+}
+
+Eigen::Vector3d vector(const TomlTable& table, std::string_view key) {
+    const std::vector<double> values = numbers(table, key, 3);
+    return {values[0], values[1], values[2]};
+}
+
+double positive(const TomlTable& table, std::string_view key) {
+    const double value = table.number(key);
+    if (table.has(key) && value <= 0) {
+        table.reject(key, fmt::format("{} is not over 0", value));
+    }
+    return value;
+}
+
+/// 0 to end - 1.
+std::size_t index(const TomlTable& table, std::string_view key, std::size_t end) {
+    if (!table.has(key)) {
+        table.reject(key, "missing");
+    }
+    return static_cast<std::size_t>(table.integerOr(key, 0, 0, static_cast<std::int64_t>(end) - 1));
+}
+
+/// How an angle stands in the file: `key` in rad or `key`_deg in degrees.
+struct AngleKey {
+    std::string key;
+    double factor = 1;
+    double divisor = 1;
+
+    double toRadians(double value) const { return value * factor / divisor; }
+};
+
+AngleKey angleKey(const TomlTable& table, std::string_view key) {
+    std::string degrees = std::string(key) + "_deg";
+    if (!table.has(degrees)) {
+        return {std::string(key)};
+    }
+    if (table.has(key)) {
+        table.reject(key, "given twice, in rad and in degrees");
+    }
+    return {std::move(degrees), std::numbers::pi, 180.0};
+}
+
+double angle(const TomlTable& table, std::string_view key) {
+    const AngleKey in_file = angleKey(table, key);
+    return in_file.toRadians(table.number(in_file.key));
+}
+
+double angleOrZero(const TomlTable& table, std::string_view key) {
+    const AngleKey in_file = angleKey(table, key);
+    return in_file.toRadians(table.numberOr(in_file.key, 0.0));
+}
+
+std::vector<double> angles(const TomlTable& table, std::string_view key, std::size_t count) {
+    const AngleKey in_file = angleKey(table, key);
+    std::vector<double> values = numbers(table, in_file.key, count);
+    for (double& value : values) {
+        value = in_file.toRadians(value);
+    }
+    return values;
+}
+
+Pose readFrame(const TomlTable& table, std::string_view key) {
+    const std::vector<double> v = numbers(table, key, 6);
     return geometry::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
 }
 
@@ -28,29 +101,28 @@ struct JointRow {
     Pose after;   ///< to the next joint's frame or the flange
 };
 
-JointLimits readLimits(TomlReader::Table& table) {
-    const std::vector<double> range = table.angles("position", 2);
+JointLimits readLimits(const TomlTable& table) {
+    const std::vector<double> range = angles(table, "position", 2);
     JointLimits limits;
     limits.lower = range[0];
     limits.upper = range[1];
-    limits.velocity = table.angle("velocity");
-    limits.acceleration = table.angle("acceleration");
-    limits.jerk = table.angle("jerk");
+    limits.velocity = angle(table, "velocity");
+    limits.acceleration = angle(table, "acceleration");
+    limits.jerk = angle(table, "jerk");
     return limits;
 }
 
 /// T = Rz(q + offset) Tz(d) Tx(a) Rx(alpha)
-void readDh(TomlReader::Table dh, JointRow& row) {
+void readDh(const TomlTable& dh, JointRow& row) {
     const double d = dh.number("d");
     const double a = dh.number("a");
-    const double alpha = dh.angle("alpha");
-    row.before = turnAbout(Eigen::Vector3d::UnitZ(), dh.angle("offset", 0.0));
+    const double alpha = angle(dh, "alpha");
+    row.before = turnAbout(Eigen::Vector3d::UnitZ(), angleOrZero(dh, "offset"));
     row.after = turnAbout(Eigen::Vector3d::UnitX(), alpha);
     row.after.translation = {a, 0, d};
-    dh.refuseOtherKeys();
 }
 
-JointRow readJoint(TomlReader::Table& table) {
+JointRow readJoint(const TomlTable& table) {
     JointRow row;
     row.joint.name = table.text("name");
     row.joint.limits = readLimits(table);
@@ -58,15 +130,14 @@ JointRow readJoint(TomlReader::Table& table) {
         readDh(table.table("dh"), row);
     } else {
         row.before = readFrame(table, "origin");
-        row.joint.axis = table.vector("axis");
+        row.joint.axis = vector(table, "axis");
     }
-    table.refuseOtherKeys();
     return row;
 }
 
-void readChain(TomlReader::Table& root, ChainDescription& chain) {
+void readChain(const TomlTable& root, ChainDescription& chain) {
     Pose after_last;
-    for (TomlReader::Table& table : root.tables("joint")) {
+    for (const TomlTable& table : root.tables("joint")) {
         JointRow row = readJoint(table);
         row.joint.parent_from_joint = after_last * row.before;
         after_last = row.after;
@@ -75,54 +146,50 @@ void readChain(TomlReader::Table& root, ChainDescription& chain) {
     chain.last_from_flange =
         root.has("flange") ? after_last * readFrame(root, "flange") : after_last;
     if (chain.joints.empty() || chain.joints.size() > kMaxAxes) {
-        root.refuse("joint", fmt::format("{} axes, not 1 to {}", chain.joints.size(), kMaxAxes));
+        root.reject("joint", fmt::format("{} axes, not 1 to {}", chain.joints.size(), kMaxAxes));
     }
 }
 
-CartesianLimits readCartesian(TomlReader::Table table) {
+CartesianLimits readCartesian(const TomlTable& table) {
     CartesianLimits limits;
-    limits.velocity = table.positive("velocity");
-    limits.acceleration = table.positive("acceleration");
-    limits.jerk = table.positive("jerk");
-    limits.angular_velocity = table.positive("angular_velocity");
-    limits.angular_acceleration = table.positive("angular_acceleration");
-    limits.angular_jerk = table.positive("angular_jerk");
-    table.refuseOtherKeys();
+    limits.velocity = positive(table, "velocity");
+    limits.acceleration = positive(table, "acceleration");
+    limits.jerk = positive(table, "jerk");
+    limits.angular_velocity = positive(table, "angular_velocity");
+    limits.angular_acceleration = positive(table, "angular_acceleration");
+    limits.angular_jerk = positive(table, "angular_jerk");
     return limits;
 }
 
-ToolFrame readTool(TomlReader::Table& table) {
+ToolFrame readTool(const TomlTable& table) {
     ToolFrame tool;
     tool.name = table.text("name");
     tool.flange_from_tool = readFrame(table, "frame");
-    tool.mass = table.number("mass", 0.0);
+    tool.mass = table.numberOr("mass", 0.0);
     if (table.has("centre_of_mass")) {
-        tool.centre_of_mass = table.vector("centre_of_mass");
+        tool.centre_of_mass = vector(table, "centre_of_mass");
     }
-    table.refuseOtherKeys();
     return tool;
 }
 
-Capsule readCapsule(TomlReader::Table& table, std::size_t link_count) {
+Capsule readCapsule(const TomlTable& table, std::size_t link_count) {
     Capsule capsule;
-    capsule.link = table.index("link", link_count);
-    capsule.from = table.vector("from");
-    capsule.to = table.vector("to");
-    capsule.radius = table.positive("radius");
-    table.refuseOtherKeys();
+    capsule.link = index(table, "link", link_count);
+    capsule.from = vector(table, "from");
+    capsule.to = vector(table, "to");
+    capsule.radius = positive(table, "radius");
     return capsule;
 }
 
-VisualPrimitive readVisual(TomlReader::Table& table, std::size_t link_count) {
+VisualPrimitive readVisual(const TomlTable& table, std::size_t link_count) {
     VisualPrimitive visual;
-    visual.link = table.index("link", link_count);
-    visual.from = table.vector("from");
-    visual.to = table.vector("to");
-    visual.from_radius = table.positive("from_radius");
-    visual.to_radius = table.number("to_radius", visual.from_radius);
-    const std::vector<double> color = table.numbers("color", 3);
+    visual.link = index(table, "link", link_count);
+    visual.from = vector(table, "from");
+    visual.to = vector(table, "to");
+    visual.from_radius = positive(table, "from_radius");
+    visual.to_radius = table.numberOr("to_radius", visual.from_radius);
+    const std::vector<double> color = numbers(table, "color", 3);
     visual.color = {color[0], color[1], color[2]};
-    table.refuseOtherKeys();
     return visual;
 }
 
@@ -135,54 +202,39 @@ struct ModelFile {
     std::vector<VisualPrimitive> visual;
 };
 
-ModelFile readModel(TomlReader::Table root) {
+ModelFile readModel(const TomlTable& root) {
     ModelFile file;
     file.name = root.text("name");
     file.maker = root.text("maker");
     file.product = root.text("product");
-    file.chain.cycle_time = root.positive("cycle_time");
+    file.chain.cycle_time = positive(root, "cycle_time");
     readChain(root, file.chain);
-    const std::vector<double> home = root.angles("home", file.chain.joints.size());
+    const std::vector<double> home = angles(root, "home", file.chain.joints.size());
     file.chain.home = JointVector::from(home).value_or(JointVector{});
     file.chain.cartesian_limits = readCartesian(root.table("cartesian"));
-    for (TomlReader::Table& table : root.tables("tool")) {
+    for (const TomlTable& table : root.tables("tool")) {
         file.chain.tools.push_back(readTool(table));
     }
     const std::size_t link_count = file.chain.joints.size() + 1;
-    for (TomlReader::Table& table : root.tables("capsule")) {
+    for (const TomlTable& table : root.tables("capsule")) {
         file.capsules.push_back(readCapsule(table, link_count));
     }
-    for (TomlReader::Table& table : root.tables("visual")) {
+    for (const TomlTable& table : root.tables("visual")) {
         file.visual.push_back(readVisual(table, link_count));
     }
-    root.refuseOtherKeys();
     return file;
-}
-
-Result<toml::table> parseFile(const std::filesystem::path& path) {
-    if (!std::filesystem::exists(path)) {
-        return fail(Errc::not_found, "no robot model file " + path.string());
-    }
-    try {
-        return toml::parse_file(path.string());
-    } catch (const toml::parse_error& error) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("{}:{}: {}", path.string(), error.source().begin.line,
-                                error.description()));
-    }
 }
 
 }  // namespace
 
 Result<RobotModel> RobotModel::load(const std::filesystem::path& path) {
-    const auto table = parseFile(path);
-    if (!table) {
-        return fail(table.error());
+    const auto toml = TomlFile::load(path);
+    if (!toml) {
+        return fail(toml.error());
     }
-    TomlReader reader(path.string());
-    ModelFile file = readModel(TomlReader::Table(reader, *table, ""));
-    if (reader.error()) {
-        return fail(*reader.error());
+    ModelFile file = readModel(toml->root());
+    if (const auto finished = toml->finish(); !finished) {
+        return fail(finished.error());
     }
     auto model = fromChain(std::move(file.chain));
     if (!model) {

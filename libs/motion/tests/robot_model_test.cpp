@@ -68,12 +68,13 @@ TEST(RobotModel, TellsThatAFileIsMissing) {
 
 TEST(RobotModel, TellsFileLineAndKeyOfAWrongValue) {
     const Error error = errorAfter("velocity_deg = 180", "velocity_deg = \"fast\"");
-    EXPECT_THAT(error.message, HasSubstr(".toml:21: joint[1].velocity_deg: not a finite number"));
+    EXPECT_THAT(error.message,
+                HasSubstr(".toml:21: joint[0].velocity_deg: is not a finite number"));
 }
 
 TEST(RobotModel, TellsWhichKeyIsMissing) {
     EXPECT_THAT(errorAfter("jerk = 50.0\n\n[[joint]]", "\n[[joint]]").message,
-                HasSubstr("joint[1].jerk: missing"));
+                HasSubstr("joint[0].jerk: missing"));
 }
 
 TEST(RobotModel, RefusesAMisspeltKey) {
@@ -91,7 +92,7 @@ TEST(RobotModel, RefusesAHomeOutsideTheLimits) {
 }
 
 TEST(RobotModel, TellsTheLineOfAFaultInTheSyntax) {
-    EXPECT_THAT(errorAfter("name = \"ur5\"", "name = ").message, HasSubstr(".toml:3: "));
+    EXPECT_THAT(errorAfter("name = \"ur5\"", "name = ").message, HasSubstr(".toml:3:8: "));
 }
 
 TEST(RobotModel, RefusesAChainWhoseAxisIsNoUnitVector) {
