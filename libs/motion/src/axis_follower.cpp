@@ -8,8 +8,10 @@ namespace metier::motion {
 
 namespace {
 
-/// Share of the limits that is used, so that rounding never breaks them.
-constexpr double kShare = 0.9995;
+/// Share of the limits that steering uses, so that rounding never breaks them; a stream that uses
+/// them to the full is followed with the rounding of its own.
+constexpr double kRounding = 1e-6;
+constexpr double kShare = 1 - kRounding;
 constexpr int kBisections = 30;
 /// Share of the jerk limit for letting an error fade: the target's own motion needs some too.
 constexpr double kFadingJerk = 0.7;
@@ -48,17 +50,20 @@ bool fades(ScalarState error, double decay, double jerk, double cycle) noexcept 
     return true;
 }
 
-/// Largest acceleration of the next cycle after which the velocity still stays below the limit.
+/// Largest acceleration of the next cycle after which the velocity still stays below the limit,
+/// when it then falls by the jerk limit each cycle: after m cycles of that it is 0.
 double highestAcceleration(double velocity, const ScalarLimits& limits, double cycle) noexcept {
-    const double room = limits.velocity - velocity - limits.jerk * cycle * cycle / 8;
+    const double room = limits.velocity - velocity;
     if (room <= 0) {
         return room / cycle;
     }
-    return limits.jerk * (std::sqrt(cycle * cycle + 2 * room / limits.jerk) - cycle);
+    const double fall = limits.jerk * cycle;
+    const double m = std::floor((std::sqrt(1 + 8 * room / (fall * cycle)) - 1) / 2);
+    return room / (cycle * (m + 1)) + fall * m / 2;
 }
 
-ScalarLimits shareOf(const JointLimits& limits) noexcept {
-    return {kShare * limits.velocity, kShare * limits.acceleration, kShare * limits.jerk};
+ScalarLimits shareOf(const JointLimits& limits, double share) noexcept {
+    return {share * limits.velocity, share * limits.acceleration, share * limits.jerk};
 }
 
 /// The state at the end of the cycle from that in finite differences, which lag half a cycle.
@@ -100,34 +105,48 @@ double findJerk(const JerkRange& range, const Excess& excess) noexcept {
     return low;
 }
 
-}  // namespace
-
-Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
-    return Profile::brake(atInstant(now, cycle), shareOf(limits));
-}
-
-ScalarState followTarget(const ScalarState& now, const ScalarState& target,
-                         const JointLimits& limits, double cycle) noexcept {
-    const ScalarLimits used = shareOf(limits);
-    JerkRange range = allowedJerk(now, used, cycle);
+/// The range narrowed so that the axis can still stop before a position limit.
+JerkRange beforePositionLimits(const ScalarState& now, const JointLimits& limits, JerkRange range,
+                               double cycle) noexcept {
+    const ScalarLimits used = shareOf(limits, kShare);
     range.high = findJerk(range, [&](double jerk) {
         return stopPosition(step(now, jerk, cycle), used, cycle) - limits.upper;
     });
     range.low = -findJerk({-range.high, -range.low}, [&](double jerk) {
         return limits.lower - stopPosition(step(now, -jerk, cycle), used, cycle);
     });
-    const ScalarState error{now.position - target.position + target.velocity * cycle,
-                            now.velocity - target.velocity + target.acceleration * cycle,
-                            now.acceleration - target.acceleration};
+    return range;
+}
+
+}  // namespace
+
+Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
+    return Profile::brake(atInstant(now, cycle), shareOf(limits, kShare));
+}
+
+ScalarState followTarget(const ScalarState& now, const TargetStates& targets,
+                         const JointLimits& limits, double cycle) noexcept {
+    const ScalarState& target = targets.now;
+    const ScalarLimits used = shareOf(limits, kShare);
+    const JerkRange range = beforePositionLimits(now, limits, allowedJerk(now, used, cycle), cycle);
+    const ScalarState error{now.position - targets.before.position,
+                            now.velocity - targets.before.velocity,
+                            now.acceleration - targets.before.acceleration};
+    const JerkRange exact = beforePositionLimits(
+        now, limits, allowedJerk(now, shareOf(limits, 1 + kRounding), cycle), cycle);
     for (const double decay : kDecays) {
+        if (!fades(error, decay, kFadingJerk * used.jerk, cycle)) {
+            continue;
+        }
         const double position = target.position + decayed(error, decay, cycle);
         const double jerk = jerkTo(position, now, cycle);
-        if (jerk >= range.low && jerk <= range.high &&
-            fades(error, decay, kFadingJerk * used.jerk, cycle)) {
+        if (jerk >= exact.low && jerk <= exact.high) {
             ScalarState next = step(now, jerk, cycle);
             next.position = position;
             return next;
         }
+        // The target's own motion needs the rest: as near as can be, the error stays small.
+        return step(now, std::clamp(jerk, range.low, range.high), cycle);
     }
     // Seen from the target, with what the target's own motion leaves of the limits.
     const ScalarLimits relative{

@@ -8,15 +8,22 @@ namespace metier::motion {
 /// The quickest stop of an axis whose state is in finite differences.
 Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept;
 
+/// A moving target in finite differences: where it is at the axis' own time, and a cycle later.
+struct TargetStates {
+    ScalarState before;
+    ScalarState now;
+};
+
 /// One cycle of an axis that follows a moving target and breaks no limit.
 ///
 /// The motion is a sequence of positions; velocity, acceleration and jerk are their finite
 /// differences, since these are what a controller sees. The target is taken as it is if the limits
 /// allow; else the error fades out as fast as they allow, and from farther away the axis, seen from
 /// the target, steers to where it can just brake to stand on it.
-/// \param target the target one cycle later, derivatives as finite differences too
-/// \param cycle  [s]
-ScalarState followTarget(const ScalarState& now, const ScalarState& target,
+/// \param now     position of the last cycle
+/// \param targets of the last cycle and of this one
+/// \param cycle   [s]
+ScalarState followTarget(const ScalarState& now, const TargetStates& target,
                          const JointLimits& limits, double cycle) noexcept;
 
 }  // namespace metier::motion

@@ -168,10 +168,15 @@ JointVector StreamFollower::play(double time) const noexcept {
 void StreamFollower::follow(const Targets& targets) noexcept {
     const double cycle = options_.cycle.count();
     for (std::size_t i = 0; i < now_.position.size(); ++i) {
-        const double velocity = (targets[0][i] - targets[1][i]) / cycle;
-        const double before = (targets[1][i] - targets[2][i]) / cycle;
-        const ScalarState target{targets[0][i], velocity, (velocity - before) / cycle};
-        const ScalarState next = followTarget(axisOf(now_, i), target, limits_[i], cycle);
+        const auto velocity = [&](std::size_t age) {
+            return (targets[age][i] - targets[age + 1][i]) / cycle;
+        };
+        const auto state = [&](std::size_t age) {
+            return ScalarState{targets[age][i], velocity(age),
+                               (velocity(age) - velocity(age + 1)) / cycle};
+        };
+        const ScalarState next =
+            followTarget(axisOf(now_, i), {state(1), state(0)}, limits_[i], cycle);
         now_.position[i] = next.position;
         now_.velocity[i] = next.velocity;
         now_.acceleration[i] = next.acceleration;
@@ -222,7 +227,7 @@ void StreamFollower::playAt(double now) noexcept {
     const double time = now - cycle * options_.playout_delay_cycles - offset_;
     if (time <= knot(0).time + kTimeRounding) {
         silent_cycles_ = 0;
-        follow({play(time), play(time - cycle), play(time - 2 * cycle)});
+        follow({play(time), play(time - cycle), play(time - 2 * cycle), play(time - 3 * cycle)});
         return;
     }
     // Nothing to play: brake at once, go on if the stream comes back in time.

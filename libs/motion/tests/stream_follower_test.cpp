@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
+#include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
@@ -94,6 +97,41 @@ TEST_F(StreamFollowerTest, BreaksNoLimitForWhiteNoise) {
         ASSERT_LE(worst_, 1.0) << i;
     }
     EXPECT_GT(follower_.acceptedCount(), 19000U);
+}
+
+using FullLimitStreamOf = EachRobot;
+INSTANTIATE_TEST_SUITE_P(Robots, FullLimitStreamOf, testing::ValuesIn(kRobots), robotName);
+
+TEST_P(FullLimitStreamOf, IsFollowedWithoutOvershootAndWithoutMoreJerkThanItsOwn) {
+    const double cycle = model_.cycleTime();
+    StreamFollower follower =
+        StreamFollower::create(model_, {Seconds(cycle)}, model_.home()).value();
+    PtpRequest request;
+    request.start = model_.home();
+    JointVector target = model_.home();
+    target[0] += 1.5;
+    target[1] -= 0.3;
+    target[3] += 0.7;
+    request.target = target;
+    const Trajectory plan = planPtp(model_, request).value();
+    std::array<JointVector, 4> last;
+    last.fill(model_.home());
+    double off = 0;
+    double jerk = 0;
+    for (int i = 0; i * cycle < plan.duration().count() + 10 * cycle; ++i) {
+        const Seconds now(i * cycle);
+        ASSERT_FALSE(follower.accept(plan.sample(now).position, now, now));
+        std::copy_backward(last.begin(), last.end() - 1, last.end());
+        last[0] = follower.next(now).position;
+        off = std::max(off, maxDifference(last[0], plan.sample(Seconds((i - 3) * cycle)).position));
+        for (std::size_t axis = 0; axis < target.size(); ++axis) {
+            const double j = last[0][axis] - 3 * last[1][axis] + 3 * last[2][axis] - last[3][axis];
+            jerk = std::max(jerk, std::abs(j) / (cycle * cycle * cycle) / model_.limits(axis).jerk);
+        }
+    }
+    EXPECT_LT(off, 2e-6);  // of its start, when nothing is known yet of what comes
+    EXPECT_LE(jerk, 1 + 2e-6);
+    EXPECT_LE(maxDifference(last[0], target), 1e-9);
 }
 
 TEST_F(StreamFollowerTest, CatchesUpWithAStreamThatWasTooFast) {

@@ -91,8 +91,8 @@ private:
     double slope(std::size_t age, std::size_t axis) const noexcept;
     /// The stream's position at a time of the sender's clock; its last one after that.
     JointVector play(double time) const noexcept;
-    /// The target of this cycle and of the two before.
-    using Targets = std::array<JointVector, 3>;
+    /// The target of this cycle and of the three before.
+    using Targets = std::array<JointVector, 4>;
     void follow(const Targets& targets) noexcept;
     void playAt(double now) noexcept;
     void startBraking() noexcept;
