@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "turn.hpp"
 
@@ -54,6 +56,24 @@ void add(ClosedFormSolutions& result, const JointVector& solution, bool delicate
     }
 }
 
+void noteMiss(ClosedFormSolutions& result, const ReachMiss& miss) {
+    if (!result.miss || miss.excess() < result.miss->excess()) {
+        result.miss = miss;
+    }
+}
+
+/// Two links of these lengths cannot reach that far, or that near.
+void noteLinks(ClosedFormSolutions& result, double distance, double first, double second) {
+    const double longest = first + second;
+    const double limit = distance > longest ? longest : std::abs(first - second);
+    noteMiss(result, {"the wrist", 1, distance, limit});
+}
+
+/// The length of a vector across an axis.
+double across(const Vector3d& v, const Vector3d& axis) {
+    return axis.cross(v).norm();
+}
+
 /// What is common to the arms whose axes 2 and 3 are parallel: two links in a plane.
 struct PlanarPair {
     std::array<Turn, 2> second;
@@ -67,7 +87,7 @@ PlanarPair solvePlanarPair(const ZeroPosition& zero, const Vector3d& p3e, const 
                            const Turn& otherwise) {
     const Vector3d p23 = zero.point[2] - zero.point[1];
     const double distance = (end.squaredNorm() - p23.squaredNorm() - p3e.squaredNorm()) / 2;
-    const Turns third = turnsOntoPlane({p23, distance}, p3e, zero.axis[2], Turn{});
+    const Turns third = turnsOntoPlane({p23, distance, zero.slack}, p3e, zero.axis[2], Turn{});
     PlanarPair pair;
     pair.delicate = third.delicate;
     for (std::size_t i = 0; i < third.count; ++i) {
@@ -149,7 +169,57 @@ IkKind recogniseSevenAxes(ZeroPosition& zero) {
     return IkKind::arm_angle;
 }
 
+/// Points of two axes where they are nearest to each other; axes not parallel.
+std::pair<Vector3d, Vector3d> nearestPoints(const ZeroPosition& zero, std::size_t i,
+                                            std::size_t k) {
+    const Vector3d normal = zero.axis[i].cross(zero.axis[k]);
+    const Vector3d between = zero.point[k] - zero.point[i];
+    const double square = normal.squaredNorm();
+    return {zero.point[i] + between.cross(zero.axis[k]).dot(normal) / square * zero.axis[i],
+            zero.point[k] + between.cross(zero.axis[i]).dot(normal) / square * zero.axis[k]};
+}
+
+/// The mean direction of axes 2, 3 and 4, as axis 2; nothing if one is too far off.
+std::optional<Vector3d> commonDirection(const ZeroPosition& zero) {
+    constexpr double largest = 0.02;  // [rad]
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t i = 1; i < 4; ++i) {
+        sum += zero.axis[i].dot(zero.axis[1]) < 0 ? Vector3d(-zero.axis[i]) : zero.axis[i];
+    }
+    sum.normalize();
+    for (std::size_t i = 1; i < 4; ++i) {
+        if (zero.axis[i].cross(sum).norm() > largest) {
+            return std::nullopt;
+        }
+    }
+    return sum;
+}
+
 }  // namespace
+
+bool idealise(ZeroPosition& zero) {
+    constexpr double farthest = 0.01;  // [m]
+    const auto direction = commonDirection(zero);
+    if (!direction || zero.axis[0].cross(*direction).norm() < 0.5 ||
+        zero.axis[3].cross(zero.axis[4]).norm() < 0.5 ||
+        zero.axis[4].cross(zero.axis[5]).norm() < 0.5) {
+        return false;
+    }
+    const auto [wrist5, wrist6] = nearestPoints(zero, 4, 5);
+    if ((wrist5 - wrist6).norm() > farthest) {
+        return false;
+    }
+    std::tie(zero.point[0], zero.point[1]) = nearestPoints(zero, 0, 1);
+    for (std::size_t i = 1; i < 4; ++i) {
+        // The place on the axis beside that of axis 2: there the turn of its direction shows least.
+        const double along = direction->dot(zero.point[1] - zero.point[i]);
+        zero.point[i] += along / direction->dot(zero.axis[i]) * zero.axis[i];
+        zero.axis[i] = zero.axis[i].dot(*direction) < 0 ? Vector3d(-*direction) : *direction;
+    }
+    zero.point[4] = zero.point[5] = 0.5 * (wrist5 + wrist6);
+    zero.slack = 0.02;
+    return true;
+}
 
 IkKind recogniseStructure(std::size_t axis_count, ZeroPosition& zero) {
     switch (axis_count) {
@@ -167,6 +237,7 @@ ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const Close
     const JointVector& reference = query.reference;
     const Target target = targetOf(zero, query.base_from_flange, 4);
     const Vector3d from_first = target.wrist - zero.point[0];
+    const Vector3d p23 = zero.point[2] - zero.point[1];
     const Vector3d p34 = zero.point[3] - zero.point[2];
     const Vector3d p45 = zero.point[4] - zero.point[3];
     const double offset = axis[1].dot(zero.point[4] - zero.point[0]);
@@ -177,7 +248,10 @@ ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const Close
     ClosedFormSolutions result;
     // axis[1] . R1^-1 x = offset, written as a plane for x turned back about axis 1.
     const Turns back1 =
-        turnsOntoPlane({axis[1], offset}, from_first, axis[0], Turn::of(-reference[0]));
+        turnsOntoPlane({axis[1], offset, zero.slack}, from_first, axis[0], Turn::of(-reference[0]));
+    if (back1.count == 0) {
+        noteMiss(result, {"the wrist", 0, across(from_first, axis[0]), std::abs(offset)});
+    }
     for (std::size_t i = 0; i < back1.count; ++i) {
         const Turn turn1 = back1.value[i].inverse();
         const double q1 = turn1.angle();
@@ -193,6 +267,9 @@ ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const Close
             const Turn sum = wrists.turns[k][2].inverse();
             const Vector3d end = from_second - rotate(axis[1], sum, p45);
             const PlanarPair pair = solvePlanarPair(zero, p34, end, Turn::of(reference[1]));
+            if (pair.count == 0) {
+                noteLinks(result, across(end, axis[1]), across(p23, axis[1]), across(p34, axis[1]));
+            }
             for (std::size_t m = 0; m < pair.count; ++m) {
                 const Turn third = sign3 > 0 ? pair.third[m] : pair.third[m].inverse();
                 const Turn fourth = sum * (pair.second[m] * third).inverse();
@@ -210,6 +287,7 @@ ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFo
     const JointVector& reference = query.reference;
     const Target target = targetOf(zero, query.base_from_flange, 5);
     const Vector3d from_first = target.wrist - zero.point[0];
+    const Vector3d p23 = zero.point[2] - zero.point[1];
     const Vector3d p3w = zero.point[3] - zero.point[2];
     const double offset = axis[1].dot(zero.point[3] - zero.point[0]);
     const ThreeAxes wrist_axes{axis[3], axis[4], axis[5]};
@@ -217,11 +295,17 @@ ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFo
     ClosedFormSolutions result;
     const Turns back1 =
         turnsOntoPlane({axis[1], offset}, from_first, axis[0], Turn::of(-reference[0]));
+    if (back1.count == 0) {
+        noteMiss(result, {"the wrist", 0, across(from_first, axis[0]), std::abs(offset)});
+    }
     for (std::size_t i = 0; i < back1.count; ++i) {
         const double q1 = -back1.value[i].angle();
         const Vector3d end =
             rotate(axis[0], back1.value[i], from_first) - (zero.point[1] - zero.point[0]);
         const PlanarPair pair = solvePlanarPair(zero, p3w, end, Turn::of(reference[1]));
+        if (pair.count == 0) {
+            noteLinks(result, across(end, axis[1]), across(p23, axis[1]), across(p3w, axis[1]));
+        }
         const Matrix3d unturned = rotationMatrix(axis[0], back1.value[i]) * target.turned;
         for (std::size_t m = 0; m < pair.count; ++m) {
             const Matrix3d wrist = rotationMatrix(axis[2], pair.third[m].inverse()) *
@@ -298,6 +382,9 @@ ClosedFormSolutions solveArmAngle(const ZeroPosition& zero, const ClosedFormQuer
         (shoulder_to_wrist.squaredNorm() - upper.squaredNorm() - fore.squaredNorm()) / 2;
     const Turns elbow = turnsOntoPlane({upper, distance}, fore, axis[3], Turn{});
     ClosedFormSolutions result;
+    if (elbow.count == 0) {
+        noteLinks(result, shoulder_to_wrist.norm(), upper.norm(), fore.norm());
+    }
     if (shoulder_to_wrist.norm() < kFree) {
         return result;
     }

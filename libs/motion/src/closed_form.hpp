@@ -7,6 +7,11 @@ namespace metier::motion {
 /// Which closed form fits the chain; moves `zero.point` to where its axes meet.
 IkKind recogniseStructure(std::size_t axis_count, ZeroPosition& zero);
 
+/// Brings six axes that have nearly the structure of three_parallel_axes, as those of a calibrated
+/// arm have, into exactly that: directions within 0.02 rad, points within 10 mm.
+/// \return false, and `zero` unchanged, if they are farther off
+bool idealise(ZeroPosition& zero);
+
 /// What the closed forms are asked.
 struct ClosedFormQuery {
     Transform base_from_flange;
@@ -18,6 +23,7 @@ struct ClosedFormQuery {
 struct ClosedFormSolutions {
     JointSolutions solutions;
     std::array<bool, JointSolutions::kCapacity> delicate{};
+    std::optional<ReachMiss> miss = {};  ///< the least one of the branches that do not reach
 };
 
 ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const ClosedFormQuery& query);

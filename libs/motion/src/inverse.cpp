@@ -26,7 +26,7 @@ constexpr double kLimitRounding = 1e-10;
 constexpr double kResidual = 1e-10;
 constexpr double kNumericResidual = 1e-9;
 constexpr int kIterations = 40;
-constexpr int kRestarts = 100;
+constexpr int kRestarts = 400;
 
 /// Position and rotation (short way) from one transform to another.
 Vector6 errorBetween(const Transform& from, const Transform& to) noexcept {
@@ -52,6 +52,33 @@ Transform toTransform(const Pose& pose) {
 
 double wrapped(double angle) noexcept {
     return angle - kTwoPi * std::floor((angle + std::numbers::pi) / kTwoPi);
+}
+
+ClosedFormSolutions solveClosedForm(IkKind kind, const ZeroPosition& zero,
+                                    const ClosedFormQuery& query) noexcept {
+    switch (kind) {
+        case IkKind::three_parallel_axes:
+            return solveThreeParallelAxes(zero, query);
+        case IkKind::spherical_wrist:
+            return solveSphericalWrist(zero, query);
+        case IkKind::arm_angle:
+            return solveArmAngle(zero, query);
+        case IkKind::numeric:
+            break;
+    }
+    return {};
+}
+
+/// Whether a solution, each axis in (-pi, pi], is among them already.
+bool contains(const JointSolutions& solutions, const JointVector& other) noexcept {
+    constexpr double same = 1e-6;  // [rad]
+    return std::any_of(solutions.begin(), solutions.end(), [&](const JointVector& solution) {
+        double farthest = 0;
+        for (std::size_t i = 0; i < other.size(); ++i) {
+            farthest = std::max(farthest, std::abs(std::remainder(solution[i] - other[i], kTwoPi)));
+        }
+        return farthest < same;
+    });
 }
 
 struct Range {
@@ -254,19 +281,73 @@ JointSolutions Kinematics::allSolutions(const Pose& base_from_flange, const Join
 JointSolutions Kinematics::closedForm(const Pose& base_from_flange, const JointVector& reference,
                                       double redundancy_angle) const noexcept {
     const ClosedFormQuery query{toTransform(base_from_flange), reference, redundancy_angle};
-    const ClosedFormSolutions found =
-        kind_ == IkKind::three_parallel_axes ? solveThreeParallelAxes(zero_, query)
-        : kind_ == IkKind::spherical_wrist   ? solveSphericalWrist(zero_, query)
-                                             : solveArmAngle(zero_, query);
+    const ClosedFormSolutions found = solveClosedForm(kind_, zero_, query);
     JointSolutions result;
     for (std::size_t i = 0; i < found.solutions.size(); ++i) {
         JointVector solution = found.solutions[i];
+        if (calibrated_) {
+            if (refine(base_from_flange, solution) && !contains(result, solution)) {
+                result.add(solution);
+            }
+            continue;
+        }
         if (found.delicate[i] && !polish(query.base_from_flange, solution)) {
             continue;
         }
         result.add(solution);
     }
     return result;
+}
+
+bool Kinematics::refine(const Pose& base_from_flange, JointVector& solution) const noexcept {
+    constexpr int iterations = 20;
+    const auto refined = solveNumerically(base_from_flange, solution, iterations);
+    if (!refined) {
+        return false;
+    }
+    solution = *refined;
+    for (double& angle : solution) {
+        angle = wrapped(angle);
+    }
+    return true;
+}
+
+std::optional<ReachMiss> Kinematics::outOfReach(const Pose& base_from_flange,
+                                                const JointVector& reference) const noexcept {
+    constexpr double calibration = 0.02;  // the exact arm may reach so much less [m]
+    const double rounding = calibrated_ ? calibration : kResidual;
+    if (kind_ == IkKind::numeric) {
+        const double distance = (base_from_flange.translation - reachCentre(reference)).norm();
+        return distance > reach_ + rounding
+                   ? std::optional(ReachMiss{"the flange", 1, distance, reach_})
+                   : std::nullopt;
+    }
+    const ClosedFormSolutions found = solveClosedForm(
+        kind_, zero_, {toTransform(base_from_flange), reference, redundancyAngle(reference)});
+    const bool missed = found.solutions.empty() && found.miss && found.miss->excess() > rounding;
+    return missed ? found.miss : std::nullopt;
+}
+
+JointVector Kinematics::solutionNear(const Pose& base_from_flange, const JointVector& guess,
+                                     double redundancy_angle) const noexcept {
+    if (kind_ == IkKind::numeric || calibrated_) {
+        return solveNumerically(base_from_flange, guess, kIterations).value_or(JointVector{});
+    }
+    JointVector best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const JointVector& solution : closedForm(base_from_flange, guess, redundancy_angle)) {
+        JointVector turned(solution.size());
+        double cost = 0;
+        for (std::size_t i = 0; i < solution.size(); ++i) {
+            turned[i] = solution[i] + kTwoPi * std::round((guess[i] - solution[i]) / kTwoPi);
+            cost = std::max(cost, std::abs(turned[i] - guess[i]));
+        }
+        if (cost < least) {
+            least = cost;
+            best = turned;
+        }
+    }
+    return best;
 }
 
 bool Kinematics::polish(const Transform& target, JointVector& solution) const noexcept {
@@ -302,22 +383,19 @@ Result<JointVector> Kinematics::search(const Pose& base_from_flange, const IkReq
     if (auto checked = checkRequest(*this, base_from_flange, request); !checked) {
         return fail(checked.error());
     }
-    const double distance = (base_from_flange.translation - reachCentre(request.reference)).norm();
-    const auto refused = [&](std::string_view what) {
-        return fail(Errc::unreachable,
-                    fmt::format("unreachable: {}{:.4f} m from axis 2, reach {:.4f} m", what,
-                                distance, reach_));
-    };
-    if (distance > reach_ + kResidual) {
-        return refused("");
-    }
     NearestChoice choice(*this, request);
-    if (method == IkKind::numeric) {
-        searchNumerically(*this, base_from_flange, request, choice);
-    } else {
+    if (method != IkKind::numeric) {
         choice.offer(
             closedForm(base_from_flange, request.reference,
                        request.redundancy_angle.value_or(redundancyAngle(request.reference))));
+    }
+    if (!choice.found() && !choice.anyOutside()) {
+        if (const auto miss = outOfReach(base_from_flange, request.reference)) {
+            return fail(Errc::unreachable, toString(*miss));
+        }
+    }
+    if (!choice.found() && (method == IkKind::numeric || calibrated_)) {
+        searchNumerically(*this, base_from_flange, request, choice);
     }
     if (!choice.found() && method == IkKind::arm_angle && !request.redundancy_angle) {
         searchArmAngles(*this, base_from_flange, request, choice);
@@ -328,7 +406,7 @@ Result<JointVector> Kinematics::search(const Pose& base_from_flange, const IkReq
     if (choice.anyOutside()) {
         return fail(Errc::unreachable, choice.violationText());
     }
-    return refused("no joint position has this pose, ");
+    return fail(Errc::unreachable, "unreachable: no joint position found that has this pose");
 }
 
 }  // namespace metier::motion

@@ -16,15 +16,45 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using geometry::Pose;
 
-/// frame * fixed, then turned about the new z.
-void advance(Transform& frame, const Transform& fixed, double q) noexcept {
+/// Turned about z, then put into the frame.
+void turn(Transform& frame, const Matrix3d& turned, double q) noexcept {
     const double c = std::cos(q);
     const double s = std::sin(q);
-    frame.translation += frame.rotation * fixed.translation;
-    const Matrix3d turned = frame.rotation * fixed.rotation;
     frame.rotation.col(0) = c * turned.col(0) + s * turned.col(1);
     frame.rotation.col(1) = c * turned.col(1) - s * turned.col(0);
     frame.rotation.col(2) = turned.col(2);
+}
+
+/// The first axis of a chain: fixed, then turned about its z.
+Transform begin(const Transform& fixed, double q) noexcept {
+    Transform frame;
+    frame.translation = fixed.translation;
+    turn(frame, fixed.rotation, q);
+    return frame;
+}
+
+/// frame * fixed, then turned about the new z.
+void advance(Transform& frame, const Transform& fixed, double q) noexcept {
+    frame.translation += frame.rotation * fixed.translation;
+    const Matrix3d turned = frame.rotation * fixed.rotation;
+    turn(frame, turned, q);
+}
+
+/// rotation * (a turn about z)
+Eigen::Quaterniond turnedAboutZ(const Eigen::Quaterniond& rotation, double q) noexcept {
+    const double c = std::cos(0.5 * q);
+    const double s = std::sin(0.5 * q);
+    return {rotation.w() * c - rotation.z() * s, rotation.x() * c + rotation.y() * s,
+            rotation.y() * c - rotation.x() * s, rotation.z() * c + rotation.w() * s};
+}
+
+/// Length of the links from axis 2 to the flange, by points on the axes.
+double reachOf(const ZeroPosition& zero) {
+    double length = (zero.base_from_flange.translation - zero.point[5]).norm();
+    for (std::size_t i = 1; i < 5; ++i) {
+        length += (zero.point[i + 1] - zero.point[i]).norm();
+    }
+    return length;
 }
 
 Transform compose(const Transform& a, const Transform& b) noexcept {
@@ -36,6 +66,12 @@ Pose toPose(const Transform& transform) noexcept {
 }
 
 }  // namespace
+
+std::string toString(const ReachMiss& miss) {
+    return fmt::format("unreachable: {} would be {:.4f} m from axis {}, {} {:.4f} m", miss.what,
+                       miss.distance, miss.axis + 1, miss.tooNear() ? "at least" : "reach",
+                       miss.limit);
+}
 
 std::string_view toString(IkKind kind) noexcept {
     switch (kind) {
@@ -52,6 +88,7 @@ std::string_view toString(IkKind kind) noexcept {
 }
 
 Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints.size()) {
+    fixed_rotation_.fill(Eigen::Quaterniond::Identity());
     Matrix3d from_axis = Matrix3d::Identity();  // of the joint before: joint_from_z_axis_frame
     Transform zero;
     for (std::size_t i = 0; i < axis_count_; ++i) {
@@ -62,6 +99,7 @@ Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints
         fixed_[i].rotation =
             from_axis.transpose() * joint.parent_from_joint.rotation.toRotationMatrix() * to_axis;
         fixed_[i].translation = from_axis.transpose() * joint.parent_from_joint.translation;
+        fixed_rotation_[i] = Eigen::Quaterniond(fixed_[i].rotation);
         axis_from_joint_[i] = Eigen::Quaterniond(Matrix3d(to_axis.transpose()));
         from_axis = to_axis;
         zero = compose(zero, fixed_[i]);
@@ -72,28 +110,33 @@ Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints
     last_from_flange_.rotation =
         from_axis.transpose() * chain.last_from_flange.rotation.toRotationMatrix();
     last_from_flange_.translation = from_axis.transpose() * chain.last_from_flange.translation;
+    last_rotation_ = Eigen::Quaterniond(last_from_flange_.rotation);
     reach_ += last_from_flange_.translation.norm();
     zero_.base_from_flange = compose(zero, last_from_flange_);
     kind_ = recogniseStructure(axis_count_, zero_);
-}
-
-Transform Kinematics::flange(const JointVector& q) const noexcept {
-    Transform frame;
-    for (std::size_t i = 0; i < axis_count_; ++i) {
-        advance(frame, fixed_[i], q[i]);
+    if (kind_ == IkKind::numeric && axis_count_ == 6 && idealise(zero_)) {
+        kind_ = IkKind::three_parallel_axes;
+        calibrated_ = true;
+        reach_ = reachOf(zero_);
     }
-    return compose(frame, last_from_flange_);
 }
 
 Vector3d Kinematics::reachCentre(const JointVector& q) const noexcept {
-    Transform frame;
-    advance(frame, fixed_[0], q[0]);
+    const Transform frame = begin(fixed_[0], q[0]);
     return axis_count_ < 2 ? frame.translation
                            : Vector3d(frame.translation + frame.rotation * fixed_[1].translation);
 }
 
 Pose Kinematics::forward(const JointVector& q) const noexcept {
-    return toPose(flange(q));
+    // Quaternions need fewer products than matrices here, and the pose wants one.
+    Pose pose{fixed_[0].translation, turnedAboutZ(fixed_rotation_[0], q[0])};
+    for (std::size_t i = 1; i < axis_count_; ++i) {
+        pose.translation += pose.rotation * fixed_[i].translation;
+        pose.rotation = turnedAboutZ(pose.rotation * fixed_rotation_[i], q[i]);
+    }
+    pose.translation += pose.rotation * last_from_flange_.translation;
+    pose.rotation = pose.rotation * last_rotation_;
+    return pose;
 }
 
 std::array<Pose, kMaxAxes + 1> Kinematics::forwardAll(const JointVector& q) const noexcept {
@@ -111,9 +154,11 @@ std::array<Pose, kMaxAxes + 1> Kinematics::forwardAll(const JointVector& q) cons
 Transform Kinematics::forward(const JointVector& q, Jacobian& jacobian) const noexcept {
     jacobian.resize(6, static_cast<Eigen::Index>(axis_count_));
     std::array<Vector3d, kMaxAxes> origin;
-    Transform frame;
+    Transform frame = begin(fixed_[0], q[0]);
     for (std::size_t i = 0; i < axis_count_; ++i) {
-        advance(frame, fixed_[i], q[i]);
+        if (i > 0) {
+            advance(frame, fixed_[i], q[i]);
+        }
         jacobian.col(static_cast<Eigen::Index>(i)).tail<3>() = frame.rotation.col(2);
         origin[i] = frame.translation;
     }

@@ -15,6 +15,8 @@ constexpr double kKnotAngle = 0.03;      // [rad]
 constexpr double kKnotsPerCorner = 16;
 constexpr std::size_t kFewestKnots = 16;
 constexpr std::size_t kMostKnots = 4096;
+/// So many are enough to see whether another arm angle helps.
+constexpr std::size_t kKnotsToTryWith = 512;
 /// A longer step between knots asks for more of them [rad].
 constexpr double kJointStep = 0.06;
 /// So does a step that differs more than this from what the steps before let expect [rad].
@@ -79,25 +81,67 @@ Refusal jump(const TrackRequest& request, const JointVector& from, const JointVe
     const double smallest = request.model->kinematics().smallestSingularValue(from);
     const std::string what = fmt::format("axis {} would have to turn {:.3f} rad in one place",
                                          axis + 1, std::abs(to[axis] - from[axis]));
-    Refusal refusal =
-        smallest < kNearSingular
-            ? refuse(RefusalReason::singularity, Errc::unreachable, "singularity: " + what)
-            : refuse(RefusalReason::configuration_change, Errc::unreachable,
-                     "the arm would have to change its configuration: " + what);
+    Refusal refusal = smallest < kNearSingular
+                          ? refuse(RefusalReason::singularity, Errc::unreachable,
+                                   fmt::format("singularity: {}, smallest singular value {:.5f},",
+                                               what, smallest))
+                          : refuse(RefusalReason::configuration_change, Errc::unreachable,
+                                   "the arm would have to change its configuration: " + what);
     refusal.axis = axis;
     return refusal;
 }
 
-Refusal outOfReach(const TrackRequest& request, const geometry::Pose& flange) {
-    const Kinematics& kinematics = request.model->kinematics();
-    const double distance = (flange.translation - kinematics.reachCentre(request.start)).norm();
-    return refuse(RefusalReason::unreachable, Errc::unreachable,
-                  fmt::format("unreachable: {:.4f} m from axis 2, reach {:.4f} m", distance,
-                              kinematics.reach()));
+/// Where a path is farthest out of reach, and from where on it is.
+struct Gap {
+    ReachMiss worst;
+    double begin = 0;
+};
+
+std::optional<ReachMiss> missAt(const TrackRequest& request, double s) {
+    return request.model->kinematics().outOfReach(request.path.at(s), request.start);
+}
+
+std::optional<Gap> findGap(const TrackRequest& request) {
+    constexpr int places = 64;
+    std::optional<Gap> gap;
+    for (int i = 1; i <= places; ++i) {
+        const double s = static_cast<double>(i) / places;
+        const auto miss = missAt(request, s);
+        if (miss && !gap) {
+            gap = Gap{*miss, s};
+        } else if (miss && miss->excess() > gap->worst.excess()) {
+            gap->worst = *miss;
+        }
+    }
+    double inside = gap ? gap->begin - 1.0 / places : 0;
+    for (int i = 0; gap && i < 20; ++i) {
+        const double middle = (inside + gap->begin) / 2;
+        (missAt(request, middle) ? gap->begin : inside) = middle;
+    }
+    return gap;
+}
+
+Refusal unreachable(std::string_view where, const ReachMiss& miss, double begin) {
+    Refusal refusal = refuse(RefusalReason::unreachable, Errc::unreachable,
+                             fmt::format("{}: {}, out of reach from {:.1f} % of the path on", where,
+                                         toString(miss), 100 * begin));
+    refusal.fraction = begin;
+    return refusal;
+}
+
+/// Told before anything is tracked: near the end of its reach an arm is singular too, but that is
+/// not what the caller has to know.
+std::optional<Refusal> refuseUnreachableTarget(const TrackRequest& request) {
+    const auto miss = missAt(request, 1.0);
+    if (!miss) {
+        return std::nullopt;
+    }
+    const auto gap = findGap(request);
+    return unreachable("target", *miss, gap ? gap->begin : 1.0);
 }
 
 /// Follows the branch of the start position knot by knot.
-Track follow(const TrackRequest& request, std::size_t count) {
+Track follow(const TrackRequest& request, std::size_t count, std::size_t most_knots) {
     const Kinematics& kinematics = request.model->kinematics();
     Track track;
     track.knots.reserve(count + 1);
@@ -106,16 +150,16 @@ Track follow(const TrackRequest& request, std::size_t count) {
     for (std::size_t k = 1; k <= count; ++k) {
         const double s = static_cast<double>(k) / static_cast<double>(count);
         const geometry::Pose flange = request.path.at(s);
-        const JointVector q = nearestSolution(
-            kinematics.allSolutions(flange, guess, request.path.armAngleAt(s)), guess);
+        const JointVector q = kinematics.solutionNear(flange, guess, request.path.armAngleAt(s));
         const JointVector& last = track.knots.back();
         if (q.empty()) {
-            track.refusal = at(s, outOfReach(request, flange));
+            track.refusal = at(s, refuse(RefusalReason::unreachable, Errc::unreachable,
+                                         "unreachable: no joint position found"));
             return track;
         }
         const double step = maxDifference(q, last);
         const bool bends = k > 1 && maxDifference(q, guess) > kJointBend;
-        if ((step > kJointStep || bends) && count < kMostKnots) {
+        if ((step > kJointStep || bends) && count < most_knots) {
             track.too_coarse = true;
             return track;
         }
@@ -133,8 +177,9 @@ Track follow(const TrackRequest& request, std::size_t count) {
     return track;
 }
 
-/// Whether the joint lines between knots stay on the path: a hidden flip would not.
-bool halfWaysAreOnPath(const TrackRequest& request, const std::vector<JointVector>& knots) {
+/// The first knot after which the joint line leaves the path, as a hidden flip would.
+std::optional<std::size_t> firstOffPath(const TrackRequest& request,
+                                        const std::vector<JointVector>& knots) {
     const std::size_t count = knots.size() - 1;
     for (std::size_t k = 0; k < count; ++k) {
         JointVector middle = knots[k];
@@ -144,26 +189,36 @@ bool halfWaysAreOnPath(const TrackRequest& request, const std::vector<JointVecto
             request.path.at((static_cast<double>(k) + 0.5) / static_cast<double>(count));
         if (geometry::distanceBetween(reached, planned) > kHalfWayDistance ||
             geometry::rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
-            return false;
+            return k;
         }
     }
-    return true;
+    return std::nullopt;
 }
 
-Planned<JointPath> trackWithArmAngle(const TrackRequest& request) {
+/// The axes turn so quickly that no number of knots shows how.
+Refusal tooCurved(const std::vector<JointVector>& knots, std::size_t k) {
+    const std::size_t axis = largestStep(knots[k], knots[k + 1]);
+    Refusal refusal = refuse(RefusalReason::singularity, Errc::unreachable,
+                             fmt::format("singularity: axis {} cannot follow the path", axis + 1));
+    refusal.axis = axis;
+    return at(static_cast<double>(k) / static_cast<double>(knots.size() - 1), refusal);
+}
+
+Planned<JointPath> trackWithArmAngle(const TrackRequest& request, std::size_t most_knots) {
     Track track;
     for (std::size_t count = knotCount(request.path.tool); true;
-         count = std::min(2 * count, kMostKnots)) {
-        track = follow(request, count);
+         count = std::min(2 * count, most_knots)) {
+        most_knots = std::max(most_knots, count);
+        track = follow(request, count, most_knots);
         if (track.refusal) {
             return tl::unexpected(*track.refusal);
         }
-        if (!track.too_coarse && halfWaysAreOnPath(request, track.knots)) {
+        const auto off = track.too_coarse ? 0 : firstOffPath(request, track.knots);
+        if (!off) {
             return JointPath(request.path, std::move(track.knots));
         }
-        if (count == kMostKnots) {
-            return tl::unexpected(refuse(RefusalReason::singularity, Errc::unreachable,
-                                         "singularity: the axes cannot follow the path"));
+        if (count == most_knots) {
+            return tl::unexpected(tooCurved(track.knots, *off));
         }
     }
 }
@@ -172,9 +227,8 @@ double shortTurn(double from, double to) {
     return std::remainder(to - from, 2 * std::numbers::pi);
 }
 
-}  // namespace
-
-Planned<JointPath> trackLine(const TrackRequest& request) {
+/// Keeps the arm angle, or changes it where that is asked for or is the only way.
+Planned<JointPath> trackWithSomeArmAngle(const TrackRequest& request) {
     constexpr int tries = 18;
     constexpr double step = std::numbers::pi / tries;
     TrackRequest attempt = request;
@@ -183,17 +237,33 @@ Planned<JointPath> trackLine(const TrackRequest& request) {
     if (request.end_arm_angle) {
         attempt.path.arm_angle_turn = shortTurn(attempt.path.arm_angle, *request.end_arm_angle);
     }
-    auto path = trackWithArmAngle(attempt);
+    auto path = trackWithArmAngle(attempt, kMostKnots);
     if (path || request.end_arm_angle || kinematics.ikKind() != IkKind::arm_angle) {
         return path;
     }
     for (int i = 1; i <= tries; ++i) {
         for (const double turn : {i * step, -i * step}) {
             attempt.path.arm_angle_turn = turn;
-            if (auto other = trackWithArmAngle(attempt)) {
+            if (auto other = trackWithArmAngle(attempt, kKnotsToTryWith)) {
                 return other;
             }
         }
+    }
+    return path;
+}
+
+}  // namespace
+
+Planned<JointPath> trackLine(const TrackRequest& request) {
+    if (auto refusal = refuseUnreachableTarget(request)) {
+        return tl::unexpected(*refusal);
+    }
+    auto path = trackWithSomeArmAngle(request);
+    if (path || path.error().reason == RefusalReason::joint_limit) {
+        return path;
+    }
+    if (const auto gap = findGap(request)) {
+        return tl::unexpected(unreachable("way", gap->worst, gap->begin));
     }
     return path;
 }

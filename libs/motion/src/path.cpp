@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace metier::motion {
 
 namespace {
-
-constexpr double kTwoPi = 2 * std::numbers::pi;
 
 /// Derivative at knot k from its neighbours: fourth order inside, one-sided at the ends.
 JointVector tangentAt(const std::vector<JointVector>& knots, std::size_t k) {
@@ -48,24 +44,6 @@ PathPoint JointLine::at(double s) const noexcept {
     return point;
 }
 
-JointVector nearestSolution(const JointSolutions& solutions, const JointVector& guess) noexcept {
-    JointVector best;
-    double least = std::numeric_limits<double>::infinity();
-    for (const JointVector& solution : solutions) {
-        JointVector turned(solution.size());
-        double cost = 0;
-        for (std::size_t i = 0; i < solution.size(); ++i) {
-            turned[i] = solution[i] + kTwoPi * std::round((guess[i] - solution[i]) / kTwoPi);
-            cost = std::max(cost, std::abs(turned[i] - guess[i]));
-        }
-        if (cost < least) {
-            least = cost;
-            best = turned;
-        }
-    }
-    return best;
-}
-
 JointPath::JointPath(FlangePath flange, std::vector<JointVector> knots)
     : flange_(std::move(flange)), knots_(std::move(knots)) {
     tangents_.reserve(knots_.size());
@@ -96,8 +74,8 @@ PathPoint JointPath::interpolate(double s) const noexcept {
 
 PathPoint JointPath::at(double s, const Kinematics& kinematics) const noexcept {
     PathPoint point = interpolate(s);
-    const JointVector exact = nearestSolution(
-        kinematics.allSolutions(flange_.at(s), point.q, flange_.armAngleAt(s)), point.q);
+    const JointVector exact =
+        kinematics.solutionNear(flange_.at(s), point.q, flange_.armAngleAt(s));
     if (!exact.empty()) {
         point.q = exact;
     }

@@ -35,9 +35,6 @@ struct FlangePath {
     double armAngleAt(double s) const noexcept { return arm_angle + s * arm_angle_turn; }
 };
 
-/// The solution nearest to `guess`, whole turns included; empty if there is none.
-JointVector nearestSolution(const JointSolutions& solutions, const JointVector& guess) noexcept;
-
 /// Joint positions of a Cartesian path at equal steps of the path parameter, free of jumps; between
 /// them exact inverse kinematics, guided by interpolation.
 class JointPath {

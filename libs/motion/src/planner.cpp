@@ -8,6 +8,7 @@
 #include "metier/motion/self_collision.hpp"
 #include "plan.hpp"
 #include "request_check.hpp"
+#include "singularity.hpp"
 #include "tool_limits.hpp"
 
 namespace metier::motion {
@@ -17,8 +18,6 @@ namespace {
 using geometry::Pose;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A path that an axis slows down below this share of the request is refused.
-constexpr double kSlowest = 0.02;
 
 double perAxis(const JointVector& values, std::size_t axis) {
     return values.empty() ? 0.0 : values[axis];
@@ -82,21 +81,6 @@ Pose absoluteTarget(const Pose& start, const Pose& target, TargetReference refer
     return {target.translation, target.rotation.normalized()};
 }
 
-/// Refuses a path that an axis would make too slow to be meant.
-std::optional<Refusal> refuseCrawling(const SpeedBottleneck& slowest) {
-    if (slowest.share >= kSlowest) {
-        return std::nullopt;
-    }
-    Refusal refusal = refuse(
-        RefusalReason::singularity, Errc::unreachable,
-        fmt::format("singularity: axis {} slows the path to {:.2f} % of the requested speed, "
-                    "limit {:.0f} %, at {:.1f} % of the path",
-                    slowest.axis + 1, 100 * slowest.share, 100 * kSlowest, 100 * slowest.fraction));
-    refusal.fraction = slowest.fraction;
-    refusal.axis = slowest.axis;
-    return refusal;
-}
-
 /// Refuses a motion in which two links would touch, nearer than they are at its start.
 Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory trajectory) {
     constexpr double step = 0.03;       // of the axis that moves most [rad]
@@ -127,24 +111,22 @@ Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory traject
     return trajectory;
 }
 
-Planned<Trajectory> planLine(const RobotModel& model, const LinRequest& request,
-                             const TrackRequest& track, const Pose& flange_from_tool) {
-    const ToolPath& tool = track.path.tool;
-    if (tool.isPoint()) {
-        return standStill(model, request.start, flange_from_tool);
-    }
-    auto path = trackLine(track);
+/// A tracked path that is not singular, with what its axes bound.
+struct TrackedPath {
+    JointPath joints;
+    std::vector<SpeedBounds> bounds;
+};
+
+Planned<TrackedPath> track(const TrackRequest& request, const PlannerOptions& options) {
+    auto path = trackLine(request);
     if (!path) {
         return tl::unexpected(path.error());
     }
-    const ScalarLimits limits = limitsOfLine(model, request, tool);
-    const auto bounds = axisBounds(model, path->knots());
-    if (auto refusal = refuseCrawling(findBottleneck(model, bounds, limits.velocity))) {
+    if (auto refusal = refuseSingular(*request.model, path->knots(), options)) {
         return tl::unexpected(*refusal);
     }
-    SpeedPlan speed = planSpeed(bounds, limits);
-    return withoutCollision(
-        model, makeTrajectory(model, std::move(*path), std::move(speed), flange_from_tool));
+    auto bounds = axisBounds(*request.model, path->knots());
+    return TrackedPath{std::move(*path), std::move(bounds)};
 }
 
 Refusal targetRefusal(const Error& error) {
@@ -158,7 +140,8 @@ Refusal targetRefusal(const Error& error) {
 template <typename Request>
 Result<Trajectory> withoutRefusal(Planned<Trajectory> (Planner::*plan)(const Request&) const,
                                   const RobotModel& model, const Request& request) {
-    auto planned = (Planner(model).*plan)(request);
+    const Planner planner(model);
+    auto planned = (planner.*plan)(request);
     if (!planned) {
         return fail(planned.error().error);
     }
@@ -226,14 +209,27 @@ Planned<Trajectory> Planner::lin(const LinRequest& request) const {
     }
     const Pose start = model_->kinematics().forward(request.start) * tool->flange_from_tool;
     const Pose target = absoluteTarget(start, request.target, request.reference);
-    TrackRequest track;
-    track.model = model_;
-    track.start = request.start;
-    track.bounds = request.axis_bounds;
-    track.end_arm_angle = request.redundancy_angle;
-    track.path.tool = ToolPath(start, target);
-    track.path.tool_from_flange = tool->flange_from_tool.inverse();
-    return planLine(*model_, request, track, tool->flange_from_tool);
+    TrackRequest wanted;
+    wanted.model = model_;
+    wanted.start = request.start;
+    wanted.bounds = request.axis_bounds;
+    wanted.end_arm_angle = request.redundancy_angle;
+    wanted.path.tool = ToolPath(start, target);
+    wanted.path.tool_from_flange = tool->flange_from_tool.inverse();
+    if (wanted.path.tool.isPoint()) {
+        return standStill(*model_, request.start, tool->flange_from_tool);
+    }
+    auto path = track(wanted, options_);
+    if (!path) {
+        return tl::unexpected(path.error());
+    }
+    const ScalarLimits limits = limitsOfLine(*model_, request, wanted.path.tool);
+    if (auto refusal = refuseCrawling(*model_, path->bounds, limits.velocity, options_)) {
+        return tl::unexpected(*refusal);
+    }
+    SpeedPlan speed = planSpeed(path->bounds, limits);
+    return withoutCollision(*model_, makeTrajectory(*model_, std::move(path->joints),
+                                                    std::move(speed), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::path(const PathRequest& request) const {
@@ -245,37 +241,36 @@ Planned<Trajectory> Planner::path(const PathRequest& request) const {
         return invalid(tool.error());
     }
     const LinRequest& lin = request.lin;
-    TrackRequest track;
-    track.model = model_;
-    track.start = lin.start;
-    track.bounds = lin.axis_bounds;
-    track.end_arm_angle = lin.redundancy_angle;
-    track.path.tool_from_flange = tool->flange_from_tool.inverse();
+    TrackRequest wanted;
+    wanted.model = model_;
+    wanted.start = lin.start;
+    wanted.bounds = lin.axis_bounds;
+    wanted.end_arm_angle = lin.redundancy_angle;
+    wanted.path.tool_from_flange = tool->flange_from_tool.inverse();
     Pose before = model_->kinematics().forward(lin.start) * tool->flange_from_tool;
     for (std::size_t i = 0; i < request.waypoints.size(); ++i) {
         const Pose target = absoluteTarget(before, request.waypoints[i].target, lin.reference);
         if (i == 0) {
-            track.path.tool = ToolPath(before, target);
+            wanted.path.tool = ToolPath(before, target);
         } else {
-            track.path.tool.append(target, request.waypoints[i - 1].blend_radius);
+            wanted.path.tool.append(target, request.waypoints[i - 1].blend_radius);
         }
         before = target;
     }
-    if (track.path.tool.isPoint()) {
+    if (wanted.path.tool.isPoint()) {
         return standStill(*model_, lin.start, tool->flange_from_tool);
     }
-    auto joints = trackLine(track);
-    if (!joints) {
-        return tl::unexpected(joints.error());
+    auto path = track(wanted, options_);
+    if (!path) {
+        return tl::unexpected(path.error());
     }
-    auto bounds = axisBounds(*model_, joints->knots());
-    const ScalarLimits limits = addToolBounds(*model_, request, track.path.tool, bounds);
-    if (auto refusal = refuseCrawling(findBottleneck(*model_, bounds, limits.velocity))) {
+    const ScalarLimits limits = addToolBounds(*model_, request, wanted.path.tool, path->bounds);
+    if (auto refusal = refuseCrawling(*model_, path->bounds, limits.velocity, options_)) {
         return tl::unexpected(*refusal);
     }
-    SpeedPlan speed = planSpeed(bounds, limits);
-    return withoutCollision(*model_, makeTrajectory(*model_, std::move(*joints), std::move(speed),
-                                                    tool->flange_from_tool));
+    SpeedPlan speed = planSpeed(path->bounds, limits);
+    return withoutCollision(*model_, makeTrajectory(*model_, std::move(path->joints),
+                                                    std::move(speed), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {

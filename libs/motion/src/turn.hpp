@@ -73,19 +73,21 @@ inline Turn turnBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
 struct Plane {
     Eigen::Vector3d normal;
     double distance = 0;
+    /// Share of the circle's radius by which a miss still gives two turns, near the touch.
+    double slack = 0;
 };
 
 /// The turns about `axis` that bring `v` onto the plane. Where any turn does, `otherwise`; a miss
 /// by rounding counts as a touch.
 inline Turns turnsOntoPlane(const Plane& plane, const Eigen::Vector3d& v,
                             const Eigen::Vector3d& axis, const Turn& otherwise) noexcept {
-    const auto& [normal, distance] = plane;
+    const auto& [normal, distance, slack] = plane;
     constexpr double touch = 1e-11;
     constexpr double delicate_share = 1e-6;
     const double along = normal.dot(axis) * axis.dot(v);
     const double a = normal.dot(v) - along;
     const double b = normal.dot(axis.cross(v));
-    const double c = distance - along;
+    double c = distance - along;
     const double square = a * a + b * b;
     const double scale = normal.norm() * v.norm();
     Turns turns;
@@ -94,6 +96,10 @@ inline Turns turnsOntoPlane(const Plane& plane, const Eigen::Vector3d& v,
         turns.value[0] = otherwise;
         turns.delicate = true;
         return turns;
+    }
+    if (slack > 0) {
+        const double most = (1 - slack) * std::sqrt(square);
+        c = std::abs(c) < most + 2 * slack * std::sqrt(square) ? std::clamp(c, -most, most) : c;
     }
     const double rest = square - c * c;
     if (rest < -touch * scale * scale) {

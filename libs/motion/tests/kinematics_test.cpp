@@ -14,7 +14,8 @@ namespace {
 
 using testing::HasSubstr;
 
-const int kPoses = scaled(5000);
+/// The figures of docs/motion.md are for this many poses an arm.
+const int kPoses = scaled(100000);
 
 TEST(KinematicsVectors, ForwardAgreesWithEveryReferenceVector) {
     for (const KinematicsVector& vector : kKinematicsVectors) {
@@ -34,7 +35,7 @@ TEST_P(KinematicsOf, ForwardAndJacobianAgreeWithKdl) {
     std::mt19937_64 random(1);
     double worst_pose = 0;
     double worst_jacobian = 0;
-    for (int i = 0; i < scaled(20000); ++i) {
+    for (int i = 0; i < kPoses; ++i) {
         const JointVector q = randomPosition(model_, random);
         worst_pose = std::max(worst_pose, poseError(kinematics_.forward(q), oracle.forward(q)));
         worst_jacobian = std::max(
@@ -97,7 +98,7 @@ TEST_P(KinematicsOf, InverseFindsAPositionInsideTheLimitsForEveryReachablePose) 
 TEST_P(KinematicsOf, InverseGivesTheNearestOfAllSolutionsAndTurns) {
     std::mt19937_64 random(5);
     constexpr double kTwoPi = 2 * std::numbers::pi;
-    for (int i = 0; i < scaled(2000); ++i) {
+    for (int i = 0; i < scaled(10000); ++i) {
         const geometry::Pose pose = kinematics_.forward(randomPosition(model_, random));
         const JointVector reference = randomPosition(model_, random);
         double least = 1e9;
@@ -150,7 +151,7 @@ TEST_P(KinematicsOf, LevenbergMarquardtReachesThePoseFromNearby) {
 
 TEST_P(KinematicsOf, LevenbergMarquardtWithOtherSeedsSolvesEveryReachablePose) {
     std::mt19937_64 random(9);
-    for (int i = 0; i < kPoses / 5; ++i) {
+    for (int i = 0; i < kPoses; ++i) {
         const geometry::Pose pose = kinematics_.forward(randomPosition(model_, random));
         const auto q =
             kinematics_.inverseNumerically(pose, {randomPosition(model_, random), {}, {}});

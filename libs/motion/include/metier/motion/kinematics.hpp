@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -52,6 +53,20 @@ private:
     std::size_t size_ = 0;
 };
 
+/// Why a pose is out of reach, whatever the joint limits: something would be `distance` from an
+/// axis, and the links allow no more, or no less, than `limit`.
+struct ReachMiss {
+    std::string_view what = "the flange";
+    std::size_t axis = 0;  ///< from 0
+    double distance = 0;   ///< [m]
+    double limit = 0;      ///< [m]
+
+    bool tooNear() const noexcept { return distance < limit; }
+    double excess() const noexcept { return tooNear() ? limit - distance : distance - limit; }
+};
+/// As "unreachable: the wrist would be 0.9500 m from axis 2, reach 0.8170 m".
+std::string toString(const ReachMiss& miss);
+
 /// How a chain's inverse is found; chosen from the chain's structure.
 enum class IkKind {
     three_parallel_axes,  ///< axes 2, 3, 4 parallel (UR): up to 8 solutions, closed form
@@ -72,12 +87,18 @@ struct ZeroPosition {
     std::array<Eigen::Vector3d, kMaxAxes> axis;   ///< unit
     std::array<Eigen::Vector3d, kMaxAxes> point;  ///< one on each axis, chosen by the closed form
     Transform base_from_flange;
+    /// Share of a length by which the closed form may miss a pose and still gives a solution, from
+    /// which iteration finds that of the calibrated chain; 0 for an exact one.
+    double slack = 0;
 };
 
 /// Forward and inverse kinematics of one chain.
 ///
 /// Threading: immutable, any thread. Nothing allocates but the text of an error. The same input
 /// gives the same bits; budgets are iterations, never time.
+///
+/// A calibrated UR arm, whose axes are only nearly parallel or meet only nearly (0.02 rad, 10 mm),
+/// is solved in the closed form of the nearest exact arm and from there by Levenberg-Marquardt.
 /// Source: docs/motion.md#kinematics.
 class Kinematics {
 public:
@@ -86,11 +107,16 @@ public:
 
     std::size_t axisCount() const noexcept { return axis_count_; }
     IkKind ikKind() const noexcept { return kind_; }
+    /// Whether the closed form fits nearly only and every solution is refined by iteration.
+    bool isCalibrated() const noexcept { return calibrated_; }
     const JointLimits& limits(std::size_t axis) const noexcept { return limits_[axis]; }
-    /// Farthest the flange's origin can be from reachCentre() [m]: an upper bound.
+    /// Farthest the flange's origin can be from axis 2 [m]: an upper bound.
     double reach() const noexcept { return reach_; }
-    /// Origin of axis 2 in the base frame (the same for every position if it lies on axis 1) [m].
-    Eigen::Vector3d reachCentre(const JointVector& q) const noexcept;
+    /// Why no joint position at all has this pose; nothing if it is in reach, or if that can only
+    /// be found by trying.
+    /// \param reference as for allSolutions()
+    std::optional<ReachMiss> outOfReach(const geometry::Pose& base_from_flange,
+                                        const JointVector& reference) const noexcept;
 
     /// base_from_flange. \param q [rad], size axisCount(), finite; limits are not checked
     geometry::Pose forward(const JointVector& q) const noexcept;
@@ -111,6 +137,12 @@ public:
     JointSolutions allSolutions(const geometry::Pose& base_from_flange,
                                 const JointVector& reference,
                                 double redundancy_angle) const noexcept;
+
+    /// The solution with these axes that follows `guess` without a jump, whole turns included;
+    /// empty if there is none. Limits are not applied.
+    /// \param guess an extrapolated position [rad]
+    JointVector solutionNear(const geometry::Pose& base_from_flange, const JointVector& guess,
+                             double redundancy_angle) const noexcept;
 
     /// The solution within limits and bounds nearest to the reference: smallest largest
     /// |difference| / velocity limit over the axes, whole turns included, ties by index.
@@ -138,11 +170,12 @@ public:
     bool withinLimits(const JointVector& q) const noexcept;
 
 private:
-    Transform flange(const JointVector& q) const noexcept;
     Result<JointVector> search(const geometry::Pose& base_from_flange, const IkRequest& request,
                                IkKind method) const;
     JointSolutions closedForm(const geometry::Pose& base_from_flange, const JointVector& reference,
                               double redundancy_angle) const noexcept;
+    bool refine(const geometry::Pose& base_from_flange, JointVector& solution) const noexcept;
+    Eigen::Vector3d reachCentre(const JointVector& q) const noexcept;
     bool polish(const Transform& target, JointVector& solution) const noexcept;
 
     std::size_t axis_count_ = 0;
@@ -150,10 +183,13 @@ private:
     /// Chain with every axis turned to z: the frame of axis i in the frame of the axis before.
     std::array<Transform, kMaxAxes> fixed_;
     Transform last_from_flange_;
+    std::array<Eigen::Quaterniond, kMaxAxes> fixed_rotation_;
+    Eigen::Quaterniond last_rotation_;
     /// From the z-axis frame of a joint to the joint frame the chain describes.
     std::array<Eigen::Quaterniond, kMaxAxes> axis_from_joint_;
     ZeroPosition zero_;
     IkKind kind_ = IkKind::numeric;
+    bool calibrated_ = false;
     double reach_ = 0;
 };
 

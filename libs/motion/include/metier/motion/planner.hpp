@@ -100,13 +100,32 @@ struct Refusal {
 template <typename T>
 using Planned = tl::expected<T, Refusal>;
 
+/// What a Cartesian path may do in a singular place.
+enum class SingularPlaces {
+    /// It may pass where its direction is not the one the arm has lost, so that the axes follow
+    /// smoothly: through an aligned wrist, for example.
+    passed_where_axes_follow,
+    refused,  ///< no such place at all, not even to start from or to end in
+};
+
+/// When a Cartesian path counts as singular.
+struct PlannerOptions {
+    /// An axis may slow the path down to this share of the requested speed, [0, 1).
+    double slowest_share = 0.02;
+    /// A place is singular where the Jacobian's smallest singular value, position [m] and rotation
+    /// [rad] taken together, is less; 0: no place is.
+    double smallest_singular_value = 0.01;
+    SingularPlaces singular_places = SingularPlaces::passed_where_axes_follow;
+};
+
 /// Plans motions of one robot before they start: what it returns can be run to the end.
 ///
 /// Threading: any thread; pure; allocates. Not for a cycle thread.
 /// The model must outlive the planner, not its trajectories.
 class Planner {
 public:
-    explicit Planner(const RobotModel& model) noexcept : model_(&model) {}
+    explicit Planner(const RobotModel& model, const PlannerOptions& options = {}) noexcept
+        : model_(&model), options_(options) {}
 
     Planned<Trajectory> ptp(const PtpRequest& request) const;
     /// Slows down along the path where an axis limits it.
@@ -116,6 +135,7 @@ public:
 
 private:
     const RobotModel* model_;
+    PlannerOptions options_;
 };
 
 /// The planners with an Error only.

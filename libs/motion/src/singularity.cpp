@@ -1,0 +1,91 @@
+#include "singularity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "request_check.hpp"
+
+namespace metier::motion {
+
+namespace {
+
+/// A step of the axes and what the flange does meanwhile [m] and [rad] in one number.
+struct Step {
+    JointVector axes;
+    double axes_length = 0;
+    double flange_length = 0;
+};
+
+Step stepFrom(const Kinematics& kinematics, const JointVector& from, const JointVector& to) {
+    Step step{to};
+    step.axes.view() -= from.view();
+    JointVector middle = from;
+    middle.view() += 0.5 * step.axes.view();
+    step.axes_length = step.axes.view().norm();
+    step.flange_length = (kinematics.jacobian(middle) * step.axes.view()).norm();
+    return step;
+}
+
+std::size_t largest(const JointVector& values) {
+    std::size_t axis = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        axis = std::abs(values[i]) > std::abs(values[axis]) ? i : axis;
+    }
+    return axis;
+}
+
+Refusal singular(const Step& step, double value, double limit, double fraction) {
+    const std::size_t axis = largest(step.axes);
+    Refusal refusal =
+        refuse(RefusalReason::singularity, Errc::unreachable,
+               fmt::format("singularity: smallest singular value {:.5f}, limit {:.5f}, axis {} "
+                           "turns most, at {:.1f} % of the path",
+                           value, limit, axis + 1, 100 * fraction));
+    refusal.fraction = fraction;
+    refusal.axis = axis;
+    return refusal;
+}
+
+}  // namespace
+
+std::optional<Refusal> refuseSingular(const RobotModel& model,
+                                      const std::vector<JointVector>& knots,
+                                      const PlannerOptions& options) {
+    const Kinematics& kinematics = model.kinematics();
+    const double limit = options.smallest_singular_value;
+    const bool may_pass = options.singular_places == SingularPlaces::passed_where_axes_follow;
+    const std::size_t last = knots.size() - 1;
+    for (std::size_t k = 0; limit > 0 && k <= last; ++k) {
+        const std::size_t from = std::min(k, last - 1);
+        const Step step = stepFrom(kinematics, knots[from], knots[from + 1]);
+        // The flange moves at least its smallest singular value per turn of the axes.
+        if (may_pass && step.flange_length >= limit * step.axes_length) {
+            continue;
+        }
+        const double value = kinematics.smallestSingularValue(knots[k]);
+        if (value < limit) {
+            return singular(step, value, limit, static_cast<double>(k) / static_cast<double>(last));
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<Refusal> refuseCrawling(const RobotModel& model,
+                                      const std::vector<SpeedBounds>& bounds, double speed,
+                                      const PlannerOptions& options) {
+    const SpeedBottleneck slowest = findBottleneck(model, bounds, speed);
+    if (slowest.share >= options.slowest_share) {
+        return std::nullopt;
+    }
+    Refusal refusal =
+        refuse(RefusalReason::singularity, Errc::unreachable,
+               fmt::format("singularity: axis {} slows the path to {:.2f} % of the requested "
+                           "speed, limit {:.2f} %, at {:.1f} % of the path",
+                           slowest.axis + 1, 100 * slowest.share, 100 * options.slowest_share,
+                           100 * slowest.fraction));
+    refusal.fraction = slowest.fraction;
+    refusal.axis = slowest.axis;
+    return refusal;
+}
+
+}  // namespace metier::motion
