@@ -8,12 +8,22 @@ namespace {
 constexpr double kHaltFactor = 2.0;
 }  // namespace
 
-MotionExecution::MotionExecution(Trajectory trajectory) noexcept
+MotionExecution::MotionExecution(Trajectory trajectory, const LateCyclePolicy& late) noexcept
     : trajectory_(std::move(trajectory)),
+      late_(late),
       profile_(trajectory_.profile()),
       current_(trajectory_.sampleAt(clock_)) {}
 
+bool MotionExecution::tooLate(Seconds step) const noexcept {
+    return late_.cycle.count() > 0 && step > (late_.most_skipped + 1.5) * late_.cycle;
+}
+
 SetPoint MotionExecution::next(Seconds step) noexcept {
+    if (tooLate(step) && !atRest()) {
+        stopped_late_ = stopped_late_ || mode_ == Mode::running;
+        stop();
+        step = late_.cycle;
+    }
     profile_time_ += std::max(step.count(), 0.0);
     clock_ = profile_.at(profile_time_);
     current_ = trajectory_.sampleAt(clock_);
@@ -48,6 +58,7 @@ void MotionExecution::halt() noexcept {
 void MotionExecution::resume() noexcept {
     if (mode_ == Mode::stopping) {
         mode_ = Mode::running;
+        stopped_late_ = false;
         replan(1.0);
     }
 }

@@ -6,6 +6,7 @@
 
 #include "allocation_count.hpp"
 #include "metier/motion/execution.hpp"
+#include "metier/motion/force_limit.hpp"
 #include "metier/motion/planner.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "test_robots.hpp"
@@ -33,6 +34,17 @@ TEST_P(AllocationOf, ASampledMotionDoesNotAllocate) {
         }
         execution.next(Seconds(0.001));
     }
+    EXPECT_EQ(allocationCount() - before, 0U);
+}
+
+TEST(Allocation, AForceCheckDoesNotAllocate) {
+    ForceLimit limit = ForceLimit::create({50, 5, {0, 0, 40, 0, 0, 0}}, Seconds(0.002)).value();
+    const std::size_t before = allocationCount();
+    int beyond = 0;
+    for (int i = 0; i < 500; ++i) {
+        beyond += limit.check({{0, 0, 0.2 * i}, {0, 0, 0}}) ? 1 : 0;
+    }
+    EXPECT_GT(beyond, 0);
     EXPECT_EQ(allocationCount() - before, 0U);
 }
 

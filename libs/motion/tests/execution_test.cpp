@@ -43,7 +43,7 @@ TEST_P(ExecutionOf, SuspendsAndResumesAnywhereOnThePath) {
     std::mt19937_64 random(1);
     const Trajectory trajectory = lineOf(model_, 0.1);
     std::uniform_int_distribution<int> when(0, static_cast<int>(trajectory.duration() / kCycle));
-    for (int run = 0; run < 50; ++run) {
+    for (int run = 0; run < scaled(1000); ++run) {
         MotionExecution execution(trajectory);
         const int stop_at = when(random);
         for (int i = 0; i < stop_at; ++i) {
@@ -88,6 +88,24 @@ TEST(Execution, StopsWithinVelocityOverAccelerationPlusAccelerationOverJerk) {
     }
     EXPECT_LT((execution.pathParameter() - before) * 0.2, 0.036);
     EXPECT_FALSE(execution.finished());
+}
+
+TEST(Execution, BrakesWithTheFirstSetPointAfterAStopOrHalt) {
+    const RobotModel model = loadRobot("ur5");
+    const Trajectory trajectory = lineOf(model, 0.2);
+    for (const auto brake : {&MotionExecution::stop, &MotionExecution::halt}) {
+        MotionExecution execution(trajectory);
+        while (execution.pathParameter() < 0.5) {
+            execution.next(kCycle);
+        }
+        const double before = execution.pathParameter();
+        execution.next(kCycle);
+        const double step = execution.pathParameter() - before;
+        const double at = execution.pathParameter();
+        (execution.*brake)();
+        execution.next(kCycle);
+        EXPECT_LT(execution.pathParameter() - at, 0.9999 * step);
+    }
 }
 
 TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
@@ -135,6 +153,68 @@ TEST(Execution, ALateCycleStaysOnTheTimeBase) {
     execution.next(3 * kCycle);
     EXPECT_LE(maxDifference(execution.current().position, trajectory.sample(4 * kCycle).position),
               1e-12);
+}
+
+class LateCycle : public testing::Test {
+protected:
+    LateCycle() {
+        while (execution_.pathParameter() < 0.4) {
+            execution_.next(kCycle);
+        }
+    }
+
+    /// Distance of the tool from where it was [m].
+    double step(Seconds step) {
+        const JointVector before = execution_.current().position;
+        const JointVector after = execution_.next(step).position;
+        return geometry::distanceBetween(trajectory_.toolPose(before), trajectory_.toolPose(after));
+    }
+
+    static constexpr int kMostSkipped = 3;
+    RobotModel model_ = loadRobot("ur5");
+    Trajectory trajectory_ = lineOf(model_, 0.2);
+    MotionExecution execution_{trajectory_, {kCycle, kMostSkipped}};
+};
+
+TEST_F(LateCycle, GoesOnOnTheTimeBaseIfNoMoreCyclesAreSkippedThanAllowed) {
+    EXPECT_NEAR(step((kMostSkipped + 1) * kCycle), 0.25 * (kMostSkipped + 1) * 0.008, 1e-6);
+    EXPECT_FALSE(execution_.stoppedLate());
+    EXPECT_NEAR(step(kCycle), 0.25 * 0.008, 1e-6);
+}
+
+TEST_F(LateCycle, StopsOnThePathIfMoreAreSkipped) {
+    EXPECT_LE(step((kMostSkipped + 2) * kCycle), 0.25 * 0.008 + 1e-6) << "one cycle on, no leap";
+    EXPECT_TRUE(execution_.stoppedLate());
+    int cycles = 0;
+    while (!execution_.atRest()) {
+        execution_.next(kCycle);
+        const auto pose = trajectory_.toolPose(execution_.current().position);
+        ASSERT_LE(trajectory_.deviation(pose).distance, 1e-9);
+        ASSERT_LT(++cycles * kCycle.count(), 0.3);
+    }
+    EXPECT_FALSE(execution_.finished());
+    EXPECT_LT(execution_.pathParameter(), 0.6);
+    execution_.resume();
+    EXPECT_FALSE(execution_.stoppedLate());
+    while (!execution_.finished()) {
+        execution_.next(kCycle);
+    }
+}
+
+TEST_F(LateCycle, WhileBrakingDoesNotLeapEither) {
+    execution_.stop();
+    EXPECT_LE(step(20 * kCycle), 0.25 * 0.008 + 1e-6);
+    EXPECT_FALSE(execution_.stoppedLate());
+    EXPECT_FALSE(execution_.atRest());
+}
+
+TEST_F(LateCycle, AtRestMeansNothing) {
+    execution_.stop();
+    while (!execution_.atRest()) {
+        execution_.next(kCycle);
+    }
+    EXPECT_EQ(step(100 * kCycle), 0.0);
+    EXPECT_FALSE(execution_.stoppedLate());
 }
 
 TEST(Execution, AMotionOfNoLengthIsFinishedAtOnce) {

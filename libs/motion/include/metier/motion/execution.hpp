@@ -4,6 +4,12 @@
 
 namespace metier::motion {
 
+/// What a cycle that comes late means for a motion.
+struct LateCyclePolicy {
+    Seconds cycle{0};      ///< of the controller; 0: no step is too late
+    int most_skipped = 4;  ///< cycles one step may skip; when more are missing the motion stops
+};
+
 /// A trajectory while it runs: gives the set-point of each cycle, brakes and goes on along the
 /// path.
 ///
@@ -12,9 +18,11 @@ namespace metier::motion {
 class MotionExecution {
 public:
     /// Starts at rest at the beginning of the path, moving with the first next().
-    explicit MotionExecution(Trajectory trajectory) noexcept;
+    explicit MotionExecution(Trajectory trajectory, const LateCyclePolicy& late = {}) noexcept;
 
-    /// The set-point `step` later. A late cycle passes its longer step and stays on time.
+    /// The set-point `step` later. A late cycle passes its longer step and stays on time. One that
+    /// skips more cycles than the policy allows stops the motion on its path, as stop() does, and
+    /// goes on by one cycle only: the arm is not asked to catch up with a leap.
     /// \param step >= 0
     SetPoint next(Seconds step) noexcept;
     /// The set-point last given; the start of the path before the first next().
@@ -29,6 +37,8 @@ public:
     /// Speed as a share of the planned one. \param factor clamped to [0, 1]; 0 stands on the path
     void setOverride(double factor) noexcept;
 
+    /// Whether it stopped because a cycle came too late; false again after resume().
+    bool stoppedLate() const noexcept { return stopped_late_; }
     bool atRest() const noexcept;
     /// At rest at the end of the path.
     bool finished() const noexcept;
@@ -41,9 +51,12 @@ public:
 private:
     enum class Mode { running, stopping };
 
+    bool tooLate(Seconds step) const noexcept;
     void replan(double limit_factor) noexcept;
 
     Trajectory trajectory_;
+    LateCyclePolicy late_;
+    bool stopped_late_ = false;
     Mode mode_ = Mode::running;
     double override_ = 1.0;
     ScalarState clock_;
