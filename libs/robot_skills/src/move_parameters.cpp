@@ -117,21 +117,14 @@ Field speedOverrideField() {
     return field;
 }
 
-Field redundancyField(const motion::RobotModel& model) {
+Field redundancyField() {
     Field field{.name = "RedundancyAngle",
                 .description =
                     "Angle of the elbow of a seven-axis arm at the target; "
-                    "not set: as at the start",
+                    "not set: as at the start; other arms ignore it",
                 .unit = skill::kRadian};
     field.place = Place::options;
     field.range = Range{-std::numbers::pi, std::numbers::pi};
-    const bool redundant = model.kinematics().ikKind() == motion::IkKind::arm_angle;
-    field.extra_check = [redundant](const Value&) -> Result<void> {
-        if (!redundant) {
-            return fail(Errc::not_supported, "this arm has no redundant axis");
-        }
-        return {};
-    };
     return field;
 }
 
@@ -159,7 +152,7 @@ void addMoveFields(skill::FieldList<Parameters>& fields, const motion::RobotMode
                      "Largest acceleration, " + of + "; 0: the robot's own"));
     add(fields, &MoveParameters::blend_radius, blendRadiusField());
     add(fields, &MoveParameters::speed_override, speedOverrideField());
-    add(fields, &MoveParameters::redundancy_angle, redundancyField(model));
+    add(fields, &MoveParameters::redundancy_angle, redundancyField());
 }
 
 }  // namespace

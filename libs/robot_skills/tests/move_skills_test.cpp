@@ -134,6 +134,16 @@ TEST(CartesianPtpMove, ReachesAnAbsolutePose) {
     EXPECT_LT(number(bench.program(kCartesianPtp), "LargestPathDeviation"), 1e-9);
 }
 
+TEST(CartesianPtpMove, OfASixAxisArmIgnoresTheRedundancyAngle) {
+    Bench bench;
+    const auto from = bench.commandedPose().translation;
+    ASSERT_TRUE(bench.start(kCartesianPtp, {{"TargetPosition", Frame{0, 0, 0.05}},
+                                            {"Relative", std::int32_t{1}},
+                                            {"RedundancyAngle", 0.5}}));
+    ASSERT_TRUE(bench.stepUntil(kCartesianPtp, State::ready));
+    EXPECT_NEAR(bench.commandedPose().translation.z(), from.z() + 0.05, 1e-9);
+}
+
 TEST(JointPtpMove, ReachesItsJointsTogetherOnOneLine) {
     Bench bench;
     const auto from = bench.commanded();
