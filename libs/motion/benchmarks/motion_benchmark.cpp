@@ -7,6 +7,11 @@
 #include <chrono>
 #include <cstdio>
 #include <kdl/chainiksolverpos_lma.hpp>
+#include <kdl/path_line.hpp>
+#include <kdl/rotational_interpolation_sa.hpp>
+#include <kdl/trajectory_segment.hpp>
+#include <kdl/velocityprofile_trap.hpp>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -14,7 +19,9 @@
 
 #include "../tests/kdl_oracle.hpp"
 #include "metier/motion/execution.hpp"
+#include "metier/motion/force_limit.hpp"
 #include "metier/motion/planner.hpp"
+#include "metier/motion/self_collision.hpp"
 #include "metier/motion/stream_follower.hpp"
 
 namespace metier::motion {
@@ -158,11 +165,147 @@ LinRequest line(const RobotModel& model, double length) {
     return request;
 }
 
+/// The arm with every length off by 1 mm and every angle by 1 mrad, as a measured one.
+RobotModel calibrated(const RobotModel& nominal) {
+    ChainDescription chain = nominal.chain();
+    double sign = 1;
+    for (JointDescription& joint : chain.joints) {
+        geometry::Pose& pose = joint.parent_from_joint;
+        pose.translation += sign * Eigen::Vector3d(1e-3, 0, 1e-3);
+        pose.rotation = pose.rotation * Eigen::AngleAxisd(sign * 1e-3, Eigen::Vector3d::UnitX());
+        sign = -sign;
+    }
+    return RobotModel::fromChain(chain).value();
+}
+
+void inverseCalibrated(benchmark::State& state, const std::string& robot) {
+    const Fixture fixture(robot);
+    const RobotModel arm = calibrated(fixture.model);
+    std::size_t n = 0;
+    std::size_t found = 0;
+    for (auto _ : state) {
+        const std::size_t k = n++ % kPositions;
+        found += arm.kinematics().allSolutions(fixture.poses[k], fixture.positions[k]).size();
+    }
+    state.counters["solutions"] = static_cast<double>(found) / static_cast<double>(n);
+    state.counters["calibrated"] = arm.kinematics().isCalibrated() ? 1 : 0;
+}
+
+/// A line of 1 m that the arm can run, slowly where an axis limits.
+LinRequest longLine(const RobotModel& model) {
+    LinRequest request = line(model, 0);
+    const double half = model.kinematics().reach() > 1 ? 0.5 : 0.3;
+    const geometry::Pose home = model.kinematics().forward(model.home());
+    geometry::Pose start = home;
+    start.translation.y() -= half;
+    request.start = model.kinematics().inverse(start, {model.home(), {}, {}}).value();
+    request.target.translation = {0, 2 * half, 0};
+    return request;
+}
+
+void planLongLine(benchmark::State& state, const std::string& robot) {
+    const RobotModel model = load(robot);
+    const LinRequest request = longLine(model);
+    const auto plan = Planner(model).lin(request);
+    if (!plan) {
+        state.SkipWithError(plan.error().error.message.c_str());
+        return;
+    }
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(Planner(model).lin(request));
+    }
+    state.counters["length_m"] = plan->length();
+}
+
 void planLine(benchmark::State& state, const std::string& robot) {
     const RobotModel model = load(robot);
     const LinRequest request = line(model, 0.1);
     for (auto _ : state) {
         benchmark::DoNotOptimize(Planner(model).lin(request));
+    }
+}
+
+/// What KDL needs for a set-point of the same line: position on it and LMA from the one before.
+void sampleLineKdl(benchmark::State& state, const std::string& robot) {
+    const RobotModel model = load(robot);
+    const KdlOracle oracle(model.chain());
+    KDL::ChainIkSolverPos_LMA solver(oracle.chain(), Eigen::Matrix<double, 6, 1>::Ones(), 1e-6, 500,
+                                     1e-15);
+    const geometry::Pose home = model.kinematics().forward(model.home());
+    const auto& r = home.rotation;
+    const auto& t = home.translation;
+    const KDL::Frame from(KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()),
+                          {t.x(), t.y(), t.z()});
+    const KDL::Frame to(from.M, from.p + KDL::Vector(0, 0, 0.1));
+    auto profile = std::make_unique<KDL::VelocityProfile_Trap>(0.25, 1.2);
+    auto path = std::make_unique<KDL::Path_Line>(
+        from, to, new KDL::RotationalInterpolation_SingleAxis(), 0.25);
+    profile->SetProfile(0, path->PathLength());
+    const double duration = profile->Duration();
+    const KDL::Trajectory_Segment trajectory(path.release(), profile.release());
+    const auto axes = static_cast<unsigned>(model.axisCount());
+    KDL::JntArray q(axes);
+    KDL::JntArray next(axes);
+    double time = duration;
+    for (auto _ : state) {
+        time += 0.001;
+        if (time > duration) {
+            time = 0;
+            for (unsigned i = 0; i < axes; ++i) {
+                q(i) = model.home()[i];
+            }
+        }
+        benchmark::DoNotOptimize(solver.CartToJnt(q, trajectory.Pos(time), next));
+        q = next;
+    }
+}
+
+void planPtp(benchmark::State& state, const std::string& robot) {
+    const Fixture fixture(robot);
+    std::size_t n = 0;
+    PtpRequest request;
+    for (auto _ : state) {
+        request.start = fixture.positions[n % kPositions];
+        request.target = fixture.positions[(n + 7) % kPositions];
+        ++n;
+        benchmark::DoNotOptimize(Planner(fixture.model).ptp(request));
+    }
+}
+
+void selfCollision(benchmark::State& state, const std::string& robot) {
+    const Fixture fixture(robot);
+    const SelfCollision collision(fixture.model);
+    std::size_t n = 0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(collision.nearest(fixture.positions[n++ % kPositions]));
+    }
+    state.counters["pairs"] = static_cast<double>(collision.pairCount());
+}
+
+/// Baseline of selfCollision(): only where the links are.
+void linkFramesKdl(benchmark::State& state, const std::string& robot) {
+    const Fixture fixture(robot);
+    const KdlOracle oracle(fixture.model.chain());
+    KDL::ChainFkSolverPos_recursive solver(oracle.chain());
+    const auto axes = static_cast<unsigned>(fixture.model.axisCount());
+    std::vector<KDL::Frame> frames(oracle.chain().getNrOfSegments());
+    KDL::JntArray q(axes);
+    std::size_t n = 0;
+    for (auto _ : state) {
+        for (unsigned i = 0; i < axes; ++i) {
+            q(i) = fixture.positions[n % kPositions][i];
+        }
+        ++n;
+        benchmark::DoNotOptimize(solver.JntToCart(q, frames));
+    }
+}
+
+void checkForce(benchmark::State& state, const std::string& robot) {
+    ForceLimit limit =
+        ForceLimit::create({50, 5, {0, 0, 40, 0, 0, 0}}, Seconds(load(robot).cycleTime())).value();
+    int n = 0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(limit.check({{0, 0, 0.1 * (n++ % 300)}, {0, 0, 0}}));
     }
 }
 
@@ -208,16 +351,24 @@ struct Entry {
     const char* beside;  ///< KDL's row this one is compared with
 };
 
-constexpr std::array<Entry, 10> kEntries{{{"forward", forwardOwn, "forward_kdl"},
-                                          {"forward_kdl", forwardKdl, nullptr},
-                                          {"forward_and_jacobian", jacobianOwn, "jacobian_kdl"},
-                                          {"jacobian_kdl", jacobianKdl, nullptr},
-                                          {"inverse_all_solutions", inverseAll, "inverse_kdl_lma"},
-                                          {"inverse_nearest", inverseNearest, "inverse_kdl_lma"},
-                                          {"inverse_numeric", inverseNumeric, "inverse_kdl_lma"},
-                                          {"inverse_kdl_lma", inverseKdl, nullptr},
-                                          {"plan_lin", planLine, nullptr},
-                                          {"sample_lin", sampleLine, nullptr}}};
+constexpr std::array<Entry, 17> kEntries{
+    {{"forward", forwardOwn, "forward_kdl"},
+     {"forward_kdl", forwardKdl, nullptr},
+     {"forward_and_jacobian", jacobianOwn, "jacobian_kdl"},
+     {"jacobian_kdl", jacobianKdl, nullptr},
+     {"inverse_all_solutions", inverseAll, "inverse_kdl_lma"},
+     {"inverse_nearest", inverseNearest, "inverse_kdl_lma"},
+     {"inverse_numeric", inverseNumeric, "inverse_kdl_lma"},
+     {"inverse_kdl_lma", inverseKdl, nullptr},
+     {"inverse_all_calibrated", inverseCalibrated, "inverse_kdl_lma"},
+     {"plan_ptp", planPtp, nullptr},
+     {"plan_lin", planLine, nullptr},
+     {"plan_lin_1m", planLongLine, nullptr},
+     {"sample_lin", sampleLine, "sample_lin_kdl"},
+     {"sample_lin_kdl", sampleLineKdl, nullptr},
+     {"self_collision", selfCollision, "link_frames_kdl"},
+     {"link_frames_kdl", linkFramesKdl, nullptr},
+     {"force_check", checkForce, nullptr}}};
 
 /// Prints as the console does and keeps the times for the ratios at the end.
 class RatioReporter : public benchmark::ConsoleReporter {
