@@ -1,0 +1,128 @@
+#include "metier/robot_skills/move_planning.hpp"
+
+#include <algorithm>
+
+#include "conversions.hpp"
+#include "metier/geometry/frame.hpp"
+
+namespace metier::robot_skills {
+
+using motion::JointVector;
+using motion::Planned;
+using motion::RobotModel;
+using motion::Trajectory;
+
+namespace {
+
+bool allZero(const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; });
+}
+
+/// Per-axis maxima for the planner: empty for "not set", whatever its length.
+JointVector axisMaxima(const std::vector<double>& values) {
+    return allZero(values) ? JointVector() : JointVector::from(values).value_or(JointVector());
+}
+
+motion::CartesianVector cartesianMaxima(const std::vector<double>& values) {
+    motion::CartesianVector maxima{};
+    if (!allZero(values)) {
+        std::copy_n(values.begin(), std::min(values.size(), maxima.size()), maxima.begin());
+    }
+    return maxima;
+}
+
+motion::AxisBounds axisBounds(const std::vector<skill::Range>& ranges) {
+    const bool not_set = std::all_of(ranges.begin(), ranges.end(), [](const skill::Range& range) {
+        return range == skill::Range{};
+    });
+    if (not_set) {
+        return {};
+    }
+    motion::AxisBounds bounds{JointVector(ranges.size()), JointVector(ranges.size())};
+    for (std::size_t axis = 0; axis < ranges.size(); ++axis) {
+        bounds.lower[axis] = ranges[axis].low;
+        bounds.upper[axis] = ranges[axis].high;
+    }
+    return bounds;
+}
+
+motion::TargetReference reference(const MoveParameters& parameters) {
+    switch (static_cast<Relative>(parameters.relative)) {
+        case Relative::absolute:
+            return motion::TargetReference::base;
+        case Relative::base:
+            return motion::TargetReference::relative_base;
+        case Relative::tool:
+            return motion::TargetReference::relative_tool;
+    }
+    return motion::TargetReference::base;
+}
+
+JointVector jointTarget(const JointVector& start, const JointMoveParameters& parameters) {
+    auto target = JointVector::from(parameters.target_joint_position).value_or(start);
+    if (static_cast<Relative>(parameters.relative) == Relative::base) {
+        target.view() += start.view();
+    }
+    return target;
+}
+
+motion::PtpRequest ptpRequest(const JointVector& start, const MoveParameters& parameters) {
+    motion::PtpRequest request;
+    request.start = start;
+    request.tool_frame = parameters.tool_frame;
+    request.max_velocity = axisMaxima(parameters.max_velocity);
+    request.max_acceleration = axisMaxima(parameters.max_acceleration);
+    request.speed_override = parameters.speed_override;
+    request.redundancy_angle = parameters.redundancy_angle;
+    return request;
+}
+
+motion::LinRequest commonLinRequest(const JointVector& start, const MoveParameters& parameters) {
+    motion::LinRequest request;
+    request.start = start;
+    request.tool_frame = parameters.tool_frame;
+    request.max_velocity = cartesianMaxima(parameters.max_velocity);
+    request.max_acceleration = cartesianMaxima(parameters.max_acceleration);
+    request.speed_override = parameters.speed_override;
+    request.redundancy_angle = parameters.redundancy_angle;
+    return request;
+}
+
+}  // namespace
+
+motion::LinRequest linRequest(const JointVector& start, const CartesianMoveParameters& parameters) {
+    auto request = commonLinRequest(start, parameters);
+    request.target = geometry::toPose(parameters.target_position);
+    request.reference = reference(parameters);
+    request.axis_bounds = axisBounds(parameters.axis_bounds);
+    return request;
+}
+
+Planned<Trajectory> planCartesianPtp(const RobotModel& model, const JointVector& start,
+                                     const CartesianMoveParameters& parameters) {
+    auto request = ptpRequest(start, parameters);
+    request.target = geometry::toPose(parameters.target_position);
+    request.reference = reference(parameters);
+    request.axis_bounds = axisBounds(parameters.axis_bounds);
+    return motion::Planner(model).ptp(request);
+}
+
+Planned<Trajectory> planCartesianLinear(const RobotModel& model, const JointVector& start,
+                                        const CartesianMoveParameters& parameters) {
+    return motion::Planner(model).lin(linRequest(start, parameters));
+}
+
+Planned<Trajectory> planJointPtp(const RobotModel& model, const JointVector& start,
+                                 const JointMoveParameters& parameters) {
+    auto request = ptpRequest(start, parameters);
+    request.target = jointTarget(start, parameters);
+    return motion::Planner(model).ptp(request);
+}
+
+Planned<Trajectory> planJointLinear(const RobotModel& model, const JointVector& start,
+                                    const JointMoveParameters& parameters) {
+    return motion::Planner(model).jointLinear(
+        {commonLinRequest(start, parameters), jointTarget(start, parameters)});
+}
+
+}  // namespace metier::robot_skills
