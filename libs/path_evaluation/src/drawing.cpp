@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "svg.hpp"
 
 namespace metier::path_evaluation {
 namespace {
@@ -19,42 +21,15 @@ constexpr double kDeviationHeight = 60;
 constexpr double kMargin = 0.15;  // free space around the square, as a part of its side
 constexpr double kMillimetre = 1000;
 
-using Out = std::back_insert_iterator<std::string>;
-
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
-}
-
 /// Maps positions of one square to the picture.
 class Panel {
 public:
     Panel(const DrawnPath& path, double left) : path_(path), left_(left) {}
 
-    double x(const Eigen::Vector3d& position) const {
-        return plotLeft() + scale() * (across(position, path_.square.right) + margin());
-    }
-    double y(const Eigen::Vector3d& position) const {
+    Spot spot(const Eigen::Vector3d& position) const {
         const double height = across(position, path_.square.up) + margin();
-        return kPathTop + kPlotSize - scale() * height;
+        return {plotLeft() + scale() * (across(position, path_.square.right) + margin()),
+                kPathTop + kPlotSize - scale() * height};
     }
     double plotLeft() const { return left_ + kPlotLeft; }
     const DrawnPath& path() const { return path_; }
@@ -70,92 +45,72 @@ private:
     double left_;
 };
 
-void drawText(Out out, double x, double y, std::string_view style, std::string_view text) {
-    fmt::format_to(out, "<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\">{}</text>\n", x, y, style,
-                   text);
-}
-
-void drawOutline(Out out, const Panel& panel) {
-    fmt::format_to(out, "<polygon class=\"ideal\" points=\"");
+void drawOutline(SvgPicture& picture, const Panel& panel) {
+    std::vector<Spot> spots;
     for (const auto& corner : panel.path().square.corners()) {
-        fmt::format_to(out, "{:.2f},{:.2f} ", panel.x(corner.translation),
-                       panel.y(corner.translation));
+        spots.push_back(panel.spot(corner.translation));
     }
-    fmt::format_to(out, "\"/>\n");
+    picture.polygon(spots, "ideal");
 }
 
-void drawMeasured(Out out, const Panel& panel) {
-    fmt::format_to(out, "<polyline class=\"measured\" points=\"");
+void drawMeasured(SvgPicture& picture, const Panel& panel) {
+    std::vector<Spot> spots;
     for (const auto& position : panel.path().positions) {
-        fmt::format_to(out, "{:.2f},{:.2f} ", panel.x(position), panel.y(position));
+        spots.push_back(panel.spot(position));
     }
-    fmt::format_to(out, "\"/>\n");
-    const auto& start = panel.path().square.start.translation;
-    fmt::format_to(out, "<circle class=\"start\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"/>\n",
-                   panel.x(start), panel.y(start));
-    drawText(out, panel.x(start) + 8, panel.y(start) + 16, "note", "start");
+    picture.polyline(spots, "measured");
+    const auto start = panel.spot(panel.path().square.start.translation);
+    picture.circle(start, 4, "start");
+    picture.text({start.x + 8, start.y + 16}, "note", "start");
 }
 
-void drawSideLength(Out out, const Panel& panel) {
+void drawSideLength(SvgPicture& picture, const Panel& panel) {
     const auto& square = panel.path().square;
     const double middle =
-        (panel.x(square.corner(0).translation) + panel.x(square.corner(1).translation)) / 2;
-    drawText(out, middle, panel.y(square.corner(3).translation) - 8, "note centred",
-             fmt::format("{:.0f} mm", square.side * kMillimetre));
+        (panel.spot(square.corner(0).translation).x + panel.spot(square.corner(1).translation).x) /
+        2;
+    picture.text({middle, panel.spot(square.corner(3).translation).y - 8}, "note centred",
+                 fmt::format("{:.0f} mm", square.side * kMillimetre));
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is at least `value`.
-double roundScale(double value) {
-    const double power = std::pow(10.0, std::floor(std::log10(std::max(value, 1e-6))));
-    for (const double step : {1.0, 2.0, 5.0}) {
-        if (step * power >= value) {
-            return step * power;
-        }
-    }
-    return 10.0 * power;
-}
-
-void drawDeviation(Out out, const Panel& panel) {
+std::vector<Spot> deviationCurve(const Panel& panel, double top_mm) {
     const auto& path = panel.path();
-    const double top_mm = roundScale(path.measurement.largest_deviation * kMillimetre);
-    const double bottom = kDeviationTop + kDeviationHeight;
-    fmt::format_to(out,
-                   "<rect class=\"frame\" x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                   panel.plotLeft(), kDeviationTop, kPlotSize, kDeviationHeight);
-    drawText(out, panel.plotLeft() - 6, kDeviationTop + 10, "note right",
-             fmt::format("{:g} mm", top_mm));
-    drawText(out, panel.plotLeft() - 6, bottom, "note right", "0");
-    drawText(out, panel.plotLeft(), kDeviationTop - 8, "note", "distance from the side");
-    drawText(out, panel.plotLeft() + kPlotSize, bottom + 16, "note right", "along the way");
-    fmt::format_to(out, "<polyline class=\"deviation\" points=\"");
     const auto count = static_cast<double>(std::max<std::size_t>(path.positions.size(), 2) - 1);
+    std::vector<Spot> spots;
     for (std::size_t i = 0; i < path.positions.size(); ++i) {
         const double mm = distanceFromOutline(path.square, path.positions[i]) * kMillimetre;
-        fmt::format_to(out, "{:.2f},{:.2f} ",
-                       panel.plotLeft() + kPlotSize * static_cast<double>(i) / count,
-                       bottom - kDeviationHeight * std::min(mm / top_mm, 1.0));
+        spots.push_back({panel.plotLeft() + kPlotSize * static_cast<double>(i) / count,
+                         kDeviationTop + kDeviationHeight * (1 - std::min(mm / top_mm, 1.0))});
     }
-    fmt::format_to(out, "\"/>\n");
+    return spots;
 }
 
-void drawPanel(Out out, const Panel& panel) {
+void drawDeviation(SvgPicture& picture, const Panel& panel) {
+    const double top_mm = roundedUp(panel.path().measurement.largest_deviation * kMillimetre);
+    const Box box{panel.plotLeft(), kDeviationTop, kPlotSize, kDeviationHeight};
+    picture.rectangle(box, "frame");
+    picture.text({box.left - 6, box.top + 10}, "note right", fmt::format("{:g} mm", top_mm));
+    picture.text({box.left - 6, box.bottom()}, "note right", "0");
+    picture.text({box.left, box.top - 8}, "note", "distance from the side");
+    picture.text({box.right(), box.bottom() + 16}, "note right", "along the way");
+    picture.polyline(deviationCurve(panel, top_mm), "deviation");
+}
+
+void drawPanel(SvgPicture& picture, const Panel& panel) {
     const auto& path = panel.path();
-    drawText(out, panel.plotLeft(), 28, "title", escaped(path.name));
-    drawText(out, panel.plotLeft(), 48, "note",
-             fmt::format("deviation {:.4f} mm, closure {:.4f} mm",
-                         path.measurement.largest_deviation * kMillimetre,
-                         path.measurement.closure_error * kMillimetre));
-    fmt::format_to(out,
-                   "<rect class=\"frame\" x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                   panel.plotLeft(), kPathTop, kPlotSize, kPlotSize);
-    drawOutline(out, panel);
-    drawMeasured(out, panel);
-    drawSideLength(out, panel);
-    drawDeviation(out, panel);
+    picture.text({panel.plotLeft(), 28}, "title", path.name);
+    picture.text({panel.plotLeft(), 48}, "note",
+                 fmt::format("deviation {:.4f} mm, closure {:.4f} mm",
+                             path.measurement.largest_deviation * kMillimetre,
+                             path.measurement.closure_error * kMillimetre));
+    picture.rectangle({panel.plotLeft(), kPathTop, kPlotSize, kPlotSize}, "frame");
+    drawOutline(picture, panel);
+    drawMeasured(picture, panel);
+    drawSideLength(picture, panel);
+    drawDeviation(picture, panel);
 }
 
-constexpr std::string_view kStyle = R"(<style>
-text{font-family:system-ui,sans-serif;fill:#1f2933}
+constexpr std::string_view kStyle = R"(text{font-family:system-ui,sans-serif;fill:#1f2933}
 .title{font-size:16px;font-weight:600}
 .note{font-size:12px;fill:#52606d}
 .right{text-anchor:end}.centred{text-anchor:middle}
@@ -164,25 +119,17 @@ text{font-family:system-ui,sans-serif;fill:#1f2933}
 .measured{fill:none;stroke:#d64545;stroke-width:1.6;stroke-linejoin:round}
 .start{fill:#1f2933}
 .deviation{fill:none;stroke:#2680c2;stroke-width:1.2}
-</style>
 )";
 
 }  // namespace
 
 std::string drawSvg(std::span<const DrawnPath> paths) {
-    std::string svg;
-    const Out out(svg);
     const double width = kPanelWidth * static_cast<double>(std::max<std::size_t>(paths.size(), 1));
-    fmt::format_to(out,
-                   "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-                   "viewBox=\"0 0 {0} {1}\">\n{2}<rect width=\"100%\" height=\"100%\" "
-                   "fill=\"#ffffff\"/>\n",
-                   width, kPanelHeight, kStyle);
+    SvgPicture picture(width, kPanelHeight, kStyle);
     for (std::size_t i = 0; i < paths.size(); ++i) {
-        drawPanel(out, Panel(paths[i], kPanelWidth * static_cast<double>(i)));
+        drawPanel(picture, Panel(paths[i], kPanelWidth * static_cast<double>(i)));
     }
-    svg += "</svg>\n";
-    return svg;
+    return std::move(picture).finish();
 }
 
 }  // namespace metier::path_evaluation

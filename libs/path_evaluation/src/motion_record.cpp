@@ -1,0 +1,164 @@
+#include "metier/path_evaluation/motion_record.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+namespace metier::path_evaluation {
+namespace {
+
+using motion::JointVector;
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blank = " \t\r";
+    const auto first = text.find_first_not_of(blank);
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::optional<double> numberIn(std::string_view text) {
+    const auto word = trimmed(text);
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc{} || end != word.data() + word.size()) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+/// Time, then joint positions, as one line of CSV has them.
+Result<std::vector<double>> numbersOf(std::string_view line) {
+    std::vector<double> values;
+    for (;;) {
+        const auto comma = line.find(',');
+        const auto word = line.substr(0, comma);
+        const auto value = numberIn(word);
+        if (!value) {
+            return fail(Errc::invalid_argument, fmt::format("'{}' is not a number", trimmed(word)));
+        }
+        values.push_back(*value);
+        if (comma == std::string_view::npos) {
+            return values;
+        }
+        line.remove_prefix(comma + 1);
+    }
+}
+
+/// Appends to the record, or tells why not.
+Result<void> append(MotionRecord& record, double time, std::span<const double> joints) {
+    auto position = JointVector::from(joints);
+    if (!position) {
+        return fail(std::move(position.error()));
+    }
+    if (!std::isfinite(time)) {
+        return fail(Errc::invalid_argument, fmt::format("time {} s is not finite", time));
+    }
+    if (position->empty()) {
+        return fail(Errc::invalid_argument, "no joint positions behind the time");
+    }
+    if (!record.empty() && record.back().position.size() != position->size()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} joint positions, {} before", position->size(),
+                                record.back().position.size()));
+    }
+    if (!record.empty() && time <= record.back().time) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("time {} s is not after {} s", time, record.back().time));
+    }
+    record.push_back({time, *position});
+    return {};
+}
+
+Result<MotionRecord> recordOfCsv(std::string_view text, std::string_view name) {
+    MotionRecord record;
+    bool first = true;
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const auto end = text.find('\n');
+        const auto line = trimmed(text.substr(0, end));
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+        if (line.empty() || line.front() == '#') {
+            continue;
+        }
+        const bool heading = first && !numberIn(line.substr(0, line.find(',')));
+        first = false;
+        if (heading) {
+            continue;
+        }
+        const auto values = numbersOf(line);
+        const auto taken = values ? append(record, values->front(), std::span(*values).subspan(1))
+                                  : Result<void>(tl::unexpected(values.error()));
+        if (!taken) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("{}:{}: {}", name, number, taken.error().message));
+        }
+    }
+    return record;
+}
+
+Result<MotionRecord> recordOfJson(std::string_view text, std::string_view name) {
+    MotionRecord record;
+    try {
+        const auto json = nlohmann::json::parse(text);
+        for (const auto& sample : json.is_array() ? json : json.at("preview")) {
+            const auto joints = sample.at("joint_position").get<std::vector<double>>();
+            if (auto taken = append(record, sample.at("time").get<double>(), joints); !taken) {
+                return fail(Errc::invalid_argument,
+                            fmt::format("{}: position {}: {}", name, record.size() + 1,
+                                        taken.error().message));
+            }
+        }
+    } catch (const nlohmann::json::exception& error) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: position {}: {}", name, record.size() + 1, error.what()));
+    }
+    return record;
+}
+
+}  // namespace
+
+Result<MotionRecord> parseRecord(std::string_view text, std::string_view name) {
+    const auto first = text.find_first_not_of(" \t\r\n");
+    const bool json = first != std::string_view::npos && (text[first] == '[' || text[first] == '{');
+    auto record = json ? recordOfJson(text, name) : recordOfCsv(text, name);
+    if (record && record->size() < kFewestRecorded) {
+        return fail(Errc::invalid_argument, fmt::format("{}: {} positions, at least {} needed",
+                                                        name, record->size(), kFewestRecorded));
+    }
+    return record;
+}
+
+Result<MotionRecord> loadRecord(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::ostringstream text;
+    if (!in || !(text << in.rdbuf())) {
+        return fail(Errc::not_found,
+                    fmt::format("{}: no such file, or nothing in it", file.string()));
+    }
+    return parseRecord(text.str(), file.string());
+}
+
+std::string toCsv(const MotionRecord& record) {
+    std::string csv = "time";
+    const std::size_t axes = record.empty() ? 0 : record.front().position.size();
+    for (std::size_t axis = 1; axis <= axes; ++axis) {
+        fmt::format_to(std::back_inserter(csv), ",q{}", axis);
+    }
+    csv += "\n";
+    for (const auto& [time, position] : record) {
+        fmt::format_to(std::back_inserter(csv), "{}", time);
+        for (const double value : position) {
+            fmt::format_to(std::back_inserter(csv), ",{}", value);
+        }
+        csv += "\n";
+    }
+    return csv;
+}
+
+}  // namespace metier::path_evaluation
