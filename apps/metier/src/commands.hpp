@@ -29,6 +29,10 @@ void addWatch(CLI::App& app, Exit& exit);
 void addHalt(CLI::App& app, Exit& exit);
 void addSquare(CLI::App& app, Exit& exit);
 void addDemo(CLI::App& app, Exit& exit);
+void addFk(CLI::App& app, Exit& exit);
+void addIk(CLI::App& app, Exit& exit);
+void addCheck(CLI::App& app, Exit& exit);
+void addPlot(CLI::App& app, Exit& exit);
 void addCompletion(CLI::App& app, Exit& exit);
 
 }  // namespace metier::app

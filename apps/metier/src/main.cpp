@@ -2,7 +2,10 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 
@@ -15,7 +18,9 @@ constexpr const char* kAbout =
     "  metier up cells/demo.toml                       start the demo cell\n"
     "  metier list --cell cells/demo.toml              what it offers\n"
     "  metier run opc.tcp://127.0.0.1:48421 JointPtpMoveSkill --fields\n"
-    "  metier square --cell cells/demo.toml            move every arm along a square";
+    "  metier square --cell cells/demo.toml            move every arm along a square\n"
+    "Without a server:\n"
+    "  metier check ur5 --to-pose 0.4,-0.1,0.3,3.14,0,0 --linear    would it move, and how";
 
 void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addDemo(app, exit);
@@ -26,6 +31,10 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addWatch(app, exit);
     metier::app::addHalt(app, exit);
     metier::app::addSquare(app, exit);
+    metier::app::addFk(app, exit);
+    metier::app::addIk(app, exit);
+    metier::app::addCheck(app, exit);
+    metier::app::addPlot(app, exit);
     metier::app::addCompletion(app, exit);
 }
 
@@ -34,6 +43,19 @@ void setUpLog(const std::string& level) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("metier"));
     spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(level));
+}
+
+/// The arguments, last first as CLI11 takes them. It takes one that begins with '-' for an option
+/// unless a digit follows; a space before -.5, -inf and -nan makes them values.
+std::vector<std::string> argumentsOf(int argc, char** argv) {
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    for (auto& argument : arguments) {
+        const bool value = argument.starts_with("-.") || argument.starts_with("-inf") ||
+                           argument.starts_with("-nan");
+        argument.insert(0, value ? " " : "");
+    }
+    std::reverse(arguments.begin(), arguments.end());
+    return arguments;
 }
 
 int run(int argc, char** argv) {
@@ -51,7 +73,7 @@ int run(int argc, char** argv) {
     app.parse_complete_callback([&log_level] { setUpLog(log_level); });
     addCommands(app, exit);
     try {
-        app.parse(argc, argv);
+        app.parse(argumentsOf(argc, argv));
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? static_cast<int>(Exit::success)
                                     : static_cast<int>(Exit::usage);

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "commands.hpp"
+#include "metier/motion/robot_model.hpp"
+
+namespace metier::app {
+
+/// Adds the argument ROBOT to a command: a model's name or its file.
+void addRobot(CLI::App& command, std::string& robot);
+
+/// The model of that name (`ur5`), or of that file if it has a slash or ends in .toml. Names are
+/// looked up in share/metier/models beside the program's bin, then in the source tree's models.
+/// Errors: invalid_argument, with the names there are, or as RobotModel::load().
+Result<motion::RobotModel> loadRobot(const std::string& robot);
+
+}  // namespace metier::app
