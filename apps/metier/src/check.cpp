@@ -50,7 +50,7 @@ void printRefusal(const PlannedMove& move, const motion::Refusal& refusal) {
     if (refusal.axis) {
         fmt::print("  axis          {}\n", *refusal.axis + 1);
     }
-    if (refusal.reason != motion::RefusalReason::invalid_request) {
+    if (refusal.fraction > 0) {
         fmt::print("  fails first   at {:.1f} % of the path\n", 100 * refusal.fraction);
     }
 }
