@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <pugixml.hpp>
@@ -239,6 +240,30 @@ TEST(Ik, MarksSolutionsOutsideOfTheLimits) {
         within += solution["within_limits"].get<bool>() ? 1 : 0;
     }
     EXPECT_THAT(within, AllOf(Ge(1), Le(7)));
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    return text.replace(text.find(what), what.size(), by);
+}
+
+TEST(Ik, TurnsAnAxisIntoItsLimitsByAWholeTurn) {
+    std::ifstream edo(std::string(METIER_SOURCE_DIR) + "/models/edo.toml");
+    std::string text((std::istreambuf_iterator<char>(edo)), std::istreambuf_iterator<char>());
+    text = replaced(std::move(text), "home = [0.0", "home = [1.0");
+    text = replaced(std::move(text), "position_deg = [-179, 179]", "position_deg = [10, 350]");
+    const ScratchFile model(".toml");
+    std::ofstream(model.name()) << text;
+    const std::vector<double> joints{5.0, -0.4, 1.6, 0.7, 1.0, -1.2};
+    const auto pose = jsonOf(commandLine("fk", model.name(), joints));
+    const auto& at = pose["position"];
+    const auto& turned = pose["rotation"];
+    const auto solved = jsonOf(commandLine(
+        "ik", model.name(), {at["x"], at["y"], at["z"], turned["a"], turned["b"], turned["c"]}));
+    const auto& solutions = solved["solutions"];
+    EXPECT_TRUE(std::any_of(solutions.begin(), solutions.end(), [](const json& solution) {
+        return std::abs(solution["joint_position"][0].get<double>() - 5.0) < 1e-9 &&
+               solution["within_limits"].get<bool>();
+    })) << solutions.dump(2);
 }
 
 TEST(Ik, OfAPoseOutOfReachFailsWithDistanceAndReach) {
