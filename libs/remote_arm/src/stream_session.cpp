@@ -166,6 +166,11 @@ Result<void> StreamSession::subscribeState() {
     auto safety = client_->subscribeData(
         nodes_.safety_state, {.sampling_interval = kSafetyInterval},
         [notes = notes_](const opcua::DataValue& value) {
+            if (value.value.isEmpty()) {  // the connection or the subscription has ended
+                notes->noteBroken(
+                    fmt::format("the safety state is not told any more ({})", value.status.name()));
+                return;
+            }
             const auto kind = value.value.as<std::int32_t>();
             const auto state = kind ? safetyFrom(*kind) : SafetyState::disconnected;
             notes->note([&](Observed& seen) { seen.safety = state; });
