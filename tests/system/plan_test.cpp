@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -147,15 +148,15 @@ protected:
 
 TEST_P(Kinematics, FkGivesThePublishedPose) {
     const auto pose = fk();
-    const char* const axes[] = {"x", "y", "z"};
+    constexpr std::array axes{"x", "y", "z"};
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(pose["position"][axes[i]].get<double>(), GetParam().position[i], 1e-11);
+        EXPECT_NEAR(pose["position"][axes.at(i)].get<double>(), GetParam().position[i], 1e-11);
     }
-    const char* const components[] = {"w", "x", "y", "z"};
+    constexpr std::array components{"w", "x", "y", "z"};
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_NEAR(pose["quaternion"][components[i]].get<double>(), GetParam().quaternion[i],
+        EXPECT_NEAR(pose["quaternion"][components.at(i)].get<double>(), GetParam().quaternion[i],
                     1e-11)
-            << components[i];
+            << components.at(i);
     }
     EXPECT_EQ(pose["joint_position"].get<std::vector<double>>(), GetParam().joints);
 }

@@ -199,6 +199,7 @@ private:
             drawValueTick(scale, value, "grid", fmt::format("{:g}", value));
         }
         std::vector<Spot> spots;
+        spots.reserve(curve.size());
         for (const auto& [time, speed] : curve) {
             spots.push_back(scale.spot(time, speed));
         }

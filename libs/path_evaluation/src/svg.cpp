@@ -91,7 +91,7 @@ void SvgPicture::polygon(std::span<const Spot> spots, std::string_view style) {
 
 void SvgPicture::points(std::string_view element, std::span<const Spot> spots,
                         std::string_view style) {
-    fmt::format_to(std::back_inserter(svg_), "<{} class=\"{}\" points=\"", element, style);
+    fmt::format_to(std::back_inserter(svg_), R"(<{} class="{}" points=")", element, style);
     for (const auto& spot : spots) {
         fmt::format_to(std::back_inserter(svg_), "{:.2f},{:.2f} ", spot.x, spot.y);
     }
