@@ -48,9 +48,13 @@ const Value& ParameterSet::write(const Field& field, Value value) {
 }
 
 Result<void> ParameterSet::checkComplete() const {
+    return checkComplete(values_);
+}
+
+Result<void> ParameterSet::checkComplete(const ValueMap& values) const {
     std::string missing;
     for (const auto& field : fields_) {
-        if (!field.optional && isNull(values_.find(field.name)->second)) {
+        if (!field.optional && isNull(values.find(field.name)->second)) {
             missing += (missing.empty() ? "" : ", ") + field.name;
         }
     }
@@ -58,6 +62,29 @@ Result<void> ParameterSet::checkComplete() const {
         return {};
     }
     return fail(Errc::invalid_argument, fmt::format("a value is needed for {}", missing));
+}
+
+Result<ValueMap> ParameterSet::snapshotOf(const ValueMap& given) const {
+    ValueMap snapshot;
+    for (const auto& field : fields_) {
+        snapshot.emplace(field.name, field.default_value);
+    }
+    for (const auto& [name, value] : given) {
+        const auto known = field(name);
+        if (!known) {
+            return fail(Errc::invalid_argument, known.error().message);
+        }
+        if (auto checked = checkValue(**known, value); !checked) {
+            return fail(std::move(checked.error()));
+        }
+        if (!isNull(value)) {
+            snapshot.find(name)->second = value;
+        }
+    }
+    if (auto complete = checkComplete(snapshot); !complete) {
+        return fail(std::move(complete.error()));
+    }
+    return snapshot;
 }
 
 ValueMap ParameterSet::written() const {

@@ -94,9 +94,15 @@ Program::Program(ProgramOptions options, std::unique_ptr<Skill> skill,
     diagnostic_.create_session_id = options_.creator.session_id;
     diagnostic_.create_client_name = options_.creator.client_name;
     diagnostic_.invocation_creation_time = clock_.utcNow();
+    if (options_.control) {
+        options_.control->attach(*this);
+    }
 }
 
 Program::~Program() {
+    if (options_.control) {
+        options_.control->detach(*this);
+    }
     busy_ = true;
     if (body_ && state_ == State::running) {
         body_->forceStop();
@@ -120,20 +126,32 @@ Result<void> Program::command(Method method, const Caller& caller, Work work) {
     }
     const Turn turn(*this);
     recordCall(method, caller);
-    auto status = allows(method)
-                      ? work()
-                      : Result<void>(metier::fail(
-                            Errc::invalid_state,
-                            fmt::format("{} is not possible while {}", toString(method),
-                                        sub_state_ == SubState::stopping ? toString(sub_state_)
-                                                                         : toString(state_))));
+    auto status = checkAllowed(method, caller);
+    if (status) {
+        status = work();
+    }
     recordStatus(status);
     return status;
+}
+
+Result<void> Program::checkAllowed(Method method, const Caller& caller) const {
+    if (!allows(method)) {
+        return metier::fail(Errc::invalid_state,
+                            fmt::format("{} is not possible while {}", toString(method),
+                                        sub_state_ == SubState::stopping ? toString(sub_state_)
+                                                                         : toString(state_)));
+    }
+    return method == Method::halt ? Result<void>{} : checkControl(caller);
+}
+
+Result<void> Program::checkControl(const Caller& caller) const {
+    return options_.control ? options_.control->checkCommand(caller) : Result<void>{};
 }
 
 bool Program::allows(Method method) const noexcept {
     switch (method) {
         case Method::start:
+        case Method::start_with:
             return state_ == State::ready;
         case Method::suspend:
             return sub_state_ == SubState::executing;
@@ -148,14 +166,18 @@ bool Program::allows(Method method) const noexcept {
 }
 
 bool Program::executable(Method method, const Caller& caller) const {
-    if (!allows(method)) {
+    if (!checkAllowed(method, caller)) {
         return false;
     }
-    if (method == Method::suspend) {
-        return description_.suspendable;
+    switch (method) {
+        case Method::start:
+        case Method::start_with:
+            return checkFree(caller).has_value();
+        case Method::suspend:
+            return description_.suspendable;
+        default:
+            return true;
     }
-    return method != Method::start || (parameters_.checkAccess(caller.session_id) &&
-                                       (!options_.resource || options_.resource->checkFree()));
 }
 
 void Program::recordCall(Method method, const Caller& caller) {
@@ -180,8 +202,29 @@ Result<void> Program::start(const Caller& caller) {
     return command(Method::start, caller, [&] { return startNow(caller); });
 }
 
+Result<std::string> Program::startWith(const Caller& caller, StartRequest request) {
+    if (!request.execution_id.empty() && history_.find(request.execution_id) != nullptr) {
+        return request.execution_id;
+    }
+    const auto status =
+        command(Method::start_with, caller, [&] { return startWithNow(caller, request); });
+    if (!status) {
+        return metier::fail(status.error());
+    }
+    return request.execution_id;
+}
+
+Result<ExecutionRecord> Program::execution(std::string_view id) const {
+    const auto* record = history_.find(id);
+    if (record == nullptr) {
+        return metier::fail(Errc::not_found,
+                            fmt::format("{}: no execution \"{}\" is known", description_.name, id));
+    }
+    return *record;
+}
+
 Result<void> Program::suspend(const Caller& caller) {
-    return command(Method::suspend, caller, [this] { return suspendNow(); });
+    return command(Method::suspend, caller, [this] { return suspendNow({}); });
 }
 
 Result<void> Program::resume(const Caller& caller) {
@@ -203,6 +246,22 @@ void Program::setSubState(SubState sub_state) {
     });
 }
 
+void Program::noteInHistory() {
+    auto* record = execution_ ? history_.find(execution_->id) : nullptr;
+    if (record == nullptr) {
+        return;
+    }
+    record->state = state_;
+    record->reason = reason_;
+    record->reason_text = reason_text_;
+    if (!body_) {
+        record->end_time = diagnostic_.last_transition_time;
+    }
+    if (reason_ == Reason::finished) {
+        record->result = final_result_;
+    }
+}
+
 /// The one place where the state changes.
 void Program::commit(TransitionNumber transition, Cause cause) {
     state_ = toState(transition);
@@ -222,6 +281,7 @@ void Program::commit(TransitionNumber transition, Cause cause) {
         .message = messageOf(description_.name, transition, reason_text_),
         .severity = severityOf(state_, reason_),
     };
+    noteInHistory();
     if (!body_) {
         execution_.reset();
         intermediate_ = {};

@@ -12,42 +12,125 @@ namespace metier::skill {
 
 namespace {
 
+constexpr std::size_t kLongestId = 128;
+
 Reason faultReason(Reason reason) noexcept {
     return haltedBecause(reason) == SubState::halted_by_client ? Reason::error : reason;
 }
 
 }  // namespace
 
-Result<void> Program::startNow(const Caller& caller) {
+/// Whether parameters and device are free for the caller.
+Result<void> Program::checkFree(const Caller& caller) const {
     if (auto access = parameters_.checkAccess(caller.session_id); !access) {
         return access;
     }
-    auto& resource = options_.resource;
-    if (auto free = resource ? resource->checkFree() : Result<void>{}; !free) {
+    return options_.resource ? options_.resource->checkFree() : Result<void>{};
+}
+
+Result<void> Program::startNow(const Caller& caller) {
+    if (auto free = checkFree(caller); !free) {
         return free;
     }
     if (auto complete = parameters_.checkComplete(); !complete) {
         return complete;
     }
-    auto body = guarded([this] { return skill_->prepare(parameters_.values()); });
+    return begin(caller, parameters_.values(), {}, OwnerLossAction::skill_default);
+}
+
+Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) {
+    diagnostic_.last_method_inputs = request.parameters;
+    if (request.execution_id.size() > kLongestId) {
+        return metier::fail(Errc::out_of_range,
+                            fmt::format("ExecutionId: {} characters, at most {}",
+                                        request.execution_id.size(), kLongestId));
+    }
+    if (request.deadline && clock_.utcNow() > *request.deadline) {
+        const auto late = clock_.utcNow() - *request.deadline;
+        return metier::fail(
+            Errc::timeout,
+            fmt::format("the deadline of the start passed {} ms ago",
+                        std::chrono::duration_cast<std::chrono::milliseconds>(late).count()));
+    }
+    if (auto held = checkEpoch(caller, request.epoch); !held) {
+        return held;
+    }
+    if (auto free = checkFree(caller); !free) {
+        return free;
+    }
+    auto snapshot = parameters_.snapshotOf(request.parameters);
+    if (!snapshot) {
+        return metier::fail(std::move(snapshot.error()));
+    }
+    if (auto begun = begin(caller, *snapshot, request.execution_id, request.on_owner_loss);
+        !begun) {
+        return begun;
+    }
+    request.execution_id = history_.last().id;
+    return {};
+}
+
+Result<void> Program::checkEpoch(const Caller& caller, std::uint64_t epoch) const {
+    if (options_.control) {
+        return options_.control->checkEpoch(caller, epoch);
+    }
+    return epoch == 0 ? Result<void>{}
+                      : metier::fail(Errc::locked, fmt::format("nobody gave out epoch {}", epoch));
+}
+
+/// Running, with the body that the skill prepares for `snapshot`.
+Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std::string id,
+                            OwnerLossAction on_owner_loss) {
+    auto body = guarded([&] { return skill_->prepare(snapshot); });
     if (!body) {
         return metier::fail(std::move(body.error()));
     }
     if (!*body) {
         return metier::fail(Errc::internal, "the skill made no body");
     }
-    if (resource) {
-        resource->acquire(description_.name);
+    if (options_.resource) {
+        options_.resource->acquire(description_.name);
     }
     body_ = std::move(*body);
-    execution_ = std::make_shared<ExecutionCore>(executor_,
-                                                 fmt::format("{}-{}", boot_id_, ++execution_count_),
-                                                 static_cast<ExecutionSink&>(*this));
+    if (id.empty()) {
+        id = fmt::format("{}-{}", boot_id_, ++execution_count_);
+    }
+    execution_ = std::make_shared<ExecutionCore>(executor_, id, static_cast<ExecutionSink&>(*this));
     owner_session_ = caller.session_id;
+    on_owner_loss_ = on_owner_loss;
+    history_.add({.id = std::move(id), .client = caller, .start_time = clock_.utcNow()});
     commit(TransitionNumber::ready_to_running, {});
     releaseParameters();
     startBody();
     return {};
+}
+
+CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
+    auto report = checkNow(caller, parameters);
+    if (report) {
+        return std::move(*report);
+    }
+    CheckReport refusal;
+    refusal.possible = false;
+    refusal.reason = report.error().message;
+    refusal.first_failing_fraction = 0.0;
+    return refusal;
+}
+
+Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& parameters) {
+    auto allowed = busy_ ? metier::fail(Errc::invalid_state, "Check from inside a notification")
+                         : checkAllowed(Method::start_with, caller);
+    if (allowed) {
+        allowed = checkFree(caller);
+    }
+    if (!allowed) {
+        return metier::fail(std::move(allowed.error()));
+    }
+    auto snapshot = parameters_.snapshotOf(parameters);
+    if (!snapshot) {
+        return metier::fail(std::move(snapshot.error()));
+    }
+    return guarded([&] { return skill_->check(*snapshot); });
 }
 
 void Program::startBody() {
@@ -112,6 +195,7 @@ void Program::onFail(Reason reason, std::string text) {
 void Program::endExecution() {
     rest_timer_.cancel();
     halting_.reset();
+    suspending_.reset();
     finished_while_suspended_.reset();
     if (execution_) {
         execution_->sink = nullptr;
@@ -141,7 +225,7 @@ void Program::forceHalted(Cause cause) {
     halted(std::move(cause));
 }
 
-Result<void> Program::suspendNow() {
+Result<void> Program::suspendNow(Cause cause) {
     if (!description_.suspendable) {
         return metier::fail(Errc::not_supported,
                             fmt::format("{} cannot be suspended", description_.name));
@@ -150,6 +234,7 @@ Result<void> Program::suspendNow() {
     if (auto asked = guarded([this] { return body_->suspend(); }); !asked) {
         return asked;
     }
+    suspending_ = std::move(cause);
     setSubState(SubState::stopping);
     armRestDeadline();
     return {};
@@ -220,7 +305,8 @@ void Program::onAtRest(std::uint32_t stop_request) {
         if (halting_) {
             halted(*halting_);
         } else {
-            commit(TransitionNumber::running_to_suspended, {});
+            commit(TransitionNumber::running_to_suspended,
+                   std::exchange(suspending_, std::nullopt).value_or(Cause{}));
         }
     });
 }
@@ -246,12 +332,42 @@ Result<void> Program::resetNow() {
     return {};
 }
 
-void Program::ownerLost(std::string text) {
-    inTurn([this, text = std::move(text)]() mutable {
-        if (state_ == State::running && !halting_) {
-            brake({Reason::owner_lost, std::move(text)});
+void Program::onControlLost(std::string_view session, OwnerLossAction action,
+                            const std::string& text) {
+    inTurn([this, session = std::string(session), action, text] {
+        if (parameters_.isBound() && parameters_.boundSession() == session) {
+            endConfiguration();
+        }
+        if (body_ && owner_session_ == session) {
+            actOnOwnerLoss(action, text);
         }
     });
+}
+
+void Program::ownerLost(std::string text, OwnerLossAction action) {
+    inTurn([this, action, text = std::move(text)]() mutable {
+        if (body_) {
+            actOnOwnerLoss(action, std::move(text));
+        }
+    });
+}
+
+/// \param action that the owner's lease asks for
+void Program::actOnOwnerLoss(OwnerLossAction action, std::string text) {
+    for (const auto choice : {on_owner_loss_, action, description_.on_owner_loss}) {
+        action = choice;
+        if (action != OwnerLossAction::skill_default) {
+            break;
+        }
+    }
+    if (state_ == State::suspended || halting_ || action == OwnerLossAction::keep_going) {
+        return;
+    }
+    Cause cause{Reason::owner_lost, std::move(text)};
+    const bool stopping = sub_state_ == SubState::stopping;
+    if (action != OwnerLossAction::suspend || !(stopping || suspendNow(cause))) {
+        brake(std::move(cause));
+    }
 }
 
 void Program::deviceLost(std::string text) {

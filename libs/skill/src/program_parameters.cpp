@@ -38,6 +38,9 @@ Result<void> Program::write(const Caller& caller, std::string_view parameter, Va
 }
 
 Result<void> Program::writeReady(const Caller& caller, const Field& field, Value value) {
+    if (auto allowed = checkControl(caller); !allowed) {
+        return allowed;
+    }
     if (auto access = parameters_.checkAccess(caller.session_id); !access) {
         return access;
     }
@@ -58,6 +61,9 @@ Result<void> Program::writeReady(const Caller& caller, const Field& field, Value
 Result<void> Program::writeLive(const Caller& caller, const Field& field, const LiveValue& live) {
     if (caller.session_id != owner_session_) {
         return metier::fail(Errc::locked, "another session has started the skill");
+    }
+    if (auto allowed = checkControl(caller); !allowed) {
+        return allowed;
     }
     if (auto checked = checkValue(field, live.value); !checked) {
         return checked;
@@ -107,6 +113,9 @@ void Program::sessionClosed(std::string_view session_id) {
     inTurn([this, session = std::string(session_id)] {
         if (parameters_.isBound() && parameters_.boundSession() == session) {
             endConfiguration();
+        }
+        if (body_ && owner_session_ == session) {
+            actOnOwnerLoss(OwnerLossAction::skill_default, "the session of its client has ended");
         }
     });
 }

@@ -48,9 +48,15 @@ std::string_view toString(TransitionNumber transition) noexcept {
 }
 
 std::string_view toString(Method method) noexcept {
-    static constexpr std::array<std::string_view, 5> names{"Start", "Suspend", "Resume", "Halt",
-                                                           "Reset"};
+    static constexpr std::array<std::string_view, 6> names{"Start", "Suspend", "Resume",
+                                                           "Halt",  "Reset",   "StartWith"};
     return nameOf(method, names);
+}
+
+std::string_view toString(OwnerLossAction action) noexcept {
+    static constexpr std::array<std::string_view, 4> names{"SkillDefault", "Halt", "Suspend",
+                                                           "Continue"};
+    return nameOf(action, names);
 }
 
 std::string_view toString(Reason reason) noexcept {

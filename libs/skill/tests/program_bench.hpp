@@ -128,13 +128,16 @@ inline SkillDescription weldDescription() {
             },
         .results = {{.name = "Length", .type = ValueType::number, .unit = kMetre},
                     {.name = "Good", .type = ValueType::boolean}},
+        .on_owner_loss = OwnerLossAction::halt,
     };
 }
 
 /// A Program with a scripted skill, an executor and an observer; the test moves all of them.
 struct ProgramBench {
-    explicit ProgramBench(ProgramOptions options = {}, SkillDescription what = weldDescription())
-        : program(std::make_unique<Program>(
+    explicit ProgramBench(ProgramOptions options = {}, SkillDescription what = weldDescription(),
+                          std::shared_ptr<ManualExecutor> on = std::make_shared<ManualExecutor>())
+        : executor(std::move(on)),
+          program(std::make_unique<Program>(
               std::move(options), std::make_unique<ScriptedSkill>(std::move(what), script),
               executor, executor->clock())) {
         program->attach(observer);
@@ -163,6 +166,8 @@ struct ProgramBench {
         switch (method) {
             case Method::start:
                 return program->start(caller);
+            case Method::start_with:
+                return program->startWith(caller, {}).map([](const std::string& /*id*/) {});
             case Method::suspend:
                 return program->suspend(caller);
             case Method::resume:
@@ -177,7 +182,7 @@ struct ProgramBench {
     /// What a body tells takes effect.
     void run() const { executor->run(); }
 
-    std::shared_ptr<ManualExecutor> executor = std::make_shared<ManualExecutor>();
+    std::shared_ptr<ManualExecutor> executor;
     std::shared_ptr<Script> script = std::make_shared<Script>();
     RecordingObserver observer;
     std::unique_ptr<Program> program;

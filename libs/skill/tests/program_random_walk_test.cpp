@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -16,6 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kConfigurationTimeout = 10'000ms;
 constexpr auto kRestDeadline = 5'000ms;
+constexpr auto kLease = 3001ms;  // odd, so that nothing else falls due at the same time
 
 /// What can happen to a Program.
 enum class Act {
@@ -24,6 +26,10 @@ enum class Act {
     resume,
     halt,
     reset,
+    start_with,
+    acquire,
+    heartbeat,
+    release,
     write,
     write_badly,
     at_rest,
@@ -42,6 +48,7 @@ struct Step {
     std::string session;
     double speed;
     std::chrono::milliseconds wait;
+    OwnerLossAction on_owner_loss;  // of a start or a lease
 };
 
 /// The state machine of the model, written once more, as simply as can be.
@@ -53,13 +60,35 @@ public:
             case Act::start:
                 return start(step.session);
             case Act::suspend:
-                return suspend();
+                return mayCommand(step.session) && suspend();
             case Act::resume:
-                return resume();
+                return mayCommand(step.session) && resume();
             case Act::halt:
                 return halt();
             case Act::reset:
-                return reset();
+                return mayCommand(step.session) && reset();
+            default:
+                return command(step);
+        }
+    }
+
+    State state = State::ready;
+    SubState sub_state = SubState::ready_not_configured;
+    double speed = 0.5;
+    std::vector<std::string> transitions;
+
+private:
+    /// Of a client that may need control for it.
+    bool command(const Step& step) {
+        switch (step.act) {
+            case Act::start_with:
+                return startWith(step);
+            case Act::acquire:
+                return acquire(step);
+            case Act::heartbeat:
+                return leased_ == step.session ? (lease_left_ = kLease, true) : false;
+            case Act::release:
+                return leased_ == step.session ? (leased_.reset(), true) : false;
             case Act::write:
                 return write(step.session, step.speed);
             case Act::write_badly:
@@ -70,12 +99,49 @@ public:
         }
     }
 
-    State state = State::ready;
-    SubState sub_state = SubState::ready_not_configured;
-    double speed = 0.5;
-    std::vector<std::string> transitions;
+    bool mayCommand(const std::string& session) const { return !leased_ || leased_ == session; }
+    bool startWith(const Step& step) {
+        if (!start(step.session)) {
+            return false;
+        }
+        on_owner_loss_ = step.on_owner_loss;
+        return true;
+    }
+    bool acquire(const Step& step) {
+        if (!mayCommand(step.session)) {
+            return false;
+        }
+        leased_ = step.session;
+        lease_left_ = kLease;
+        lease_action_ = step.on_owner_loss;
+        return true;
+    }
+    void loseLease() {
+        const auto session = *leased_;
+        leased_.reset();
+        if (bound_ == session) {
+            endConfiguration();
+        }
+        if (owner_ == session) {
+            loseOwner(lease_action_);
+        }
+    }
+    void loseOwner(OwnerLossAction of_lease) {
+        auto action = on_owner_loss_ != OwnerLossAction::skill_default ? on_owner_loss_ : of_lease;
+        if (action == OwnerLossAction::skill_default) {
+            action = OwnerLossAction::halt;
+        }
+        if (state != State::running || halting_ || action == OwnerLossAction::keep_going) {
+            return;
+        }
+        if (action == OwnerLossAction::halt) {
+            halting_ = SubState::halted_owner_lost;
+            stop();
+        } else if (sub_state != SubState::stopping) {
+            stop();
+        }
+    }
 
-private:
     void go(State to, SubState sub) {
         transitions.push_back(std::string(toString(state)) + "To" + std::string(toString(to)));
         state = to;
@@ -92,10 +158,12 @@ private:
         speed = 0.5;
     }
     bool start(const std::string& session) {
-        if (state != State::ready || (bound_ && *bound_ != session)) {
+        if (state != State::ready || !mayCommand(session) || (bound_ && *bound_ != session)) {
             return false;
         }
         go(State::running, SubState::executing);
+        owner_ = session;
+        on_owner_loss_ = OwnerLossAction::skill_default;
         return true;
     }
     bool suspend() {
@@ -140,7 +208,7 @@ private:
         return true;
     }
     bool write(const std::string& session, double value) {
-        if (state != State::ready || (bound_ && *bound_ != session)) {
+        if (state != State::ready || !mayCommand(session) || (bound_ && *bound_ != session)) {
             return false;
         }
         bound_ = session;
@@ -157,17 +225,27 @@ private:
             finish();
         } else if (step.act == Act::fail && isExecuting()) {
             go(State::halted, SubState::halted_force);
-        } else if (step.act == Act::owner_lost && state == State::running && !halting_) {
-            halting_ = SubState::halted_owner_lost;
-            stop();
+        } else if (step.act == Act::owner_lost) {
+            loseOwner(OwnerLossAction::skill_default);
         } else if (step.act == Act::device_lost && state == State::halted) {
             sub_state = SubState::halted_device_lost;
         } else if (step.act == Act::device_lost) {
             go(State::halted, SubState::halted_device_lost);
-        } else if (step.act == Act::session_closed && bound_ == step.session) {
-            endConfiguration();
+        } else if (step.act == Act::session_closed) {
+            closeSession(step.session);
         } else if (step.act == Act::wait) {
             wait(step.wait);
+        }
+    }
+    void closeSession(const std::string& session) {
+        if (leased_ == session) {
+            loseLease();
+        }
+        if (bound_ == session) {
+            endConfiguration();
+        }
+        if (owner_ == session) {
+            loseOwner(OwnerLossAction::skill_default);
         }
     }
     bool isExecuting() const { return state == State::running || state == State::suspended; }
@@ -194,7 +272,19 @@ private:
         unbind();
         sub_state = SubState::ready_not_configured;
     }
+    /// A stretch of time, with what falls due in it in its order.
     void wait(std::chrono::milliseconds time) {
+        if (leased_ && lease_left_ <= time) {
+            const auto until = lease_left_;
+            pass(until);
+            loseLease();
+            pass(time - until);
+        } else {
+            lease_left_ -= time;
+            pass(time);
+        }
+    }
+    void pass(std::chrono::milliseconds time) {
         if (bound_) {
             bound_left_ -= time;
             if (bound_left_ <= 0ms) {
@@ -216,6 +306,11 @@ private:
     std::optional<std::chrono::milliseconds> rest_left_;
     std::optional<SubState> halting_;
     bool done_ = false;
+    std::string owner_;
+    OwnerLossAction on_owner_loss_ = OwnerLossAction::skill_default;
+    std::optional<std::string> leased_;
+    std::chrono::milliseconds lease_left_{0};
+    OwnerLossAction lease_action_ = OwnerLossAction::skill_default;
 };
 
 /// Does to a Program what the Model was told.
@@ -240,6 +335,13 @@ private:
             EXPECT_EQ(executable, accepted) << toString(method);
             return accepted;
         }
+        if (step.act == Act::start_with) {
+            earlier_ = bench_.script->execution;
+            return program.startWith(caller, {.on_owner_loss = step.on_owner_loss}).has_value();
+        }
+        if (step.act >= Act::acquire && step.act <= Act::release) {
+            return lease(caller, step);
+        }
         if (step.act == Act::write) {
             return program.write(caller, "Speed", step.speed).has_value();
         }
@@ -248,6 +350,19 @@ private:
         }
         happen(step);
         return true;
+    }
+    bool lease(const Caller& caller, const Step& step) {
+        if (step.act == Act::heartbeat) {
+            return control_->heartbeat(caller, epochs_[caller.session_id]).has_value();
+        }
+        if (step.act == Act::release) {
+            return control_->release(caller, epochs_[caller.session_id]).has_value();
+        }
+        const auto epoch = control_->acquire(caller, kLease, step.on_owner_loss);
+        if (epoch) {
+            epochs_[caller.session_id] = *epoch;
+        }
+        return epoch.has_value();
     }
     void happen(const Step& step) {
         const auto& execution = bench_.script->execution;
@@ -266,15 +381,22 @@ private:
         } else if (step.act == Act::device_lost) {
             bench_.program->deviceLost("cable pulled");
         } else if (step.act == Act::session_closed) {
+            control_->sessionClosed(step.session);
             bench_.program->sessionClosed(step.session);
         } else if (step.act == Act::wait) {
             bench_.executor->advance(step.wait);
         }
     }
 
-    ProgramBench bench_{
-        {.configuration_timeout = kConfigurationTimeout, .rest_deadline = kRestDeadline}};
+    std::shared_ptr<ManualExecutor> executor_ = std::make_shared<ManualExecutor>();
+    std::shared_ptr<Control> control_ = std::make_shared<Control>(executor_, executor_->clock());
+    ProgramBench bench_{{.control = control_,
+                         .configuration_timeout = kConfigurationTimeout,
+                         .rest_deadline = kRestDeadline},
+                        weldDescription(),
+                        executor_};
     Execution earlier_;
+    std::map<std::string, std::uint64_t> epochs_;
 };
 
 class RandomSteps {
@@ -286,7 +408,8 @@ public:
         return {.act = static_cast<Act>(below(kActs)),
                 .session = sessions.at(below(3)),
                 .speed = 0.01 * below(200),
-                .wait = std::chrono::milliseconds(below(4000))};
+                .wait = std::chrono::milliseconds(below(4000)),
+                .on_owner_loss = static_cast<OwnerLossAction>(below(4))};
     }
 
 private:

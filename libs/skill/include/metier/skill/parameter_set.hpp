@@ -36,6 +36,10 @@ public:
     /// Takes a checked value; Null means the default.
     /// \return the value that holds now
     const Value& write(const Field& field, Value value);
+    /// A value for every parameter: the given one, or its default.
+    /// Errors: as checkValue(); invalid_argument with the names that there are none of, or that
+    ///         need a value.
+    Result<ValueMap> snapshotOf(const ValueMap& given) const;
     /// Whether every parameter that needs a value has one.
     /// Errors: invalid_argument, with the names that are missing.
     Result<void> checkComplete() const;
@@ -47,6 +51,8 @@ public:
     std::vector<std::string_view> release();
 
 private:
+    Result<void> checkComplete(const ValueMap& values) const;
+
     const Fields fields_;
     ValueMap values_;
     std::vector<const Field*> written_;

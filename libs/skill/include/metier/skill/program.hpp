@@ -11,6 +11,9 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/skill/caller.hpp"
+#include "metier/skill/control.hpp"
+#include "metier/skill/execution_record.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/parameter_set.hpp"
 #include "metier/skill/program_observer.hpp"
@@ -19,16 +22,11 @@
 
 namespace metier::skill {
 
-/// Who calls.
-struct Caller {
-    std::string session_id{};
-    std::string client_name{};
-    std::string user_name{};
-};
-
 struct ProgramOptions {
     /// The device that the skill needs for itself; empty: none. Shared by the Programs of a device.
     std::shared_ptr<Resource> resource{};
+    /// Who may command; empty: everybody. Shared by the Programs of a controller.
+    std::shared_ptr<Control> control{};
     /// How long a session may leave a written parameter set without Start.
     std::chrono::milliseconds configuration_timeout{10'000};
     /// How long a body may take to come to rest before the device's own stop is used.
@@ -37,13 +35,23 @@ struct ProgramOptions {
     Caller creator{};
 };
 
+/// A Start that brings its parameters along.
+struct StartRequest {
+    /// Names the execution, at most 128 characters; empty: the Program gives it a name.
+    std::string execution_id{};
+    ValueMap parameters{};  ///< by name; the others take their defaults
+    OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
+    std::uint64_t epoch = 0;            ///< of the caller's lease; 0: it need not hold one
+    std::optional<UtcTime> deadline{};  ///< after which nothing is started any more
+};
+
 /// The state machine of one skill, and the only one that changes its state.
 ///
 /// It begins Ready. Halted and Suspended mean that the device stands still: Halt and Suspend of a
 /// running body return at once, and the transition follows when the body is at rest.
 /// Errors of every method: invalid_state if the current state does not allow it (nothing changes).
 /// Threading: every call on the owner's thread, which is the Executor's. Nothing blocks.
-class Program final : private ExecutionSink {
+class Program final : private ExecutionSink, private Control::Listener {
 public:
     /// \param executor shared by the Programs of a thread
     /// \param clock    must outlive the Program
@@ -74,6 +82,18 @@ public:
     /// Errors: locked; resource_unavailable; invalid_argument (a parameter is missing); whatever
     ///         Skill::prepare() says. Nothing has changed then, the written values stay.
     Result<void> start(const Caller& caller);
+    /// Checks all given parameters, takes them and begins, or changes nothing. What the session has
+    /// written before is dropped.
+    /// \return the execution's id. An id that the Program knows already starts nothing: that
+    ///         execution, running or over, is the answer.
+    /// Errors: as start() and write(); locked (epoch); timeout (deadline).
+    Result<std::string> startWith(const Caller& caller, StartRequest request);
+    /// What startWith() would say now, and how the motion would be. Nothing changes.
+    CheckReport check(const Caller& caller, const ValueMap& parameters);
+    /// What became of an execution; of the last ExecutionHistory::kMost.
+    /// Errors: not_found.
+    Result<ExecutionRecord> execution(std::string_view id) const;
+
     /// Errors: not_supported; whatever Body::suspend() says.
     Result<void> suspend(const Caller& caller);
     /// Errors: whatever Body::resume() says; the Program stays Suspended.
@@ -86,10 +106,12 @@ public:
     /// Whether `caller` could call `method` now.
     bool executable(Method method, const Caller& caller) const;
 
-    /// A session has ended: its binding, if any, ends.
+    /// A session has ended: its binding, if any, ends, and an execution that it owns has lost its
+    /// owner.
     void sessionClosed(std::string_view session_id);
-    /// Whoever commands is gone: a running body brakes, then Halted.
-    void ownerLost(std::string text);
+    /// Whoever started the execution is gone: what happens is up to its start, then to `action`,
+    /// then to the skill.
+    void ownerLost(std::string text, OwnerLossAction action = OwnerLossAction::skill_default);
     /// The device is gone: Halted at once, from every state.
     void deviceLost(std::string text);
 
@@ -120,6 +142,8 @@ private:
     void onAtRest(std::uint32_t stop_request) override;
     void onProgress(Value intermediate) override;
     void onStep(std::string name) override;
+    void onControlLost(std::string_view session, OwnerLossAction action,
+                       const std::string& text) override;
 
     /// Does `work` if `method` is allowed now; records who called it and how it went.
     template <typename Work>
@@ -131,14 +155,24 @@ private:
     void notify(Tell tell);
 
     bool allows(Method method) const noexcept;
+    Result<void> checkAllowed(Method method, const Caller& caller) const;
+    Result<void> checkControl(const Caller& caller) const;
     void recordCall(Method method, const Caller& caller);
     void recordStatus(const Result<void>& status);
 
     Result<void> writeReady(const Caller& caller, const Field& field, Value value);
     Result<void> writeLive(const Caller& caller, const Field& field, const LiveValue& live);
     Result<void> startNow(const Caller& caller);
+    Result<void> startWithNow(const Caller& caller, StartRequest& request);
+    Result<void> checkFree(const Caller& caller) const;
+    Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
+    Result<void> begin(const Caller& caller, const ValueMap& snapshot, std::string id,
+                       OwnerLossAction on_owner_loss);
     void startBody();
-    Result<void> suspendNow();
+    Result<CheckReport> checkNow(const Caller& caller, const ValueMap& parameters);
+    Result<void> suspendNow(Cause cause);
+    void actOnOwnerLoss(OwnerLossAction action, std::string text);
+    void noteInHistory();
     Result<void> resumeNow();
     Result<void> haltNow();
     Result<void> resetNow();
@@ -183,12 +217,15 @@ private:
 
     std::string boot_id_;
     std::uint64_t execution_count_ = 0;
+    ExecutionHistory history_;
     std::string owner_session_;
+    OwnerLossAction on_owner_loss_ = OwnerLossAction::skill_default;
     Value intermediate_;
     // Shared with the body's handles; the Program takes itself out when the execution ends.
     std::shared_ptr<ExecutionCore> execution_;
     std::unique_ptr<Body> body_;
     std::optional<Cause> halting_;
+    std::optional<Cause> suspending_;
     std::optional<ValueMap> finished_while_suspended_;
 
     SteadyTime last_write_;

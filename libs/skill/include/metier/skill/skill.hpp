@@ -10,6 +10,7 @@
 #include "metier/base/error.hpp"
 #include "metier/skill/execution.hpp"
 #include "metier/skill/field.hpp"
+#include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
 
 namespace metier::skill {
@@ -22,6 +23,19 @@ struct SkillDescription {
     Fields parameters{};
     Fields results{};
     bool suspendable = true;  ///< false: Suspend is refused with not_supported
+    /// What an execution does when its owner is gone, unless its Start says otherwise. Skills that
+    /// move an arm halt.
+    OwnerLossAction on_owner_loss = OwnerLossAction::keep_going;
+};
+
+/// What Start would say, and what it would do.
+struct CheckReport {
+    bool possible = true;
+    std::string reason{};                 ///< why not, with value, limit and unit
+    double first_failing_fraction = 1.0;  ///< of the path, 0 to 1; 1 if nothing fails
+    double planned_duration = 0.0;        ///< [s]; 0 if the skill cannot tell
+    /// Joint positions along the path, one row per sample [rad]; empty if the skill moves no arm.
+    std::vector<std::vector<double>> joint_path{};
 };
 
 /// A value that was written while the skill runs.
@@ -76,6 +90,12 @@ public:
     ///                 Valid during the call.
     /// Errors: Start is refused with it, and nothing has changed.
     virtual Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) = 0;
+    /// What prepare() would say to `snapshot`, without any effect.
+    /// Errors: as the report that it is not possible.
+    virtual Result<CheckReport> check(const ValueMap& snapshot) {
+        const auto body = prepare(snapshot);
+        return body ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(body.error()));
+    }
     /// Clears a fault, as far as the device agrees that it is gone.
     /// Errors: why not; the Program stays Halted and tells it.
     virtual Result<void> reset() { return {}; }

@@ -21,7 +21,15 @@ enum class TransitionNumber : std::uint32_t {
     ready_to_halted = 9,
 };
 
-enum class Method : std::uint8_t { start, suspend, resume, halt, reset };
+enum class Method : std::uint8_t { start, suspend, resume, halt, reset, start_with };
+
+/// What an execution does when the client that commands it is gone.
+enum class OwnerLossAction : std::uint8_t {
+    skill_default,  ///< what the skill's description says
+    halt,           ///< brake, then Halted
+    suspend,        ///< brake on the path, then Suspended; Halt if the skill cannot be suspended
+    keep_going,     ///< go on to the end
+};
 
 /// Why a transition happened.
 enum class Reason : std::uint8_t {
@@ -56,6 +64,7 @@ std::string_view toString(TransitionNumber transition) noexcept;
 std::string_view toString(Method method) noexcept;
 std::string_view toString(Reason reason) noexcept;
 std::string_view toString(SubState sub_state) noexcept;
+std::string_view toString(OwnerLossAction action) noexcept;
 
 State fromState(TransitionNumber transition) noexcept;
 State toState(TransitionNumber transition) noexcept;

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/skill/caller.hpp"
+#include "metier/skill/executor.hpp"
+#include "metier/skill/state.hpp"
+
+namespace metier::skill {
+
+/// Who may command the skills of one controller, and whether that client is still there.
+///
+/// A client holds control by a lease, which ends unless heartbeats renew it, or by a lock, which
+/// only keeps others out. One session holds either or both; while it does, others are refused
+/// everything but Halt. A lease is the dead-man: when it runs out, or its session ends, the
+/// listeners are told and do what each execution asks for.
+///
+/// Threading: the owner's thread, which all its Programs share.
+class Control {
+public:
+    static constexpr std::chrono::milliseconds kDefaultLease{1'000};
+    static constexpr std::chrono::milliseconds kShortestLease{100};
+    static constexpr std::chrono::milliseconds kLongestLease{3'600'000};
+    /// How long a lock lasts without a renewal.
+    static constexpr std::chrono::milliseconds kLockTime{60'000};
+
+    /// Told when the holder of a lease is gone.
+    class Listener {
+    public:
+        virtual ~Listener() = default;
+        /// \param session that held the lease
+        /// \param action  that it asked for; skill_default if it left that to the skills
+        /// \param text    for the client
+        virtual void onControlLost(std::string_view session, OwnerLossAction action,
+                                   const std::string& text) = 0;
+    };
+
+    /// \param clock must outlive this
+    Control(std::shared_ptr<Executor> executor, const Clock& clock);
+    Control(const Control&) = delete;
+    Control& operator=(const Control&) = delete;
+
+    /// `listener` must be detached before it ends.
+    void attach(Listener& listener);
+    void detach(Listener& listener);
+
+    /// Takes the lease, or begins a new one if the caller holds it already.
+    /// \param lease until it ends without a heartbeat; 0: kDefaultLease
+    /// \return the epoch, which names this time of control; never 0, unique across restarts
+    /// Errors: locked; out_of_range (lease).
+    Result<std::uint64_t> acquire(const Caller& caller, std::chrono::milliseconds lease,
+                                  OwnerLossAction action);
+    /// Begins the lease anew.
+    /// Errors: locked, if the caller does not hold this epoch any more, or never did.
+    Result<void> heartbeat(const Caller& caller, std::uint64_t epoch);
+    /// Gives the lease back; nothing is stopped.
+    /// Errors: as heartbeat().
+    Result<void> release(const Caller& caller, std::uint64_t epoch);
+
+    /// Errors: locked.
+    Result<void> lock(const Caller& caller);
+    /// Errors: invalid_state, if the caller does not hold the lock.
+    Result<void> renewLock(const Caller& caller);
+    Result<void> unlock(const Caller& caller);
+    /// Takes the lock from whoever holds it; a lease stays.
+    /// Errors: invalid_state, if nobody holds it.
+    Result<void> breakLock();
+
+    /// Whether the caller may command.
+    /// Errors: locked, with the name of the holder.
+    Result<void> checkCommand(const Caller& caller) const;
+    /// Whether the caller may command and holds this epoch; 0: it need not hold one.
+    /// Errors: locked.
+    Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
+
+    /// The session has ended, and its lock and lease with it.
+    void sessionClosed(std::string_view session_id);
+
+    /// Who holds the lease, or else the lock; empty session: nobody.
+    const Caller& holder() const noexcept;
+    /// Of the lease, or of the last one; 0 before the first.
+    std::uint64_t epoch() const noexcept { return epoch_; }
+    /// What the lease asks for if its holder is lost.
+    OwnerLossAction onLoss() const noexcept { return on_loss_; }
+    /// Whether `session_id` holds the lease.
+    bool leasedBy(std::string_view session_id) const noexcept;
+    /// Until the lease ends without a heartbeat; 0 if there is none.
+    std::chrono::nanoseconds leaseRemaining() const noexcept;
+    bool isLocked() const noexcept { return locked_; }
+    const Caller& locker() const noexcept { return locker_; }
+    /// Until the lock ends without a renewal; 0 if there is none.
+    std::chrono::nanoseconds lockRemaining() const noexcept;
+
+private:
+    Result<void> checkHolds(const Caller& caller, std::uint64_t epoch) const;
+    void armLease();
+    void leaseDue();
+    void lose(const std::string& text);
+    void endLease();
+    void armLock();
+    void endLock();
+
+    // Shared by the Programs of its thread.
+    std::shared_ptr<Executor> executor_;
+    const Clock& clock_;
+    std::vector<Listener*> listeners_;
+
+    bool leased_ = false;
+    Caller leaser_;
+    std::uint64_t epoch_ = 0;
+    OwnerLossAction on_loss_ = OwnerLossAction::skill_default;
+    std::chrono::nanoseconds lease_{0};
+    SteadyTime lease_end_;
+    Timer lease_timer_;
+
+    bool locked_ = false;
+    Caller locker_;
+    SteadyTime lock_end_;
+    Timer lock_timer_;
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/skill/caller.hpp"
+#include "metier/skill/state.hpp"
+#include "metier/skill/value.hpp"
+
+namespace metier::skill {
+
+/// What is kept of one execution.
+struct ExecutionRecord {
+    std::string id{};
+    Caller client{};               ///< who started it
+    State state = State::running;  ///< that it is in, or ended in
+    Reason reason = Reason::none;
+    std::string reason_text{};
+    UtcTime start_time{};
+    UtcTime end_time{};  ///< the epoch while it is not over
+    ValueMap result{};   ///< of an execution that finished
+};
+
+/// The last executions of one Program; those before are forgotten.
+///
+/// Threading: the owner's thread.
+class ExecutionHistory {
+public:
+    static constexpr std::size_t kMost = 64;
+
+    /// The record of that id, or nullptr. Valid until the next add().
+    const ExecutionRecord* find(std::string_view id) const noexcept;
+    ExecutionRecord* find(std::string_view id) noexcept;
+    void add(ExecutionRecord record);
+    /// The latest; there must be one.
+    const ExecutionRecord& last() const noexcept { return records_.back(); }
+
+private:
+    std::vector<ExecutionRecord> records_;  // oldest first
+};
+
+}  // namespace metier::skill

@@ -1,0 +1,145 @@
+#include "metier/skill/control.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "metier/skill/testing/manual_executor.hpp"
+#include "program_bench.hpp"
+
+namespace metier::skill::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class Losses final : public Control::Listener {
+public:
+    void onControlLost(std::string_view session, OwnerLossAction action,
+                       const std::string& text) override {
+        told.push_back(std::string(session) + " " + std::string(toString(action)) + ": " + text);
+    }
+    std::vector<std::string> told;
+};
+
+class Controlled : public ::testing::Test {
+protected:
+    Controlled() { control.attach(losses); }
+
+    std::shared_ptr<ManualExecutor> executor = std::make_shared<ManualExecutor>();
+    Control control{executor, executor->clock()};
+    Losses losses;
+};
+
+TEST_F(Controlled, KeepsOthersOutWhileTheLeaseLasts) {
+    ASSERT_TRUE(control.checkCommand(kBob));
+    const auto epoch = control.acquire(kAlice, 500ms, OwnerLossAction::halt);
+    ASSERT_TRUE(epoch);
+    EXPECT_TRUE(control.checkCommand(kAlice));
+    EXPECT_TRUE(control.checkEpoch(kAlice, *epoch));
+    const auto refused = control.checkCommand(kBob);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::locked);
+    EXPECT_THAT(refused.error().message, HasSubstr("Alice's client"));
+    EXPECT_FALSE(control.acquire(kBob, 0ms, OwnerLossAction::halt));
+    EXPECT_FALSE(control.lock(kBob));
+    EXPECT_FALSE(control.checkEpoch(kBob, *epoch)) << "an epoch is the session's own";
+}
+
+TEST_F(Controlled, LosesItWhenTheLeaseRunsOutWithoutAHeartbeat) {
+    const auto epoch = control.acquire(kAlice, 500ms, OwnerLossAction::suspend);
+    executor->advance(499ms);
+    ASSERT_TRUE(control.heartbeat(kAlice, *epoch));
+    executor->advance(499ms);
+    EXPECT_THAT(losses.told, IsEmpty());
+    EXPECT_EQ(control.leaseRemaining(), 1ms);
+    executor->advance(1ms);
+    EXPECT_THAT(losses.told,
+                ElementsAre("alice Suspend: no heartbeat of \"Alice's client\" for 500 ms"));
+    EXPECT_FALSE(control.heartbeat(kAlice, *epoch)) << "a stale commander that wakes up";
+    EXPECT_FALSE(control.checkEpoch(kAlice, *epoch));
+    EXPECT_TRUE(control.acquire(kBob, 0ms, OwnerLossAction::halt));
+}
+
+TEST_F(Controlled, LosesItWithTheSession) {
+    ASSERT_TRUE(control.acquire(kAlice, 0ms, OwnerLossAction::skill_default));
+    control.sessionClosed("bob");
+    EXPECT_THAT(losses.told, IsEmpty());
+    control.sessionClosed("alice");
+    EXPECT_THAT(losses.told,
+                ElementsAre("alice SkillDefault: the session of \"Alice's client\" has ended"));
+    EXPECT_TRUE(control.checkCommand(kBob));
+    executor->advance(10s);
+    EXPECT_THAT(losses.told, ::testing::SizeIs(1));
+}
+
+TEST_F(Controlled, GivesItBackWithoutALoss) {
+    const auto epoch = control.acquire(kAlice, 0ms, OwnerLossAction::halt);
+    EXPECT_FALSE(control.release(kBob, *epoch));
+    EXPECT_FALSE(control.release(kAlice, *epoch + 2));
+    ASSERT_TRUE(control.release(kAlice, *epoch));
+    executor->advance(10s);
+    EXPECT_THAT(losses.told, IsEmpty());
+    EXPECT_EQ(control.leaseRemaining(), 0ms);
+    EXPECT_EQ(executor->timerCount(), 0U);
+}
+
+TEST_F(Controlled, RefusesALeaseOutOfRange) {
+    for (const auto lease : {1ms, 99ms, 3'600'001ms}) {
+        const auto refused = control.acquire(kAlice, lease, OwnerLossAction::halt);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, Errc::out_of_range);
+        EXPECT_THAT(refused.error().message, HasSubstr("100 to 3600000 ms"));
+    }
+    EXPECT_TRUE(control.checkCommand(kBob));
+}
+
+TEST_F(Controlled, NeverGivesAnEpochTwiceAlsoAfterARestart) {
+    std::set<std::uint64_t> epochs;
+    for (int restart = 0; restart < 100; ++restart) {
+        Control fresh(executor, executor->clock());
+        for (int i = 0; i < 100; ++i) {
+            const auto epoch = fresh.acquire(kAlice, 0ms, OwnerLossAction::halt);
+            ASSERT_TRUE(epoch);
+            ASSERT_NE(*epoch, 0U);
+            ASSERT_TRUE(epochs.insert(*epoch).second);
+        }
+    }
+}
+
+TEST_F(Controlled, LockKeepsOthersOutAndIsNoDeadMan) {
+    ASSERT_TRUE(control.lock(kAlice));
+    EXPECT_FALSE(control.checkCommand(kBob));
+    EXPECT_FALSE(control.lock(kBob));
+    EXPECT_FALSE(control.unlock(kBob));
+    EXPECT_TRUE(control.acquire(kAlice, 0ms, OwnerLossAction::halt))
+        << "its holder may take a lease";
+    EXPECT_FALSE(control.unlock(kBob));
+    ASSERT_TRUE(control.unlock(kAlice));
+    EXPECT_FALSE(control.checkCommand(kBob)) << "the lease is still held";
+}
+
+TEST_F(Controlled, LockEndsWithoutRenewalWithItsSessionAndWhenBroken) {
+    ASSERT_TRUE(control.lock(kAlice));
+    executor->advance(59s);
+    ASSERT_TRUE(control.renewLock(kAlice));
+    executor->advance(59s);
+    EXPECT_TRUE(control.isLocked());
+    EXPECT_EQ(control.lockRemaining(), 1s);
+    executor->advance(1s);
+    EXPECT_FALSE(control.isLocked());
+    ASSERT_TRUE(control.lock(kBob));
+    control.sessionClosed("bob");
+    EXPECT_FALSE(control.isLocked());
+    EXPECT_FALSE(control.breakLock());
+    ASSERT_TRUE(control.lock(kBob));
+    EXPECT_TRUE(control.breakLock());
+    EXPECT_TRUE(control.checkCommand(kAlice));
+    EXPECT_THAT(losses.told, IsEmpty());
+}
+
+}  // namespace
+}  // namespace metier::skill::testing
