@@ -109,10 +109,14 @@ Result<void> ArmServer::offer(const configuration::ArmServer& config) {
                         fmt::format("no skill '{}' for this arm", node.browse_name.name));
         }
         const auto bound =
-            host_->skills().bind(node.target, std::move(found->second), {.resource = resource});
+            host_->skills().bind(node.target, std::move(found->second),
+                                 {.resource = resource, .control = host_->control()});
         if (!bound) {
             return fail(bound.error());
         }
+    }
+    if (auto offered = host_->offerControl(system->controller); !offered) {
+        return offered;
     }
     host_->haltOnLossOf(*arm_);
     return host_->publishArm(*system, *arm_, model_);

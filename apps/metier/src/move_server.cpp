@@ -78,11 +78,15 @@ Result<void> MoveServer::offer(const std::string& name) {
         return fail(arm_skills.error());
     }
     for (auto& move : arm_skills->moves) {
-        const auto published = host_->skills().publish(system->skills, std::move(move),
-                                                       {.resource = arm_skills->resource});
+        const auto published = host_->skills().publish(
+            system->skills, std::move(move),
+            {.resource = arm_skills->resource, .control = host_->control()});
         if (!published) {
             return fail(published.error());
         }
+    }
+    if (auto offered = host_->offerControl(system->controller); !offered) {
+        return offered;
     }
     host_->haltOnLossOf(*arm_);
     return host_->publishArm(*system, *arm_, model_);

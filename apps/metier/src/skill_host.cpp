@@ -63,6 +63,7 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
         return fail(skills.error());
     }
     host->skills_ = std::move(*skills);
+    host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
     return host;
 }
 
@@ -74,6 +75,10 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
                                    const device::Arm& arm, const motion::RobotModel& model) {
     return opcua_skill::publishKinematics(server_->nodes(), system, toKinematicsData(model),
                                           [&arm, &model] { return stateOf(arm, model); });
+}
+
+Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {
+    return skills_->serveControl(controller, control_);
 }
 
 void SkillHost::haltOnLossOf(device::Arm& arm) {

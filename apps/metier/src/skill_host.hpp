@@ -39,6 +39,10 @@ public:
     /// Shows what is known of the arm, and its live state. `arm` and `model` must outlive this.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const device::Arm& arm,
                             const motion::RobotModel& model);
+    /// Lets clients take control of the skills below `controller`, by lease or lock.
+    Result<void> offerControl(const opcua::NodeId& controller);
+    /// For the Programs of the controller's skills.
+    const std::shared_ptr<skill::Control>& control() const noexcept { return control_; }
     /// Halts every skill that is offered by now when the arm is lost. `arm` must outlive this.
     void haltOnLossOf(device::Arm& arm);
     Result<void> start() { return server_->start(); }
@@ -49,6 +53,7 @@ private:
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
+    std::shared_ptr<skill::Control> control_;  // shared with the Programs
     std::optional<robot_skills::DeviceWatch> device_watch_;
 };
 

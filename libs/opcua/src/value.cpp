@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <new>
+#include <stdexcept>
+#include <utility>
 
 #include "convert.hpp"
 #include "metier/opcua/text.hpp"
@@ -12,6 +14,8 @@
 namespace metier::opcua {
 
 namespace {
+
+constexpr std::size_t kMatrixRank = 2;
 
 template <typename T>
 const UA_DataType& nativeType() noexcept {
@@ -226,6 +230,51 @@ Value Value::ofMixed(const std::vector<Value>& values) {
     Value result;
     UA_Variant_setArray(&ValueAccess::native(result), memory.release(), values.size(), &type);
     return result;
+}
+
+Value Value::ofRows(const std::vector<std::vector<double>>& rows) {
+    const std::size_t width = rows.empty() ? 0 : rows.front().size();
+    std::vector<double> flat;
+    flat.reserve(rows.size() * width);
+    for (const auto& row : rows) {
+        flat.insert(flat.end(), row.begin(), row.end());
+    }
+    if (flat.size() != rows.size() * width) {
+        throw std::invalid_argument("a matrix has rows of one length");
+    }
+    Value result = of(flat);
+    auto& variant = ValueAccess::native(result);
+    auto* dimensions =
+        static_cast<UA_UInt32*>(UA_Array_new(kMatrixRank, &UA_TYPES[UA_TYPES_UINT32]));
+    if (dimensions == nullptr) {
+        throw std::bad_alloc();
+    }
+    dimensions[0] = static_cast<UA_UInt32>(rows.size());
+    dimensions[1] = static_cast<UA_UInt32>(width);
+    variant.arrayDimensions = dimensions;
+    variant.arrayDimensionsSize = kMatrixRank;
+    return result;
+}
+
+Result<std::vector<std::vector<double>>> Value::asRows() const {
+    const auto& variant = ValueAccess::native(*this);
+    auto flat = as<std::vector<double>>();
+    if (!flat) {
+        return fail(std::move(flat.error()));
+    }
+    if (variant.arrayDimensionsSize != kMatrixRank) {
+        return fail(Errc::type_mismatch, typeName() + " where a matrix is expected");
+    }
+    const std::size_t width = variant.arrayDimensions[1];
+    if (variant.arrayDimensions[0] * width != flat->size()) {
+        return fail(Errc::type_mismatch, typeName() + " with other dimensions");
+    }
+    std::vector<std::vector<double>> rows;
+    for (std::size_t begin = 0; begin < flat->size(); begin += width) {
+        const auto first = flat->begin() + static_cast<std::ptrdiff_t>(begin);
+        rows.emplace_back(first, first + static_cast<std::ptrdiff_t>(width));
+    }
+    return rows;
 }
 
 Value Value::of(std::string_view value) {

@@ -14,6 +14,8 @@ namespace metier::opcua_skill {
 /// What a node below a skill tells or takes.
 enum class Role : std::uint8_t {
     method,  ///< detail: skill::Method
+    check,
+    get_execution,
     state,
     state_id,
     state_number,

@@ -80,10 +80,17 @@ std::vector<bool> neededNodes(const SkillLayout& layout, const std::vector<UsedN
     return needed;
 }
 
-/// A compact instance tells its diagnostic as one value only.
-void dropDiagnosticParts(SkillLayout& layout) {
+bool isOf(std::string_view path, std::string_view node) {
+    return path == node || (path.substr(0, node.size()) == node && path[node.size()] == '/');
+}
+
+/// A compact instance tells its diagnostic as one value only, and has the methods of Part 10.
+void dropWhatCompactLacks(SkillLayout& layout) {
     for (auto& node : layout) {
-        if (node.path.substr(0, kDiagnosticParts.size()) == kDiagnosticParts) {
+        const bool dropped = node.path.substr(0, kDiagnosticParts.size()) == kDiagnosticParts ||
+                             isOf(node.path, "StartWith") || isOf(node.path, "Check") ||
+                             isOf(node.path, "GetExecution");
+        if (dropped) {
             node.path.clear();
             node.rule = LayoutNode::Rule::optional;
         }
@@ -157,7 +164,7 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
         return fail(std::move(layout.error()));
     }
     if (style == NodeStyle::compact) {
-        dropDiagnosticParts(*layout);
+        dropWhatCompactLacks(*layout);
     }
     auto used = assignPurposes(*layout, description);
     if (!used) {

@@ -7,6 +7,7 @@
 
 #include "diagnostic.hpp"
 #include "metier/opcua_skill/values.hpp"
+#include "owner_loss.hpp"
 #include "value_part.hpp"
 
 namespace metier::opcua_skill {
@@ -99,6 +100,13 @@ Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
     switch (purpose.role) {
         case Role::method:
             return bindMethod(nodes, node, static_cast<skill::Method>(purpose.detail));
+        case Role::check:
+            return nodes.setMethod(node, [this](const opcua::CallContext& context, auto inputs) {
+                return check(context.session, inputs);
+            });
+        case Role::get_execution:
+            return nodes.setMethod(node, [this](const opcua::CallContext& /*context*/,
+                                                auto inputs) { return getExecution(inputs); });
         case Role::parameter_unit:
         case Role::result_unit:
             return nodes.write(node, unitOf(fieldOf(*program_, purpose)));
@@ -113,9 +121,12 @@ Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
 
 Result<void> SkillNode::bindMethod(opcua::AddressSpace& nodes, const NodeId& node,
                                    skill::Method method) {
-    auto set = nodes.setMethod(node, [this, method](const opcua::CallContext& context, auto) {
-        return call(context.session, method).map([] { return std::vector<Value>(); });
-    });
+    auto set = nodes.setMethod(
+        node, [this, method](const opcua::CallContext& context, std::span<const Value> inputs) {
+            return method == skill::Method::start_with
+                       ? startWith(context.session, inputs)
+                       : call(context.session, method).map([] { return std::vector<Value>(); });
+        });
     if (!set) {
         return set;
     }
@@ -249,8 +260,107 @@ Result<void> SkillNode::call(const Session& session, skill::Method method) {
             return remember(session, program_->halt(caller));
         case skill::Method::reset:
             return remember(session, program_->reset(caller));
+        case skill::Method::start_with:
+            break;  // has arguments
     }
     return fail(Errc::internal, "unknown method");
+}
+
+Result<skill::ValueMap> SkillNode::parametersFrom(const Value& pairs) const {
+    const auto given = pairs.as<std::vector<opcua::KeyValue>>();
+    if (!given) {
+        return fail(given.error());
+    }
+    const auto& fields = program_->description().parameters;
+    skill::ValueMap values;
+    for (const auto& [key, value] : *given) {
+        const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
+            return candidate.name == key.name;
+        });
+        if (field == fields.end()) {
+            return fail(Errc::invalid_argument, fmt::format("no parameter {}", key.name));
+        }
+        auto taken = fromOpcua(value, field->type);
+        if (!taken) {
+            return fail(taken.error().code, fmt::format("{}: {}", key.name, taken.error().message));
+        }
+        if (!values.emplace(key.name, std::move(*taken)).second) {
+            return fail(Errc::invalid_argument, fmt::format("{} is given twice", key.name));
+        }
+    }
+    return values;
+}
+
+std::vector<opcua::KeyValue> SkillNode::pairsOf(const skill::ValueMap& values) const {
+    std::vector<opcua::KeyValue> pairs;
+    for (const auto& [name, value] : values) {
+        pairs.push_back({{context_.ids.metier, name}, toOpcua(value)});
+    }
+    return pairs;
+}
+
+Result<std::vector<Value>> SkillNode::startWith(const Session& session,
+                                                std::span<const Value> inputs) {
+    const auto id = inputs[0].as<std::string>();
+    auto parameters = parametersFrom(inputs[1]);
+    const auto action = inputs[2].as<std::int32_t>();
+    const auto epoch = inputs[3].as<std::uint64_t>();
+    const auto deadline = inputs[4].as<UtcTime>();
+    if (!id || !parameters || !action || !epoch || !deadline) {
+        auto refused = remember(session, parameters ? fail(Errc::type_mismatch, "StartWith")
+                                                    : fail(parameters.error()));
+        return fail(std::move(refused.error()));
+    }
+    const auto on_owner_loss = ownerLossActionFrom(*action);
+    if (!on_owner_loss) {
+        auto refused = remember(session, fail(on_owner_loss.error()));
+        return fail(std::move(refused.error()));
+    }
+    auto started = program_->startWith(
+        callerOf(session),
+        {.execution_id = *id,
+         .parameters = std::move(*parameters),
+         .on_owner_loss = *on_owner_loss,
+         .epoch = *epoch,
+         .deadline = *deadline <= UtcTime{} ? std::optional<UtcTime>{} : *deadline});
+    if (!started) {
+        auto refused = remember(session, fail(started.error()));
+        return fail(std::move(refused.error()));
+    }
+    context_.refusals.accepted(session, *this);
+    return std::vector{Value::of(*started)};
+}
+
+Result<std::vector<Value>> SkillNode::check(const Session& session, std::span<const Value> inputs) {
+    const auto parameters = parametersFrom(inputs[0]);
+    skill::CheckReport report;
+    if (parameters) {
+        report = program_->check(callerOf(session), *parameters);
+    } else {
+        report.possible = false;
+        report.reason = parameters.error().message;
+        report.first_failing_fraction = 0.0;
+    }
+    return std::vector{Value::of(report.possible), Value::of(report.reason),
+                       Value::of(report.first_failing_fraction), Value::of(report.planned_duration),
+                       Value::ofRows(report.joint_path)};
+}
+
+Result<std::vector<Value>> SkillNode::getExecution(std::span<const Value> inputs) const {
+    const auto id = inputs[0].as<std::string>();
+    if (!id) {
+        return fail(id.error());
+    }
+    const auto record = program_->execution(*id);
+    if (!record) {
+        return fail(record.error());
+    }
+    return std::vector{Value::of(static_cast<std::uint32_t>(record->state)),
+                       Value::of(static_cast<std::int32_t>(record->reason)),
+                       Value::of(record->reason_text),
+                       Value::of(record->start_time),
+                       Value::of(record->end_time),
+                       Value::of(pairsOf(record->result))};
 }
 
 Result<void> SkillNode::remember(const Session& session, Result<void> outcome) {

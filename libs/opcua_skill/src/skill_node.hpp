@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,14 @@ private:
     Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose);
     Result<void> bindMethod(opcua::AddressSpace& nodes, const opcua::NodeId& node,
                             skill::Method method);
+    Result<std::vector<opcua::Value>> startWith(const opcua::Session& session,
+                                                std::span<const opcua::Value> inputs);
+    Result<std::vector<opcua::Value>> check(const opcua::Session& session,
+                                            std::span<const opcua::Value> inputs);
+    Result<std::vector<opcua::Value>> getExecution(std::span<const opcua::Value> inputs) const;
+    /// The skill's parameters by name from KeyValuePair[].
+    Result<skill::ValueMap> parametersFrom(const opcua::Value& pairs) const;
+    std::vector<opcua::KeyValue> pairsOf(const skill::ValueMap& values) const;
     opcua::Value readState(Purpose purpose) const;
     opcua::Value readTransition(Purpose purpose) const;
     opcua::DataValue readSubState(Purpose purpose) const;

@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "control_node.hpp"
 #include "metier/opcua_skill/server_executor.hpp"
 #include "skill_factory.hpp"
 #include "skill_node.hpp"
@@ -61,6 +62,12 @@ public:
         return serve(*instance, std::move(skill), std::move(options));
     }
 
+    Result<void> serveControl(const opcua::NodeId& controller,
+                              std::shared_ptr<skill::Control> control) {
+        controls_.push_back(std::make_unique<ControlNode>(std::move(control)));
+        return controls_.back()->bind(server_.nodes(), controller);
+    }
+
     std::vector<skill::Program*> programs() const {
         std::vector<skill::Program*> programs;
         for (const auto& skill : skills_) {
@@ -87,6 +94,9 @@ private:
 
     void sessionClosed(const opcua::Session& session) {
         context_.refusals.sessionClosed(session);
+        for (const auto& control : controls_) {
+            control->sessionClosed(session);
+        }
         for (const auto& skill : skills_) {
             skill->sessionClosed(session);
         }
@@ -100,6 +110,7 @@ private:
     SkillFactory factory_;
     std::vector<std::unique_ptr<SkillNode>> skills_;
     std::set<opcua::NodeId> bound_;
+    std::vector<std::unique_ptr<ControlNode>> controls_;
 };
 
 Result<std::unique_ptr<SkillServer>> SkillServer::create(opcua::Server& server, const Clock& clock,
@@ -139,6 +150,11 @@ Result<skill::Program*> SkillServer::publish(const opcua::NodeId& skills,
                                              std::unique_ptr<skill::Skill> skill,
                                              skill::ProgramOptions options, NodeStyle style) {
     return state_->publish(skills, std::move(skill), std::move(options), style);
+}
+
+Result<void> SkillServer::serveControl(const opcua::NodeId& controller,
+                                       std::shared_ptr<skill::Control> control) {
+    return state_->serveControl(controller, std::move(control));
 }
 
 std::vector<skill::Program*> SkillServer::programs() const {

@@ -60,6 +60,8 @@ public:
     static Value of(const T& value);
     /// An array of values of any types (BaseDataType[]).
     static Value ofMixed(const std::vector<Value>& values);
+    /// A Double matrix; the rows have the same length. Without a row: an empty matrix.
+    static Value ofRows(const std::vector<std::vector<double>>& rows);
     static Value of(std::string_view value);
     static Value of(const char* value) { return of(std::string_view(value)); }
 
@@ -68,6 +70,10 @@ public:
     /// Errors: type_mismatch, naming both types.
     template <ValueType T>
     Result<T> as() const;
+
+    /// The rows of a Double matrix.
+    /// Errors: type_mismatch.
+    Result<std::vector<std::vector<double>>> asRows() const;
 
     bool isEmpty() const noexcept;
     bool isArray() const noexcept;

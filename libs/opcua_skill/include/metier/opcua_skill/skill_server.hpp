@@ -18,7 +18,8 @@ namespace metier::opcua_skill {
 enum class NodeStyle {
     readable,  ///< string ids that are paths, `<skills>/<name>/ParameterSet/...`; descriptions
     compact,   ///< for thousands of skills, at 40 % of the memory: numeric ids, no descriptions
-               ///< below the skill, and ProgramDiagnostic as one value without components
+               ///< below the skill, ProgramDiagnostic as one value without components,
+               ///< and the methods of Part 10 only
 };
 
 /// The skills of one OPC UA server: each is a Program served at the nodes of a skill object.
@@ -67,6 +68,12 @@ public:
                                     std::unique_ptr<skill::Skill> skill,
                                     skill::ProgramOptions options = {},
                                     NodeStyle style = NodeStyle::readable);
+
+    /// Serves the control of a controller: its lease, and its DI Lock if it has one. The Programs
+    /// of its skills get the same Control in their options.
+    /// Errors: not_found, if the controller has no lease.
+    Result<void> serveControl(const opcua::NodeId& controller,
+                              std::shared_ptr<skill::Control> control);
 
     /// All Programs, in the order in which they came.
     std::vector<skill::Program*> programs() const;

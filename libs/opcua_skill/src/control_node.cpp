@@ -1,0 +1,194 @@
+#include "control_node.hpp"
+
+#include <array>
+#include <utility>
+
+#include "model_ids.hpp"
+#include "owner_loss.hpp"
+#include "skill_node.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+using opcua::AddressSpace;
+using opcua::CallContext;
+using opcua::NodeId;
+using opcua::Value;
+using Inputs = std::span<const Value>;
+
+// InitLockStatus and its like (OPC 10000-100, 7.6): negative numbers are refusals.
+constexpr std::int32_t kLockDone = 0;
+constexpr std::int32_t kLockRefused = -1;
+
+double milliseconds(std::chrono::nanoseconds time) {
+    return std::chrono::duration<double, std::milli>(time).count();
+}
+
+std::vector<Value> statusOf(const Result<void>& outcome) {
+    return {Value::of(outcome ? kLockDone : kLockRefused)};
+}
+
+Result<std::uint64_t> epochIn(Inputs inputs) {
+    return inputs[0].as<std::uint64_t>();
+}
+
+/// What Heartbeat and ReleaseControl do with the epoch that they are given.
+template <typename Work>
+opcua::MethodHandler withEpoch(Work work) {
+    return [work](const CallContext& context, Inputs inputs) -> Result<std::vector<Value>> {
+        const auto epoch = epochIn(inputs);
+        if (!epoch) {
+            return fail(epoch.error());
+        }
+        return work(callerOf(context.session), *epoch).map([] { return std::vector<Value>(); });
+    };
+}
+
+}  // namespace
+
+Result<void> ControlNode::bind(AddressSpace& nodes, const NodeId& controller) {
+    if (auto bound = bindLease(nodes, controller); !bound) {
+        return bound;
+    }
+    const auto di = nodes.namespaceIndex(kDiUri);
+    const auto lock = di ? nodes.find(controller, {*di, "Lock"}) : Result<NodeId>(fail(di.error()));
+    return lock ? bindLock(nodes, *lock) : Result<void>{};
+}
+
+Result<void> ControlNode::bindLease(AddressSpace& nodes, const NodeId& controller) {
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    struct Call {
+        const char* name;
+        opcua::MethodHandler handler;
+    };
+    const std::array calls{
+        Call{"AcquireControl", [this](const CallContext& context,
+                                      Inputs inputs) { return acquire(context, inputs); }},
+        Call{"Heartbeat", withEpoch([this](const skill::Caller& caller, std::uint64_t epoch) {
+                 return control_->heartbeat(caller, epoch);
+             })},
+        Call{"ReleaseControl", withEpoch([this](const skill::Caller& caller, std::uint64_t epoch) {
+                 return control_->release(caller, epoch);
+             })},
+    };
+    for (const auto& [name, handler] : calls) {
+        const auto method = nodes.find(controller, {*metier, name});
+        auto set = method ? nodes.setMethod(*method, handler) : Result<void>(fail(method.error()));
+        if (!set) {
+            return set;
+        }
+    }
+    for (const auto& [name, item] : {std::pair{"ControlOwner", Item::control_owner},
+                                     {"ControlEpoch", Item::control_epoch},
+                                     {"LeaseRemaining", Item::lease_remaining}}) {
+        const auto variable = nodes.find(controller, {*metier, name});
+        auto shown = variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error()));
+        if (!shown) {
+            return shown;
+        }
+    }
+    return {};
+}
+
+Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
+    const auto index = nodes.namespaceIndex(kDiUri);
+    if (!index) {
+        return fail(index.error());
+    }
+    struct Call {
+        const char* name;
+        Result<void> (*work)(skill::Control&, const skill::Caller&);
+    };
+    static constexpr std::array kCalls{
+        Call{"InitLock", [](skill::Control& control,
+                            const skill::Caller& caller) { return control.lock(caller); }},
+        Call{"RenewLock", [](skill::Control& control,
+                             const skill::Caller& caller) { return control.renewLock(caller); }},
+        Call{"ExitLock", [](skill::Control& control,
+                            const skill::Caller& caller) { return control.unlock(caller); }},
+        Call{"BreakLock", [](skill::Control& control,
+                             const skill::Caller& /*caller*/) { return control.breakLock(); }},
+    };
+    for (const auto& call : kCalls) {
+        const auto method = nodes.find(lock, {*index, call.name});
+        if (!method) {
+            return fail(method.error());
+        }
+        auto set = nodes.setMethod(*method, [control = control_, work = call.work](
+                                                const CallContext& context, Inputs /*inputs*/) {
+            return Result<std::vector<Value>>(statusOf(work(*control, callerOf(context.session))));
+        });
+        if (!set) {
+            return set;
+        }
+    }
+    for (const auto& [name, item] : {std::pair{"Locked", Item::locked},
+                                     {"LockingClient", Item::locking_client},
+                                     {"LockingUser", Item::locking_user},
+                                     {"RemainingLockTime", Item::remaining_lock_time}}) {
+        const auto variable = nodes.find(lock, {*index, name});
+        auto shown = variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error()));
+        if (!shown) {
+            return shown;
+        }
+    }
+    return {};
+}
+
+Result<void> ControlNode::show(AddressSpace& nodes, const NodeId& variable, Item item) {
+    slots_.push_back(std::make_unique<opcua::VariableSlot>(
+        opcua::VariableSlot{this, static_cast<std::uint32_t>(item)}));
+    return nodes.setHandler(variable, *slots_.back());
+}
+
+Result<ControlNode::Values> ControlNode::acquire(const CallContext& context, Inputs inputs) {
+    const auto lease = inputs[0].as<std::uint32_t>();
+    const auto action = inputs[1].as<std::int32_t>();
+    if (!lease || !action) {
+        return fail(lease ? action.error() : lease.error());
+    }
+    const auto on_loss = ownerLossActionFrom(*action);
+    if (!on_loss) {
+        return fail(on_loss.error());
+    }
+    return control_->acquire(callerOf(context.session), std::chrono::milliseconds(*lease), *on_loss)
+        .map([](std::uint64_t epoch) { return Values{Value::of(epoch)}; });
+}
+
+void ControlNode::sessionClosed(const opcua::Session& session) {
+    control_->sessionClosed(session.id.toString());
+}
+
+opcua::DataValue ControlNode::read(const opcua::Session& /*session*/, std::uint32_t tag) const {
+    const auto value = [this, tag] {
+        switch (static_cast<Item>(tag)) {
+            case Item::control_owner:
+                return Value::of(control_->holder().client_name);
+            case Item::control_epoch:
+                return Value::of(control_->epoch());
+            case Item::lease_remaining:
+                return Value::of(milliseconds(control_->leaseRemaining()));
+            case Item::locked:
+                return Value::of(control_->isLocked());
+            case Item::locking_client:
+                return Value::of(control_->locker().client_name);
+            case Item::locking_user:
+                return Value::of(control_->locker().user_name);
+            case Item::remaining_lock_time:
+                return Value::of(milliseconds(control_->lockRemaining()));
+        }
+        return Value();
+    };
+    return {value(), {}, {}, {}};
+}
+
+Result<void> ControlNode::write(const opcua::WriteContext& /*writer*/, std::uint32_t /*tag*/,
+                                const Value& /*value*/) {
+    return fail(Errc::access_denied, "control is taken by its methods");
+}
+
+}  // namespace metier::opcua_skill
