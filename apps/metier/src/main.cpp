@@ -30,6 +30,8 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addRun(app, exit);
     metier::app::addWatch(app, exit);
     metier::app::addHalt(app, exit);
+    metier::app::addSkillCommands(app, exit);
+    metier::app::addOwn(app, exit);
     metier::app::addSquare(app, exit);
     metier::app::addFk(app, exit);
     metier::app::addIk(app, exit);

@@ -3,9 +3,12 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
+#include "metier/skill_client/control_handle.hpp"
 #include "metier/skill_client/skill_handle.hpp"
+#include "owner_options.hpp"
 #include "servers.hpp"
 #include "stop_signal.hpp"
 #include "value_json.hpp"
@@ -21,6 +24,7 @@ struct RunOptions {
     std::string skill;
     std::vector<std::string> settings;
     double timeout = 60.0;
+    OwnerOptions owner;
     bool fields = false;
     bool json = false;
 };
@@ -128,6 +132,36 @@ void showTransitions(SkillHandle& skill) {
     });
 }
 
+struct OwnedRun {
+    const skill::ValueMap& values;
+    SteadyTime deadline;
+    const OwnerOptions& owner;
+};
+
+/// Runs the skill as the command line says: under a lease, with a choice for the loss of this
+/// client, or by plain writes and Start, which every server knows.
+opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& client,
+                                        const OwnedRun& run) {
+    std::optional<skill_client::ControlHandle> control;
+    if (run.owner.lease_ms != 0) {
+        const auto* controller = skill.address().controller();
+        auto taken = skill_client::ControlHandle::acquire(
+            client, controller == nullptr ? opcua::NodeId() : controller->node,
+            {.lease = run.owner.lease(), .on_loss = run.owner.action()});
+        if (!taken) {
+            return tl::unexpected(taken.error());
+        }
+        control = std::move(*taken);
+    }
+    if (!control && run.owner.action() == skill::OwnerLossAction::skill_default) {
+        return skill.run(run.values, run.deadline);
+    }
+    return skill.run({.parameters = run.values,
+                      .on_owner_loss = run.owner.action(),
+                      .epoch = control ? control->epoch() : 0},
+                     run.deadline);
+}
+
 Exit runRun(const RunOptions& options) {
     const StopSignal signal;
     auto client = connectTo(options.url);
@@ -155,7 +189,7 @@ Exit runRun(const RunOptions& options) {
     const auto deadline =
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                std::chrono::duration<double>(options.timeout));
-    const auto result = skill->run(*values, deadline);
+    const auto result = runOwned(*skill, **client, {*values, deadline, options.owner});
     if (!result) {
         report(result.error());
         return Exit::failed;
@@ -185,6 +219,9 @@ void addRun(CLI::App& app, Exit& exit) {
     command->add_option("--timeout", options->timeout, "Halt the skill after so long [s]")
         ->check(CLI::Range(0.1, 86'400.0))
         ->capture_default_str();
+    addOwnerOptions(*command, options->owner,
+                    "Take control for the run; it is lost after so long without a heartbeat, such "
+                    "as 300ms");
     command->add_flag("--json", options->json, "Print the result as JSON");
     command->callback([options, &exit] { exit = runRun(*options); });
 }

@@ -26,6 +26,9 @@ template <typename Parameters>
 using Plan = std::function<motion::Planned<Trajectory>(const RobotModel&, const JointVector&,
                                                        const Parameters&)>;
 
+// Of the joint path that Check shows.
+constexpr std::size_t kPreviewPoints = 50;
+
 /// What makes one move different from the others.
 template <typename Parameters>
 struct Kind {
@@ -40,6 +43,21 @@ ArmBody::ToolDistance toolDistance(const Trajectory& trajectory) {
         return geometry::distanceBetween(trajectory.toolPose(toVector(a)),
                                          trajectory.toolPose(toVector(b)));
     };
+}
+
+skill::CheckReport reportOf(const motion::Feasibility& feasibility) {
+    skill::CheckReport report;
+    if (feasibility.refusal) {
+        report.possible = false;
+        report.reason = feasibility.refusal->error.message;
+        report.first_failing_fraction = feasibility.refusal->fraction;
+        return report;
+    }
+    report.planned_duration = feasibility.duration.count();
+    for (const auto& joints : feasibility.preview) {
+        report.joint_path.emplace_back(joints.begin(), joints.end());
+    }
+    return report;
 }
 
 template <typename Parameters>
@@ -69,6 +87,14 @@ protected:
         return std::make_unique<ArmBody>(arm_, std::move(source), toolDistance(*trajectory));
     }
 
+    Result<skill::CheckReport> assess(const Parameters& parameters) override {
+        if (auto ready = checkReady(arm_); !ready) {
+            return fail(std::move(ready.error()));
+        }
+        const auto start = toVector(arm_.state().commanded_position);
+        return reportOf(motion::assess(plan_(model_, start, parameters), kPreviewPoints));
+    }
+
 private:
     device::Arm& arm_;
     const RobotModel& model_;
@@ -77,7 +103,10 @@ private:
 };
 
 skill::SkillDescription describe(std::string name, std::string description) {
-    return {.name = name, .type = name + "Type", .description = std::move(description)};
+    return {.name = name,
+            .type = name + "Type",
+            .description = std::move(description),
+            .on_owner_loss = skill::OwnerLossAction::halt};
 }
 
 template <typename Parameters>

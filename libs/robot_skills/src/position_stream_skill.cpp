@@ -94,7 +94,8 @@ public:
                         const PositionStreamOptions& options)
         : TypedSkill({.name = "PositionStreamSkill",
                       .type = "PositionStreamSkillType",
-                      .description = "Follows joint positions that are written while it runs"},
+                      .description = "Follows joint positions that are written while it runs",
+                      .on_owner_loss = skill::OwnerLossAction::halt},
                      positionStreamFields(model), positionStreamResultFields()),
           arm_(arm),
           model_(model),

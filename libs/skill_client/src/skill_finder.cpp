@@ -121,11 +121,16 @@ tl::unexpected<opcua::Failure> refusal(Errc code, std::string text) {
 
 }  // namespace
 
-std::string SkillAddress::controllerName() const {
+const SkillAddress::Above* SkillAddress::controller() const {
     const auto skills = std::find_if(above.rbegin(), above.rend(),
                                      [](const Above& object) { return object.name == "Skills"; });
-    return skills == above.rend() || std::next(skills) == above.rend() ? ""
-                                                                       : std::next(skills)->name;
+    return skills == above.rend() || std::next(skills) == above.rend() ? nullptr
+                                                                       : &*std::next(skills);
+}
+
+std::string SkillAddress::controllerName() const {
+    const auto* object = controller();
+    return object == nullptr ? "" : object->name;
 }
 
 Answer<std::vector<SkillAddress>> findSkills(Client& client) {

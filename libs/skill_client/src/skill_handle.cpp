@@ -21,6 +21,17 @@ using skill::TransitionEvent;
 
 constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
 
+constexpr std::size_t kCheckOutputs = 5;
+constexpr std::size_t kExecutionOutputs = 6;
+
+opcua::Value pairsOf(const skill::ValueMap& values) {
+    std::vector<opcua::KeyValue> pairs;
+    for (const auto& [name, value] : values) {
+        pairs.push_back({{0, name}, opcua_skill::toOpcua(value)});
+    }
+    return opcua::Value::of(pairs);
+}
+
 bool endsExecution(const TransitionEvent& event) {
     return event.to == State::ready || event.to == State::halted;
 }
@@ -145,6 +156,9 @@ struct SkillHandle::Impl {
                     {}});
     }
 
+    Answer<std::vector<opcua::Value>> callMetier(const opcua::NodeId& method, std::string_view name,
+                                                 std::vector<opcua::Value> inputs);
+    skill::ValueMap resultsIn(const opcua::Value& pairs) const;
     Answer<skill::ValueMap> awaitOutcome(std::uint64_t from, SteadyTime deadline);
     Answer<skill::ValueMap> readResults() const;
 };
@@ -217,6 +231,84 @@ Answer<> SkillHandle::call(Method method) {
             impl_->refused(result.error(), fmt::format("refused {}", toString(method))));
     }
     return {};
+}
+
+Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(const opcua::NodeId& method,
+                                                                std::string_view name,
+                                                                std::vector<opcua::Value> inputs) {
+    if (method == opcua::NodeId{}) {
+        return tl::unexpected(
+            Failure{{Errc::not_supported, fmt::format("{} has no {}", address.name, name)},
+                    opcua::status::kBadMethodInvalid,
+                    {}});
+    }
+    auto result = client.call(address.node, method, std::move(inputs));
+    if (!result) {
+        return tl::unexpected(refused(result.error(), fmt::format("refused {}", name)));
+    }
+    return std::move(result->outputs);
+}
+
+Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
+    auto outputs = impl_->callMetier(
+        impl_->nodes.methods.at(static_cast<std::size_t>(Method::start_with)), "StartWith",
+        {opcua::Value::of(request.execution_id), pairsOf(request.parameters),
+         opcua::Value::of(static_cast<std::int32_t>(request.on_owner_loss)),
+         opcua::Value::of(request.epoch), opcua::Value::of(request.deadline.value_or(UtcTime{}))});
+    if (!outputs) {
+        return tl::unexpected(outputs.error());
+    }
+    return outputs->empty() ? std::string() : outputs->front().as<std::string>().value_or("");
+}
+
+Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters) {
+    const auto outputs = impl_->callMetier(impl_->nodes.check, "Check", {pairsOf(parameters)});
+    if (!outputs) {
+        return tl::unexpected(outputs.error());
+    }
+    if (outputs->size() != kCheckOutputs) {
+        return opcua::failed(opcua::status::kBadUnexpectedError, impl_->address.name + " Check");
+    }
+    skill::CheckReport report;
+    report.possible = (*outputs)[0].as<bool>().value_or(false);
+    report.reason = (*outputs)[1].as<std::string>().value_or("");
+    report.first_failing_fraction = (*outputs)[2].as<double>().value_or(0.0);
+    report.planned_duration = (*outputs)[3].as<double>().value_or(0.0);
+    report.joint_path = (*outputs)[4].asRows().value_or(std::vector<std::vector<double>>{});
+    return report;
+}
+
+Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
+    const auto outputs =
+        impl_->callMetier(impl_->nodes.get_execution, "GetExecution", {opcua::Value::of(id)});
+    if (!outputs) {
+        return tl::unexpected(outputs.error());
+    }
+    if (outputs->size() != kExecutionOutputs) {
+        return opcua::failed(opcua::status::kBadUnexpectedError,
+                             impl_->address.name + " GetExecution");
+    }
+    skill::ExecutionRecord record;
+    record.id = id;
+    record.state = static_cast<State>((*outputs)[0].as<std::uint32_t>().value_or(0));
+    record.reason = static_cast<skill::Reason>((*outputs)[1].as<std::int32_t>().value_or(0));
+    record.reason_text = (*outputs)[2].as<std::string>().value_or("");
+    record.start_time = (*outputs)[3].as<UtcTime>().value_or(UtcTime{});
+    record.end_time = (*outputs)[4].as<UtcTime>().value_or(UtcTime{});
+    record.result = impl_->resultsIn((*outputs)[5]);
+    return record;
+}
+
+skill::ValueMap SkillHandle::Impl::resultsIn(const opcua::Value& pairs) const {
+    skill::ValueMap values;
+    for (const auto& [key, value] :
+         pairs.as<std::vector<opcua::KeyValue>>().value_or(std::vector<opcua::KeyValue>{})) {
+        if (const auto* node = findField(nodes.results, key.name)) {
+            values[key.name] =
+                opcua_skill::fromOpcua(value, node->field.type).value_or(skill::Value{});
+        }
+    }
+    return values;
 }
 
 Answer<> SkillHandle::start() {
@@ -344,7 +436,18 @@ Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& values, SteadyTi
     if (auto started = start(); !started) {
         return tl::unexpected(started.error());
     }
-    auto outcome = impl_->awaitOutcome(from, deadline);
+    return orHalt(impl_->awaitOutcome(from, deadline));
+}
+
+Answer<skill::ValueMap> SkillHandle::run(const skill::StartRequest& request, SteadyTime deadline) {
+    const auto from = impl_->log->next();
+    if (auto started = startWith(request); !started) {
+        return tl::unexpected(started.error());
+    }
+    return orHalt(impl_->awaitOutcome(from, deadline));
+}
+
+Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {
     if (!outcome && outcome.error().code == Errc::timeout) {
         // The work has lost its client's interest: it must not go on alone.
         if (const auto halted = halt(); !halted) {

@@ -165,8 +165,16 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
         return lacks(address, "CurrentState/Number");
     }
     nodes.state_number = *number;
-    if (const auto* reason = findNamed(children, "ReasonText")) {
-        nodes.reason_text = reason->target;
+    auto& start_with = nodes.methods.at(static_cast<std::size_t>(skill::Method::start_with));
+    const std::array<std::pair<std::string_view, NodeId*>, 4> optional{
+        {{"ReasonText", &nodes.reason_text},
+         {"StartWith", &start_with},
+         {"Check", &nodes.check},
+         {"GetExecution", &nodes.get_execution}}};
+    for (const auto& [name, node] : optional) {
+        if (const auto* found = findNamed(children, name)) {
+            *node = found->target;
+        }
     }
     return {};
 }

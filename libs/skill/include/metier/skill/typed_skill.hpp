@@ -36,12 +36,26 @@ public:
         return plan(*parameters);
     }
 
+    Result<CheckReport> check(const ValueMap& snapshot) final {
+        auto parameters = parameters_.read(snapshot);
+        if (!parameters) {
+            return fail(std::move(parameters.error()));
+        }
+        return assess(*parameters);
+    }
+
     /// For a body: `execution.finish(skill.results().write(result))`. Lives as long as the skill.
     const FieldList<Results>& results() const noexcept { return results_; }
 
 protected:
     /// As Skill::prepare().
     virtual Result<std::unique_ptr<Body>> plan(const Parameters& parameters) = 0;
+
+    /// As Skill::check(); unless overridden it says no more than whether plan() succeeds.
+    virtual Result<CheckReport> assess(const Parameters& parameters) {
+        const auto body = plan(parameters);
+        return body ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(body.error()));
+    }
 
 private:
     SkillDescription description_;

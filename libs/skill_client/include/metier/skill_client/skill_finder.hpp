@@ -21,7 +21,9 @@ struct SkillAddress {
     };
     std::vector<Above> above;
 
-    /// The object that holds the folder `Skills`: its controller. Empty if there is none.
+    /// The object that holds the folder `Skills`: its controller. Null if there is none.
+    const Above* controller() const;
+    /// Its name; empty if there is none.
     std::string controllerName() const;
 };
 

@@ -12,6 +12,7 @@
 #include "metier/opcua/client.hpp"
 #include "metier/skill/field.hpp"
 #include "metier/skill/field_list.hpp"
+#include "metier/skill/program.hpp"
 #include "metier/skill/program_observer.hpp"
 #include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
@@ -50,6 +51,13 @@ public:
                              std::function<void(opcua::Answer<>)> done);
 
     opcua::Answer<> start();
+    /// Gives all parameters along and starts, in one step. \return the execution's id
+    /// Errors: not_supported, if the server's skill lacks StartWith.
+    opcua::Answer<std::string> startWith(const skill::StartRequest& request);
+    /// What startWith() would say now. Errors: not_supported.
+    opcua::Answer<skill::CheckReport> check(const skill::ValueMap& parameters);
+    /// What became of an execution, also of another session's. Errors: not_found, not_supported.
+    opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
     opcua::Answer<> suspend();
     opcua::Answer<> resume();
     opcua::Answer<> halt();
@@ -76,6 +84,8 @@ public:
     /// Errors: as above; device_fault, limit_violated, connection_lost or cancelled if it ended in
     /// Halted, with the reason.
     opcua::Answer<skill::ValueMap> run(const skill::ValueMap& parameters, SteadyTime deadline);
+    /// The same by startWith().
+    opcua::Answer<skill::ValueMap> run(const skill::StartRequest& request, SteadyTime deadline);
     /// The same for parameters and results declared as plain structs.
     template <typename Parameters, typename Results>
     opcua::Answer<Results> run(const skill::FieldList<Parameters>& parameter_list,
@@ -87,6 +97,8 @@ public:
 
 private:
     struct Impl;
+    /// Halts the skill if its end was not seen in time.
+    opcua::Answer<skill::ValueMap> orHalt(opcua::Answer<skill::ValueMap> outcome);
     explicit SkillHandle(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };

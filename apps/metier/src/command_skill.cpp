@@ -1,0 +1,89 @@
+// suspend, resume and reset: one method of one skill, and the state that follows.
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <memory>
+
+#include "metier/skill_client/skill_handle.hpp"
+#include "servers.hpp"
+
+namespace metier::app {
+namespace {
+
+using skill::Method;
+using skill::State;
+
+struct Command {
+    const char* name;
+    const char* help;
+    Method method;
+    State then;
+};
+
+constexpr std::array kCommands{
+    Command{"suspend", "Let a running skill come to rest on its path; resume goes on",
+            Method::suspend, State::suspended},
+    Command{"resume", "Let a suspended skill go on where it stopped", Method::resume,
+            State::running},
+    Command{"reset", "Make a halted skill ready again, or give a suspended one up", Method::reset,
+            State::ready},
+};
+
+struct CommandOptions {
+    std::string url;
+    std::string skill;
+    double timeout = 10.0;
+};
+
+Exit runCommand(const Command& command, const CommandOptions& options) {
+    auto client = connectTo(options.url);
+    if (!client) {
+        return report(client.error());
+    }
+    auto address = skill_client::findSkill(**client, options.skill);
+    if (!address) {
+        return report(address.error());
+    }
+    auto skill = skill_client::SkillHandle::open(**client, std::move(*address));
+    if (!skill) {
+        return report(skill.error());
+    }
+    if (const auto called = skill->call(command.method); !called) {
+        return report(called.error());
+    }
+    if (command.method == Method::suspend) {  // follows at standstill
+        const auto deadline =
+            std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                   std::chrono::duration<double>(options.timeout));
+        if (const auto reached = skill->awaitState(command.then, deadline); !reached) {
+            return report(reached.error());
+        }
+    }
+    fmt::print("{} {}\n", options.skill, toString(command.then));
+    return Exit::success;
+}
+
+}  // namespace
+
+void addSkillCommands(CLI::App& app, Exit& exit) {
+    for (const auto& each : kCommands) {
+        // Shared by CLI11, which fills it, and the callback, which reads it.
+        auto options = std::make_shared<CommandOptions>();
+        auto* command = app.add_subcommand(each.name, each.help);
+        command->add_option("url", options->url, "Address of the server: opc.tcp://host:port")
+            ->required();
+        command
+            ->add_option("skill", options->skill,
+                         "Name of the skill, or Controller/Name if several have it")
+            ->required();
+        if (each.method == Method::suspend) {
+            command->add_option("--timeout", options->timeout, "Wait so long for standstill [s]")
+                ->check(CLI::Range(0.1, 3'600.0))
+                ->capture_default_str();
+        }
+        command->callback([each, options, &exit] { exit = runCommand(each, *options); });
+    }
+}
+
+}  // namespace metier::app

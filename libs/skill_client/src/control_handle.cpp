@@ -1,0 +1,183 @@
+#include "metier/skill_client/control_handle.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+namespace metier::skill_client {
+
+using opcua::Answer;
+using opcua::Failure;
+using opcua::NodeId;
+using opcua::Value;
+
+namespace {
+
+constexpr std::string_view kMetier = "urn:metier:skills";
+constexpr int kBeatsPerLease = 4;
+
+struct LeaseNodes {
+    NodeId controller;
+    NodeId acquire;
+    NodeId heartbeat;
+    NodeId release;
+    NodeId owner;
+};
+
+Answer<LeaseNodes> findLease(opcua::Client& client, const NodeId& controller) {
+    const auto index = client.namespaceIndex(kMetier);
+    if (!index) {
+        return tl::unexpected(index.error());
+    }
+    LeaseNodes nodes{controller, {}, {}, {}, {}};
+    const std::array<std::pair<const char*, NodeId*>, 4> wanted{{{"AcquireControl", &nodes.acquire},
+                                                                 {"Heartbeat", &nodes.heartbeat},
+                                                                 {"ReleaseControl", &nodes.release},
+                                                                 {"ControlOwner", &nodes.owner}}};
+    for (const auto& [name, node] : wanted) {
+        auto found = client.translate(controller, {{*index, name}});
+        if (!found) {
+            return tl::unexpected(found.error());
+        }
+        *node = std::move(*found);
+    }
+    return nodes;
+}
+
+Failure refused(opcua::Client& client, const LeaseNodes& nodes, Failure failure) {
+    if (failure.code == Errc::locked) {
+        const auto owner = client.read(nodes.owner);
+        const auto name = owner ? owner->as<std::string>().value_or("") : std::string();
+        failure.message += name.empty() ? "" : fmt::format(": \"{}\" has control", name);
+    }
+    return failure;
+}
+
+}  // namespace
+
+/// Beats until it is lost or ended.
+class ControlHandle::Heart {
+public:
+    Heart(opcua::Client& client, LeaseNodes nodes, std::uint64_t epoch,
+          const ControlOptions& options)
+        : client_(client),
+          nodes_(std::move(nodes)),
+          epoch_(epoch),
+          interval_(options.lease / kBeatsPerLease),
+          thread_([this](const std::stop_token& stop) { beat(stop); }) {}
+
+    ~Heart() {
+        thread_.request_stop();
+        thread_ = {};
+        if (held()) {
+            // The server ends the lease by itself if this does not reach it.
+            static_cast<void>(client_.call(nodes_.controller, nodes_.release, {Value::of(epoch_)}));
+        }
+    }
+    Heart(const Heart&) = delete;
+    Heart& operator=(const Heart&) = delete;
+
+    std::uint64_t epoch() const noexcept { return epoch_; }
+    bool held() const {
+        const std::lock_guard lock(mutex_);
+        return !lost_;
+    }
+    void onLost(std::function<void(const Failure&)> callback) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (!lost_) {
+                on_lost_ = std::move(callback);
+                return;
+            }
+        }
+        callback(*lost_);  // written once
+    }
+
+private:
+    void beat(const std::stop_token& stop) {
+        auto next = std::chrono::steady_clock::now();
+        while (!stop.stop_requested()) {
+            next += interval_;
+            {
+                std::unique_lock lock(mutex_);
+                ended_.wait_until(lock, stop, next, [] { return false; });
+            }
+            if (stop.stop_requested()) {
+                return;
+            }
+            const auto beaten =
+                client_.call({nodes_.controller, nodes_.heartbeat, {Value::of(epoch_)}},
+                             interval_ * kBeatsPerLease);
+            if (!beaten && beaten.error().code != Errc::timeout) {
+                lose(beaten.error());
+                return;
+            }
+        }
+    }
+    void lose(const Failure& failure) {
+        std::function<void(const Failure&)> callback;
+        {
+            const std::lock_guard lock(mutex_);
+            lost_ = failure;
+            callback = std::exchange(on_lost_, nullptr);
+        }
+        if (callback) {
+            callback(failure);
+        }
+    }
+
+    opcua::Client& client_;
+    const LeaseNodes nodes_;
+    const std::uint64_t epoch_;
+    const std::chrono::milliseconds interval_;
+    mutable std::mutex mutex_;
+    std::condition_variable_any ended_;
+    std::optional<Failure> lost_;
+    std::function<void(const Failure&)> on_lost_;
+    std::jthread thread_;  // last: it uses everything above
+};
+
+Answer<ControlHandle> ControlHandle::acquire(opcua::Client& client, const NodeId& controller,
+                                             const ControlOptions& options) {
+    auto nodes = findLease(client, controller);
+    if (!nodes) {
+        return tl::unexpected(nodes.error());
+    }
+    const auto taken = client.call(controller, nodes->acquire,
+                                   {Value::of(static_cast<std::uint32_t>(options.lease.count())),
+                                    Value::of(static_cast<std::int32_t>(options.on_loss))});
+    if (!taken) {
+        return tl::unexpected(refused(client, *nodes, taken.error()));
+    }
+    const auto epoch = taken->outputs.empty() ? Result<std::uint64_t>(0)
+                                              : taken->outputs.front().as<std::uint64_t>();
+    if (!epoch || *epoch == 0) {
+        return opcua::failed(opcua::status::kBadUnexpectedError, "AcquireControl gave no epoch");
+    }
+    return ControlHandle(std::make_unique<Heart>(client, std::move(*nodes), *epoch, options));
+}
+
+ControlHandle::ControlHandle(std::unique_ptr<Heart> heart) : heart_(std::move(heart)) {}
+ControlHandle::ControlHandle(ControlHandle&&) noexcept = default;
+ControlHandle& ControlHandle::operator=(ControlHandle&&) noexcept = default;
+ControlHandle::~ControlHandle() = default;
+
+std::uint64_t ControlHandle::epoch() const noexcept {
+    return heart_->epoch();
+}
+
+bool ControlHandle::held() const noexcept {
+    return heart_->held();
+}
+
+void ControlHandle::onLost(std::function<void(const Failure&)> callback) {
+    heart_->onLost(std::move(callback));
+}
+
+}  // namespace metier::skill_client
