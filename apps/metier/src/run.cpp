@@ -156,10 +156,10 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
     if (!control && run.owner.action() == skill::OwnerLossAction::skill_default) {
         return skill.run(run.values, run.deadline);
     }
-    return skill.run({.parameters = run.values,
-                      .on_owner_loss = run.owner.action(),
-                      .epoch = control ? control->epoch() : 0},
-                     run.deadline);
+    return skill.runWith({.parameters = run.values,
+                          .on_owner_loss = run.owner.action(),
+                          .epoch = control ? control->epoch() : 0},
+                         run.deadline);
 }
 
 Exit runRun(const RunOptions& options) {

@@ -70,12 +70,20 @@ bool isEnumeration(const UA_DataType& type) noexcept {
     return type.typeKind == UA_DATATYPEKIND_ENUM;
 }
 
+/// Whether values of `type` are laid out as those of T: it is the same, an enumeration where a
+/// number is asked for, or a subtype of a built-in type, such as Duration of Double.
+template <ScalarType T>
+bool holds(const UA_DataType& type) noexcept {
+    const auto& wanted = nativeType<T>();
+    return &type == &wanted || (std::same_as<T, std::int32_t> && isEnumeration(type)) ||
+           (type.typeKind == wanted.typeKind && wanted.typeKind <= UA_DATATYPEKIND_DIAGNOSTICINFO);
+}
+
 /// Element `index` of what the variant holds, a scalar being its own element 0.
 template <ScalarType T>
 const typename Native<T>::Type* element(const UA_Variant& variant, std::size_t index) noexcept {
     using Type = typename Native<T>::Type;
-    const bool enumeration = std::same_as<T, std::int32_t> && isEnumeration(*variant.type);
-    if (variant.type == &nativeType<T>() || enumeration) {
+    if (holds<T>(*variant.type)) {
         return static_cast<const Type*>(variant.data) + index;
     }
     if (variant.type == &UA_TYPES[UA_TYPES_EXTENSIONOBJECT]) {
@@ -104,8 +112,7 @@ bool extract(const UA_Variant& variant, std::vector<T>& result) {
         return false;
     }
     if (variant.arrayLength == 0) {
-        return variant.type == &nativeType<T>() ||
-               variant.type == &UA_TYPES[UA_TYPES_EXTENSIONOBJECT];
+        return holds<T>(*variant.type) || variant.type == &UA_TYPES[UA_TYPES_EXTENSIONOBJECT];
     }
     result.reserve(variant.arrayLength);
     for (std::size_t i = 0; i < variant.arrayLength; ++i) {
@@ -233,7 +240,10 @@ Value Value::ofMixed(const std::vector<Value>& values) {
 }
 
 Value Value::ofRows(const std::vector<std::vector<double>>& rows) {
-    const std::size_t width = rows.empty() ? 0 : rows.front().size();
+    if (rows.empty() || rows.front().empty()) {
+        return {};  // an array with a dimension of 0 cannot be sent
+    }
+    const std::size_t width = rows.front().size();
     std::vector<double> flat;
     flat.reserve(rows.size() * width);
     for (const auto& row : rows) {
@@ -258,21 +268,19 @@ Value Value::ofRows(const std::vector<std::vector<double>>& rows) {
 
 Result<std::vector<std::vector<double>>> Value::asRows() const {
     const auto& variant = ValueAccess::native(*this);
-    auto flat = as<std::vector<double>>();
-    if (!flat) {
-        return fail(std::move(flat.error()));
+    std::vector<std::vector<double>> rows;
+    if (isEmpty()) {
+        return rows;
     }
-    if (variant.arrayDimensionsSize != kMatrixRank) {
-        return fail(Errc::type_mismatch, typeName() + " where a matrix is expected");
+    if (!holds<double>(*variant.type) || variant.arrayDimensionsSize != kMatrixRank ||
+        std::size_t{variant.arrayDimensions[0]} * variant.arrayDimensions[1] !=
+            variant.arrayLength) {
+        return fail(Errc::type_mismatch, typeName() + " where a Double matrix is expected");
     }
     const std::size_t width = variant.arrayDimensions[1];
-    if (variant.arrayDimensions[0] * width != flat->size()) {
-        return fail(Errc::type_mismatch, typeName() + " with other dimensions");
-    }
-    std::vector<std::vector<double>> rows;
-    for (std::size_t begin = 0; begin < flat->size(); begin += width) {
-        const auto first = flat->begin() + static_cast<std::ptrdiff_t>(begin);
-        rows.emplace_back(first, first + static_cast<std::ptrdiff_t>(width));
+    const auto* flat = static_cast<const double*>(variant.data);
+    for (std::size_t row = 0; row < variant.arrayDimensions[0]; ++row) {
+        rows.emplace_back(flat + row * width, flat + (row + 1) * width);
     }
     return rows;
 }

@@ -205,5 +205,18 @@ TEST(Value, KeepsTheEndsOfTime) {
     EXPECT_EQ(*Value::of(UtcTime{}).as<UtcTime>(), UtcTime{});
 }
 
+TEST(Matrix, KeepsItsRows) {
+    const std::vector<std::vector<double>> rows{{1, 2, 3}, {4, 5, 6}};
+    const auto value = Value::ofRows(rows);
+    EXPECT_EQ(value.asRows().value(), rows);
+    EXPECT_FALSE(value.as<std::vector<double>>()) << "its rows would be lost";
+    EXPECT_EQ(Value(value).asRows().value(), rows);
+    EXPECT_TRUE(Value::ofRows({}).isEmpty());
+    EXPECT_EQ(Value().asRows().value().size(), 0U);
+    EXPECT_FALSE(Value::of(std::vector{1.0, 2.0}).asRows());
+    EXPECT_FALSE(Value::of(std::string("1")).asRows());
+    EXPECT_THROW(Value::ofRows({{1, 2}, {3}}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace metier::opcua

@@ -123,6 +123,7 @@ skill::SkillDescription jointMoveDescription() {
     description.name = "JointPtpMoveSkill";
     description.type = "JointPtpMoveSkillType";
     description.description = "Moves the arm of the test.";
+    description.on_owner_loss = skill::OwnerLossAction::halt;
     auto target = field("TargetJointPosition", skill::ValueType::numbers, skill::kRadian, {});
     target.range = skill::Range{-3.0, 3.0};
     target.length = skill::LengthLimit{2, 2};

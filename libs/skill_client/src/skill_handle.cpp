@@ -439,7 +439,8 @@ Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& values, SteadyTi
     return orHalt(impl_->awaitOutcome(from, deadline));
 }
 
-Answer<skill::ValueMap> SkillHandle::run(const skill::StartRequest& request, SteadyTime deadline) {
+Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
+                                             SteadyTime deadline) {
     const auto from = impl_->log->next();
     if (auto started = startWith(request); !started) {
         return tl::unexpected(started.error());

@@ -117,7 +117,7 @@ protected:
 
 TEST_F(ControlOfASkill, StartWithBringsItsParametersAndFindsItsExecutionAgain) {
     auto skill = open(*alice_);
-    const auto result = skill.run(brief("order 66"), soon());
+    const auto result = skill.runWith(brief("order 66"), soon());
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_EQ(result->at("Duration"), skill::Value(0.25));
     auto other = open(*bob_);

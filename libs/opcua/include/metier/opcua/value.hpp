@@ -60,18 +60,19 @@ public:
     static Value of(const T& value);
     /// An array of values of any types (BaseDataType[]).
     static Value ofMixed(const std::vector<Value>& values);
-    /// A Double matrix; the rows have the same length. Without a row: an empty matrix.
+    /// A Double matrix; the rows have the same length. Null without a row.
     static Value ofRows(const std::vector<std::vector<double>>& rows);
     static Value of(std::string_view value);
     static Value of(const char* value) { return of(std::string_view(value)); }
 
-    /// What it holds, if it is exactly of type T; numbers are not converted. An enumeration is
-    /// read as std::int32_t; an array without elements or type as any vector.
+    /// What it holds, if it is of type T or of a subtype of a built-in one (Duration is read as
+    /// double); numbers are not converted. An enumeration is read as std::int32_t; an array without
+    /// elements or type as any vector.
     /// Errors: type_mismatch, naming both types.
     template <ValueType T>
     Result<T> as() const;
 
-    /// The rows of a Double matrix.
+    /// The rows of a Double matrix; none of Null.
     /// Errors: type_mismatch.
     Result<std::vector<std::vector<double>>> asRows() const;
 

@@ -85,7 +85,7 @@ public:
     /// Halted, with the reason.
     opcua::Answer<skill::ValueMap> run(const skill::ValueMap& parameters, SteadyTime deadline);
     /// The same by startWith().
-    opcua::Answer<skill::ValueMap> run(const skill::StartRequest& request, SteadyTime deadline);
+    opcua::Answer<skill::ValueMap> runWith(const skill::StartRequest& request, SteadyTime deadline);
     /// The same for parameters and results declared as plain structs.
     template <typename Parameters, typename Results>
     opcua::Answer<Results> run(const skill::FieldList<Parameters>& parameter_list,
