@@ -31,36 +31,27 @@ constexpr std::array kCommands{
 };
 
 struct CommandOptions {
-    std::string url;
-    std::string skill;
+    SkillChoice choice;
     double timeout = 10.0;
 };
 
 Exit runCommand(const Command& command, const CommandOptions& options) {
-    auto client = connectTo(options.url);
-    if (!client) {
-        return report(client.error());
+    auto open = openSkill(options.choice);
+    if (!open) {
+        return report(open.error());
     }
-    auto address = skill_client::findSkill(**client, options.skill);
-    if (!address) {
-        return report(address.error());
-    }
-    auto skill = skill_client::SkillHandle::open(**client, std::move(*address));
-    if (!skill) {
-        return report(skill.error());
-    }
-    if (const auto called = skill->call(command.method); !called) {
+    if (const auto called = open->skill.call(command.method); !called) {
         return report(called.error());
     }
     if (command.method == Method::suspend) {  // follows at standstill
         const auto deadline =
             std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                    std::chrono::duration<double>(options.timeout));
-        if (const auto reached = skill->awaitState(command.then, deadline); !reached) {
+        if (const auto reached = open->skill.awaitState(command.then, deadline); !reached) {
             return report(reached.error());
         }
     }
-    fmt::print("{} {}\n", options.skill, toString(command.then));
+    fmt::print("{} {}\n", options.choice.skill, toString(command.then));
     return Exit::success;
 }
 
@@ -71,12 +62,7 @@ void addSkillCommands(CLI::App& app, Exit& exit) {
         // Shared by CLI11, which fills it, and the callback, which reads it.
         auto options = std::make_shared<CommandOptions>();
         auto* command = app.add_subcommand(each.name, each.help);
-        command->add_option("url", options->url, "Address of the server: opc.tcp://host:port")
-            ->required();
-        command
-            ->add_option("skill", options->skill,
-                         "Name of the skill, or Controller/Name if several have it")
-            ->required();
+        addSkillChoice(*command, options->choice);
         if (each.method == Method::suspend) {
             command->add_option("--timeout", options->timeout, "Wait so long for standstill [s]")
                 ->check(CLI::Range(0.1, 3'600.0))

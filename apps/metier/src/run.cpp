@@ -20,8 +20,7 @@ namespace {
 using skill_client::SkillHandle;
 
 struct RunOptions {
-    std::string url;
-    std::string skill;
+    SkillChoice choice;
     std::vector<std::string> settings;
     double timeout = 60.0;
     OwnerOptions owner;
@@ -164,32 +163,25 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
 
 Exit runRun(const RunOptions& options) {
     const StopSignal signal;
-    auto client = connectTo(options.url);
-    if (!client) {
-        return report(client.error());
+    auto open = openSkill(options.choice);
+    if (!open) {
+        return report(open.error());
     }
-    auto address = skill_client::findSkill(**client, options.skill);
-    if (!address) {
-        return report(address.error());
-    }
-    auto skill = SkillHandle::open(**client, *address);
-    if (!skill) {
-        return report(skill.error());
-    }
+    auto& skill = open->skill;
     if (options.fields) {
-        printFields(*skill);
+        printFields(skill);
         return Exit::success;
     }
-    const auto values = parseSettings(*skill, options.settings);
+    const auto values = parseSettings(skill, options.settings);
     if (!values) {
         return reportUsage(values.error());
     }
-    showTransitions(*skill);
-    const HaltOnSignal halt_on_signal(signal, **client, *address);
+    showTransitions(skill);
+    const HaltOnSignal halt_on_signal(signal, *open->client, skill.address());
     const auto deadline =
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                std::chrono::duration<double>(options.timeout));
-    const auto result = runOwned(*skill, **client, {*values, deadline, options.owner});
+    const auto result = runOwned(skill, *open->client, {*values, deadline, options.owner});
     if (!result) {
         report(result.error());
         return Exit::failed;
@@ -205,12 +197,7 @@ void addRun(CLI::App& app, Exit& exit) {
     auto options = std::make_shared<RunOptions>();
     auto* command = app.add_subcommand(
         "run", "Set a skill's parameters, start it and wait for its end; Ctrl-C halts it");
-    command->add_option("url", options->url, "Address of the server: opc.tcp://host:port")
-        ->required();
-    command
-        ->add_option("skill", options->skill,
-                     "Name of the skill, or Controller/Name if several have it")
-        ->required();
+    addSkillChoice(*command, options->choice);
     command->add_option("--set", options->settings, "A parameter: Name=value, as --fields says")
         ->type_name("Name=value")
         ->allow_extra_args(false);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "metier/configuration/cell.hpp"
 
 namespace metier::app {
@@ -37,6 +39,30 @@ Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url) {
         return fail(client.error().code, fmt::format("{}: {}", url, client.error().message));
     }
     return std::move(*client);
+}
+
+void addSkillChoice(CLI::App& command, SkillChoice& choice) {
+    command.add_option("url", choice.url, "Address of the server: opc.tcp://host:port")->required();
+    command
+        .add_option("skill", choice.skill,
+                    "Name of the skill, or Controller/Name if several have it")
+        ->required();
+}
+
+Result<OpenSkill> openSkill(const SkillChoice& choice) {
+    auto client = connectTo(choice.url);
+    if (!client) {
+        return fail(client.error());
+    }
+    auto address = skill_client::findSkill(**client, choice.skill);
+    if (!address) {
+        return fail(address.error());
+    }
+    auto skill = skill_client::SkillHandle::open(**client, std::move(*address));
+    if (!skill) {
+        return fail(skill.error());
+    }
+    return OpenSkill{std::move(*client), std::move(*skill)};
 }
 
 }  // namespace metier::app

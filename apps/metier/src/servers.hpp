@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/client.hpp"
+#include "metier/skill_client/skill_handle.hpp"
 
 namespace metier::app {
 
@@ -24,5 +25,23 @@ Result<std::vector<std::string>> addressesOf(const ServerChoice& choice);
 
 /// Connects within 5 s. The error names the address.
 Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url);
+
+/// One skill of one server, for a command that names both.
+struct SkillChoice {
+    std::string url;
+    std::string skill;
+};
+
+/// Adds the arguments for it to a command.
+void addSkillChoice(CLI::App& command, SkillChoice& choice);
+
+/// A skill and the client that leads to it.
+struct OpenSkill {
+    std::unique_ptr<opcua::Client> client;
+    skill_client::SkillHandle skill;  // ends before its client
+};
+
+/// Errors: those of connectTo(), findSkill() and SkillHandle::open().
+Result<OpenSkill> openSkill(const SkillChoice& choice);
 
 }  // namespace metier::app
