@@ -184,11 +184,11 @@ TEST_F(ControlOfASkill, OneClientKeepsTheOthersOutButNotTheirHalt) {
 TEST_F(ControlOfASkill, LastsWithHeartbeatsAndIsGivenBackAtTheEnd) {
     std::promise<void> lost;
     {
-        auto control = acquire(*alice_, {.lease = 200ms});
+        auto control = acquire(*alice_);
         ASSERT_TRUE(control);
         control->onLost([&](const opcua::Failure&) { lost.set_value(); });
-        // Ten leases long nothing happens.
-        EXPECT_EQ(lost.get_future().wait_for(2s), std::future_status::timeout);
+        // Three leases long nothing happens.
+        EXPECT_EQ(lost.get_future().wait_for(3s), std::future_status::timeout);
         EXPECT_TRUE(control->held());
     }
     EXPECT_TRUE(acquire(*bob_));
@@ -208,7 +208,7 @@ TEST_F(ControlOfASkill, WithoutAHeartbeatTheSkillOfItsHolderIsHaltedInTime) {
     const auto before = std::chrono::steady_clock::now();
     ASSERT_TRUE(
         alice_->call(controller, method,
-                     {opcua::Value::of(std::uint32_t{300}), opcua::Value::of(std::int32_t{0})}));
+                     {opcua::Value::of(std::uint32_t{1'000}), opcua::Value::of(std::int32_t{0})}));
     ASSERT_TRUE(skill.startWith(endless()));
     EXPECT_EQ(seen.popUntil(soon())->first.to, State::running);
     const auto halted = seen.popUntil(soon());
@@ -216,7 +216,7 @@ TEST_F(ControlOfASkill, WithoutAHeartbeatTheSkillOfItsHolderIsHaltedInTime) {
     EXPECT_EQ(halted->first.to, State::halted);
     EXPECT_EQ(halted->first.reason, Reason::owner_lost);
     EXPECT_THAT(halted->first.reason_text, HasSubstr("no heartbeat"));
-    EXPECT_GE(halted->second - before, 300ms);
+    EXPECT_GE(halted->second - before, 1s);
     watcher.onTransition({});
 }
 
