@@ -205,7 +205,9 @@ void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
         state_.commanded_position.size() == state_.position.size() &&
         device::largestDifference(state_.commanded_position, state_.position) < kAtTarget;
     const auto unmoved = std::chrono::steady_clock::now() - seen.moved;
-    state_.standstill = unmoved > (at_target ? kStandstillAtTarget : kStandstill);
+    // Late news of a motion that has come to its end is no motion.
+    state_.standstill =
+        unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
     state_.missed_cycles = seen.missed_cycles;
 }
 
@@ -267,6 +269,7 @@ void RemoteArm::Worker::takeRequests() {
         asked = std::exchange(asked_reset_, std::nullopt);
         if (pending_ != nullptr) {
             source_ = std::exchange(pending_, nullptr);
+            settled_ = false;
         }
     }
     if (asked) {
@@ -404,6 +407,8 @@ void RemoteArm::Worker::letGo(EndCause cause) {
     if (source == nullptr) {
         return;
     }
+    settled_ = cause == EndCause::done;
+    publish();  // whoever hears of the end may ask for the state at once
     {
         const std::lock_guard lock(mutex_);
         taken_ = false;

@@ -93,6 +93,7 @@ private:
     std::shared_ptr<device::SetPointSource> source_;
     std::optional<PendingReset> reset_;
     Stream stream_ = Stream::none;
+    bool settled_ = false;  // the last source came to its end, where the arm stands
     bool halted_by_stop_ = false;
     SteadyTime ending_since_;
     SteadyTime stream_start_;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <condition_variable>
 #include <filesystem>
+#include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -45,6 +47,9 @@ public:
     }
 
     void ended(EndCause cause, const device::Safety& safety) override {
+        if (on_end_) {
+            on_end_();
+        }
         {
             const std::lock_guard lock(mutex_);
             cause_ = cause;
@@ -63,6 +68,8 @@ public:
         const std::lock_guard lock(mutex_);
         return text_;
     }
+    /// Called when the arm lets go, on its thread. Before the source is attached.
+    void onEnd(std::function<void()> on_end) { on_end_ = std::move(on_end); }
 
 private:
     bool arrived(const device::ArmState& state) const noexcept {
@@ -73,6 +80,7 @@ private:
     const int cycles_;
     int cycle_ = 0;
     std::optional<device::JointArray> start_;
+    std::function<void()> on_end_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::optional<EndCause> cause_;
@@ -111,6 +119,19 @@ TEST(RemoteArm, MovesTheArmAndEndsAtStandstill) {
     ASSERT_EQ(move->awaitEnd(), EndCause::done) << move->text();
     EXPECT_NEAR(served.arm().state().position[0], start + 0.2, 1e-3);
     EXPECT_EQ(served.arm().safety().state, SafetyState::normal);
+}
+
+TEST(RemoteArm, ShowsTheStateOfTheEndToWhoeverHearsOfIt) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    for (int i = 0; i < 5; ++i) {
+        const auto move = std::make_shared<SmoothMove>(0.05, 30);
+        std::promise<bool> standstill;
+        move->onEnd([&] { standstill.set_value(arm->state().standstill); });
+        ASSERT_TRUE(arm->attach(move));
+        ASSERT_EQ(move->awaitEnd(), EndCause::done) << move->text();
+        EXPECT_TRUE(standstill.get_future().get()) << "the next motion would be refused";
+    }
 }
 
 TEST(RemoteArm, MovesAgainWithinOneStreamAndAfterItsEnd) {
