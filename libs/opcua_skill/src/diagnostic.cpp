@@ -1,5 +1,7 @@
 #include "diagnostic.hpp"
 
+#include <utility>
+
 #include "metier/opcua_skill/values.hpp"
 
 namespace metier::opcua_skill {
@@ -7,7 +9,8 @@ namespace metier::opcua_skill {
 namespace {
 
 opcua::NodeId sessionOf(const std::string& text) {
-    return opcua::NodeId::parse(text).value_or(opcua::NodeId());
+    auto id = opcua::NodeId::parse(text);
+    return id ? std::move(*id) : opcua::NodeId();
 }
 
 opcua::StatusCode statusOf(const Result<void>& outcome) {
