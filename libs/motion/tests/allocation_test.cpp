@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "allocation_count.hpp"
+#include "metier/base/testing/allocation_count.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "metier/motion/planner.hpp"

@@ -1,32 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "bench.hpp"
-
-namespace {
-
-// Of this thread alone, so that the test's other threads do not count.
-thread_local std::size_t allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) {  // NOLINT(cppcoreguidelines-no-malloc): is operator new
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc): is operator delete
-}
-
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc): is operator delete
-}
+#include "metier/base/testing/allocation_count.hpp"
 
 namespace metier::robot_skills {
 namespace {
@@ -37,11 +12,11 @@ using skill::State;
 /// Allocations of so many cycles of the arm alone, without what follows on other threads.
 std::size_t allocationsOf(Bench& bench, int cycles) {
     auto& arm = bench.arm();
-    const auto before = allocations;
+    const auto before = allocationCount();
     for (int i = 0; i < cycles; ++i) {
         arm.cycle(SteadyTime(arm.info().cycle * i), 0);
     }
-    return allocations - before;
+    return allocationCount() - before;
 }
 
 TEST(MoveCycle, DoesNotAllocateOnALineToItsEnd) {

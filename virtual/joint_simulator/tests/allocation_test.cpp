@@ -1,44 +1,20 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <memory>
 
+#include "metier/base/testing/allocation_count.hpp"
 #include "metier/joint_simulator/joint_simulator.hpp"
 #include "simulated_arm.hpp"
-
-namespace {
-
-// Of this thread alone, so that the test's other threads do not count.
-thread_local std::size_t allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) {  // NOLINT(cppcoreguidelines-no-malloc): is operator new
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc): is operator delete
-}
-
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);  // NOLINT(cppcoreguidelines-no-malloc): is operator delete
-}
 
 namespace metier::virtual_robots {
 namespace {
 
 std::size_t allocationsOf(JointSimulator& arm, int cycles) {
-    const auto before = allocations;
+    const auto before = allocationCount();
     for (int i = 1; i <= cycles; ++i) {
         arm.cycle(SteadyTime(arm.info().cycle * i), 0);
     }
-    return allocations - before;
+    return allocationCount() - before;
 }
 
 TEST(JointSimulatorCycle, DoesNotAllocate) {
@@ -57,9 +33,9 @@ TEST(JointSimulatorCycle, DoesNotAllocateWhenItStopsItself) {
 }
 
 TEST(JointSimulatorCycle, IsWatchedByACounterThatWorks) {
-    const auto before = allocations;
+    const auto before = allocationCount();
     const auto something = std::make_unique<int>(1);
-    EXPECT_EQ(allocations - before, 1U);
+    EXPECT_EQ(allocationCount() - before, 1U);
     EXPECT_EQ(*something, 1);
 }
 

@@ -1,13 +1,14 @@
 // Replaces operator new; apart from the tests, so that no compiler pairs its halves across calls.
+// NOLINTBEGIN(cppcoreguidelines-no-malloc): these are operator new and operator delete
 
-#include "allocation_count.hpp"
+#include "metier/base/testing/allocation_count.hpp"
 
-#include <atomic>
 #include <cstdlib>
 #include <new>
 
 namespace {
-std::atomic<std::size_t> allocations{0};
+// Of one thread, so that the other threads of a test do not count.
+thread_local std::size_t allocations = 0;
 }  // namespace
 
 void* operator new(std::size_t size) {
@@ -37,11 +38,12 @@ void operator delete(void* memory, std::align_val_t) noexcept {
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
     std::free(memory);
 }
+// NOLINTEND(cppcoreguidelines-no-malloc)
 
-namespace metier::motion {
+namespace metier {
 
 std::size_t allocationCount() noexcept {
     return allocations;
 }
 
-}  // namespace metier::motion
+}  // namespace metier
