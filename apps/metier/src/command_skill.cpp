@@ -24,16 +24,34 @@ struct Command {
 constexpr std::array kCommands{
     Command{"suspend", "Let a running skill come to rest on its path; resume goes on",
             Method::suspend, State::suspended},
-    Command{"resume", "Let a suspended skill go on where it stopped", Method::resume,
-            State::running},
+    Command{"resume",
+            "Let a suspended skill go on where it stopped, and stay until it ends: it may have "
+            "no other owner",
+            Method::resume, State::running},
     Command{"reset", "Make a halted skill ready again, or give a suspended one up", Method::reset,
             State::ready},
 };
 
 struct CommandOptions {
     SkillChoice choice;
-    double timeout = 10.0;
+    double timeout = 60.0;
 };
+
+SteadyTime deadlineOf(const CommandOptions& options) {
+    return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                  std::chrono::duration<double>(options.timeout));
+}
+
+/// Keeps the session, whose end could be the loss of the owner, while the skill runs.
+Exit stayUntilEnd(OpenSkill& open, const CommandOptions& options) {
+    std::fflush(stdout);
+    const auto ended = open.skill.awaitEnd(deadlineOf(options));
+    if (!ended) {
+        return report(ended.error());
+    }
+    fmt::print("{} {}\n", options.choice.skill, toString(ended->to));
+    return Exit::success;
+}
 
 Exit runCommand(const Command& command, const CommandOptions& options) {
     auto open = openSkill(options.choice);
@@ -44,15 +62,13 @@ Exit runCommand(const Command& command, const CommandOptions& options) {
         return report(called.error());
     }
     if (command.method == Method::suspend) {  // follows at standstill
-        const auto deadline =
-            std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                                   std::chrono::duration<double>(options.timeout));
-        if (const auto reached = open->skill.awaitState(command.then, deadline); !reached) {
+        if (const auto reached = open->skill.awaitState(command.then, deadlineOf(options));
+            !reached) {
             return report(reached.error());
         }
     }
     fmt::print("{} {}\n", options.choice.skill, toString(command.then));
-    return Exit::success;
+    return command.method == Method::resume ? stayUntilEnd(*open, options) : Exit::success;
 }
 
 }  // namespace
@@ -63,8 +79,10 @@ void addSkillCommands(CLI::App& app, Exit& exit) {
         auto options = std::make_shared<CommandOptions>();
         auto* command = app.add_subcommand(each.name, each.help);
         addSkillChoice(*command, options->choice);
-        if (each.method == Method::suspend) {
-            command->add_option("--timeout", options->timeout, "Wait so long for standstill [s]")
+        if (each.method != Method::reset) {
+            command
+                ->add_option("--timeout", options->timeout,
+                             "Wait so long for standstill, or for the end after resume [s]")
                 ->check(CLI::Range(0.1, 3'600.0))
                 ->capture_default_str();
         }

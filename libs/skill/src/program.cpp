@@ -228,7 +228,7 @@ Result<void> Program::suspend(const Caller& caller) {
 }
 
 Result<void> Program::resume(const Caller& caller) {
-    return command(Method::resume, caller, [this] { return resumeNow(); });
+    return command(Method::resume, caller, [&] { return resumeNow(caller); });
 }
 
 Result<void> Program::halt(const Caller& caller) {

@@ -240,7 +240,7 @@ Result<void> Program::suspendNow(Cause cause) {
     return {};
 }
 
-Result<void> Program::resumeNow() {
+Result<void> Program::resumeNow(const Caller& caller) {
     if (finished_while_suspended_) {
         auto result = std::move(*finished_while_suspended_);
         finished_while_suspended_.reset();
@@ -250,6 +250,9 @@ Result<void> Program::resumeNow() {
     }
     if (auto resumed = guarded([this] { return body_->resume(); }); !resumed) {
         return resumed;
+    }
+    if (owner_session_.empty()) {
+        owner_session_ = caller.session_id;
     }
     commit(TransitionNumber::suspended_to_running, {});
     return {};
@@ -360,7 +363,11 @@ void Program::actOnOwnerLoss(OwnerLossAction action, std::string text) {
             break;
         }
     }
-    if (state_ == State::suspended || halting_ || action == OwnerLossAction::keep_going) {
+    if (action == OwnerLossAction::keep_going) {
+        return;
+    }
+    owner_session_.clear();
+    if (state_ == State::suspended || halting_) {
         return;
     }
     Cause cause{Reason::owner_lost, std::move(text)};

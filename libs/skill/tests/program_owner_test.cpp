@@ -193,6 +193,28 @@ TEST_F(Owned, TheEndOfItsSessionIsTheLossOfTheOwner) {
     EXPECT_EQ(program.state(), State::ready);
 }
 
+TEST_F(Owned, WhoeverResumesAfterTheLossOfTheOwnerIsTheOwner) {
+    ASSERT_TRUE(program.startWith(kAlice, {.on_owner_loss = OwnerLossAction::suspend}));
+    program.sessionClosed("alice");
+    rest();
+    ASSERT_EQ(program.state(), State::suspended);
+    ASSERT_TRUE(program.resume(kBob));
+    EXPECT_TRUE(program.write(kBob, "Offset", 0.01));
+    program.sessionClosed("bob");
+    rest();
+    EXPECT_EQ(program.state(), State::suspended);
+}
+
+TEST_F(Owned, ResumeByAnotherLeavesTheOwnerInPlace) {
+    ASSERT_TRUE(program.startWith(kAlice, {.on_owner_loss = OwnerLossAction::halt}));
+    ASSERT_TRUE(program.suspend(kBob));
+    rest();
+    ASSERT_TRUE(program.resume(kBob));
+    program.sessionClosed("bob");
+    EXPECT_EQ(program.subState(), SubState::executing);
+    EXPECT_TRUE(program.write(kAlice, "Offset", 0.01));
+}
+
 TEST_F(Owned, ASkillThatCannotBeSuspendedIsHalted) {
     auto description = weldDescription();
     description.suspendable = false;

@@ -62,7 +62,7 @@ public:
             case Act::suspend:
                 return mayCommand(step.session) && suspend();
             case Act::resume:
-                return mayCommand(step.session) && resume();
+                return mayCommand(step.session) && resume(step.session);
             case Act::halt:
                 return halt();
             case Act::reset:
@@ -131,7 +131,11 @@ private:
         if (action == OwnerLossAction::skill_default) {
             action = OwnerLossAction::halt;
         }
-        if (state != State::running || halting_ || action == OwnerLossAction::keep_going) {
+        if (action == OwnerLossAction::keep_going) {
+            return;
+        }
+        owner_.clear();
+        if (state != State::running || halting_) {
             return;
         }
         if (action == OwnerLossAction::halt) {
@@ -177,11 +181,14 @@ private:
         sub_state = SubState::stopping;
         rest_left_ = kRestDeadline;
     }
-    bool resume() {
+    bool resume(const std::string& session) {
         if (state != State::suspended) {
             return false;
         }
         const bool done = done_;
+        if (owner_.empty()) {
+            owner_ = session;
+        }
         go(State::running, SubState::executing);
         if (done) {
             go(State::ready, SubState::ready_not_configured);

@@ -96,6 +96,7 @@ public:
 
     /// Errors: not_supported; whatever Body::suspend() says.
     Result<void> suspend(const Caller& caller);
+    /// If the execution's owner is gone, the caller owns it from here on.
     /// Errors: whatever Body::resume() says; the Program stays Suspended.
     Result<void> resume(const Caller& caller);
     /// Allowed to any caller. A second Halt while the first is under way is accepted, too.
@@ -173,7 +174,7 @@ private:
     Result<void> suspendNow(Cause cause);
     void actOnOwnerLoss(OwnerLossAction action, std::string text);
     void noteInHistory();
-    Result<void> resumeNow();
+    Result<void> resumeNow(const Caller& caller);
     Result<void> haltNow();
     Result<void> resetNow();
 
