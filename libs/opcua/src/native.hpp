@@ -150,17 +150,21 @@ struct Native<ThreeDFrame> {
     }
 };
 
-template <>
-struct Native<ThreeDCartesianCoordinates> {
-    using Type = UA_ThreeDCartesianCoordinates;
-    static constexpr std::size_t kIndex = UA_TYPES_THREEDCARTESIANCOORDINATES;
-    static void write(const ThreeDCartesianCoordinates& value, Type& target) noexcept {
+/// Three numbers x, y, z.
+template <typename T, typename NativeType, std::size_t kType>
+struct Xyz {
+    using Type = NativeType;
+    static constexpr std::size_t kIndex = kType;
+    static void write(const T& value, NativeType& target) noexcept {
         target = {value.x, value.y, value.z};
     }
-    static ThreeDCartesianCoordinates read(const Type& value) noexcept {
-        return {value.x, value.y, value.z};
-    }
+    static T read(const NativeType& value) noexcept { return {value.x, value.y, value.z}; }
 };
+
+template <>
+struct Native<ThreeDCartesianCoordinates>
+    : Xyz<ThreeDCartesianCoordinates, UA_ThreeDCartesianCoordinates,
+          UA_TYPES_THREEDCARTESIANCOORDINATES> {};
 
 template <>
 struct Native<ThreeDOrientation> {
@@ -175,16 +179,7 @@ struct Native<ThreeDOrientation> {
 };
 
 template <>
-struct Native<ThreeDVector> {
-    using Type = UA_ThreeDVector;
-    static constexpr std::size_t kIndex = UA_TYPES_THREEDVECTOR;
-    static void write(const ThreeDVector& value, UA_ThreeDVector& target) noexcept {
-        target = {value.x, value.y, value.z};
-    }
-    static ThreeDVector read(const UA_ThreeDVector& value) noexcept {
-        return {value.x, value.y, value.z};
-    }
-};
+struct Native<ThreeDVector> : Xyz<ThreeDVector, UA_ThreeDVector, UA_TYPES_THREEDVECTOR> {};
 
 template <>
 struct Native<ProgramDiagnostic> : Converted<ProgramDiagnostic, UA_ProgramDiagnostic2DataType,
