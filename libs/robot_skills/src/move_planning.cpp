@@ -66,26 +66,25 @@ JointVector jointTarget(const JointVector& start, const JointMoveParameters& par
     return target;
 }
 
-motion::PtpRequest ptpRequest(const JointVector& start, const MoveParameters& parameters) {
-    motion::PtpRequest request;
+/// \param maxima makes the planner's limits of the parameters' lists
+template <typename Request, typename Maxima>
+Request commonRequest(const JointVector& start, const MoveParameters& parameters, Maxima maxima) {
+    Request request;
     request.start = start;
     request.tool_frame = parameters.tool_frame;
-    request.max_velocity = axisMaxima(parameters.max_velocity);
-    request.max_acceleration = axisMaxima(parameters.max_acceleration);
+    request.max_velocity = maxima(parameters.max_velocity);
+    request.max_acceleration = maxima(parameters.max_acceleration);
     request.speed_override = parameters.speed_override;
     request.redundancy_angle = parameters.redundancy_angle;
     return request;
 }
 
+motion::PtpRequest ptpRequest(const JointVector& start, const MoveParameters& parameters) {
+    return commonRequest<motion::PtpRequest>(start, parameters, axisMaxima);
+}
+
 motion::LinRequest commonLinRequest(const JointVector& start, const MoveParameters& parameters) {
-    motion::LinRequest request;
-    request.start = start;
-    request.tool_frame = parameters.tool_frame;
-    request.max_velocity = cartesianMaxima(parameters.max_velocity);
-    request.max_acceleration = cartesianMaxima(parameters.max_acceleration);
-    request.speed_override = parameters.speed_override;
-    request.redundancy_angle = parameters.redundancy_angle;
-    return request;
+    return commonRequest<motion::LinRequest>(start, parameters, cartesianMaxima);
 }
 
 }  // namespace
