@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/device/arm.hpp"
+
+namespace metier::device {
+
+/// One measurement. Trivially copyable.
+struct WrenchSample {
+    std::array<double, 3> force{};   ///< along x, y, z of the sensor frame [N]
+    std::array<double, 3> torque{};  ///< [Nm]
+    std::uint64_t sequence = 0;      ///< of the sensor's clock
+    SafetyState health = SafetyState::disconnected;  ///< normal: the values may be used
+    SteadyTime stamp{};                              ///< when it came
+};
+
+/// A sensor of force and torque, with its own stream of measurements.
+///
+/// Threading: every function from any thread; none waits but tare(). sample() neither locks nor
+/// allocates, so that a cycle thread may call it.
+class ForceTorqueSensor {
+public:
+    using SampleCallback = std::function<void(const WrenchSample&)>;
+    using SafetyCallback = std::function<void(const Safety&)>;
+
+    virtual ~ForceTorqueSensor() = default;
+
+    virtual const std::string& name() const noexcept = 0;
+    /// The newest measurement. Its health is not normal once the sensor is silent for 5 periods.
+    virtual WrenchSample sample() const noexcept = 0;
+    virtual Safety safety() const = 0;
+    /// Makes the present load zero. Errors: connection_lost, timeout.
+    virtual Result<void> tare() = 0;
+    virtual Registration onSafetyChange(SafetyCallback callback) = 0;
+};
+
+}  // namespace metier::device

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+
+namespace metier::link {
+
+/// A TCP connection on which every wait has a deadline. Small writes leave at once (TCP_NODELAY).
+///
+/// Errors name the peer, as "10.0.0.5:30004: ...". Without an error nothing allocates.
+/// Threading: one thread sends and receives; shutdown() from any.
+class TcpLink {
+public:
+    /// \param host a name or an address
+    /// Errors: connection_lost if there is no such host or nobody listens, timeout.
+    static Result<TcpLink> connect(const std::string& host, std::uint16_t port,
+                                   SteadyTime deadline);
+
+    /// Waits for at least one byte and takes what is there, at most the buffer.
+    /// Errors: timeout at the deadline, connection_lost if the peer closed or broke the connection.
+    Result<std::size_t> receive(std::span<std::byte> buffer, SteadyTime deadline);
+    /// Waits until the whole buffer is filled. Errors as receive(); part of it may be lost then.
+    Result<void> receiveAll(std::span<std::byte> buffer, SteadyTime deadline);
+    /// Hands all bytes to the system, in one write if it takes them.
+    /// Errors: timeout if the peer does not read, connection_lost.
+    Result<void> send(std::span<const std::byte> bytes, SteadyTime deadline);
+
+    /// Ends both directions: a receive() that waits returns connection_lost. Idempotent.
+    void shutdown() noexcept;
+    /// "10.0.0.5:30004".
+    const std::string& peer() const noexcept { return peer_; }
+
+private:
+    friend class TcpListener;
+    TcpLink(std::unique_ptr<asio::io_context> context, asio::ip::tcp::socket socket,
+            std::string peer);
+    /// \param events of poll(2)
+    Result<void> waitFor(short events, SteadyTime deadline) const;
+
+    std::unique_ptr<asio::io_context> context_;  // the socket's, which outlives it
+    asio::ip::tcp::socket socket_;
+    std::string peer_;
+};
+
+/// Waits for peers that dial in.
+///
+/// Threading: one thread; shutdown() from any.
+class TcpListener {
+public:
+    /// \param port 0: a free one
+    /// Errors: invalid_argument (not an address of this machine), already_exists (port taken).
+    static Result<TcpListener> listen(const std::string& address, std::uint16_t port);
+
+    std::uint16_t port() const;
+    /// The next peer. Errors: timeout, cancelled after shutdown().
+    Result<TcpLink> accept(SteadyTime deadline);
+    void shutdown() noexcept;
+
+private:
+    TcpListener(std::unique_ptr<asio::io_context> context, asio::ip::tcp::acceptor acceptor);
+
+    std::unique_ptr<asio::io_context> context_;
+    asio::ip::tcp::acceptor acceptor_;
+};
+
+}  // namespace metier::link

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <asio/steady_timer.hpp>
+#include <chrono>
+#include <functional>
+
+#include "metier/joint_simulator/time_base.hpp"
+
+namespace metier::virtual_controller {
+
+/// Calls a function once per period on an exact grid, on the thread that runs the io_context.
+/// Late calls are caught up as TimeBase says.
+class CycleTimer {
+public:
+    CycleTimer(asio::io_context& context, std::chrono::nanoseconds period,
+               std::function<void()> cycle);
+    CycleTimer(const CycleTimer&) = delete;
+    CycleTimer& operator=(const CycleTimer&) = delete;
+
+private:
+    void wait();
+
+    asio::steady_timer timer_;
+    virtual_robots::TimeBase time_base_;
+    std::function<void()> cycle_;
+};
+
+}  // namespace metier::virtual_controller

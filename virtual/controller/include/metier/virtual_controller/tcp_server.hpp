@@ -1,0 +1,68 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "metier/base/error.hpp"
+#include "metier/virtual_controller/link_faults.hpp"
+
+namespace metier::virtual_controller {
+
+/// One peer of a TCP port. Owned by its server; a pointer to it holds until the server has called
+/// onClosed for it.
+///
+/// Threading: the thread that runs the io_context.
+class TcpPeer {
+public:
+    virtual ~TcpPeer() = default;
+
+    /// Queues bytes; they leave in order. A peer that does not read 1 MB is cut.
+    virtual void send(std::span<const std::byte> bytes) = 0;
+    void send(std::string_view text) { send(std::as_bytes(std::span(text))); }
+    /// Sends what is queued, then closes. onClosed follows.
+    virtual void close() = 0;
+    /// Closes at once with a reset, as a controller that lost power.
+    virtual void reset() = 0;
+    /// Bytes queued and not yet taken by the system.
+    virtual std::size_t queued() const = 0;
+    /// "127.0.0.1:51234".
+    virtual const std::string& address() const = 0;
+};
+
+/// A TCP port of a virtual controller.
+///
+/// Threading: made, used and destroyed on the thread that runs the io_context, whose handlers are
+/// all called there.
+class TcpServer {
+public:
+    struct Handlers {
+        std::function<void(TcpPeer&)> on_connected;
+        /// Whatever came in one read; a packet may come in parts, several at once.
+        std::function<void(TcpPeer&, std::span<const std::byte>)> on_data;
+        /// The peer is gone or was closed; the last call for it.
+        std::function<void(TcpPeer&)> on_closed;
+    };
+
+    /// \param address an address of this machine; any 127.x.y.z is one
+    /// \param port    0: a free one
+    /// \param faults  must outlive the server
+    /// Errors: invalid_argument, already_exists (port taken), access_denied (port below 1024).
+    static Result<std::unique_ptr<TcpServer>> listen(asio::io_context& context,
+                                                     const std::string& address,
+                                                     std::uint16_t port, const LinkFaults& faults,
+                                                     Handlers handlers);
+    virtual ~TcpServer() = default;
+
+    virtual std::uint16_t port() const = 0;
+    virtual void forEach(const std::function<void(TcpPeer&)>& action) = 0;
+    /// Resets every connection, as a controller that restarts.
+    virtual void resetAll() = 0;
+};
+
+}  // namespace metier::virtual_controller
