@@ -58,3 +58,23 @@ function(metier_add_benchmark name)
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} benchmark::benchmark metier::warnings)
 endfunction()
+
+option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)
+
+# metier_add_fuzz_target(<name> SOURCES ... LIBRARIES ...): defines LLVMFuzzerTestOneInput.
+# With METIER_FUZZ a libFuzzer program; else a test that gives it some thousand random inputs.
+function(metier_add_fuzz_target name)
+    if(NOT METIER_TESTS)
+        return()
+    endif()
+    cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+    add_executable(${name} ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} metier::warnings)
+    if(METIER_FUZZ)
+        target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+    else()
+        target_sources(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/fuzz/random_inputs.cpp)
+        add_test(NAME Fuzz.${name} COMMAND ${name})
+        set_tests_properties(Fuzz.${name} PROPERTIES TIMEOUT 120 LABELS fuzz)
+    endif()
+endfunction()

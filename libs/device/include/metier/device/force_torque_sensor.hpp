@@ -13,9 +13,9 @@ namespace metier::device {
 
 /// One measurement. Trivially copyable.
 struct WrenchSample {
-    std::array<double, 3> force{};   ///< along x, y, z of the sensor frame [N]
-    std::array<double, 3> torque{};  ///< [Nm]
-    std::uint64_t sequence = 0;      ///< of the sensor's clock
+    std::array<double, 3> force{};                   ///< along x, y, z of the sensor frame [N]
+    std::array<double, 3> torque{};                  ///< [Nm]
+    std::uint64_t sequence = 0;                      ///< of the sensor's clock
     SafetyState health = SafetyState::disconnected;  ///< normal: the values may be used
     SteadyTime stamp{};                              ///< when it came
 };

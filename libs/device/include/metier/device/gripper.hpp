@@ -45,8 +45,8 @@ struct GripperOutcome {
 /// A gripper with jaws: what every driver of one offers.
 ///
 /// One motion at a time. `done` is called exactly once for each that was accepted, on the gripper's
-/// notifying thread; it may lock, should not wait. Its errors: device_fault (no part found, blocked,
-/// lost; the text says which), cancelled after stop(), connection_lost, timeout.
+/// notifying thread; it may lock, should not wait. Its errors: device_fault (no part found,
+/// blocked, lost; the text says which), cancelled after stop(), connection_lost, timeout.
 ///
 /// Threading: every function from any thread; none waits for the gripper.
 class Gripper {

@@ -21,7 +21,7 @@ struct PlannedMotion {
     enum class Path : std::uint8_t { joint, line };
 
     Path path = Path::joint;
-    JointArray target_joints;             ///< [rad], for a motion to a joint position
+    JointArray target_joints;              ///< [rad], for a motion to a joint position
     std::optional<Frame> target_flange{};  ///< base_from_flange, for one to a pose
     /// Parts of what the axes can do, (0, 1].
     double velocity_share = 1.0;

@@ -28,9 +28,9 @@ struct OpenDevice {
 
 /// What a driver is asked to open.
 struct OpenRequest {
-    std::string name;                    ///< of the server, for messages
-    std::string address;                 ///< of the controller, without a port
-    configuration::Settings settings;    ///< the driver's own; it calls finish()
+    std::string name;                           ///< of the server, for messages
+    std::string address;                        ///< of the controller, without a port
+    configuration::Settings settings;           ///< the driver's own; it calls finish()
     const motion::RobotModel* model = nullptr;  ///< of the arm; nullptr for other devices
 };
 

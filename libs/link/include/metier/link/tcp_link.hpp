@@ -43,7 +43,7 @@ private:
     TcpLink(std::unique_ptr<asio::io_context> context, asio::ip::tcp::socket socket,
             std::string peer);
     /// \param events of poll(2)
-    Result<void> waitFor(short events, SteadyTime deadline) const;
+    Result<void> waitFor(short events, SteadyTime deadline);
 
     std::unique_ptr<asio::io_context> context_;  // the socket's, which outlives it
     asio::ip::tcp::socket socket_;

@@ -16,7 +16,8 @@
 
 namespace metier::virtual_controller {
 
-/// One thing that a person or an accident does to a controller, as `metier virtual inject` names it.
+/// One thing that a person or an accident does to a controller, as `metier virtual inject` names
+/// it.
 struct Injection {
     std::string name;   ///< as "emergency-stop"
     std::string value;  ///< its argument as text; may be empty
@@ -51,7 +52,7 @@ struct ControllerRequest {
     std::string address;                        ///< to listen on, as 127.0.1.1
     configuration::Settings settings;           ///< the controller's own; it calls finish()
     const motion::RobotModel* model = nullptr;  ///< of the arm; nullptr for other devices
-    const LinkFaults& faults;                   ///< outlives the controller
+    LinkFaults& faults;                         ///< outlives the controller
     WorldLink& world;                           ///< outlives the controller
 };
 

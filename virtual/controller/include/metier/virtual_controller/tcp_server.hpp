@@ -54,9 +54,8 @@ public:
     /// \param faults  must outlive the server
     /// Errors: invalid_argument, already_exists (port taken), access_denied (port below 1024).
     static Result<std::unique_ptr<TcpServer>> listen(asio::io_context& context,
-                                                     const std::string& address,
-                                                     std::uint16_t port, const LinkFaults& faults,
-                                                     Handlers handlers);
+                                                     const std::string& address, std::uint16_t port,
+                                                     LinkFaults& faults, Handlers handlers);
     virtual ~TcpServer() = default;
 
     virtual std::uint16_t port() const = 0;

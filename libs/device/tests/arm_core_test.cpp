@@ -1,0 +1,113 @@
+#include "metier/device/arm_core.hpp"
+
+#include <gmock/gmock.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace metier::device {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class Source final : public SetPointSource {
+public:
+    Next next(const ArmState&, JointArray&) noexcept override { return Next::done; }
+    void ended(EndCause cause, const Safety& safety) override {
+        causes.push_back(cause);
+        last = safety;
+    }
+
+    std::vector<EndCause> causes;
+    Safety last;
+};
+
+struct Core : ::testing::Test {
+    Core() { core.setSafety({}); }
+
+    ArmCore core{{"robot", {"one", "two"}, std::chrono::milliseconds(8)}};
+    std::shared_ptr<Source> source = std::make_shared<Source>();
+};
+
+TEST(ArmCore, IsDisconnectedAtFirst) {
+    ArmCore core({"robot", {"one", "two"}, std::chrono::milliseconds(8)});
+    EXPECT_EQ(core.safety().state, SafetyState::disconnected);
+    EXPECT_EQ(core.state().position.size(), 2U);
+    const auto refused = core.attach(std::make_shared<Source>());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::device_fault);
+    EXPECT_THAT(refused.error().message, HasSubstr("robot: not connected yet"));
+}
+
+TEST_F(Core, LetsOneSourceMoveTheArm) {
+    ASSERT_TRUE(core.attach(source));
+    EXPECT_EQ(core.active(), source.get());
+    const auto second = core.attach(std::make_shared<Source>());
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::resource_unavailable);
+}
+
+TEST_F(Core, TellsTheEndOnce) {
+    ASSERT_TRUE(core.attach(source));
+    core.end(EndCause::done);
+    EXPECT_TRUE(core.toTell());
+    EXPECT_EQ(core.active(), nullptr);
+    EXPECT_TRUE(source->causes.empty()) << "only dispatch() tells";
+    core.dispatch();
+    core.end(EndCause::stopped);
+    core.dispatch();
+    EXPECT_THAT(source->causes, ElementsAre(EndCause::done));
+    EXPECT_TRUE(core.attach(source));
+}
+
+TEST_F(Core, StopsTheSourceThatWasActiveWhenItWasAskedTo) {
+    core.stop();
+    ASSERT_TRUE(core.attach(source));
+    EXPECT_FALSE(core.stopRequested()) << "a stop before the motion does not stop it";
+    core.stop();
+    EXPECT_TRUE(core.stopRequested());
+    EXPECT_TRUE(core.stopRequested());
+    core.end(EndCause::stopped);
+    core.dispatch();
+    ASSERT_TRUE(core.attach(source));
+    EXPECT_FALSE(core.stopRequested());
+}
+
+TEST_F(Core, TellsSafetyOnEachChangeOfState) {
+    std::vector<SafetyState> told;
+    core.dispatch();
+    auto registration = core.onSafetyChange([&](const Safety& s) { told.push_back(s.state); });
+    core.setSafety({SafetyState::protective_stop, "robot: hit something"});
+    core.setSafety({SafetyState::protective_stop, "robot: hit a wall"});
+    core.dispatch();
+    EXPECT_EQ(core.safety().text, "robot: hit a wall");
+    core.setSafety({});
+    core.dispatch();
+    registration = {};
+    core.setSafety({SafetyState::fault, "robot: broken"});
+    core.dispatch();
+    EXPECT_THAT(told, ElementsAre(SafetyState::protective_stop, SafetyState::normal));
+}
+
+TEST_F(Core, PublishesStatesWithItsSafety) {
+    core.setSafety({SafetyState::emergency_stop, "robot: pressed"});
+    ArmState state;
+    state.cycle = 7;
+    core.publish(state);
+    EXPECT_EQ(core.state().cycle, 7U);
+    EXPECT_EQ(core.state().safety, SafetyState::emergency_stop);
+}
+
+TEST_F(Core, TellsASourceThatItsDriverEnds) {
+    {
+        ArmCore ending({"robot", {"one"}, std::chrono::milliseconds(8)});
+        ending.setSafety({});
+        ASSERT_TRUE(ending.attach(source));
+    }
+    EXPECT_THAT(source->causes, ElementsAre(EndCause::disconnected));
+}
+
+}  // namespace
+}  // namespace metier::device

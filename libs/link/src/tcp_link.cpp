@@ -1,0 +1,225 @@
+#include "metier/link/tcp_link.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <asio/buffer.hpp>
+#include <asio/error.hpp>
+#include <cerrno>
+#include <chrono>
+#include <utility>
+
+namespace metier::link {
+namespace {
+
+using asio::ip::tcp;
+
+// Longest wait of one poll(); only a bound for its argument.
+constexpr auto kLongestPoll = std::chrono::milliseconds(60'000);
+
+/// Waits until one of `events` is there. Errors: timeout.
+Result<void> pollUntil(int descriptor, short events, SteadyTime deadline, const std::string& name) {
+    for (;;) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+            deadline - std::chrono::steady_clock::now());
+        const auto wait =
+            std::clamp(left, std::chrono::milliseconds(0), std::chrono::milliseconds(kLongestPoll));
+        pollfd request{descriptor, events, 0};
+        const int ready = ::poll(&request, 1, static_cast<int>(wait.count()));
+        if (ready > 0) {
+            return {};
+        }
+        if (ready == 0 && left <= kLongestPoll) {
+            return fail(Errc::timeout, name + ": no answer in time");
+        }
+        if (ready < 0 && errno != EINTR) {
+            return fail(Errc::connection_lost,
+                        name + ": " + std::generic_category().message(errno));
+        }
+    }
+}
+
+Result<tcp::resolver::results_type> resolve(asio::io_context& context, const std::string& host,
+                                            std::uint16_t port) {
+    asio::error_code error;
+    auto found = tcp::resolver(context).resolve(host, std::to_string(port),
+                                                tcp::resolver::numeric_service, error);
+    if (error) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", host, error.message()));
+    }
+    return found;
+}
+
+/// Errors: timeout; connection_lost.
+Result<void> connectTo(tcp::socket& socket, const tcp::endpoint& endpoint, SteadyTime deadline,
+                       const std::string& name) {
+    asio::error_code error;
+    socket.open(endpoint.protocol(), error);
+    socket.non_blocking(true, error);
+    socket.connect(endpoint, error);
+    if (error == asio::error::in_progress || error == asio::error::would_block) {
+        if (auto ready = pollUntil(socket.native_handle(), POLLOUT, deadline, name); !ready) {
+            return ready;
+        }
+        int outcome = 0;
+        socklen_t size = sizeof(outcome);
+        getsockopt(socket.native_handle(), SOL_SOCKET, SO_ERROR, &outcome, &size);
+        error = asio::error_code(outcome, asio::error::get_system_category());
+    }
+    if (error) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", name, error.message()));
+    }
+    return {};
+}
+
+void sendAtOnce(tcp::socket& socket) {
+    asio::error_code ignored;
+    socket.non_blocking(true, ignored);
+    socket.set_option(tcp::no_delay(true), ignored);
+}
+
+}  // namespace
+
+TcpLink::TcpLink(std::unique_ptr<asio::io_context> context, tcp::socket socket, std::string peer)
+    : context_(std::move(context)), socket_(std::move(socket)), peer_(std::move(peer)) {
+    sendAtOnce(socket_);
+}
+
+Result<TcpLink> TcpLink::connect(const std::string& host, std::uint16_t port, SteadyTime deadline) {
+    auto context = std::make_unique<asio::io_context>();
+    const auto found = resolve(*context, host, port);
+    if (!found) {
+        return fail(found.error());
+    }
+    auto name = fmt::format("{}:{}", host, port);
+    Error last{Errc::connection_lost, name + ": no such host"};
+    for (const auto& entry : *found) {
+        tcp::socket socket(*context);
+        const auto connected = connectTo(socket, entry.endpoint(), deadline, name);
+        if (connected) {
+            return TcpLink(std::move(context), std::move(socket), std::move(name));
+        }
+        last = connected.error();
+    }
+    return fail(last);
+}
+
+Result<void> TcpLink::waitFor(short events, SteadyTime deadline) {
+    return pollUntil(socket_.native_handle(), events, deadline, peer_);
+}
+
+Result<std::size_t> TcpLink::receive(std::span<std::byte> buffer, SteadyTime deadline) {
+    for (;;) {
+        asio::error_code error;
+        const auto count = socket_.read_some(asio::buffer(buffer.data(), buffer.size()), error);
+        if (!error) {
+            return count;
+        }
+        if (error == asio::error::eof) {
+            return fail(Errc::connection_lost, peer_ + ": the peer closed the connection");
+        }
+        if (error != asio::error::would_block && error != asio::error::interrupted) {
+            return fail(Errc::connection_lost, peer_ + ": " + error.message());
+        }
+        if (auto ready = waitFor(POLLIN, deadline); !ready) {
+            return fail(ready.error());
+        }
+    }
+}
+
+Result<void> TcpLink::receiveAll(std::span<std::byte> buffer, SteadyTime deadline) {
+    while (!buffer.empty()) {
+        const auto count = receive(buffer, deadline);
+        if (!count) {
+            return fail(count.error());
+        }
+        buffer = buffer.subspan(*count);
+    }
+    return {};
+}
+
+Result<void> TcpLink::send(std::span<const std::byte> bytes, SteadyTime deadline) {
+    while (!bytes.empty()) {
+        asio::error_code error;
+        const auto count = socket_.write_some(asio::buffer(bytes.data(), bytes.size()), error);
+        bytes = bytes.subspan(count);
+        if (!error || error == asio::error::interrupted) {
+            continue;
+        }
+        if (error != asio::error::would_block) {
+            return fail(Errc::connection_lost, peer_ + ": " + error.message());
+        }
+        if (auto ready = waitFor(POLLOUT, deadline); !ready) {
+            return ready;
+        }
+    }
+    return {};
+}
+
+void TcpLink::shutdown() noexcept {
+    // Not through Asio, whose socket is not for two threads at once.
+    ::shutdown(socket_.native_handle(), SHUT_RDWR);
+}
+
+TcpListener::TcpListener(std::unique_ptr<asio::io_context> context, tcp::acceptor acceptor)
+    : context_(std::move(context)), acceptor_(std::move(acceptor)) {}
+
+Result<TcpListener> TcpListener::listen(const std::string& address, std::uint16_t port) {
+    const auto name = fmt::format("{}:{}", address, port);
+    asio::error_code error;
+    const auto parsed = asio::ip::make_address(address, error);
+    if (error) {
+        return fail(Errc::invalid_argument, fmt::format("\"{}\" is not an address", address));
+    }
+    auto context = std::make_unique<asio::io_context>();
+    tcp::acceptor acceptor(*context);
+    const tcp::endpoint endpoint(parsed, port);
+    acceptor.open(endpoint.protocol(), error);
+    acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+    acceptor.bind(endpoint, error);
+    if (!error) {
+        acceptor.listen(tcp::acceptor::max_listen_connections, error);
+    }
+    if (error == asio::error::address_in_use) {
+        return fail(Errc::already_exists, name + ": another program listens there");
+    }
+    if (error) {
+        return fail(Errc::invalid_argument, name + ": " + error.message());
+    }
+    acceptor.non_blocking(true, error);
+    return TcpListener(std::move(context), std::move(acceptor));
+}
+
+std::uint16_t TcpListener::port() const {
+    asio::error_code ignored;
+    return acceptor_.local_endpoint(ignored).port();
+}
+
+Result<TcpLink> TcpListener::accept(SteadyTime deadline) {
+    for (;;) {
+        auto context = std::make_unique<asio::io_context>();
+        tcp::socket socket(*context);
+        tcp::endpoint from;
+        asio::error_code error;
+        acceptor_.accept(socket, from, error);
+        if (!error) {
+            auto peer = fmt::format("{}:{}", from.address().to_string(), from.port());
+            return TcpLink(std::move(context), std::move(socket), std::move(peer));
+        }
+        if (error == asio::error::invalid_argument) {
+            return fail(Errc::cancelled, "the listener was shut down");
+        }
+        if (auto ready =
+                pollUntil(acceptor_.native_handle(), POLLIN, deadline, "nobody dialled in");
+            !ready) {
+            return fail(ready.error());
+        }
+    }
+}
+
+void TcpListener::shutdown() noexcept {
+    ::shutdown(acceptor_.native_handle(), SHUT_RDWR);
+}
+
+}  // namespace metier::link

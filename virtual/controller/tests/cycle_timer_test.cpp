@@ -1,0 +1,43 @@
+#include "metier/virtual_controller/cycle_timer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace metier::virtual_controller {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(CycleTimer, CallsOncePerPeriod) {
+    asio::io_context context;
+    int calls = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    CycleTimer timer(context, 2ms, [&] {
+        if (++calls == 50) {
+            context.stop();
+        }
+    });
+    context.run_for(10s);
+    EXPECT_EQ(calls, 50);
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, 100ms);
+}
+
+TEST(CycleTimer, CatchesUpOnWhatALongCallDelayed) {
+    asio::io_context context;
+    int calls = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    CycleTimer timer(context, 2ms, [&] {
+        ++calls;
+        if (calls == 1) {
+            while (std::chrono::steady_clock::now() - begin < 40ms) {
+            }
+        }
+        if (calls == 20) {
+            context.stop();
+        }
+    });
+    context.run_for(10s);
+    EXPECT_EQ(calls, 20) << "the 19 calls after the long one were due already";
+}
+
+}  // namespace
+}  // namespace metier::virtual_controller
