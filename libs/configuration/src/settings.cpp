@@ -17,6 +17,17 @@ bool Settings::has(std::string_view name) const {
     return values_.find(name) != values_.end();
 }
 
+std::vector<std::string> Settings::namesUnder(std::string_view prefix) const {
+    const auto start = std::string(prefix) + ".";
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values_) {
+        if (name.starts_with(start)) {
+            names.push_back(name.substr(start.size()));
+        }
+    }
+    return names;
+}
+
 template <typename T>
 const T* Settings::find(std::string_view name, std::string_view kind) const {
     asked_.emplace(name);

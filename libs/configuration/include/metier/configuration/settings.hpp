@@ -25,6 +25,8 @@ public:
     Settings(std::string place, std::map<std::string, Value> values);
 
     bool has(std::string_view name) const;
+    /// What stands behind "PREFIX." in the names: of "part.cube" and "part.rod" cube and rod.
+    std::vector<std::string> namesUnder(std::string_view prefix) const;
     /// Noted if missing or of another type.
     std::string text(std::string_view name) const;
     // Noted if of another type.

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_controller/tcp_server.hpp"
+
+namespace metier::virtual_controller {
+
+/// What a host is to run.
+struct HostOptions {
+    std::string name;
+    std::string type;     ///< of controllerTypes()
+    std::string address;  ///< for every port, as 127.0.1.1
+    configuration::Settings settings;
+    const motion::RobotModel* model = nullptr;
+    std::string world_address;          ///< empty: no world
+    std::uint16_t control_port = 7400;  ///< 0: a free one
+};
+
+/// One virtual controller with its control port, through which it is asked to suffer and to show
+/// itself: a line of JSON for a line of JSON (controlAnswer()).
+///
+/// Threading: one thread makes, runs and destroys it; stop() from any.
+class Host {
+public:
+    /// Errors: invalid_argument (unknown type with the known ones, settings), already_exists
+    /// (port).
+    static Result<std::unique_ptr<Host>> start(HostOptions options,
+                                               const std::vector<ControllerType>& types);
+    ~Host();
+
+    /// Runs the controller until stop().
+    void run() { context_.run(); }
+    void stop() { context_.stop(); }
+    asio::io_context& context() noexcept { return context_; }
+    Controller& controller() noexcept { return *controller_; }
+    std::uint16_t controlPort() const { return control_->port(); }
+
+    /// {"inject": NAME, "value": TEXT}, {"state": true} or {"help": true}.
+    /// \return {"ok": true}, the state, the list of injections, or {"error": why}
+    nlohmann::ordered_json controlAnswer(std::string_view line);
+
+private:
+    Host() = default;
+    void answer(TcpPeer& peer, std::span<const std::byte> bytes);
+    Result<void> inject(const Injection& injection);
+    std::vector<InjectionHelp> injections() const;
+
+    asio::io_context context_;
+    LinkFaults faults_;
+    LinkFaults no_faults_;  // of the control port
+    std::unique_ptr<WorldLink> world_;
+    std::unique_ptr<Controller> controller_;
+    std::unique_ptr<TcpServer> control_;
+    std::map<const TcpPeer*, std::string> partial_lines_;
+};
+
+}  // namespace metier::virtual_controller

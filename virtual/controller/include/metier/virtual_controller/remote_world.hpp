@@ -1,0 +1,59 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/streambuf.hpp>
+#include <chrono>
+#include <string>
+
+#include "metier/virtual_controller/world_link.hpp"
+
+namespace metier::virtual_controller {
+
+/// The world in a process of its own (virtual/world), spoken to by lines of JSON over TCP: one
+/// effect comes back for each report. A world that is not there has no effect; it is sought again.
+class RemoteWorld final : public WorldLink {
+public:
+    static constexpr std::uint16_t kPort = 7410;
+
+    /// \param name as the world's settings call this controller
+    RemoteWorld(asio::io_context& context, std::string name, std::string address,
+                std::uint16_t port = kPort);
+    RemoteWorld(const RemoteWorld&) = delete;
+    RemoteWorld& operator=(const RemoteWorld&) = delete;
+
+    void report(const WorldReport& report) override;
+    const WorldEffect& effect() const override { return effect_; }
+    bool connected() const noexcept { return connected_; }
+
+private:
+    void connect();
+    void connectLater();
+    void send();
+    void readEffect();
+
+    std::string name_;
+    asio::ip::tcp::endpoint endpoint_;
+    asio::ip::tcp::socket socket_;
+    asio::steady_timer retry_;
+    asio::streambuf incoming_;
+    std::string outgoing_;
+    WorldReport newest_;
+    WorldEffect effect_;
+    bool connected_ = false;
+    bool unsent_ = false;    // newest_ has not gone out
+    bool awaiting_ = false;  // an effect is under way
+};
+
+/// No world: nothing is touched, nothing is between the jaws.
+class EmptyWorld final : public WorldLink {
+public:
+    void report(const WorldReport&) override {}
+    const WorldEffect& effect() const override { return effect_; }
+
+private:
+    WorldEffect effect_;
+};
+
+}  // namespace metier::virtual_controller

@@ -1,0 +1,169 @@
+#include "metier/virtual_controller/host.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "metier/virtual_controller/remote_world.hpp"
+
+namespace metier::virtual_controller {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestLine = 4096;
+
+Result<std::uint32_t> wholeNumber(const Injection& injection, std::uint32_t limit) {
+    std::uint32_t number = 0;
+    const auto& text = injection.value;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size() || number > limit) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} needs a whole number, 0 to {}; not \"{}\"", injection.name,
+                                limit, text));
+    }
+    return number;
+}
+
+/// The faults that every controller has.
+const std::vector<InjectionHelp>& commonInjections() {
+    static const std::vector<InjectionHelp> kHelp{
+        {"cut-link", "Nothing comes through any port, and no peer is told"},
+        {"restore-link", "Ends cut-link, delay and garble"},
+        {"delay", "Everything is sent later by MS milliseconds, 0 to 10000"},
+        {"garble", "One byte of each of the next N packets is changed, 0 to 1000"},
+        {"restart", "Power off and on: every connection breaks"},
+    };
+    return kHelp;
+}
+
+std::string knownTypes(const std::vector<ControllerType>& types) {
+    std::vector<std::string_view> names;
+    for (const auto& type : types) {
+        names.push_back(type.name);
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Host>> Host::start(HostOptions options,
+                                          const std::vector<ControllerType>& types) {
+    const auto type = std::find_if(types.begin(), types.end(),
+                                   [&](const auto& known) { return known.name == options.type; });
+    if (type == types.end()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("no virtual controller of type \"{}\"; there are: {}", options.type,
+                                knownTypes(types)));
+    }
+    std::unique_ptr<Host> host(new Host());
+    if (options.world_address.empty()) {
+        host->world_ = std::make_unique<EmptyWorld>();
+    } else {
+        host->world_ =
+            std::make_unique<RemoteWorld>(host->context_, options.name, options.world_address);
+    }
+    auto controller =
+        type->start({host->context_, options.name, options.address, std::move(options.settings),
+                     options.model, host->faults_, *host->world_});
+    if (!controller) {
+        return fail(controller.error());
+    }
+    host->controller_ = std::move(*controller);
+    auto control = TcpServer::listen(
+        host->context_, options.address, options.control_port, host->no_faults_,
+        {.on_connected = {},
+         .on_data = [self = host.get()](TcpPeer& peer, auto bytes) { self->answer(peer, bytes); },
+         .on_closed = [self = host.get()](TcpPeer& peer) { self->partial_lines_.erase(&peer); }});
+    if (!control) {
+        return fail(control.error());
+    }
+    host->control_ = std::move(*control);
+    return host;
+}
+
+Host::~Host() = default;
+
+void Host::answer(TcpPeer& peer, std::span<const std::byte> bytes) {
+    auto& line = partial_lines_[&peer];
+    line.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    for (auto end = line.find('\n'); end != std::string::npos; end = line.find('\n')) {
+        peer.send(controlAnswer(std::string_view(line).substr(0, end)).dump() + '\n');
+        line.erase(0, end + 1);
+    }
+    if (line.size() > kLongestLine) {
+        peer.reset();
+    }
+}
+
+Json Host::controlAnswer(std::string_view line) {
+    const auto request = Json::parse(line, nullptr, false);
+    if (request.is_object() && request.contains("inject") && request.at("inject").is_string()) {
+        const Injection injection{request.at("inject").get<std::string>(),
+                                  request.contains("value") && request.at("value").is_string()
+                                      ? request.at("value").get<std::string>()
+                                      : std::string()};
+        if (const auto done = inject(injection); !done) {
+            return {{"error", done.error().message}};
+        }
+        return {{"ok", true}};
+    }
+    if (request.is_object() && request.contains("state")) {
+        return controller_->state();
+    }
+    if (request.is_object() && request.contains("help")) {
+        auto answer = Json::object();
+        for (const auto& known : injections()) {
+            answer[known.name] = known.help;
+        }
+        return answer;
+    }
+    return {
+        {"error", R"(needs {"inject": NAME, "value": TEXT}, {"state": true} or {"help": true})"}};
+}
+
+std::vector<InjectionHelp> Host::injections() const {
+    auto all = controller_->injections();
+    all.insert(all.end(), commonInjections().begin(), commonInjections().end());
+    return all;
+}
+
+Result<void> Host::inject(const Injection& injection) {
+    if (injection.name == "cut-link") {
+        faults_.cut = true;
+    } else if (injection.name == "restore-link") {
+        faults_.cut = false;
+        faults_.delay_ms = 0;
+        faults_.garble = 0;
+    } else if (injection.name == "restart") {
+        controller_->restart();
+    } else if (injection.name == "delay" || injection.name == "garble") {
+        const bool delay = injection.name == "delay";
+        const auto number = wholeNumber(injection, delay ? 10'000 : 1'000);
+        if (!number) {
+            return fail(number.error());
+        }
+        (delay ? faults_.delay_ms : faults_.garble) = *number;
+    } else {
+        const auto all = injections();
+        const auto known = std::any_of(all.begin(), all.end(), [&](const auto& entry) {
+            return entry.name == injection.name;
+        });
+        if (!known) {
+            std::vector<std::string> names;
+            for (const auto& entry : all) {
+                names.push_back(entry.name);
+            }
+            return fail(Errc::not_found, fmt::format("nothing called \"{}\" can be injected here; "
+                                                     "there are: {}",
+                                                     injection.name, fmt::join(names, ", ")));
+        }
+        return controller_->inject(injection);
+    }
+    return {};
+}
+
+}  // namespace metier::virtual_controller

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/geometry/pose.hpp"
+#include "metier/virtual_controller/world_link.hpp"
+
+namespace metier::virtual_world {
+
+using virtual_controller::WorldEffect;
+using virtual_controller::WorldReport;
+
+/// A box that can be gripped along its x axis.
+struct Part {
+    Eigen::Vector3d size;             ///< [m]
+    geometry::Pose world_from_part;   ///< of its centre
+    double mass = 0.0;                ///< [kg]
+    std::string held_by{};            ///< the gripper's controller; empty: nobody
+    geometry::Pose jaws_from_part{};  ///< while it is held
+};
+
+/// A plane that pushes back like a spring with a damper.
+struct Wall {
+    Eigen::Vector3d point;       ///< on the plane [m]
+    Eigen::Vector3d normal;      ///< of length 1, away from the wall
+    double stiffness = 5'000.0;  ///< [N/m]
+    double damping = 50.0;       ///< [Ns/m]
+};
+
+/// Where a controller's device stands or hangs.
+struct Mount {
+    geometry::Pose world_from_base{};  ///< of an arm
+    std::string on{};  ///< of a gripper or sensor: the arm's controller; empty: an arm
+    geometry::Pose flange_from_jaws{};  ///< of a gripper: between the jaws, x from jaw to jaw
+    /// What of an arm touches walls first: in the flange frame [m].
+    Eigen::Vector3d contact_point = Eigen::Vector3d::Zero();
+};
+
+/// What a world is made of.
+struct WorldOptions {
+    std::map<std::string, Part> parts;
+    std::map<std::string, Mount> mounts;   ///< by controller; others stand at the origin
+    std::vector<Wall> walls;               ///< a table is one, too
+    std::optional<double> table_height{};  ///< where parts that are let go come to lie [m]
+    double part_tolerance = 0.01;          ///< a part so far from between the jaws is missed [m]
+};
+
+/// A cell without its machines: parts that move with the jaws that hold them, walls that push.
+///
+/// Threading: one thread.
+class World {
+public:
+    explicit World(WorldOptions options);
+
+    /// Takes what a controller shows, and says what the world does to its device.
+    WorldEffect report(const std::string& controller, const WorldReport& report, SteadyTime now);
+
+    /// Every part that a gripper holds falls; `gripper` empty: of all grippers.
+    void drop(const std::string& gripper);
+    /// Errors: not_found.
+    Result<void> place(const std::string& part, const Eigen::Vector3d& position);
+    /// Takes a part out of the world. Errors: not_found.
+    Result<void> remove(const std::string& part);
+
+    const std::map<std::string, Part>& parts() const noexcept { return options_.parts; }
+    /// Nothing before an arm's first report.
+    std::optional<geometry::Pose> flangeOf(const std::string& controller) const;
+
+private:
+    struct Arm {
+        geometry::Pose world_from_flange;
+        Eigen::Vector3d contact;                                     ///< in the world [m]
+        Eigen::Vector3d contact_velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+        SteadyTime stamp{};
+    };
+    const Mount& mountOf(const std::string& controller) const;
+    void moveArm(const std::string& controller, const geometry::Pose& base_from_flange,
+                 SteadyTime now);
+    std::optional<double> grip(const std::string& controller, const WorldReport& report);
+    bool isBetween(const geometry::Pose& world_from_jaws, double jaw_width, const Part& part) const;
+    void release(Part& part) const;
+    geometry::Wrench wrenchOn(const std::string& arm) const;
+
+    WorldOptions options_;
+    std::map<std::string, Arm> arms_;
+};
+
+}  // namespace metier::virtual_world

@@ -1,0 +1,143 @@
+// The world as a process of its own: every virtual controller of a cell talks to it.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "metier/geometry/frame.hpp"
+#include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_controller/remote_world.hpp"
+#include "metier/virtual_controller/tcp_server.hpp"
+#include "metier/virtual_controller/world_messages.hpp"
+#include "metier/virtual_world/world.hpp"
+#include "world_settings.hpp"
+
+namespace metier::virtual_world {
+namespace {
+
+using virtual_controller::Controller;
+using virtual_controller::ControllerRequest;
+using virtual_controller::Injection;
+using virtual_controller::InjectionHelp;
+using virtual_controller::TcpPeer;
+using virtual_controller::TcpServer;
+
+constexpr std::size_t kLongestLine = 4096;
+
+class WorldServer final : public Controller {
+public:
+    explicit WorldServer(WorldOptions options) : options_(options), world_(std::move(options)) {}
+
+    Result<void> listen(const ControllerRequest& request, std::uint16_t port) {
+        auto server = TcpServer::listen(
+            request.context, request.address, port, request.faults,
+            {.on_connected = {},
+             .on_data = [this](TcpPeer& peer, auto bytes) { take(peer, bytes); },
+             .on_closed = [this](TcpPeer& peer) { partial_lines_.erase(&peer); }});
+        if (!server) {
+            return fail(server.error());
+        }
+        server_ = std::move(*server);
+        return {};
+    }
+
+    std::vector<InjectionHelp> injections() const override {
+        return {{"drop", "Parts held by the gripper CONTROLLER fall; without a name: all parts"},
+                {"remove", "Takes the part NAME away"},
+                {"place", "Puts a part somewhere: NAME,X,Y,Z in m"}};
+    }
+
+    Result<void> inject(const Injection& injection) override {
+        if (injection.name == "drop") {
+            world_.drop(injection.value);
+            return {};
+        }
+        if (injection.name == "remove") {
+            return world_.remove(injection.value);
+        }
+        return place(injection.value);
+    }
+
+    nlohmann::ordered_json state() const override {
+        auto parts = nlohmann::ordered_json::object();
+        for (const auto& [name, part] : world_.parts()) {
+            const auto frame = geometry::toFrame(part.world_from_part);
+            parts[name] = {{"pose", {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c}},
+                           {"size", {part.size.x(), part.size.y(), part.size.z()}},
+                           {"held_by", part.held_by}};
+        }
+        return {{"parts", parts}, {"port", server_->port()}};
+    }
+
+    void restart() override {
+        world_ = World(options_);
+        server_->resetAll();
+    }
+
+private:
+    void take(TcpPeer& peer, std::span<const std::byte> bytes) {
+        auto& line = partial_lines_[&peer];
+        line.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        for (auto end = line.find('\n'); end != std::string::npos; end = line.find('\n')) {
+            answer(peer, std::string_view(line).substr(0, end));
+            line.erase(0, end + 1);
+        }
+        if (line.size() > kLongestLine) {
+            peer.reset();
+        }
+    }
+    void answer(TcpPeer& peer, std::string_view line) {
+        if (const auto report = virtual_controller::reportOf(line)) {
+            peer.send(virtual_controller::toLine(
+                world_.report(report->name, report->report, std::chrono::steady_clock::now())));
+        } else {
+            peer.reset();
+        }
+    }
+    Result<void> place(const std::string& text) {
+        const auto comma = text.find(',');
+        double x = 0.0;
+        double y = 0.0;
+        double z = 0.0;
+        if (comma == std::string::npos ||
+            std::sscanf(text.c_str() + comma, ",%lf,%lf,%lf", &x, &y, &z) != 3) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("place needs NAME,X,Y,Z; not \"{}\"", text));
+        }
+        return world_.place(text.substr(0, comma), {x, y, z});
+    }
+
+    WorldOptions options_;
+    World world_;
+    std::unique_ptr<TcpServer> server_;
+    std::map<const TcpPeer*, std::string> partial_lines_;
+};
+
+Result<std::unique_ptr<Controller>> startWorld(const ControllerRequest& request) {
+    auto options = readOptions(request.settings);
+    const auto port = static_cast<std::uint16_t>(
+        request.settings.numberOr("port", virtual_controller::RemoteWorld::kPort, 0, 65535));
+    if (auto checked = request.settings.finish(); !checked) {
+        return fail(checked.error());
+    }
+    auto server = std::make_unique<WorldServer>(std::move(options));
+    if (auto listening = server->listen(request, port); !listening) {
+        return fail(listening.error());
+    }
+    return server;
+}
+
+}  // namespace
+}  // namespace metier::virtual_world
+
+namespace metier::virtual_controller {
+
+ControllerType worldController();
+ControllerType worldController() {
+    return {"world", "The cell around the others: parts, table, walls", virtual_world::startWorld};
+}
+
+}  // namespace metier::virtual_controller

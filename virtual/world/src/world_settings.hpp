@@ -1,0 +1,11 @@
+#pragma once
+
+#include "metier/configuration/settings.hpp"
+#include "metier/virtual_world/world.hpp"
+
+namespace metier::virtual_world {
+
+/// Reads a world's settings; what is wrong is noted in them. virtual/world/README.md lists them.
+WorldOptions readOptions(const configuration::Settings& settings);
+
+}  // namespace metier::virtual_world

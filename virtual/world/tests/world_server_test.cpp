@@ -1,0 +1,66 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "metier/virtual_controller/host.hpp"
+#include "metier/virtual_controller/remote_world.hpp"
+
+namespace metier::virtual_controller {
+
+ControllerType worldController();
+
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+HostOptions worldOptions() {
+    HostOptions options;
+    options.name = "world";
+    options.type = "world";
+    options.address = "127.0.0.1";
+    options.control_port = 0;
+    options.settings.set("port", 0.0);
+    options.settings.set("table", 0.0);
+    options.settings.set("part.cube", std::vector<double>{0, 0, 0.015, 0.03, 0.03, 0.03, 0.1});
+    options.settings.set("on.gripper", std::string("arm"));
+    return options;
+}
+
+TEST(WorldServer, AnswersAReportWithItsEffect) {
+    const auto host = Host::start(worldOptions(), {worldController()}).value();
+    const auto port = host->controller().state().at("port").get<std::uint16_t>();
+    RemoteWorld arm(host->context(), "arm", "127.0.0.1", port);
+    RemoteWorld gripper(host->context(), "gripper", "127.0.0.1", port);
+    const auto deadline = std::chrono::steady_clock::now() + 10s;
+    while (!gripper.effect().part_width && std::chrono::steady_clock::now() < deadline) {
+        arm.report(
+            {.base_from_flange = geometry::Pose{{0, 0, 0.015}, Eigen::Quaterniond::Identity()}});
+        gripper.report({.jaw_width = 0.05});
+        host->context().run_one_for(100ms);
+    }
+    EXPECT_NEAR(gripper.effect().part_width.value_or(0), 0.03, 1e-12);
+}
+
+TEST(WorldServer, TellsWhatIsWrongWithItsSettings) {
+    auto options = worldOptions();
+    options.settings.set("part.flat", std::vector<double>{0, 0, 0, 0.1, 0.1, 0.0, 0.1});
+    options.settings.set("wall.short", std::vector<double>{0, 0, 0});
+    const auto host = Host::start(options, {worldController()});
+    ASSERT_FALSE(host);
+    EXPECT_THAT(host.error().message, HasSubstr("part.flat: lengths must be over 0 m"));
+    EXPECT_THAT(host.error().message, HasSubstr("wall.short: has 3 numbers; needs 8"));
+}
+
+TEST(WorldServer, PlacesPartsOnDemand) {
+    const auto host = Host::start(worldOptions(), {worldController()}).value();
+    EXPECT_EQ(host->controlAnswer(R"({"inject":"place","value":"cube,0.1,0.2,0.3"})").dump(),
+              R"({"ok":true})");
+    EXPECT_THAT(host->controlAnswer(R"({"state":true})").dump(), HasSubstr("[0.1,0.2,0.3"));
+    EXPECT_THAT(host->controlAnswer(R"({"inject":"place","value":"cube"})").dump(),
+                HasSubstr("NAME,X,Y,Z"));
+}
+
+}  // namespace
+}  // namespace metier::virtual_controller

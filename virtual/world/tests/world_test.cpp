@@ -1,0 +1,120 @@
+#include "metier/virtual_world/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace metier::virtual_world {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr SteadyTime kStart{};
+
+geometry::Pose at(double x, double y, double z) {
+    return {{x, y, z}, Eigen::Quaterniond::Identity()};
+}
+
+/// Jaws that point down, 0.1 m below the flange; the flange looks down.
+geometry::Pose flangeOver(double x, double y, double z) {
+    return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()))};
+}
+
+/// An arm with a gripper over a table with a cube of 3 cm.
+struct Cell : ::testing::Test {
+    static WorldOptions options() {
+        WorldOptions options;
+        options.table_height = 0.0;
+        Part cube;
+        cube.size = {0.03, 0.03, 0.03};
+        cube.world_from_part = at(0.5, 0.0, 0.015);
+        cube.mass = 0.1;
+        options.parts["cube"] = cube;
+        options.mounts["gripper"].on = "arm";
+        options.mounts["gripper"].flange_from_jaws = at(0.0, 0.0, 0.1);
+        options.walls.push_back({{0.6, 0.0, 0.0}, {-1.0, 0.0, 0.0}, 5'000.0, 50.0});
+        return options;
+    }
+
+    WorldEffect moveArm(const geometry::Pose& flange, std::chrono::milliseconds time = 0ms) {
+        return world.report("arm", {.base_from_flange = flange}, kStart + time);
+    }
+    WorldEffect jaws(double width, bool gripping) {
+        return world.report("gripper", {.jaw_width = width, .gripping = gripping}, kStart);
+    }
+    const Part& cube() const { return world.parts().at("cube"); }
+
+    World world{options()};
+};
+
+TEST_F(Cell, ShowsTheJawsThePartBetweenThem) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    EXPECT_NEAR(jaws(0.08, false).part_width.value_or(0), 0.03, 1e-12);
+    moveArm(flangeOver(0.5, 0.0, 0.3));
+    EXPECT_FALSE(jaws(0.08, false).part_width) << "the part is far below";
+    moveArm(flangeOver(0.58, 0.0, 0.115));
+    EXPECT_FALSE(jaws(0.08, false).part_width) << "the part is beside the jaws";
+}
+
+TEST_F(Cell, MovesAHeldPartWithTheFlange) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    jaws(0.03, true);
+    EXPECT_EQ(cube().held_by, "gripper");
+    moveArm(flangeOver(0.3, 0.2, 0.515));
+    EXPECT_NEAR(cube().world_from_part.translation.x(), 0.3, 1e-12);
+    EXPECT_NEAR(cube().world_from_part.translation.y(), 0.2, 1e-12);
+    EXPECT_NEAR(cube().world_from_part.translation.z(), 0.415, 1e-12);
+}
+
+TEST_F(Cell, LetsAReleasedPartComeToLieOnTheTable) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    jaws(0.03, true);
+    moveArm(flangeOver(0.3, 0.2, 0.515));
+    jaws(0.08, false);
+    EXPECT_EQ(cube().held_by, "");
+    EXPECT_NEAR(cube().world_from_part.translation.z(), 0.015, 1e-12);
+}
+
+TEST_F(Cell, DropsAPartThatIsThenGoneFromTheJaws) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    ASSERT_TRUE(jaws(0.03, true).part_width);
+    world.drop("gripper");
+    EXPECT_FALSE(jaws(0.03, true).part_width);
+}
+
+TEST_F(Cell, WeighsAHeldPart) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    jaws(0.03, true);
+    const auto wrench = moveArm(flangeOver(0.5, 0.0, 0.3)).wrench;
+    EXPECT_NEAR(wrench.force.z(), 0.981, 1e-9) << "down is along z of a flange that looks down";
+}
+
+TEST_F(Cell, PushesBackWithSpringAndDamper) {
+    moveArm(at(0.599, 0.0, 0.5));
+    EXPECT_EQ(moveArm(at(0.5995, 0.0, 0.5), 10ms).wrench.force.norm(), 0.0);
+    moveArm(at(0.602, 0.0, 0.5), 20ms);
+    const auto moving = moveArm(at(0.603, 0.0, 0.5), 30ms).wrench.force;
+    EXPECT_NEAR(moving.x(), -(5'000.0 * 0.003 + 50.0 * 0.1), 1e-6);
+    const auto standing = moveArm(at(0.603, 0.0, 0.5), 40ms).wrench.force;
+    EXPECT_NEAR(standing.x(), -15.0, 1e-9);
+}
+
+TEST_F(Cell, GivesASensorTheWrenchOnItsArm) {
+    auto with_sensor = options();
+    with_sensor.mounts["sensor"].on = "arm";
+    World other(with_sensor);
+    other.report("arm", {.base_from_flange = at(0.602, 0.0, 0.5)}, kStart);
+    EXPECT_NEAR(other.report("sensor", {}, kStart).wrench.force.x(), -10.0, 1e-9);
+}
+
+TEST_F(Cell, PutsPartsElsewhereOrAway) {
+    ASSERT_TRUE(world.place("cube", {0.1, 0.2, 0.3}));
+    EXPECT_EQ(cube().world_from_part.translation, Eigen::Vector3d(0.1, 0.2, 0.3));
+    EXPECT_FALSE(world.place("ball", {0, 0, 0}));
+    ASSERT_TRUE(world.remove("cube"));
+    EXPECT_FALSE(world.remove("cube"));
+}
+
+}  // namespace
+}  // namespace metier::virtual_world
