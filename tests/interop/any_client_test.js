@@ -12,7 +12,7 @@ const {
 } = require('node-opcua');
 const { startServer } = require('./metier_process');
 
-const kCell = path.join(__dirname, '..', '..', 'cells', 'demo.toml');
+const kCell = path.join(__dirname, '..', 'system', 'simulated.toml');
 const kProgramStateMachineType = 'ns=0;i=2391';
 const kEventDeadlineMs = 20000;
 

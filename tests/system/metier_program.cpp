@@ -21,7 +21,7 @@ auto orThrow(Answer answer) {
 
 std::vector<std::string> serveArguments(const std::string& name,
                                         const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"serve", demoCell().string(), "--server", name};
+    std::vector<std::string> arguments{"serve", simulatedCell().string(), "--server", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return metierCommand(arguments);
 }
@@ -55,6 +55,10 @@ Finished runMetier(const std::vector<std::string>& arguments, Errors errors) {
 
 std::filesystem::path demoCell() {
     return std::filesystem::path(METIER_SOURCE_DIR) / "cells" / "demo.toml";
+}
+
+std::filesystem::path simulatedCell() {
+    return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "simulated.toml";
 }
 
 ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more)

@@ -32,10 +32,12 @@ enum class Errors { left_out, with_output };
 /// Runs `metier` to its end. Throws at a deadline of a minute.
 Finished runMetier(const std::vector<std::string>& arguments, Errors errors = Errors::with_output);
 
-/// The demo's cell file.
+/// The demo's cell file: three arms and a gripper with their virtual controllers.
 std::filesystem::path demoCell();
+/// A cell file with the arms of the demo, simulated without controllers and wires.
+std::filesystem::path simulatedCell();
 
-/// One server of the demo cell in a process of its own.
+/// One server of the simulated cell in a process of its own.
 class ServerProcess {
 public:
     /// \param more arguments of `metier serve`, such as a port; without it a free one

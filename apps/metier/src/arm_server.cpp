@@ -2,25 +2,19 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "metier/joint_simulator/robot_options.hpp"
+#include "device_opening.hpp"
 
 namespace metier::app {
 namespace {
 
-using opcua_skill::MotionDeviceSystem;
-using virtual_robots::JointSimulator;
-
-virtual_robots::JointSimulatorOptions simulatorOptions(const std::string& name,
-                                                       const motion::RobotModel& model) {
-    auto options = virtual_robots::optionsFor(model);
-    options.name = name;
-    return options;
-}
+// A controller that answers later than this finds its skills Halted.
+constexpr std::chrono::seconds kFirstAnswer{10};
 
 using SkillsByName = std::map<std::string, std::unique_ptr<skill::Skill>, std::less<>>;
 
@@ -56,20 +50,28 @@ Result<void> checkSameSkills(const std::vector<opcua::Reference>& nodes,
 }  // namespace
 
 Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerConfig& config) {
-    auto model = motion::RobotModel::load(config.arm.model);
-    if (!model) {
-        return fail(model.error());
+    auto loaded = motion::RobotModel::load(config.arm.model);
+    if (!loaded) {
+        return fail(loaded.error());
     }
-    auto arm = JointSimulator::create(simulatorOptions(config.name, *model));
-    if (!arm) {
-        return fail(arm.error());
+    auto device = openDevice(config.arm.driver, config.name, &*loaded);
+    if (!device) {
+        return fail(device.error());
+    }
+    if (device->arm == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
+                                config.arm.driver.type));
     }
     auto host = SkillHost::create(config, {config.arm.nodeset});
     if (!host) {
         return fail(host.error());
     }
+    if (!awaitConnection(*device, kFirstAnswer)) {
+        spdlog::warn("{}", device->arm->safety().text);
+    }
     std::unique_ptr<ArmServer> server(
-        new ArmServer(std::move(*model), std::move(*arm), std::move(*host)));
+        new ArmServer(std::move(*loaded), std::move(*device), std::move(*host)));
     if (auto offered = server->offer(config.arm); !offered) {
         return fail(offered.error());
     }
@@ -79,9 +81,11 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
     return server;
 }
 
-ArmServer::ArmServer(motion::RobotModel model, std::unique_ptr<JointSimulator> arm,
+ArmServer::ArmServer(motion::RobotModel model, driver::OpenDevice device,
                      std::unique_ptr<SkillHost> host)
-    : model_(std::move(model)), arm_(std::move(arm)), host_(std::move(host)), drive_(*arm_) {}
+    : model_(device.model ? std::move(*device.model) : std::move(model)),
+      device_(std::move(device)),
+      host_(std::move(host)) {}
 
 Result<void> ArmServer::offer(const configuration::ArmServer& config) {
     const auto system = opcua_skill::findMotionDeviceSystem(host_->nodes());
@@ -95,7 +99,7 @@ Result<void> ArmServer::offer(const configuration::ArmServer& config) {
     if (auto same = checkSameSkills(*nodes, config); !same) {
         return same;
     }
-    auto arm_skills = robot_skills::makeArmSkills(*arm_, model_, host_->clock(),
+    auto arm_skills = robot_skills::makeArmSkills(*device_.arm, model_, host_->clock(),
                                                   {.longest_silence = config.stream_silence});
     if (!arm_skills) {
         return fail(arm_skills.error());
@@ -118,8 +122,8 @@ Result<void> ArmServer::offer(const configuration::ArmServer& config) {
     if (auto offered = host_->offerControl(system->controller); !offered) {
         return offered;
     }
-    host_->haltOnLossOf(*arm_);
-    return host_->publishArm(*system, *arm_, model_);
+    host_->haltOnLossOf(*device_.arm);
+    return host_->publishArm(*system, *device_.arm, model_);
 }
 
 }  // namespace metier::app

@@ -2,12 +2,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "metier/base/error.hpp"
 #include "metier/configuration/cell.hpp"
-#include "metier/joint_simulator/joint_simulator.hpp"
-#include "metier/joint_simulator/simulator_drive.hpp"
+#include "metier/driver/driver.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "skill_host.hpp"
 
@@ -18,20 +16,18 @@ namespace metier::app {
 /// Threading: one thread starts and ends it.
 class ArmServer {
 public:
-    /// Errors: what is wrong with the model, the NodeSet, the skills or the port.
+    /// Errors: what is wrong with the model, the driver, the NodeSet, the skills or the port.
     static Result<std::unique_ptr<ArmServer>> start(const configuration::ServerConfig& config);
 
     std::string url() const { return host_->url(); }
 
 private:
-    ArmServer(motion::RobotModel model, std::unique_ptr<virtual_robots::JointSimulator> arm,
-              std::unique_ptr<SkillHost> host);
+    ArmServer(motion::RobotModel model, driver::OpenDevice device, std::unique_ptr<SkillHost> host);
     Result<void> offer(const configuration::ArmServer& config);
 
     motion::RobotModel model_;
-    std::unique_ptr<virtual_robots::JointSimulator> arm_;
-    std::unique_ptr<SkillHost> host_;
-    virtual_robots::SimulatorDrive drive_;
+    driver::OpenDevice device_;
+    std::unique_ptr<SkillHost> host_;  // ends before the device
 };
 
 }  // namespace metier::app

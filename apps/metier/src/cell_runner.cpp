@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <random>
 
 #include "ready_line.hpp"
 
@@ -17,10 +18,30 @@ using configuration::ServerKind;
 
 constexpr auto kReadyTimeout = 30s;
 
-std::vector<std::string> serveCommand(const configuration::CellConfig& cell,
-                                      const configuration::ServerConfig& server) {
-    const auto self = std::filesystem::read_symlink("/proc/self/exe");
-    return {self.string(), "serve", cell.file.string(), "--server", server.name};
+std::string self() {
+    return std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
+/// The driver of a server's device; nullptr for one without.
+const configuration::DriverChoice* driverOf(const configuration::ServerConfig& server) {
+    switch (server.kind) {
+        case ServerKind::arm:
+            return &server.arm.driver;
+        case ServerKind::gripper:
+            return &server.gripper.driver;
+        case ServerKind::move:
+            break;
+    }
+    return nullptr;
+}
+
+/// Some address of this machine that nobody else is likely to use.
+std::string freeAddress() {
+    std::random_device random;
+    const auto part = [&random](unsigned low, unsigned high) {
+        return std::uniform_int_distribution<unsigned>(low, high)(random);
+    };
+    return fmt::format("127.{}.{}.{}", part(1, 254), part(0, 255), part(1, 254));
 }
 
 }  // namespace
@@ -28,7 +49,17 @@ std::vector<std::string> serveCommand(const configuration::CellConfig& cell,
 Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Ports ports,
                                      const OnReady& on_ready) {
     CellRunner runner;
-    for (const auto kind : {ServerKind::arm, ServerKind::move}) {
+    for (const bool world : {true, false}) {
+        for (const auto& controller : cell.virtual_controllers) {
+            if ((&controller == cell.world()) != world) {
+                continue;
+            }
+            if (auto started = runner.startVirtual(cell, controller, ports); !started) {
+                return fail(started.error());
+            }
+        }
+    }
+    for (const auto kind : {ServerKind::arm, ServerKind::gripper, ServerKind::move}) {
         for (const auto& server : cell.servers) {
             if (server.kind != kind) {
                 continue;
@@ -42,9 +73,28 @@ Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Port
     return runner;
 }
 
+Result<void> CellRunner::startVirtual(const configuration::CellConfig& cell,
+                                      const configuration::VirtualController& controller,
+                                      Ports ports) {
+    std::vector<std::string> command{self(), "virtual", "run", cell.file.string(), controller.name};
+    if (ports == Ports::free) {
+        command.insert(command.end(), {"--address", freeAddress()});
+    }
+    const auto* world = cell.world();
+    if (world != nullptr && world != &controller) {
+        command.insert(command.end(), {"--world", virtual_addresses_.at(world->name)});
+    }
+    auto address = startChild(controller.name, command);
+    if (!address) {
+        return fail(address.error());
+    }
+    virtual_addresses_.emplace(controller.name, std::move(*address));
+    return {};
+}
+
 Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
                                      const configuration::ServerConfig& server, Ports ports) {
-    auto command = serveCommand(cell, server);
+    std::vector<std::string> command{self(), "serve", cell.file.string(), "--server", server.name};
     if (ports == Ports::free) {
         command.insert(command.end(), {"--port", "0"});
     }
@@ -54,22 +104,38 @@ Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
     if (server.kind == ServerKind::move && robot != running_.end()) {
         command.insert(command.end(), {"--robot", robot->url});
     }
+    if (const auto* driver = driverOf(server)) {
+        const auto found = virtual_addresses_.find(driver->controller);
+        if (found != virtual_addresses_.end()) {
+            command.insert(command.end(), {"--controller", found->second});
+        }
+    }
+    auto url = startChild(server.name, command);
+    if (!url) {
+        return fail(url.error());
+    }
+    running_.push_back({server.name, std::move(*url)});
+    return {};
+}
+
+Result<std::string> CellRunner::startChild(const std::string& name,
+                                           const std::vector<std::string>& command) {
     auto child = process::ChildProcess::start(command);
     if (!child) {
         return fail(child.error());
     }
     const auto line = child->readLine(std::chrono::steady_clock::now() + kReadyTimeout);
     if (!line) {
-        return fail(line.error().code, fmt::format("server '{}' did not become ready: {}",
-                                                   server.name, line.error().message));
+        return fail(line.error().code,
+                    fmt::format("'{}' did not become ready: {}", name, line.error().message));
     }
-    const auto url = urlOfReadyLine(*line);
-    if (!url) {
-        return fail(Errc::internal, fmt::format("server '{}' said: {}", server.name, *line));
+    auto address = addressOfReadyLine(*line);
+    if (!address) {
+        return fail(Errc::internal, fmt::format("'{}' said: {}", name, *line));
     }
-    running_.push_back({server.name, *url});
+    names_.push_back(name);
     processes_.push_back(std::move(*child));
-    return {};
+    return std::move(*address);
 }
 
 std::optional<CellRunner::Ended> CellRunner::waitForEnd(int wake_descriptor) {
@@ -84,7 +150,7 @@ std::optional<CellRunner::Ended> CellRunner::waitForEnd(int wake_descriptor) {
         if (requests[i + 1].revents != 0) {
             const auto status =
                 processes_[i].waitUntil(std::chrono::steady_clock::now() + kReadyTimeout);
-            return Ended{running_[i].name, status.value_or(-1)};
+            return Ended{names_[i], status.value_or(-1)};
         }
     }
     return std::nullopt;

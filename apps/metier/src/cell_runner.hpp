@@ -14,7 +14,7 @@
 
 namespace metier::app {
 
-/// The servers of a cell as child processes of this one; they end with it.
+/// The servers and virtual controllers of a cell as child processes of this one; they end with it.
 ///
 /// Threading: one thread.
 class CellRunner {
@@ -26,8 +26,10 @@ public:
     /// Called when a server is ready, for progress on the terminal.
     using OnReady = std::function<void(const Running&)>;
 
-    /// Starts the arms, then what builds on them, and waits until each is ready.
-    /// \param ports_free  every server takes a free port instead of its configured one
+    /// Starts the virtual controllers, the devices' servers, then what builds on them, and waits
+    /// until each is ready.
+    /// \param ports  free: every server takes a free port instead of its configured one, every
+    ///              virtual controller a free address of this machine
     /// Errors: what the first server that did not become ready in 30 s had to say.
     enum class Ports { configured, free };
     static Result<CellRunner> start(const configuration::CellConfig& cell, Ports ports,
@@ -47,8 +49,15 @@ private:
     CellRunner() = default;
     Result<void> startServer(const configuration::CellConfig& cell,
                              const configuration::ServerConfig& server, Ports ports);
+    Result<void> startVirtual(const configuration::CellConfig& cell,
+                              const configuration::VirtualController& controller, Ports ports);
+    /// \return the address that the child tells when it is ready
+    Result<std::string> startChild(const std::string& name,
+                                   const std::vector<std::string>& command);
 
     std::vector<Running> running_;
+    std::map<std::string, std::string> virtual_addresses_;  // by name
+    std::vector<std::string> names_;                        // of the processes
     std::vector<process::ChildProcess> processes_;
 };
 

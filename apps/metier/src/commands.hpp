@@ -21,6 +21,7 @@ Exit report(const Error& error);
 Exit reportUsage(const Error& error);
 
 // Each adds one subcommand, which stores in `exit` how it ended.
+void addVirtual(CLI::App& app, Exit& exit);
 void addUp(CLI::App& app, Exit& exit);
 void addServe(CLI::App& app, Exit& exit);
 void addList(CLI::App& app, Exit& exit);

@@ -25,8 +25,7 @@ void waitForEnter(CellRunner& cell) {
         "`metier run URL SKILL --fields` in another terminal. Enter or Ctrl-C ends it.\n");
     std::fflush(stdout);
     if (const auto ended = cell.waitForEnd(STDIN_FILENO)) {
-        fmt::print(stderr, "metier: server '{}' ended with status {}\n", ended->name,
-                   ended->status);
+        fmt::print(stderr, "metier: '{}' ended with status {}\n", ended->name, ended->status);
     }
 }
 

@@ -11,13 +11,22 @@ inline std::string readyLine(std::string_view url) {
     return "ready " + std::string(url);
 }
 
-/// The address in a ready line; nothing if it is none.
-inline std::optional<std::string> urlOfReadyLine(std::string_view line) {
-    constexpr std::string_view kPrefix = "ready opc.tcp://";
-    if (!line.starts_with(kPrefix)) {
-        return std::nullopt;
+/// The same of a virtual controller.
+inline std::string readyVirtualLine(std::string_view address) {
+    return "ready virtual " + std::string(address);
+}
+
+/// The address in a ready line of either kind; nothing if it is none.
+inline std::optional<std::string> addressOfReadyLine(std::string_view line) {
+    constexpr std::string_view kServer = "ready opc.tcp://";
+    constexpr std::string_view kVirtual = "ready virtual ";
+    if (line.starts_with(kServer)) {
+        return std::string(line.substr(std::string_view("ready ").size()));
     }
-    return std::string(line.substr(std::string_view("ready ").size()));
+    if (line.starts_with(kVirtual)) {
+        return std::string(line.substr(kVirtual.size()));
+    }
+    return std::nullopt;
 }
 
 }  // namespace metier::app

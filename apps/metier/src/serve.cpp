@@ -18,7 +18,18 @@ struct ServeOptions {
     std::string server;
     std::optional<std::uint16_t> port;
     std::string robot;
+    std::string controller;
 };
+
+/// A virtual controller of the same file is reached at its configured address.
+void resolveController(const configuration::CellConfig& cell, const ServeOptions& options,
+                       configuration::DriverChoice& driver) {
+    if (!options.controller.empty()) {
+        driver.controller = options.controller;
+    } else if (const auto* controller = cell.findVirtual(driver.controller)) {
+        driver.controller = controller->address;
+    }
+}
 
 Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig& cell,
                                                  const ServeOptions& options) {
@@ -38,6 +49,9 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
     config.port = options.port.value_or(config.port);
     if (!options.robot.empty()) {
         config.move.robot = options.robot;
+    }
+    for (auto* driver : {&config.arm.driver, &config.gripper.driver}) {
+        resolveController(cell, options, *driver);
     }
     return config;
 }
@@ -89,6 +103,8 @@ void addServe(CLI::App& app, Exit& exit) {
     command->add_option("--port", options->port, "Another TCP port than the file's; 0: a free one");
     command->add_option("--robot", options->robot,
                         "Another opc.tcp:// address of the robot than the file's");
+    command->add_option("--controller", options->controller,
+                        "Another address of the device's controller than the file's");
     command->callback([options, &exit] { exit = runServe(*options); });
 }
 

@@ -34,8 +34,8 @@ Exit supervise(CellRunner& cell, const StopSignal& stop) {
     fmt::print("the cell is up; Ctrl-C ends it\n");
     std::fflush(stdout);
     if (const auto ended = cell.waitForEnd(stop.descriptor())) {
-        fmt::print(stderr, "metier: server '{}' ended with status {}; the cell goes down\n",
-                   ended->name, ended->status);
+        fmt::print(stderr, "metier: '{}' ended with status {}; the cell goes down\n", ended->name,
+                   ended->status);
         return Exit::failed;
     }
     return Exit::success;

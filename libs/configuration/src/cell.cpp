@@ -29,9 +29,21 @@ std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
     return path;
 }
 
+DriverChoice readDriver(const TomlTable& table) {
+    DriverChoice driver;
+    driver.type = table.text("type");
+    driver.controller = table.textOr("controller", "");
+    driver.settings = table.settings({"type", "controller"});
+    return driver;
+}
+
 ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     ArmServer arm;
     arm.model = pathIn(table, "model", folder);
+    arm.driver = readDriver(table.table("driver"));
+    if (table.has("force_torque_sensor")) {
+        arm.force_torque_sensor = readDriver(table.table("force_torque_sensor"));
+    }
     arm.nodeset = table.text("nodeset");
     arm.skills = table.texts("skills");
     arm.stream_silence = table.numberOr("stream_silence", arm.stream_silence);
@@ -41,6 +53,28 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
                                  kShortestSilence, kLongestSilence));
     }
     return arm;
+}
+
+GripperServer readGripper(const TomlTable& table) {
+    GripperServer gripper;
+    gripper.driver = readDriver(table.table("driver"));
+    gripper.nodeset = table.text("nodeset");
+    gripper.skills = table.texts("skills");
+    return gripper;
+}
+
+VirtualController readVirtual(const TomlTable& table, const std::filesystem::path& folder) {
+    VirtualController controller;
+    controller.name = table.text("name");
+    controller.type = table.text("type");
+    controller.address = table.textOr("address", "127.0.0.1");
+    controller.control_port = static_cast<std::uint16_t>(
+        table.integerOr("control_port", controller.control_port, 0, kMaxPort));
+    if (table.has("model")) {
+        controller.model = pathIn(table, "model", folder);
+    }
+    controller.settings = table.settings({"name", "type", "address", "control_port", "model"});
+    return controller;
 }
 
 ServerConfig readServer(const TomlTable& table, const std::filesystem::path& folder) {
@@ -53,11 +87,14 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     if (kind == "arm") {
         server.kind = ServerKind::arm;
         server.arm = readArm(table, folder);
+    } else if (kind == "gripper") {
+        server.kind = ServerKind::gripper;
+        server.gripper = readGripper(table);
     } else if (kind == "move") {
         server.kind = ServerKind::move;
         server.move.robot = table.text("robot");
     } else if (!kind.empty()) {
-        table.reject("kind", fmt::format("\"{}\" is not one of: arm, move", kind));
+        table.reject("kind", fmt::format("\"{}\" is not one of: arm, gripper, move", kind));
     }
     return server;
 }
@@ -89,12 +126,42 @@ void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& table
     }
 }
 
+void checkVirtual(const CellConfig& cell, const std::vector<TomlTable>& tables) {
+    std::set<std::string> names;
+    std::set<std::string> addresses;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const auto& controller = cell.virtual_controllers[i];
+        if (!controller.name.empty() && !names.insert(controller.name).second) {
+            tables[i].reject("name", fmt::format("\"{}\" is taken by a virtual controller above",
+                                                 controller.name));
+        }
+        if (!addresses.insert(controller.address).second && controller.control_port != 0) {
+            tables[i].reject("address",
+                             fmt::format("{} is taken by a virtual controller above; any "
+                                         "127.x.y.z is an address of this machine",
+                                         controller.address));
+        }
+    }
+}
+
 }  // namespace
 
 const ServerConfig* CellConfig::find(const std::string& server) const {
     const auto found = std::find_if(servers.begin(), servers.end(),
                                     [&](const auto& s) { return s.name == server; });
     return found == servers.end() ? nullptr : &*found;
+}
+
+const VirtualController* CellConfig::findVirtual(const std::string& controller) const {
+    const auto found = std::find_if(virtual_controllers.begin(), virtual_controllers.end(),
+                                    [&](const auto& known) { return known.name == controller; });
+    return found == virtual_controllers.end() ? nullptr : &*found;
+}
+
+const VirtualController* CellConfig::world() const {
+    const auto found = std::find_if(virtual_controllers.begin(), virtual_controllers.end(),
+                                    [](const auto& known) { return known.type == "world"; });
+    return found == virtual_controllers.end() ? nullptr : &*found;
 }
 
 Result<CellConfig> loadCell(const std::filesystem::path& file) {
@@ -110,10 +177,15 @@ Result<CellConfig> loadCell(const std::filesystem::path& file) {
     for (const auto& table : tables) {
         cell.servers.push_back(readServer(table, cell.file.parent_path()));
     }
-    if (tables.empty()) {
-        root.reject("server", "a cell needs at least one [[server]]");
+    const auto virtual_tables = root.tables("virtual");
+    for (const auto& table : virtual_tables) {
+        cell.virtual_controllers.push_back(readVirtual(table, cell.file.parent_path()));
+    }
+    if (tables.empty() && virtual_tables.empty()) {
+        root.reject("server", "a cell needs at least one [[server]] or [[virtual]]");
     }
     checkReferences(cell, tables);
+    checkVirtual(cell, virtual_tables);
     if (auto checked = toml->finish(); !checked) {
         return fail(checked.error());
     }

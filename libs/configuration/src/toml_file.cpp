@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -203,6 +204,64 @@ std::int64_t TomlTable::integerOr(std::string_view key, std::int64_t fallback, s
 bool TomlTable::flagOr(std::string_view key, bool fallback) const {
     const auto* node = impl_->find(key);
     return node == nullptr ? fallback : impl_->valueOf<bool>(node, key, "true or false");
+}
+
+namespace {
+
+/// \return nothing if a setting cannot have such a value
+std::optional<Settings::Value> settingOf(const toml::node& node) {
+    if (const auto number = node.value<double>()) {
+        return std::isfinite(*number) ? std::optional<Settings::Value>(*number) : std::nullopt;
+    }
+    if (const auto flag = node.value<bool>()) {
+        return *flag;
+    }
+    if (const auto text = node.value<std::string>()) {
+        return *text;
+    }
+    const auto* array = node.as_array();
+    if (array == nullptr) {
+        return std::nullopt;
+    }
+    std::vector<double> numbers;
+    for (const auto& element : *array) {
+        const auto number = element.value<double>();
+        if (!number || !std::isfinite(*number)) {
+            return std::nullopt;
+        }
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+}  // namespace
+
+Settings TomlTable::settings(std::initializer_list<std::string_view> taken) const {
+    std::map<std::string, Settings::Value> values;
+    if (impl_->table == nullptr) {
+        return {};
+    }
+    for (const auto& [key, node] : *impl_->table) {
+        const std::string name(key.str());
+        if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+            continue;
+        }
+        impl_->asked.insert(name);
+        if (const auto* inner = node.as_table()) {
+            for (const auto& [inner_key, inner_node] : *inner) {
+                if (auto value = settingOf(inner_node)) {
+                    values.emplace(name + "." + std::string(inner_key.str()), std::move(*value));
+                } else {
+                    reject(name, "holds a value that is no number, text, flag or list of numbers");
+                }
+            }
+        } else if (auto value = settingOf(node)) {
+            values.emplace(name, std::move(*value));
+        } else {
+            reject(name, "is no finite number, text, flag or list of finite numbers");
+        }
+    }
+    return Settings(fmt::format("{}: {}", place(), impl_->path), std::move(values));
 }
 
 void TomlTable::reject(std::string_view key, std::string_view why) const {

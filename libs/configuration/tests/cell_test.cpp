@@ -35,6 +35,7 @@ name = "demo"
 [[server]]
 name = "ur5"
 kind = "arm"
+driver = { type = "ur", controller = "10.0.0.5" }
 port = 4841
 model = "ur5.toml"
 nodeset = "universal_robots"
@@ -59,8 +60,9 @@ robot = "ur5"
 TEST_F(CellFile, NamesLineAndKeyOfAnUnknownKind) {
     const auto cell = load("name = \"a\"\n[[server]]\nname = \"x\"\nkind = \"lathe\"\n");
     ASSERT_FALSE(cell);
-    EXPECT_THAT(cell.error().message,
-                HasSubstr("cell.toml:4: server[0].kind: \"lathe\" is not one of: arm, move"));
+    EXPECT_THAT(
+        cell.error().message,
+        HasSubstr("cell.toml:4: server[0].kind: \"lathe\" is not one of: arm, gripper, move"));
 }
 
 TEST_F(CellFile, RefusesAComponentWithoutItsRobotAndNamesTakenTwice) {
@@ -72,6 +74,7 @@ robot = "nobody"
 [[server]]
 name = "m"
 kind = "arm"
+driver = { type = "ur", controller = "10.0.0.5" }
 model = "none.toml"
 nodeset = "iiwa"
 skills = []
@@ -79,7 +82,7 @@ skills = []
     ASSERT_FALSE(cell);
     EXPECT_THAT(cell.error().message, HasSubstr("cell.toml:5: server[0].robot: \"nobody\""));
     EXPECT_THAT(cell.error().message, HasSubstr("cell.toml:7: server[1].name: \"m\" is taken"));
-    EXPECT_THAT(cell.error().message, HasSubstr("cell.toml:9: server[1].model: no such file"));
+    EXPECT_THAT(cell.error().message, HasSubstr("cell.toml:10: server[1].model: no such file"));
 }
 
 TEST_F(CellFile, RefusesAPortTakenTwiceAndOutOfRange) {
@@ -99,6 +102,7 @@ TEST_F(CellFile, RefusesASilenceOutOfRangeWithItsUnit) {
 [[server]]
 name = "m"
 kind = "arm"
+driver = { type = "ur", controller = "10.0.0.5" }
 model = "none.toml"
 nodeset = "iiwa"
 skills = []
@@ -106,7 +110,69 @@ stream_silence = 5.0
 )");
     ASSERT_FALSE(cell);
     EXPECT_THAT(cell.error().message,
-                HasSubstr("cell.toml:8: server[0].stream_silence: 5 is not within 0.02 to 2 s"));
+                HasSubstr("cell.toml:9: server[0].stream_silence: 5 is not within 0.02 to 2 s"));
+}
+
+TEST_F(CellFile, DescribesDevicesAndTheirVirtualControllers) {
+    const auto cell = load(R"(name = "a"
+[[virtual]]
+name = "robot"
+type = "ur"
+address = "127.0.1.1"
+model = "ur5.toml"
+powered = false
+[[virtual]]
+name = "cell"
+type = "world"
+address = "127.0.1.2"
+[virtual.part]
+cube = [0, 0, 0.1, 0.03, 0.03, 0.03, 0.1]
+[[server]]
+name = "gripper"
+kind = "gripper"
+driver = { type = "wsg50", controller = "10.0.0.7", port = 41000 }
+nodeset = "wsg50"
+skills = ["GraspGripperSkill"]
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    const auto* robot = cell->findVirtual("robot");
+    ASSERT_NE(robot, nullptr);
+    EXPECT_EQ(robot->type, "ur");
+    EXPECT_EQ(robot->model, folder_ / "ur5.toml");
+    EXPECT_FALSE(robot->settings.flagOr("powered", true));
+    ASSERT_NE(cell->world(), nullptr);
+    EXPECT_THAT(cell->world()->settings.namesUnder("part"), ElementsAre("cube"));
+    const auto& driver = cell->find("gripper")->gripper.driver;
+    EXPECT_EQ(driver.type, "wsg50");
+    EXPECT_EQ(driver.controller, "10.0.0.7");
+    EXPECT_EQ(driver.settings.numberOr("port", 1000, 1, 65535), 41000);
+}
+
+TEST_F(CellFile, RefusesTwoVirtualControllersAtOneAddress) {
+    const auto cell = load(R"(name = "a"
+[[virtual]]
+name = "one"
+type = "ur"
+[[virtual]]
+name = "two"
+type = "edo"
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr("virtual[1].address: 127.0.0.1 is taken"));
+}
+
+TEST_F(CellFile, TellsThePlaceOfASettingThatIsWrong) {
+    const auto cell = load(R"(name = "a"
+[[virtual]]
+name = "one"
+type = "ur"
+speed = "fast"
+)");
+    ASSERT_TRUE(cell);
+    const auto& settings = cell->virtual_controllers.front().settings;
+    settings.numberOr("speed", 1, 0, 2);
+    EXPECT_THAT(settings.finish().error().message,
+                HasSubstr("cell.toml:2: virtual[0].speed: is not a number"));
 }
 
 TEST_F(CellFile, NeedsAServer) {

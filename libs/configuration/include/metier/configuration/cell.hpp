@@ -2,23 +2,42 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "metier/base/error.hpp"
+#include "metier/configuration/settings.hpp"
 
 namespace metier::configuration {
+
+/// Which driver talks to a device, and where its controller is.
+struct DriverChoice {
+    std::string type;        ///< as "ur"; the command's `drivers` lists them
+    std::string controller;  ///< an address, or the name of a virtual controller of the same file
+    Settings settings;       ///< the driver's own
+};
 
 /// An arm behind its own OPC UA server.
 struct ArmServer {
     /// The robot's model file, absolute.
     std::filesystem::path model;
+    DriverChoice driver;
+    /// Of its flange, for moves that end at a contact.
+    std::optional<DriverChoice> force_torque_sensor;
     /// Short name of the NodeSet that holds the robot's instances, such as `iiwa`.
     std::string nodeset;
     /// Skills that the server offers, such as `PositionStreamSkill`; all are in its NodeSet.
     std::vector<std::string> skills;
     /// Silence of a moving stream that ends it [s].
     double stream_silence = 0.15;
+};
+
+/// A gripper behind its own OPC UA server.
+struct GripperServer {
+    DriverChoice driver;
+    std::string nodeset;              ///< as ArmServer::nodeset
+    std::vector<std::string> skills;  ///< as ArmServer::skills
 };
 
 /// Move skills over the PositionStreamSkill of another server.
@@ -28,7 +47,7 @@ struct MoveComponent {
     std::string robot;
 };
 
-enum class ServerKind { arm, move };
+enum class ServerKind { arm, gripper, move };
 
 /// One process of a cell: one OPC UA server.
 struct ServerConfig {
@@ -40,8 +59,19 @@ struct ServerConfig {
     std::string address;
     /// Sends notifications of events at once instead of at the publishing interval.
     bool publish_at_once = true;
-    ArmServer arm;       ///< for ServerKind::arm
-    MoveComponent move;  ///< for ServerKind::move
+    ArmServer arm;          ///< for ServerKind::arm
+    GripperServer gripper;  ///< for ServerKind::gripper
+    MoveComponent move;     ///< for ServerKind::move
+};
+
+/// A controller without its device, in a process of its own.
+struct VirtualController {
+    std::string name;
+    std::string type;                   ///< as "ur"
+    std::string address;                ///< of all its ports, as 127.0.1.1
+    std::filesystem::path model;        ///< of an arm, absolute; empty for other devices
+    std::uint16_t control_port = 7400;  ///< for `metier virtual inject`
+    Settings settings;                  ///< the controller's own
 };
 
 /// A cell: the processes that work together, as a TOML file describes them (docs/guide/cell.md).
@@ -49,9 +79,14 @@ struct CellConfig {
     std::string name;
     std::filesystem::path file;
     std::vector<ServerConfig> servers;
+    std::vector<VirtualController> virtual_controllers;
 
     /// The server of that name, or nullptr.
     const ServerConfig* find(const std::string& server) const;
+    /// The virtual controller of that name, or nullptr.
+    const VirtualController* findVirtual(const std::string& controller) const;
+    /// The world of the virtual controllers, or nullptr.
+    const VirtualController* world() const;
 };
 
 /// Reads and checks a cell file. Relative paths in it are relative to the file.

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "metier/base/error.hpp"
+#include "metier/configuration/settings.hpp"
 
 namespace metier::configuration {
 
@@ -38,6 +40,10 @@ public:
     std::int64_t integerOr(std::string_view key, std::int64_t fallback, std::int64_t low,
                            std::int64_t high) const;
     bool flagOr(std::string_view key, bool fallback) const;
+
+    /// All values but those of `taken`, for whoever knows their names; those of tables within have
+    /// names with a point: "part.cube".
+    Settings settings(std::initializer_list<std::string_view> taken) const;
 
     /// Notes that the value of `key` is not acceptable, and why.
     void reject(std::string_view key, std::string_view why) const;

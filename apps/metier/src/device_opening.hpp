@@ -1,0 +1,24 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/driver/driver.hpp"
+#include "metier/motion/robot_model.hpp"
+
+namespace metier::app {
+
+/// Opens the device that a cell file names.
+/// \param name  of the server, for messages
+/// \param model of an arm; nullptr for other devices; must outlive the device
+/// Errors: invalid_argument (unknown driver with the known ones, settings).
+Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
+                                      const std::string& name, const motion::RobotModel* model);
+
+/// Waits until the controller of the device has answered, at most so long.
+/// \return whether it has
+bool awaitConnection(const driver::OpenDevice& device, std::chrono::milliseconds longest);
+
+}  // namespace metier::app

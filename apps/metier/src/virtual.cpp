@@ -1,0 +1,219 @@
+// metier virtual: controllers without their devices, and what is done to them.
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <charconv>
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "commands.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/link/tcp_link.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/virtual_controller/host.hpp"
+#include "ready_line.hpp"
+#include "stop_signal.hpp"
+
+namespace metier::app {
+namespace {
+
+using namespace std::chrono_literals;
+using virtual_controller::Host;
+
+constexpr std::uint16_t kControlPort = 7400;
+
+struct VirtualRunOptions {
+    std::string cell;
+    std::string name;
+    std::string address;
+    std::string world;
+};
+
+Result<Exit> runController(const VirtualRunOptions& options, const StopSignal& stop) {
+    const auto cell = configuration::loadCell(options.cell);
+    if (!cell) {
+        return fail(cell.error());
+    }
+    const auto* controller = cell->findVirtual(options.name);
+    if (controller == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: no virtual controller \"{}\"", options.cell, options.name));
+    }
+    std::optional<motion::RobotModel> model;
+    if (!controller->model.empty()) {
+        auto loaded = motion::RobotModel::load(controller->model);
+        if (!loaded) {
+            return fail(loaded.error());
+        }
+        model = std::move(*loaded);
+    }
+    const auto* world = cell->world();
+    const bool has_world = world != nullptr && world != controller;
+    virtual_controller::HostOptions host_options;
+    host_options.name = controller->name;
+    host_options.type = controller->type;
+    host_options.address = options.address.empty() ? controller->address : options.address;
+    host_options.settings = controller->settings;
+    host_options.model = model ? &*model : nullptr;
+    host_options.world_address =
+        !options.world.empty() ? options.world : (has_world ? world->address : "");
+    host_options.control_port = controller->control_port;
+    auto host = Host::start(std::move(host_options), virtual_controller::controllerTypes());
+    if (!host) {
+        return fail(host.error());
+    }
+    fmt::print("{}\n",
+               readyVirtualLine(options.address.empty() ? controller->address : options.address));
+    std::fflush(stdout);
+    std::jthread running([&] { (*host)->run(); });
+    stop.wait();
+    (*host)->stop();
+    return Exit::success;
+}
+
+struct ControlOptions {
+    std::string target;
+    std::string cell;
+    std::string fault;
+    std::string value;
+};
+
+/// "127.0.1.1", "127.0.1.1:7400", or the name of a virtual controller of the cell file.
+Result<std::pair<std::string, std::uint16_t>> controlAddress(const ControlOptions& options) {
+    if (!options.cell.empty()) {
+        const auto cell = configuration::loadCell(options.cell);
+        if (!cell) {
+            return fail(cell.error());
+        }
+        const auto* controller = cell->findVirtual(options.target);
+        if (controller == nullptr) {
+            return fail(Errc::invalid_argument, fmt::format("{}: no virtual controller \"{}\"",
+                                                            options.cell, options.target));
+        }
+        return std::pair(controller->address, controller->control_port);
+    }
+    const auto colon = options.target.find(':');
+    std::uint16_t port = kControlPort;
+    if (colon != std::string::npos) {
+        const auto text = std::string_view(options.target).substr(colon + 1);
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+        if (error != std::errc{} || end != text.data() + text.size()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("\"{}\" is not an address with a port", options.target));
+        }
+    }
+    return std::pair(options.target.substr(0, colon), port);
+}
+
+/// One line for one line.
+Result<nlohmann::ordered_json> ask(const ControlOptions& options,
+                                   const nlohmann::ordered_json& request) {
+    const auto address = controlAddress(options);
+    if (!address) {
+        return fail(address.error());
+    }
+    const auto deadline = std::chrono::steady_clock::now() + 5s;
+    auto link = link::TcpLink::connect(address->first, address->second, deadline);
+    if (!link) {
+        return fail(link.error());
+    }
+    const auto line = request.dump() + "\n";
+    if (auto sent = link->send(std::as_bytes(std::span(line)), deadline); !sent) {
+        return fail(sent.error());
+    }
+    std::string answer;
+    while (answer.find('\n') == std::string::npos) {
+        std::array<char, 4096> buffer{};
+        const auto count = link->receive(std::as_writable_bytes(std::span(buffer)), deadline);
+        if (!count) {
+            return fail(count.error());
+        }
+        answer.append(buffer.data(), *count);
+    }
+    auto parsed = nlohmann::ordered_json::parse(answer, nullptr, false);
+    if (parsed.is_object() && parsed.contains("error")) {
+        return fail(Errc::invalid_argument, parsed.at("error").get<std::string>());
+    }
+    return parsed;
+}
+
+Exit inject(const ControlOptions& options) {
+    if (options.fault.empty()) {
+        const auto help = ask(options, {{"help", true}});
+        if (!help) {
+            return report(help.error());
+        }
+        for (const auto& [name, text] : help->items()) {
+            fmt::print("{:<24} {}\n", name, text.get<std::string>());
+        }
+        return Exit::success;
+    }
+    const auto done = ask(options, {{"inject", options.fault}, {"value", options.value}});
+    return done ? Exit::success : report(done.error());
+}
+
+Exit showState(const ControlOptions& options) {
+    const auto state = ask(options, {{"state", true}});
+    if (!state) {
+        return report(state.error());
+    }
+    fmt::print("{}\n", state->dump(2));
+    return Exit::success;
+}
+
+Exit listTypes() {
+    for (const auto& type : virtual_controller::controllerTypes()) {
+        fmt::print("{:<10} {}\n", type.name, type.help);
+    }
+    return Exit::success;
+}
+
+void addTarget(CLI::App& command, ControlOptions& options) {
+    command
+        .add_option("target", options.target,
+                    "ADDRESS or ADDRESS:PORT of its control port, or its name in the cell")
+        ->required();
+    command.add_option("--cell", options.cell, "The cell's file in which the name is");
+}
+
+}  // namespace
+
+void addVirtual(CLI::App& app, Exit& exit) {
+    auto* command =
+        app.add_subcommand("virtual", "Controllers without their devices: run them, break them");
+    command->require_subcommand(1);
+
+    // Shared by CLI11, which fills them, and the callbacks, which read them.
+    auto run = std::make_shared<VirtualRunOptions>();
+    auto* run_command = command->add_subcommand(
+        "run", "Run one virtual controller of a cell, until Ctrl-C; `metier up` runs all");
+    run_command->add_option("cell", run->cell, "The cell's file")->required();
+    run_command->add_option("name", run->name, "Its name in the file")->required();
+    run_command->add_option("--address", run->address, "Another address than the file's");
+    run_command->add_option("--world", run->world, "Address of the world, if not the file's");
+    run_command->callback([run, &exit] {
+        const StopSignal stop;
+        const auto ended = runController(*run, stop);
+        exit = ended ? *ended : report(ended.error());
+    });
+
+    auto control = std::make_shared<ControlOptions>();
+    auto* inject_command = command->add_subcommand(
+        "inject", "Let a virtual controller suffer a fault; without one: tells which there are");
+    addTarget(*inject_command, *control);
+    inject_command->add_option("fault", control->fault, "What happens, as emergency-stop");
+    inject_command->add_option("value", control->value, "Its argument, if it has one");
+    inject_command->callback([control, &exit] { exit = inject(*control); });
+
+    auto* state_command = command->add_subcommand("state", "Show a virtual controller as JSON");
+    addTarget(*state_command, *control);
+    state_command->callback([control, &exit] { exit = showState(*control); });
+
+    auto* list_command = command->add_subcommand("list", "The types of virtual controllers");
+    list_command->callback([&exit] { exit = listTypes(); });
+}
+
+}  // namespace metier::app

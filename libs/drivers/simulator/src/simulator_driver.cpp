@@ -1,0 +1,51 @@
+// An arm in this process, without a controller and its wire: for planning a cell, and for tests of
+// everything that is above a driver.
+#include <utility>
+
+#include "metier/driver/driver.hpp"
+#include "metier/joint_simulator/joint_simulator.hpp"
+#include "metier/joint_simulator/robot_options.hpp"
+#include "metier/joint_simulator/simulator_drive.hpp"
+
+namespace metier::simulator_driver {
+namespace {
+
+struct SimulatedArm {
+    explicit SimulatedArm(std::unique_ptr<virtual_robots::JointSimulator> simulator)
+        : arm(std::move(simulator)), drive(*arm) {}
+
+    std::unique_ptr<virtual_robots::JointSimulator> arm;
+    virtual_robots::SimulatorDrive drive;
+};
+
+Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+    if (auto checked = request.settings.finish(); !checked) {
+        return fail(checked.error());
+    }
+    if (request.model == nullptr) {
+        return fail(Errc::invalid_argument, request.name + ": the simulator is one of arms only");
+    }
+    auto options = virtual_robots::optionsFor(*request.model);
+    options.name = request.name;
+    auto arm = virtual_robots::JointSimulator::create(std::move(options));
+    if (!arm) {
+        return fail(arm.error());
+    }
+    auto owner = std::make_shared<SimulatedArm>(std::move(*arm));
+    driver::OpenDevice device;
+    device.arm = owner->arm.get();
+    device.owner = std::move(owner);
+    return device;
+}
+
+}  // namespace
+}  // namespace metier::simulator_driver
+
+namespace metier::driver {
+
+Driver simulatorDriver() {
+    return {"simulator", "An arm in the server's own process: no controller, no wire",
+            simulator_driver::open};
+}
+
+}  // namespace metier::driver
