@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
                   {":6: server[0].prot: unknown key"}},
         WrongCell{"UnknownKind",
                   "name = \"a\"\n[[server]]\nname = \"b\"\nkind = \"dog\"\n",
-                  {":4: server[0].kind: \"dog\" is not one of: arm, move"}},
+                  {":4: server[0].kind: \"dog\" is not one of: arm, gripper, move"}},
         WrongCell{"PortOutOfRange",
                   "name = \"a\"\n[[server]]\nname = \"b\"\nport = 99999\nkind = \"move\"\nrobot = "
                   "\"opc.tcp://x:1\"\n",

@@ -29,22 +29,39 @@ SkillsByName byName(robot_skills::ArmSkills skills) {
     return result;
 }
 
-/// The skill objects of the NodeSet must be just those that the cell file asks for.
-Result<void> checkSameSkills(const std::vector<opcua::Reference>& nodes,
-                             const configuration::ArmServer& config) {
-    std::vector<std::string> in_nodeset;
+/// Skill objects of the NodeSet that the cell file does not ask for would stay without a skill.
+Result<void> checkAllAsked(const std::vector<opcua::Reference>& nodes,
+                           const configuration::ArmServer& config) {
     for (const auto& node : nodes) {
-        in_nodeset.push_back(node.browse_name.name);
+        const auto& name = node.browse_name.name;
+        if (std::find(config.skills.begin(), config.skills.end(), name) == config.skills.end()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("skills = [{}], but the NodeSet '{}' also has {}",
+                                    fmt::join(config.skills, ", "), config.nodeset, name));
+        }
     }
-    auto wanted = config.skills;
-    std::sort(in_nodeset.begin(), in_nodeset.end());
-    std::sort(wanted.begin(), wanted.end());
-    if (in_nodeset == wanted) {
+    return {};
+}
+
+/// Objects for a robot without a NodeSet of its own.
+opcua_skill::MotionDeviceSystemSpec specOf(const configuration::ServerConfig& config,
+                                           const motion::RobotModel& model) {
+    opcua_skill::MotionDeviceSystemSpec spec;
+    spec.name = config.name;
+    spec.description = fmt::format("{} {}", model.maker(), model.product());
+    spec.manufacturer = model.maker();
+    spec.model = model.product();
+    for (const auto& joint : model.chain().joints) {
+        spec.axis_names.push_back(joint.name);
+    }
+    return spec;
+}
+
+std::vector<std::string> nodesetsOf(const configuration::ArmServer& config) {
+    if (config.nodeset.empty()) {
         return {};
     }
-    return fail(Errc::invalid_argument,
-                fmt::format("skills = [{}], but the NodeSet '{}' has [{}]", fmt::join(wanted, ", "),
-                            config.nodeset, fmt::join(in_nodeset, ", ")));
+    return {config.nodeset};
 }
 
 }  // namespace
@@ -63,7 +80,7 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
                     fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
                                 config.arm.driver.type));
     }
-    auto host = SkillHost::create(config, {config.arm.nodeset});
+    auto host = SkillHost::create(config, nodesetsOf(config.arm));
     if (!host) {
         return fail(host.error());
     }
@@ -72,7 +89,7 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
     }
     std::unique_ptr<ArmServer> server(
         new ArmServer(std::move(*loaded), std::move(*device), std::move(*host)));
-    if (auto offered = server->offer(config.arm); !offered) {
+    if (auto offered = server->offer(config); !offered) {
         return fail(offered.error());
     }
     if (auto started = server->host_->start(); !started) {
@@ -87,43 +104,62 @@ ArmServer::ArmServer(motion::RobotModel model, driver::OpenDevice device,
       device_(std::move(device)),
       host_(std::move(host)) {}
 
-Result<void> ArmServer::offer(const configuration::ArmServer& config) {
-    const auto system = opcua_skill::findMotionDeviceSystem(host_->nodes());
+Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
+    const auto system =
+        config.arm.nodeset.empty()
+            ? opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(config, model_))
+            : opcua_skill::findMotionDeviceSystem(host_->nodes());
     if (!system) {
         return fail(system.error());
     }
-    const auto nodes = host_->nodes().browse(system->skills);
-    if (!nodes) {
-        return fail(nodes.error());
-    }
-    if (auto same = checkSameSkills(*nodes, config); !same) {
-        return same;
-    }
-    auto arm_skills = robot_skills::makeArmSkills(*device_.arm, model_, host_->clock(),
-                                                  {.longest_silence = config.stream_silence});
-    if (!arm_skills) {
-        return fail(arm_skills.error());
-    }
-    const auto resource = arm_skills->resource;
-    auto skills = byName(std::move(*arm_skills));
-    for (const auto& node : *nodes) {
-        auto found = skills.find(node.browse_name.name);
-        if (found == skills.end()) {
-            return fail(Errc::not_supported,
-                        fmt::format("no skill '{}' for this arm", node.browse_name.name));
-        }
-        const auto bound =
-            host_->skills().bind(node.target, std::move(found->second),
-                                 {.resource = resource, .control = host_->control()});
-        if (!bound) {
-            return fail(bound.error());
-        }
+    if (auto offered = offerSkills(*system, config.arm); !offered) {
+        return offered;
     }
     if (auto offered = host_->offerControl(system->controller); !offered) {
         return offered;
     }
     host_->haltOnLossOf(*device_.arm);
     return host_->publishArm(*system, *device_.arm, model_);
+}
+
+Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
+                                    const configuration::ArmServer& config) {
+    const auto nodes = host_->nodes().browse(system.skills);
+    if (!nodes) {
+        return fail(nodes.error());
+    }
+    if (auto all_asked = checkAllAsked(*nodes, config); !all_asked) {
+        return all_asked;
+    }
+    auto arm_skills = robot_skills::makeArmSkills(*device_.arm, model_, host_->clock(),
+                                                  {.longest_silence = config.stream_silence});
+    if (!arm_skills) {
+        return fail(arm_skills.error());
+    }
+    const skill::ProgramOptions options{.resource = arm_skills->resource,
+                                        .control = host_->control()};
+    auto skills = byName(std::move(*arm_skills));
+    for (const auto& name : config.skills) {
+        const auto found = skills.find(name);
+        if (found == skills.end()) {
+            return fail(Errc::not_supported, fmt::format("no skill '{}' for this arm", name));
+        }
+        const auto node = std::find_if(nodes->begin(), nodes->end(), [&](const auto& reference) {
+            return reference.browse_name.name == name;
+        });
+        if (node == nodes->end()) {
+            if (auto published =
+                    host_->skills().publish(system.skills, std::move(found->second), options);
+                !published) {
+                return fail(published.error());
+            }
+        } else if (auto bound =
+                       host_->skills().bind(node->target, std::move(found->second), options);
+                   !bound) {
+            return fail(bound.error());
+        }
+    }
+    return {};
 }
 
 }  // namespace metier::app

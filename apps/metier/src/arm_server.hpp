@@ -11,7 +11,8 @@
 
 namespace metier::app {
 
-/// An arm behind its OPC UA server: the instances of its NodeSet, served by the arm's skills.
+/// An arm behind its OPC UA server, with its skills: at the instances of its NodeSet, and at nodes
+/// made at run time for those that the NodeSet does not have.
 ///
 /// Threading: one thread starts and ends it.
 class ArmServer {
@@ -23,7 +24,9 @@ public:
 
 private:
     ArmServer(motion::RobotModel model, driver::OpenDevice device, std::unique_ptr<SkillHost> host);
-    Result<void> offer(const configuration::ArmServer& config);
+    Result<void> offer(const configuration::ServerConfig& config);
+    Result<void> offerSkills(const opcua_skill::MotionDeviceSystem& system,
+                             const configuration::ArmServer& config);
 
     motion::RobotModel model_;
     driver::OpenDevice device_;

@@ -36,6 +36,10 @@ public:
                                     const OnReady& on_ready);
 
     const std::vector<Running>& servers() const noexcept { return running_; }
+    /// Addresses of the virtual controllers, by name.
+    const std::map<std::string, std::string>& virtualControllers() const noexcept {
+        return virtual_addresses_;
+    }
 
     /// Waits for a server to end or for the descriptor to become readable.
     /// \return the name and exit status of a server that ended; nothing if it was the descriptor

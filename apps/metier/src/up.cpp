@@ -18,12 +18,16 @@ struct UpOptions {
 };
 
 Result<void> writeEndpoints(const std::string& file, const CellRunner& cell) {
-    nlohmann::json servers = nlohmann::json::array();
+    auto servers = nlohmann::json::array();
     for (const auto& server : cell.servers()) {
         servers.push_back({{"name", server.name}, {"url", server.url}});
     }
+    auto controllers = nlohmann::json::array();
+    for (const auto& [name, address] : cell.virtualControllers()) {
+        controllers.push_back({{"name", name}, {"address", address}});
+    }
     std::ofstream out(file);
-    out << servers.dump(2) << '\n';
+    out << nlohmann::json{{"servers", servers}, {"virtual", controllers}}.dump(2) << '\n';
     if (!out.flush()) {
         return fail(Errc::invalid_argument, fmt::format("{}: cannot be written", file));
     }
@@ -73,8 +77,9 @@ void addUp(CLI::App& app, Exit& exit) {
         ->required();
     command->add_flag("--free-ports", options->free_ports,
                       "Take free ports instead of those in the file");
-    command->add_option("--endpoints", options->endpoints,
-                        "Write the servers' names and addresses to this JSON file");
+    command->add_option(
+        "--endpoints", options->endpoints,
+        "Write the names and addresses of servers and virtual controllers to this JSON file");
     command->callback([options, &exit] { exit = runUp(*options); });
 }
 

@@ -44,7 +44,7 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     if (table.has("force_torque_sensor")) {
         arm.force_torque_sensor = readDriver(table.table("force_torque_sensor"));
     }
-    arm.nodeset = table.text("nodeset");
+    arm.nodeset = table.textOr("nodeset", "");
     arm.skills = table.texts("skills");
     arm.stream_silence = table.numberOr("stream_silence", arm.stream_silence);
     if (!(arm.stream_silence >= kShortestSilence && arm.stream_silence <= kLongestSilence)) {

@@ -25,9 +25,10 @@ struct ArmServer {
     DriverChoice driver;
     /// Of its flange, for moves that end at a contact.
     std::optional<DriverChoice> force_torque_sensor;
-    /// Short name of the NodeSet that holds the robot's instances, such as `iiwa`.
+    /// Short name of the NodeSet that holds the robot's instances, such as `iiwa`; empty: the server
+    /// makes them.
     std::string nodeset;
-    /// Skills that the server offers, such as `PositionStreamSkill`; all are in its NodeSet.
+    /// Skills that the server offers, such as `PositionStreamSkill`.
     std::vector<std::string> skills;
     /// Silence of a moving stream that ends it [s].
     double stream_silence = 0.15;
