@@ -41,7 +41,8 @@ public:
             line = process_.readLine(inAMinute()).value();
         }
         std::ifstream file(endpoints_);
-        for (const auto& server : nlohmann::json::parse(file).at("servers")) {
+        const auto endpoints = nlohmann::json::parse(file);
+        for (const auto& server : endpoints.at("servers")) {
             urls_[server.at("name")] = server.at("url");
         }
     }
