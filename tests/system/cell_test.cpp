@@ -1,13 +1,9 @@
 // The demo cell as its users run it: processes of `metier`, clients over OPC UA, and what happens
 // when one of the processes dies.
 #include <gmock/gmock.h>
-#include <poll.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -15,6 +11,7 @@
 #include "metier/skill_client/kinematics_reader.hpp"
 #include "metier/skill_client/skill_finder.hpp"
 #include "metier_program.hpp"
+#include "running_cell.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -27,50 +24,8 @@ using ::testing::Lt;
 using ::testing::SizeIs;
 using ::testing::UnorderedElementsAre;
 
-constexpr const char* kUp = "the cell is up; Ctrl-C ends it";
-
-/// `metier up` with the demo cell.
-class RunningCell {
-public:
-    RunningCell()
-        : process_(
-              process::ChildProcess::start(metierCommand({"up", demoCell().string(), "--free-ports",
-                                                          "--endpoints", endpoints_.string()}))
-                  .value()) {
-        for (std::string line; line != kUp;) {
-            line = process_.readLine(inAMinute()).value();
-        }
-        std::ifstream file(endpoints_);
-        const auto endpoints = nlohmann::json::parse(file);
-        for (const auto& server : endpoints.at("servers")) {
-            urls_[server.at("name")] = server.at("url");
-        }
-    }
-
-    const std::map<std::string, std::string>& urls() const { return urls_; }
-    process::ChildProcess& process() { return process_; }
-
-    /// Handles of the servers' processes, readable once they have ended.
-    std::vector<pollfd> children() const {
-        const auto task = "/proc/" + std::to_string(process_.pid()) + "/task/" +
-                          std::to_string(process_.pid()) + "/children";
-        std::ifstream file(task);
-        std::vector<pollfd> handles;
-        for (pid_t pid = 0; file >> pid;) {
-            handles.push_back({static_cast<int>(syscall(SYS_pidfd_open, pid, 0)), POLLIN, 0});
-        }
-        return handles;
-    }
-
-private:
-    std::filesystem::path endpoints_ = std::filesystem::path(::testing::TempDir()) /
-                                       ("endpoints_" + std::to_string(getpid()) + ".json");
-    process::ChildProcess process_;
-    std::map<std::string, std::string> urls_;
-};
-
 TEST(Cell, MovesEveryArmAlongItsSquareWithinFiveHundredthsOfAMillimetre) {
-    const RunningCell cell;
+    const RunningCell cell(demoCell());
     std::vector<std::string> command{"square", "--json", "--laps",
                                      "1",      "--svg",  ::testing::TempDir() + "square.svg"};
     for (const auto& [name, url] : cell.urls()) {
@@ -104,9 +59,9 @@ TEST(Cell, IsFoundByBrowsing) {
 }
 
 TEST(Cell, EndsAllItsServersWhenItIsKilled) {
-    RunningCell cell;
+    RunningCell cell(demoCell());
     auto children = cell.children();
-    ASSERT_THAT(children, SizeIs(cell.urls().size()));
+    ASSERT_THAT(children, SizeIs(cell.size()));
     cell.process().signal(SIGKILL);
     for (auto& child : children) {
         ASSERT_GE(child.fd, 0);
@@ -116,11 +71,8 @@ TEST(Cell, EndsAllItsServersWhenItIsKilled) {
 }
 
 TEST(Cell, GoesDownAndSaysWhichServerEnded) {
-    RunningCell cell;
-    const auto task = "/proc/" + std::to_string(cell.process().pid()) + "/task/" +
-                      std::to_string(cell.process().pid()) + "/children";
-    pid_t first = 0;
-    std::ifstream(task) >> first;
+    RunningCell cell(demoCell());
+    const auto first = cell.childPids().front();
     ASSERT_GT(first, 0);
     ASSERT_EQ(kill(first, SIGKILL), 0);
     EXPECT_EQ(cell.process().waitUntil(inAMinute()), 1);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <poll.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "metier/process/child_process.hpp"
+
+namespace metier::system_tests {
+
+/// `metier up` of a cell file with free ports and addresses; every process of it ends with this.
+class RunningCell {
+public:
+    /// Throws unless everything is ready within a minute.
+    explicit RunningCell(const std::filesystem::path& file);
+
+    /// Servers by name.
+    const std::map<std::string, std::string>& urls() const { return urls_; }
+    const std::string& url(const std::string& server) const { return urls_.at(server); }
+    const std::string& virtualAddress(const std::string& controller) const {
+        return virtual_addresses_.at(controller);
+    }
+    /// How many processes there are below `metier up`.
+    std::size_t size() const { return urls_.size() + virtual_addresses_.size(); }
+    process::ChildProcess& process() { return process_; }
+
+    /// `metier virtual inject`. Throws if it is refused.
+    void inject(const std::string& controller, const std::string& fault,
+                const std::string& value = "") const;
+    /// What `metier virtual state` prints.
+    std::string state(const std::string& controller) const;
+
+    /// Handles of the processes, readable once they have ended; the caller closes them.
+    std::vector<pollfd> children() const;
+    std::vector<pid_t> childPids() const;
+
+private:
+    std::filesystem::path endpoints_;
+    process::ChildProcess process_;
+    std::map<std::string, std::string> urls_;
+    std::map<std::string, std::string> virtual_addresses_;
+};
+
+}  // namespace metier::system_tests
