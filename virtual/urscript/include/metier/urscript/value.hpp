@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace metier::urscript {
+
+using Vector3 = std::array<double, 3>;
+using Vector6 = std::array<double, 6>;
+
+/// A pose `p[x, y, z, rx, ry, rz]`: x, y, z [m] and the rotation vector rx, ry, rz [rad].
+struct Pose {
+    Vector6 value{};
+    friend bool operator==(const Pose&, const Pose&) = default;
+};
+
+class Value;
+
+/// A list with the meaning of a value: a copy is independent of what it was copied from.
+/// Copies share their elements until one of them is changed.
+class List {
+public:
+    List() = default;
+    explicit List(std::vector<Value> elements);
+
+    const std::vector<Value>& elements() const;
+    /// The elements, for a change; made this list's own first.
+    std::vector<Value>& ownElements();
+    std::size_t size() const { return elements_ ? elements().size() : 0; }
+
+private:
+    std::shared_ptr<std::vector<Value>> elements_;  // shared by copies until one is changed
+};
+
+/// A value of a script. Integers have 32 bits, as the controller's.
+class Value {
+public:
+    using Data = std::variant<std::monostate, bool, std::int32_t, double, std::string, List, Pose>;
+
+    Value() = default;
+    Value(bool value) : data_(value) {}                      // NOLINT: a value is a value
+    Value(std::int32_t value) : data_(value) {}              // NOLINT
+    Value(double value) : data_(value) {}                    // NOLINT
+    Value(std::string value) : data_(std::move(value)) {}    // NOLINT
+    Value(const char* value) : data_(std::string(value)) {}  // NOLINT
+    Value(List value) : data_(std::move(value)) {}           // NOLINT
+    Value(const Pose& value) : data_(value) {}               // NOLINT
+    Value(const Vector6& numbers);                           // NOLINT
+    Value(std::vector<Value> elements) : data_(List(std::move(elements))) {}  // NOLINT
+
+    const Data& data() const { return data_; }
+    Data& data() { return data_; }
+    template <typename T>
+    const T* get() const {
+        return std::get_if<T>(&data_);
+    }
+    template <typename T>
+    T* get() {
+        return std::get_if<T>(&data_);
+    }
+    bool isNone() const { return data_.index() == 0; }
+    bool isNumber() const { return get<std::int32_t>() != nullptr || get<double>() != nullptr; }
+    /// The number; 0 for what is none.
+    double number() const;
+    /// "none", "bool", "int", "float", "string", "list" or "pose".
+    std::string_view typeName() const;
+    /// As textmsg, str_cat and to_str write it: True, 1, 0.5, [1, 2], p[0, 0, 0, 0, 0, 0].
+    std::string text() const;
+
+private:
+    Data data_;
+};
+
+}  // namespace metier::urscript
