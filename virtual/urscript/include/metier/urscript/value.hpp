@@ -31,12 +31,18 @@ public:
     explicit List(std::vector<Value> elements);
 
     const std::vector<Value>& elements() const;
-    /// The elements, for a change; made this list's own first.
-    std::vector<Value>& ownElements();
     std::size_t size() const { return elements_ ? elements().size() : 0; }
+    /// Values in it and in the lists in it.
+    std::size_t weight() const { return weight_; }
+    /// Lists within lists: 1 for a list of numbers, at least.
+    int depth() const { return depth_; }
+    /// \param index less than size()
+    void set(std::size_t index, Value value);
 
 private:
     std::shared_ptr<std::vector<Value>> elements_;  // shared by copies until one is changed
+    std::size_t weight_ = 0;
+    int depth_ = 1;
 };
 
 /// A value of a script. Integers have 32 bits, as the controller's.

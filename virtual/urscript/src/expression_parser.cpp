@@ -1,0 +1,294 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "parser.hpp"
+
+namespace metier::urscript {
+namespace {
+
+using Kind = TokenKind;
+
+constexpr std::size_t kMostElements = 1000;
+constexpr std::size_t kMostArguments = 64;
+constexpr std::size_t kPoseElements = 6;
+
+// The operation of a token on each level; Op::pop if it has none there.
+Op xorOf(Kind kind) {
+    return kind == Kind::word_xor ? Op::logical_xor : Op::pop;
+}
+
+Op comparisonOf(Kind kind) {
+    switch (kind) {
+        case Kind::equal:
+            return Op::equal;
+        case Kind::not_equal:
+            return Op::not_equal;
+        case Kind::less:
+            return Op::less;
+        case Kind::less_equal:
+            return Op::less_equal;
+        case Kind::greater:
+            return Op::greater;
+        case Kind::greater_equal:
+            return Op::greater_equal;
+        default:
+            return Op::pop;
+    }
+}
+
+Op sumOf(Kind kind) {
+    switch (kind) {
+        case Kind::plus:
+            return Op::add;
+        case Kind::minus:
+            return Op::subtract;
+        default:
+            return Op::pop;
+    }
+}
+
+Op productOf(Kind kind) {
+    switch (kind) {
+        case Kind::star:
+            return Op::multiply;
+        case Kind::slash:
+            return Op::divide;
+        case Kind::percent:
+            return Op::remainder;
+        default:
+            return Op::pop;
+    }
+}
+
+}  // namespace
+
+Result<void> Parser::expression() {
+    return leftToRight(&Parser::orExpression, xorOf);
+}
+
+Result<void> Parser::leftToRight(Step operand, Op (*operation)(Kind)) {
+    auto done = (this->*operand)();
+    while (done && operation(peek().kind) != Op::pop) {
+        const Token& token = take();
+        done = (this->*operand)();
+        builder_.emit(operation(token.kind), token.at);
+    }
+    return done;
+}
+
+Result<void> Parser::orExpression() {
+    auto done = andExpression();
+    while (done && peek().kind == Kind::word_or) {
+        const Position at = take().at;
+        const std::size_t otherwise = builder_.emit(Op::jump_if_false, at);
+        builder_.constant(true, at);
+        const std::size_t end = builder_.emit(Op::jump, at);
+        builder_.patch(otherwise);
+        done = andExpression();
+        builder_.emit(Op::truth, at);
+        builder_.patch(end);
+    }
+    return done;
+}
+
+Result<void> Parser::andExpression() {
+    auto done = notExpression();
+    while (done && peek().kind == Kind::word_and) {
+        const Position at = take().at;
+        const std::size_t otherwise = builder_.emit(Op::jump_if_false, at);
+        done = notExpression();
+        builder_.emit(Op::truth, at);
+        const std::size_t end = builder_.emit(Op::jump, at);
+        builder_.patch(otherwise);
+        builder_.constant(false, at);
+        builder_.patch(end);
+    }
+    return done;
+}
+
+Result<void> Parser::notExpression() {
+    if (peek().kind != Kind::word_not) {
+        return comparison();
+    }
+    const Position at = take().at;
+    return nested(&Parser::notExpression).map([&] { builder_.emit(Op::logical_not, at); });
+}
+
+Result<void> Parser::comparison() {
+    return leftToRight(&Parser::sum, comparisonOf);
+}
+Result<void> Parser::sum() {
+    return leftToRight(&Parser::product, sumOf);
+}
+Result<void> Parser::product() {
+    return leftToRight(&Parser::sign, productOf);
+}
+
+Result<void> Parser::sign() {
+    const Token& token = peek();
+    if (takeIf(Kind::minus)) {
+        return nested(&Parser::sign).map([&] { builder_.emit(Op::negate, token.at); });
+    }
+    return takeIf(Kind::plus) ? nested(&Parser::sign) : primary();
+}
+
+/// A value and the indices behind it.
+Result<void> Parser::primary() {
+    auto done = value();
+    while (done && peek().kind == Kind::left_bracket) {
+        const Position at = take().at;
+        const auto indices = expressions(Kind::right_bracket, 2);
+        if (!indices) {
+            return fail(indices.error());
+        }
+        if (*indices == 0) {
+            return failAt(at, "an index is missing");
+        }
+        builder_.emit(Op::element, at, 0, *indices);
+    }
+    return done;
+}
+
+Result<void> Parser::value() {
+    const Token& token = peek();
+    switch (token.kind) {
+        case Kind::name:
+            return name();
+        case Kind::left_bracket:
+            return list();
+        case Kind::word_run:
+            return runThread();
+        case Kind::left_paren:
+            take();
+            if (auto done = nested(&Parser::expression); !done) {
+                return done;
+            }
+            return expect(Kind::right_paren, "')'");
+        case Kind::integer:
+            builder_.constant(static_cast<std::int32_t>(token.number), token.at);
+            break;
+        case Kind::number:
+            builder_.constant(token.number, token.at);
+            break;
+        case Kind::string:
+            builder_.constant(std::string(token.text), token.at);
+            break;
+        case Kind::word_true:
+        case Kind::word_false:
+            builder_.constant(token.kind == Kind::word_true, token.at);
+            break;
+        default:
+            return unexpected("a value");
+    }
+    take();
+    return {};
+}
+
+Result<void> Parser::name() {
+    if (isPose()) {
+        return pose();
+    }
+    const Token& token = take();
+    if (peek().kind == Kind::left_paren) {
+        return call(token);
+    }
+    builder_.load(token.text, token.at);
+    return {};
+}
+
+Result<void> Parser::call(const Token& name) {
+    std::vector<WrittenArgument> arguments;
+    auto done = expect(Kind::left_paren, "'=' or '('");
+    while (done && !takeIf(Kind::right_paren)) {
+        done = argument(arguments);
+        if (done && peek().kind != Kind::right_paren) {
+            done = expect(Kind::comma, "',' or ')'");
+        }
+    }
+    if (done) {
+        builder_.call(name.text, std::move(arguments), name.at);
+    }
+    return done;
+}
+
+Result<void> Parser::argument(std::vector<WrittenArgument>& arguments) {
+    WrittenArgument written{{}, peek().at};
+    if (peek().kind == Kind::name && peek(1).kind == Kind::assign) {
+        written.name = take().text;
+        take();
+    } else if (!arguments.empty() && !arguments.back().name.empty()) {
+        return unexpected("an argument's name");
+    }
+    arguments.push_back(written);
+    if (arguments.size() > kMostArguments) {
+        return unexpected("')'");
+    }
+    return nested(&Parser::expression);
+}
+
+/// `p[` begins a pose, unless there is a variable p and fewer values than a pose has.
+bool Parser::isPose() const {
+    if (peek().text != "p" || peek(1).kind != Kind::left_bracket) {
+        return false;
+    }
+    return !builder_.isVariable("p") || peek(3).kind == Kind::comma ||
+           peek(2).kind == Kind::minus || peek(4).kind == Kind::comma;
+}
+
+Result<void> Parser::pose() {
+    const Position at = take().at;
+    take();
+    const auto elements = expressions(Kind::right_bracket, kPoseElements);
+    if (!elements) {
+        return fail(elements.error());
+    }
+    if (*elements != kPoseElements) {
+        return failAt(at, fmt::format("a pose has 6 numbers, not {}", *elements));
+    }
+    builder_.emit(Op::make_pose, at);
+    return {};
+}
+
+Result<void> Parser::list() {
+    const Position at = take().at;
+    const auto elements = expressions(Kind::right_bracket, kMostElements);
+    if (!elements) {
+        return fail(elements.error());
+    }
+    builder_.emit(Op::make_list, at, static_cast<std::int32_t>(*elements));
+    return {};
+}
+
+Result<void> Parser::runThread() {
+    const Position at = take().at;
+    const Token& name = peek();
+    auto done = expect(Kind::name, "a thread's name");
+    if (done) {
+        done = expect(Kind::left_paren, "'('");
+    }
+    if (done) {
+        done = expect(Kind::right_paren, "')'");
+    }
+    return done.map([&] { builder_.run(name.text, at); });
+}
+
+Result<std::size_t> Parser::expressions(Kind end, std::size_t most) {
+    std::size_t count = 0;
+    while (!takeIf(end)) {
+        if (count == most) {
+            return failAt(peek().at, fmt::format("more than {} values", most));
+        }
+        auto done = nested(&Parser::expression);
+        ++count;
+        if (done && peek().kind != end) {
+            done = expect(Kind::comma, end == Kind::right_bracket ? "',' or ']'" : "',' or ')'");
+        }
+        if (!done) {
+            return fail(std::move(done.error()));
+        }
+    }
+    return count;
+}
+
+}  // namespace metier::urscript

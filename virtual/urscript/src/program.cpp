@@ -1,0 +1,36 @@
+#include "metier/urscript/program.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "code.hpp"
+#include "parser.hpp"
+
+namespace metier::urscript {
+
+Result<Program> Program::parse(std::string_view text) {
+    if (text.size() > kMaxText) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("line 1, column 1: the script has {} bytes, more than {}",
+                                text.size(), kMaxText));
+    }
+    const auto tokens = tokenize(text);
+    if (!tokens) {
+        return fail(tokens.error());
+    }
+    auto code = Parser(*tokens).program();
+    if (!code) {
+        return fail(std::move(code.error()));
+    }
+    return Program(std::make_shared<const Code>(*std::move(code)));
+}
+
+const std::string& Program::name() const {
+    return code_->name;
+}
+ProgramKind Program::kind() const {
+    return code_->kind;
+}
+
+}  // namespace metier::urscript
