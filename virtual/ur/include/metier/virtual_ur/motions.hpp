@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "metier/geometry/pose.hpp"
+#include "metier/motion/kinematics.hpp"
+#include "metier/virtual_ur/robot_state.hpp"
+
+namespace metier::virtual_ur {
+
+/// Where the commanded arm is.
+struct JointState {
+    Vector6 position{};  ///< [rad]
+    Vector6 velocity{};  ///< [rad/s]
+};
+
+/// One of the controller's ways to move: gives a set-point per cycle.
+///
+/// Threading: one thread, the cycle.
+class Motion {
+public:
+    virtual ~Motion() = default;
+    /// The next set-point [rad]; empty if there is none (a line through a singular place).
+    /// \param now  the last set-point and its velocity
+    /// \param step [s] that pass
+    virtual std::optional<Vector6> next(const JointState& now, double step) = 0;
+    /// Whether a script that waits for it may go on. The motion may go on too.
+    virtual bool done() const = 0;
+};
+
+/// Where the tool's origin sits on the arm.
+struct ToolKinematics {
+    const motion::Kinematics& arm;
+    geometry::Pose flange_from_tool;
+};
+
+/// Follows a set-point that changes all the time: two equal low-passes that together lag by
+/// lookahead + 1 / gain behind it (docs in the README: what is simulated).
+class ServoMotion final : public Motion {
+public:
+    /// \param now where the arm is and how fast: the motion goes on from there
+    explicit ServoMotion(const JointState& now);
+    /// Where to go from now on.
+    /// \param duration [s] that a script waits for it
+    /// \param lag      [s], > 0
+    void retarget(const Vector6& target, double duration, double lag);
+
+    std::optional<Vector6> next(const JointState& now, double step) override;
+    bool done() const override { return left_ <= 0.0; }
+
+private:
+    JointState start_;
+    Vector6 target_{};
+    std::optional<Vector6> first_;  // what the first low-pass gives
+    double lag_ = 0.1;
+    double left_ = 0.0;
+};
+
+/// Reaches a joint velocity with an acceleration of the leading axis, and keeps it.
+/// \param duration [s]; 0: done when the velocity is reached
+std::unique_ptr<Motion> speedJ(const Vector6& velocity, double acceleration, double duration);
+/// The same for the tool: twist in the base frame.
+std::unique_ptr<Motion> speedL(const Vector6& twist, double acceleration, double duration,
+                               const ToolKinematics& tool);
+/// Brakes every axis along its direction until the arm stands.
+std::unique_ptr<Motion> stopJ(double acceleration);
+
+/// How fast a move may be along its path.
+struct PathSpeed {
+    double velocity = 0.0;
+    double acceleration = 0.0;
+    double duration = 0.0;  ///< [s]; > 0: as long as that instead
+};
+/// From standstill, all axes arriving together. Speeds [rad/s] are those of the leading axis.
+std::unique_ptr<Motion> moveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed);
+/// From standstill, the tool along a line. Speeds [m/s]; of a turn on the spot [rad/s].
+std::unique_ptr<Motion> moveL(const Vector6& start, const geometry::Pose& base_from_target,
+                              const PathSpeed& speed, const ToolKinematics& tool);
+
+/// base_from_pose of x, y, z and a rotation vector, and back.
+geometry::Pose toPose(const Vector6& pose);
+Vector6 toVector(const geometry::Pose& pose);
+motion::JointVector toJointVector(const Vector6& q);
+
+}  // namespace metier::virtual_ur

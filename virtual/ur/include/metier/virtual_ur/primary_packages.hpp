@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "metier/motion/robot_model.hpp"
+#include "metier/virtual_ur/robot_state.hpp"
+#include "metier/virtual_ur/rtde_session.hpp"
+#include "metier/virtual_ur/wire_bytes.hpp"
+
+namespace metier::virtual_ur {
+
+// What the ports 30001 and 30002 send. Every function gives one whole package.
+// Source: the maker's client interface documents; the packet captured in URCL's tests.
+
+/// What does not change of the robot.
+struct RobotDescription {
+    Series series = Series::cb3;
+    ControllerVersion version;
+    std::string build_date;  ///< as "14-12-2020, 11:11:11"
+    const motion::RobotModel* model = nullptr;
+    Vector6 joint_acceleration{};  ///< most of each axis [rad/s2]
+    std::int32_t robot_type = 1;   ///< 1 UR5, 2 UR10, 3 UR3
+};
+
+/// Package type 16 with all its parts.
+Bytes robotStatePackage(const RobotState& state, const RobotDescription& robot);
+
+/// Microseconds of the controller; UINT64_MAX where the maker sends none.
+using MessageTime = std::uint64_t;
+
+Bytes versionMessage(const RobotDescription& robot);
+Bytes textMessage(MessageTime time, std::string_view text);
+/// \param title as "PROGRAM_XXX_STARTED", at most 255 bytes
+Bytes keyMessage(MessageTime time, std::string_view title, std::string_view text);
+Bytes safetyModeMessage(MessageTime time, SafetyMode mode);
+Bytes runtimeExceptionMessage(int line, int column, std::string_view text);
+
+/// As the maker's log shows it: C150A1, with a level.
+struct ErrorCode {
+    enum class Level : std::int32_t { debug, info, warning, violation, fault, critical };
+    std::int32_t code = 0;
+    std::int32_t argument = 0;
+    Level level = Level::info;
+    std::string text;
+};
+Bytes errorCodeMessage(MessageTime time, const ErrorCode& error);
+
+struct PopupMessage {
+    std::string title;
+    std::string text;
+    bool warning = false;
+    bool error = false;
+    bool blocking = false;
+};
+Bytes popupMessage(MessageTime time, const PopupMessage& popup);
+
+}  // namespace metier::virtual_ur

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "metier/virtual_ur/robot_state.hpp"
+#include "metier/virtual_ur/wire_bytes.hpp"
+
+namespace metier::virtual_ur {
+
+/// What port 30003 sends each cycle: 1116 bytes as software 3.10 to 3.15, 1220 as 5.10 and later.
+/// Source: the maker's "Realtime Client Interface", versions 3.14 and 5.10.
+Bytes realtimePackage(const RobotState& state, Series series);
+
+}  // namespace metier::virtual_ur

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/virtual_controller/link_faults.hpp"
+#include "metier/virtual_controller/world_link.hpp"
+#include "metier/virtual_ur/program_runner.hpp"
+#include "metier/virtual_ur/robot_options.hpp"
+#include "metier/virtual_ur/script_sockets.hpp"
+
+namespace metier::virtual_ur {
+
+/// The virtual robot with its controller, without the ports.
+///
+/// Threading: the thread that runs the io_context.
+class Robot {
+public:
+    /// What is around it; all of it outlives the robot.
+    struct Surroundings {
+        asio::io_context& context;
+        const virtual_controller::LinkFaults& faults;
+        virtual_controller::WorldLink& world;
+        /// Gets each message of the primary port.
+        std::function<void(const Bytes&)> tell;
+    };
+    Robot(RobotOptions options, Surroundings around);
+    Robot(const Robot&) = delete;
+    Robot& operator=(const Robot&) = delete;
+
+    /// One period of the controller.
+    void cycle();
+    /// As after power was switched off and on.
+    void restart();
+
+    const RobotState& state() const { return state_; }
+    const RobotOptions& options() const { return options_; }
+    double rate() const { return rate_; }
+
+    // ---- for RTDE ----
+    RtdeInputs rtdeInputs() { return {state_.inputs, control_}; }
+    void inputsWritten(const std::vector<std::string>& names);
+
+    // ---- for the script ports ----
+    /// A program, or one of the lines that those ports take besides: "power on", "stop program".
+    void takeScript(std::string_view text);
+    void tellText(std::string_view text);
+
+    // ---- for the dashboard; what changes something fails with invalid_state if it may not ----
+    const RobotModes& modes() const { return *modes_; }
+    ProgramRunner& programs() { return *programs_; }
+    bool commandsAllowed() const;
+    Result<void> powerOn() { return modes_->powerOn(); }
+    Result<void> releaseBrakes() { return modes_->releaseBrakes(); }
+    void powerOff();
+    Result<void> unlock();
+    void restartSafety();
+    Result<void> play();
+    void showPopup(std::string text);
+    void closePopup();
+
+    // ---- for injections ----
+    void emergencyStop();
+    void releaseEmergencyStop();
+    void protectiveStop(const ArmViolation& cause);
+    /// \param axis from 0
+    void exceedLimit(std::size_t axis);
+    void setControl(Control control) { control_mode_ = control; }
+    Control control() const { return control_mode_; }
+
+private:
+    void begin();
+    void stopEverything();
+    void watchSafety();
+    void applyControlInputs();
+    void publish();
+    void publishTool();
+    void publishModes();
+    bool takeCommandLine(std::string_view line);
+    MessageTime now() const;
+
+    const RobotOptions options_;
+    Surroundings around_;
+    const double rate_;  // cycles per second
+    RobotState state_;
+    ControlInputs control_;
+    Control control_mode_;
+    Arm arm_;
+    ScriptSockets sockets_;
+    std::optional<RobotModes> modes_;
+    std::optional<ScriptRobot> script_robot_;
+    std::optional<ProgramRunner> programs_;
+    SafetyMode told_safety_ = SafetyMode::normal;
+};
+
+}  // namespace metier::virtual_ur

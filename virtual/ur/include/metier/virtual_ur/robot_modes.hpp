@@ -1,0 +1,64 @@
+#pragma once
+
+#include "metier/base/error.hpp"
+#include "metier/virtual_ur/robot_state.hpp"
+
+namespace metier::virtual_ur {
+
+/// How long the transitions take [s].
+struct ModeTimes {
+    double power_on = 1.0;
+    double brake_release = 0.5;
+    /// A protective stop cannot be unlocked sooner (believed to be 5 s).
+    double unlock_delay = 5.0;
+};
+
+enum class PowerAtStart : std::uint8_t { off, running };
+
+/// The robot's and the safety system's modes and what leads from one to the other.
+///
+/// Threading: one thread, the cycle.
+class RobotModes {
+public:
+    RobotModes(const ModeTimes& times, PowerAtStart power);
+
+    /// \param standing whether the arm stands: only then power goes off
+    void step(double seconds, bool standing);
+
+    // What the panel, the dashboard and the script ports ask for.
+    /// Errors of both: invalid_state in an emergency stop or a fault.
+    Result<void> powerOn();
+    /// Powers on first if need be.
+    Result<void> releaseBrakes();
+    void powerOff();
+    /// Errors: invalid_state with the maker's text, too soon or not stopped.
+    Result<void> unlock();
+    void restartSafety();
+
+    // What happens to the robot.
+    void protectiveStop();
+    void emergencyStop();
+    void releaseEmergencyStop();
+
+    RobotMode robotMode() const { return robot_; }
+    SafetyMode safetyMode() const { return safety_; }
+    std::uint32_t safetyStatusBits() const;
+    JointMode jointMode() const;
+    /// Whether a program may begin or go on.
+    bool mayRun() const { return robot_ == RobotMode::running && safety_ == SafetyMode::normal; }
+    bool emergencyStopped() const { return safety_ == SafetyMode::robot_emergency_stop; }
+    bool poweringOff() const { return powering_off_; }
+
+private:
+    Result<void> refuseUnlessSafe() const;
+
+    const ModeTimes times_;
+    RobotMode robot_;
+    SafetyMode safety_ = SafetyMode::normal;
+    double in_mode_ = 0.0;    // how long the robot mode is the present one [s]
+    double in_safety_ = 0.0;  // how long the safety mode is [s]
+    bool release_brakes_ = false;
+    bool powering_off_ = false;
+};
+
+}  // namespace metier::virtual_ur

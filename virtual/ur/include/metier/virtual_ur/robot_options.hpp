@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/configuration/settings.hpp"
+#include "metier/virtual_ur/arm.hpp"
+#include "metier/virtual_ur/primary_packages.hpp"
+#include "metier/virtual_ur/robot_modes.hpp"
+
+namespace metier::virtual_ur {
+
+/// Where the services listen; 0: a free port.
+struct Ports {
+    std::uint16_t dashboard = 29999;
+    std::uint16_t primary = 30001;
+    std::uint16_t secondary = 30002;
+    std::uint16_t realtime = 30003;
+    std::uint16_t rtde = 30004;
+    std::uint16_t primary_read_only = 30011;
+    std::uint16_t secondary_read_only = 30012;
+    std::uint16_t realtime_read_only = 30013;
+};
+
+/// Whether scripts and the dashboard may command an e-Series arm.
+enum class Control : std::uint8_t { local, remote };
+
+/// One virtual robot with its controller.
+struct RobotOptions {
+    RobotDescription description;
+    ArmOptions arm;
+    ModeTimes times;
+    PowerAtStart power = PowerAtStart::running;
+    Control control = Control::remote;
+    std::string serial_number;
+    std::string robot_model;         ///< as the dashboard tells it, "UR5"
+    std::filesystem::path programs;  ///< folder of what the dashboard loads; empty: none
+    Ports ports;
+    std::string address;  ///< the robot's own, where its sockets come from
+};
+
+/// \param model of six axes; outlives what is made of the options
+/// Errors: invalid_argument with all that is wrong; README.md has the settings.
+Result<RobotOptions> readOptions(const configuration::Settings& settings,
+                                 const motion::RobotModel& model);
+
+}  // namespace metier::virtual_ur

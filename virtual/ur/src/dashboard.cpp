@@ -1,0 +1,255 @@
+#include "metier/virtual_ur/dashboard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace metier::virtual_ur {
+
+namespace {
+
+constexpr std::string_view kLocalControl =
+    "Command is not allowed due to safety reasons. You might need to enable Remote Control";
+constexpr std::size_t kMostEchoed = 200;
+
+std::string_view trimmed(std::string_view text) {
+    const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
+    while (!text.empty() && is_space(static_cast<unsigned char>(text.back()))) {
+        text.remove_suffix(1);
+    }
+    while (!text.empty() && is_space(static_cast<unsigned char>(text.front()))) {
+        text.remove_prefix(1);
+    }
+    return text;
+}
+
+std::string_view yesNo(bool value) {
+    return value ? "true" : "false";
+}
+
+std::string answerOr(const Result<void>& result, std::string_view good, std::string_view bad) {
+    return std::string(result ? good : bad);
+}
+
+}  // namespace
+
+/// One thing a client can ask for.
+struct Dashboard::Command {
+    enum class On : std::uint8_t { both, cb3, e_series };
+    enum class Effect : std::uint8_t { asks, changes };
+
+    std::string_view name;
+    On on = On::both;
+    Effect effect = Effect::asks;
+    std::function<std::string(Dashboard&, std::string_view argument)> answer;
+};
+
+Dashboard::Dashboard(Robot& robot, std::function<void(std::string)> log)
+    : robot_(robot), log_(std::move(log)) {}
+
+const std::vector<Dashboard::Command>& Dashboard::commands() {
+    using D = Dashboard&;
+    using Text = std::string_view;
+    constexpr auto kBoth = Command::On::both;
+    constexpr auto kCb3 = Command::On::cb3;
+    constexpr auto kE = Command::On::e_series;
+    constexpr auto kAsks = Command::Effect::asks;
+    constexpr auto kChanges = Command::Effect::changes;
+    static const std::vector<Command> kAll{
+        {"running", kBoth, kAsks,
+         [](D d, Text) {
+             const auto state = d.robot_.programs().state();
+             const bool running = state == RuntimeState::playing || state == RuntimeState::resuming;
+             return fmt::format("Program running: {}", yesNo(running));
+         }},
+        {"robotmode", kBoth, kAsks,
+         [](D d, Text) { return "Robotmode: " + toText(d.robot_.modes().robotMode()); }},
+        {"safetymode", kBoth, kAsks,
+         [](D d, Text) { return "Safetymode: " + toText(d.robot_.modes().safetyMode()); }},
+        {"safetystatus", kE, kAsks,
+         [](D d, Text) { return "Safetystatus: " + toText(d.robot_.modes().safetyMode()); }},
+        {"programState", kBoth, kAsks, [](D d, Text) { return d.programState(); }},
+        {"PolyscopeVersion", kBoth, kAsks,
+         [](D d, Text) {
+             return fmt::format("URSoftware {} ({})", d.softwareVersion(),
+                                d.robot_.options().description.build_date.substr(0, 10));
+         }},
+        {"version", kE, kAsks, [](D d, Text) { return d.softwareVersion(); }},
+        {"power on", kBoth, kChanges,
+         [](D d, Text) {
+             return answerOr(d.robot_.powerOn(), "Powering on", "Failed to execute: power on");
+         }},
+        {"power off", kBoth, kChanges,
+         [](D d, Text) {
+             d.robot_.powerOff();
+             return std::string("Powering off");
+         }},
+        {"brake release", kBoth, kChanges,
+         [](D d, Text) {
+             return answerOr(d.robot_.releaseBrakes(), "Brake releasing",
+                             "Failed to execute: brake release");
+         }},
+        {"play", kBoth, kChanges, [](D d, Text) { return d.play(); }},
+        {"pause", kBoth, kChanges, [](D d, Text) { return d.pause(); }},
+        {"stop", kBoth, kChanges,
+         [](D d, Text) {
+             d.robot_.programs().stop();
+             return std::string("Stopped");
+         }},
+        {"load", kBoth, kChanges, [](D d, Text file) { return d.load(file); }},
+        {"get loaded program", kBoth, kAsks,
+         [](D d, Text) {
+             return d.robot_.programs().loaded()
+                        ? "Loaded program: " + d.robot_.programs().loadedName()
+                        : std::string("No program loaded");
+         }},
+        {"isProgramSaved", kBoth, kAsks, [](D d, Text) { return d.isProgramSaved(); }},
+        {"popup", kBoth, kAsks,
+         [](D d, Text text) {
+             d.robot_.showPopup(std::string(text));
+             return std::string("showing popup");
+         }},
+        {"close popup", kBoth, kAsks,
+         [](D d, Text) {
+             d.robot_.closePopup();
+             return std::string("closing popup");
+         }},
+        {"close safety popup", kBoth, kAsks,
+         [](D, Text) { return std::string("closing safety popup"); }},
+        {"unlock protective stop", kBoth, kChanges, [](D d, Text) { return d.unlock(); }},
+        {"restart safety", kBoth, kChanges,
+         [](D d, Text) {
+             d.robot_.restartSafety();
+             return std::string("Restarting safety");
+         }},
+        {"is in remote control", kE, kAsks,
+         [](D d, Text) { return std::string(yesNo(d.robot_.control() == Control::remote)); }},
+        {"get robot model", kBoth, kAsks, [](D d, Text) { return d.robot_.options().robot_model; }},
+        {"get serial number", kBoth, kAsks,
+         [](D d, Text) { return d.robot_.options().serial_number; }},
+        {"addToLog", kBoth, kAsks, [](D d, Text text) { return d.addToLog(text); }},
+        {"set operational mode", kE, kAsks,
+         [](D d, Text mode) { return d.setOperationalMode(mode); }},
+        {"get operational mode", kE, kAsks, [](D d, Text) { return d.operational_mode_; }},
+        {"clear operational mode", kE, kAsks,
+         [](D d, Text) {
+             return fmt::format(
+                 "No longer controlling the operational mode. Current operational mode: '{}'.",
+                 std::exchange(d.operational_mode_, "NONE"));
+         }},
+        {"setUserRole", kCb3, kAsks,
+         [](D d, Text role) {
+             d.user_role_ = role.substr(0, kMostEchoed);
+             return "Setting user role: " + d.user_role_;
+         }},
+        {"getUserRole", kCb3, kAsks, [](D d, Text) { return d.user_role_; }},
+    };
+    return kAll;
+}
+
+Dashboard::Answer Dashboard::answer(std::string_view line) {
+    const auto asked = trimmed(line);
+    if (asked == "quit") {
+        return {"Disconnected", Answer::Then::disconnect};
+    }
+    if (asked == "shutdown") {
+        robot_.powerOff();
+        return {"Shutting down", Answer::Then::disconnect};
+    }
+    const bool e_series = robot_.options().description.series == Series::e_series;
+    for (const auto& command : commands()) {
+        const bool named =
+            asked.starts_with(command.name) &&
+            (asked.size() == command.name.size() || asked[command.name.size()] == ' ');
+        if (!named || command.on == (e_series ? Command::On::cb3 : Command::On::e_series)) {
+            continue;
+        }
+        if (command.effect == Command::Effect::changes && !robot_.commandsAllowed()) {
+            return {std::string(kLocalControl)};
+        }
+        return {command.answer(*this, trimmed(asked.substr(command.name.size())))};
+    }
+    return {fmt::format("could not understand: \"{}\"", asked.substr(0, kMostEchoed))};
+}
+
+std::string Dashboard::load(std::string_view file) {
+    const std::filesystem::path name{std::string(file)};
+    const auto& folder = robot_.options().programs;
+    const bool plain = !file.empty() && !name.is_absolute() &&
+                       std::find(name.begin(), name.end(), "..") == name.end();
+    auto script = folder / name;
+    script.replace_extension(".script");
+    std::error_code ignored;
+    if (folder.empty() || !plain || !std::filesystem::is_regular_file(script, ignored)) {
+        return fmt::format("File not found: {}", file.substr(0, kMostEchoed));
+    }
+    const auto loaded = robot_.programs().load(script, name.filename().string());
+    return fmt::format("{}: {}", loaded ? "Loading program" : "Error while loading program", file);
+}
+
+std::string Dashboard::play() {
+    return answerOr(robot_.play(), "Starting program", "Failed to execute: play");
+}
+
+std::string Dashboard::pause() {
+    const auto state = robot_.programs().state();
+    if (state == RuntimeState::stopped || state == RuntimeState::stopping) {
+        return "Failed to execute: pause";
+    }
+    robot_.programs().pause();
+    return "Pausing program";
+}
+
+std::string Dashboard::unlock() {
+    const auto unlocked = robot_.unlock();
+    return unlocked ? "Protective stop releasing" : unlocked.error().message;
+}
+
+std::string Dashboard::addToLog(std::string_view text) {
+    if (text.empty()) {
+        return "No log message to add";
+    }
+    log_(std::string(text.substr(0, kMostEchoed)));
+    return "Added log message";
+}
+
+std::string Dashboard::setOperationalMode(std::string_view mode) {
+    if (mode != "manual" && mode != "automatic") {
+        return "Failed setting operational mode";
+    }
+    operational_mode_ = mode == "manual" ? "MANUAL" : "AUTOMATIC";
+    return fmt::format("Operational mode {} is set", operational_mode_);
+}
+
+std::string Dashboard::isProgramSaved() const {
+    return "true " + robot_.programs().loadedName();
+}
+
+std::string Dashboard::programState() const {
+    std::string_view state = "PLAYING";
+    switch (robot_.programs().state()) {
+        case RuntimeState::stopping:
+        case RuntimeState::stopped:
+            state = "STOPPED";
+            break;
+        case RuntimeState::pausing:
+        case RuntimeState::paused:
+            state = "PAUSED";
+            break;
+        default:
+            break;
+    }
+    return fmt::format("{} {}", state, robot_.programs().loadedName());
+}
+
+std::string Dashboard::softwareVersion() const {
+    const auto& version = robot_.options().description.version;
+    return fmt::format("{}.{}.{}.{}", version.major, version.minor, version.bugfix, version.build);
+}
+
+}  // namespace metier::virtual_ur

@@ -1,0 +1,315 @@
+#include "metier/virtual_ur/motions.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "metier/geometry/rotation.hpp"
+
+namespace metier::virtual_ur {
+
+namespace {
+
+// A duration is over when less of it is left than this: sums of steps are not exact [s].
+constexpr double kRounding = 1e-6;
+
+double largest(const Vector6& values) {
+    double result = 0.0;
+    for (const double value : values) {
+        result = std::max(result, std::abs(value));
+    }
+    return result;
+}
+
+/// Distance along a path from rest to rest: accelerate, drive, brake.
+class Trapezoid {
+public:
+    Trapezoid(double length, const PathSpeed& speed) : length_(length) {
+        velocity_ = std::max(speed.velocity, 1e-9);
+        acceleration_ = std::max(speed.acceleration, 1e-9);
+        ramp_ = velocity_ / acceleration_;
+        if (length_ < velocity_ * ramp_) {
+            ramp_ = std::sqrt(length_ / acceleration_);
+            velocity_ = acceleration_ * ramp_;
+        }
+        duration_ = velocity_ > 0.0 ? ramp_ + length_ / velocity_ : 0.0;
+        if (speed.duration > 0.0 && duration_ > 0.0) {
+            rate_ = duration_ / speed.duration;
+        }
+    }
+    /// \param time [s] since the start
+    double at(double time) const {
+        const double t = std::clamp(time * rate_, 0.0, duration_);
+        const double left = duration_ - t;
+        if (t < ramp_) {
+            return 0.5 * acceleration_ * t * t;
+        }
+        return left < ramp_ ? length_ - 0.5 * acceleration_ * left * left
+                            : velocity_ * (t - 0.5 * ramp_);
+    }
+    bool over(double time) const { return time * rate_ >= duration_ - kRounding; }
+
+private:
+    double length_;
+    double velocity_ = 0.0;
+    double acceleration_ = 0.0;
+    double ramp_ = 0.0;
+    double duration_ = 0.0;
+    double rate_ = 1.0;
+};
+
+/// Changes every axis' velocity towards a target so that all reach it at the same time.
+Vector6 approach(const Vector6& from, const Vector6& to, double change) {
+    Vector6 way{};
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        way[i] = to[i] - from[i];
+    }
+    const double leading = largest(way);
+    const double share = leading > change ? change / leading : 1.0;
+    Vector6 result{};
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        result[i] = share < 1.0 ? from[i] + share * way[i] : to[i];
+    }
+    return result;
+}
+
+Vector6 moved(const Vector6& position, const Vector6& velocity, double step) {
+    Vector6 result{};
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        result[i] = position[i] + velocity[i] * step;
+    }
+    return result;
+}
+
+class SpeedJ final : public Motion {
+public:
+    SpeedJ(const Vector6& velocity, double acceleration, double duration)
+        : velocity_(velocity),
+          acceleration_(acceleration),
+          timed_(duration > 0.0),
+          left_(duration) {}
+
+    std::optional<Vector6> next(const JointState& now, double step) override {
+        // Not now.velocity: while time is scaled that is another one.
+        present_ = approach(present_.value_or(now.velocity), velocity_, acceleration_ * step);
+        left_ -= step;
+        return moved(now.position, *present_, step);
+    }
+    bool done() const override { return timed_ ? left_ < kRounding : present_ == velocity_; }
+
+private:
+    Vector6 velocity_;
+    std::optional<Vector6> present_;
+    double acceleration_;
+    bool timed_;
+    double left_;
+};
+
+using Twist = Eigen::Matrix<double, 6, 1>;
+
+class SpeedL final : public Motion {
+public:
+    struct Wanted {
+        Twist twist;
+        double acceleration = 0.0;
+        double duration = 0.0;
+    };
+    SpeedL(const Wanted& wanted, const ToolKinematics& tool)
+        : wanted_(wanted), left_(wanted.duration), tool_(tool) {}
+
+    std::optional<Vector6> next(const JointState& now, double step) override {
+        const auto jacobian = toolJacobian(toJointVector(now.position));
+        if (!twist_) {
+            twist_ = jacobian * Eigen::Map<const Twist>(now.velocity.data());
+        }
+        const Twist way = wanted_.twist - *twist_;
+        const double change = wanted_.acceleration * step;
+        reached_ = way.norm() <= change;
+        *twist_ = reached_ ? wanted_.twist : Twist(*twist_ + way * (change / way.norm()));
+        left_ -= step;
+        Vector6 velocity{};
+        constexpr double kDamping = 1e-6;
+        const Eigen::Matrix<double, 6, 6> square =
+            jacobian * jacobian.transpose() + kDamping * Eigen::Matrix<double, 6, 6>::Identity();
+        Eigen::Map<Twist>(velocity.data()) = jacobian.transpose() * square.ldlt().solve(*twist_);
+        return moved(now.position, velocity, step);
+    }
+    bool done() const override { return wanted_.duration > 0.0 ? left_ < kRounding : reached_; }
+
+private:
+    Eigen::Matrix<double, 6, 6> toolJacobian(const motion::JointVector& q) const {
+        Eigen::Matrix<double, 6, 6> jacobian = tool_.arm.jacobian(q);
+        const Eigen::Vector3d arm =
+            tool_.arm.forward(q).rotation * tool_.flange_from_tool.translation;
+        for (Eigen::Index axis = 0; axis < 6; ++axis) {
+            const Eigen::Vector3d turn = jacobian.block<3, 1>(3, axis);
+            jacobian.block<3, 1>(0, axis) += turn.cross(arm);
+        }
+        return jacobian;
+    }
+
+    Wanted wanted_;
+    double left_;
+    ToolKinematics tool_;
+    std::optional<Twist> twist_;
+    bool reached_ = false;
+};
+
+double leadingDistance(const Vector6& start, const Vector6& target) {
+    Vector6 way{};
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        way[i] = target[i] - start[i];
+    }
+    return largest(way);
+}
+
+class MoveJ final : public Motion {
+public:
+    MoveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed)
+        : start_(start),
+          target_(target),
+          length_(leadingDistance(start, target)),
+          profile_(length_, speed) {}
+
+    std::optional<Vector6> next(const JointState&, double step) override {
+        time_ += step;
+        if (done()) {
+            return target_;
+        }
+        const double share = profile_.at(time_) / length_;
+        Vector6 result{};
+        for (std::size_t i = 0; i < kAxes; ++i) {
+            result[i] = start_[i] + share * (target_[i] - start_[i]);
+        }
+        return result;
+    }
+    bool done() const override { return profile_.over(time_); }
+
+private:
+    Vector6 start_;
+    Vector6 target_;
+    double length_;
+    Trapezoid profile_;
+    double time_ = 0.0;
+};
+
+class MoveL final : public Motion {
+public:
+    struct Line {
+        geometry::Pose start;
+        geometry::Pose target;
+        double length = 0.0;
+    };
+    MoveL(const Line& line, const PathSpeed& speed, const ToolKinematics& tool)
+        : line_(line),
+          profile_(line.length, speed),
+          tool_(tool),
+          tool_from_flange_(tool.flange_from_tool.inverse()) {}
+
+    std::optional<Vector6> next(const JointState& now, double step) override {
+        time_ += step;
+        const double share =
+            line_.length > 0.0 && !done() ? profile_.at(time_) / line_.length : 1.0;
+        const auto& start = line_.start;
+        const geometry::Pose base_from_tool{
+            start.translation + share * (line_.target.translation - start.translation),
+            geometry::slerp(start.rotation, line_.target.rotation, share)};
+        const auto solution = tool_.arm.solutionNear(base_from_tool * tool_from_flange_,
+                                                     toJointVector(now.position), 0.0);
+        if (solution.size() != kAxes) {
+            return std::nullopt;
+        }
+        Vector6 result{};
+        std::copy(solution.begin(), solution.end(), result.begin());
+        return result;
+    }
+    bool done() const override { return profile_.over(time_); }
+
+private:
+    Line line_;
+    Trapezoid profile_;
+    ToolKinematics tool_;
+    geometry::Pose tool_from_flange_;
+    double time_ = 0.0;
+};
+
+}  // namespace
+
+ServoMotion::ServoMotion(const JointState& now) : start_(now), target_(now.position) {}
+
+void ServoMotion::retarget(const Vector6& target, double duration, double lag) {
+    target_ = target;
+    left_ = duration - kRounding;
+    lag_ = lag;
+}
+
+std::optional<Vector6> ServoMotion::next(const JointState& now, double step) {
+    left_ -= step;
+    const double share = 1.0 - std::exp(-2.0 * step / lag_);
+    if (!first_) {
+        first_ = moved(start_.position, start_.velocity, step / share - step);
+    }
+    Vector6 result{};
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        (*first_)[i] += share * (target_[i] - (*first_)[i]);
+        result[i] = now.position[i] + share * ((*first_)[i] - now.position[i]);
+        // An exponential alone would never arrive.
+        constexpr double kArrived = 1e-9;
+        if (std::abs(target_[i] - result[i]) < kArrived) {
+            result[i] = target_[i];
+        }
+    }
+    return result;
+}
+
+std::unique_ptr<Motion> speedJ(const Vector6& velocity, double acceleration, double duration) {
+    return std::make_unique<SpeedJ>(velocity, acceleration, duration);
+}
+
+std::unique_ptr<Motion> speedL(const Vector6& twist, double acceleration, double duration,
+                               const ToolKinematics& tool) {
+    return std::make_unique<SpeedL>(SpeedL::Wanted{Twist(twist.data()), acceleration, duration},
+                                    tool);
+}
+
+std::unique_ptr<Motion> stopJ(double acceleration) {
+    return speedJ(Vector6{}, acceleration, 0.0);
+}
+
+std::unique_ptr<Motion> moveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed) {
+    return std::make_unique<MoveJ>(start, target, speed);
+}
+
+std::unique_ptr<Motion> moveL(const Vector6& start, const geometry::Pose& base_from_target,
+                              const PathSpeed& speed, const ToolKinematics& tool) {
+    MoveL::Line line{tool.arm.forward(toJointVector(start)) * tool.flange_from_tool,
+                     base_from_target};
+    line.length = geometry::distanceBetween(line.start, line.target);
+    if (constexpr double kOnTheSpot = 1e-6; line.length < kOnTheSpot) {
+        line.length = geometry::rotationAngleBetween(line.start.rotation, line.target.rotation);
+    }
+    return std::make_unique<MoveL>(line, speed, tool);
+}
+
+geometry::Pose toPose(const Vector6& pose) {
+    return {Eigen::Vector3d(pose[0], pose[1], pose[2]),
+            geometry::fromRotationVector(Eigen::Vector3d(pose[3], pose[4], pose[5]))};
+}
+
+Vector6 toVector(const geometry::Pose& pose) {
+    const auto turn = geometry::toRotationVector(pose.rotation);
+    return {pose.translation.x(),
+            pose.translation.y(),
+            pose.translation.z(),
+            turn.x(),
+            turn.y(),
+            turn.z()};
+}
+
+motion::JointVector toJointVector(const Vector6& q) {
+    motion::JointVector result(kAxes);
+    std::copy(q.begin(), q.end(), result.begin());
+    return result;
+}
+
+}  // namespace metier::virtual_ur

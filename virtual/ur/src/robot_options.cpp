@@ -1,0 +1,129 @@
+#include "metier/virtual_ur/robot_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <vector>
+
+namespace metier::virtual_ur {
+
+namespace {
+
+using configuration::Settings;
+
+// What the maker's configuration package tells of a UR5 (captured stream) [rad/s2].
+constexpr double kJointAcceleration = 40.0;
+// A UR5 stops from 183 deg/s within 0.244 s (user manual) [rad/s2].
+constexpr double kStopDeceleration = 13.0;
+
+Series readSeries(const Settings& settings, const motion::RobotModel& model) {
+    const bool e_series = model.name().ends_with("e");
+    const auto text = settings.textOr("series", e_series ? "e" : "cb3");
+    if (text != "e" && text != "cb3") {
+        settings.reject("series", "is neither \"cb3\" nor \"e\"");
+    }
+    return text == "e" ? Series::e_series : Series::cb3;
+}
+
+std::uint16_t readPort(const Settings& settings, std::string_view name, std::uint16_t usual) {
+    return static_cast<std::uint16_t>(settings.numberOr(name, usual, 0, 65'535));
+}
+
+Ports readPorts(const Settings& settings) {
+    const Ports usual;
+    Ports ports;
+    ports.dashboard = readPort(settings, "dashboard_port", usual.dashboard);
+    ports.primary = readPort(settings, "primary_port", usual.primary);
+    ports.secondary = readPort(settings, "secondary_port", usual.secondary);
+    ports.realtime = readPort(settings, "realtime_port", usual.realtime);
+    ports.rtde = readPort(settings, "rtde_port", usual.rtde);
+    ports.primary_read_only = readPort(settings, "primary_read_only_port", usual.primary_read_only);
+    ports.secondary_read_only =
+        readPort(settings, "secondary_read_only_port", usual.secondary_read_only);
+    ports.realtime_read_only =
+        readPort(settings, "realtime_read_only_port", usual.realtime_read_only);
+    return ports;
+}
+
+/// "UR5" of "ur5e": the number tells the size.
+std::int32_t robotType(std::string_view model) {
+    if (model.find("10") != std::string_view::npos) {
+        return 2;
+    }
+    return model.find('3') != std::string_view::npos ? 3 : 1;
+}
+
+ArmOptions readArm(const Settings& settings, const motion::RobotModel& model, Series series) {
+    ArmOptions arm;
+    arm.cycle = series == Series::e_series ? 0.002 : 0.008;
+    const double acceleration =
+        settings.numberOr("joint_acceleration", kJointAcceleration, 0.1, 1000.0);
+    arm.stop_deceleration = settings.numberOr("stop_deceleration", kStopDeceleration, 0.1, 1000.0);
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        const auto& limits = model.limits(i);
+        arm.limits.push_back({limits.lower, limits.upper, limits.velocity, acceleration});
+    }
+    const std::vector<double> home(model.home().begin(), model.home().end());
+    const auto start = settings.numbersOr("start", home, kAxes);
+    std::copy_n(start.begin(), std::min(start.size(), kAxes), arm.start.begin());
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        if (arm.start[i] < arm.limits[i].lower || arm.start[i] > arm.limits[i].upper) {
+            settings.reject("start",
+                            fmt::format("axis {}: {} rad is outside [{:.4f}, {:.4f}] rad", i + 1,
+                                        arm.start[i], arm.limits[i].lower, arm.limits[i].upper));
+        }
+    }
+    return arm;
+}
+
+RobotDescription describe(const motion::RobotModel& model, const ArmOptions& arm, Series series) {
+    RobotDescription description;
+    description.series = series;
+    const bool e_series = series == Series::e_series;
+    description.version =
+        e_series ? ControllerVersion{5, 12, 6, 1102099} : ControllerVersion{3, 15, 8, 106339};
+    description.build_date = e_series ? "23-03-2023, 12:00:00" : "12-10-2021, 12:00:00";
+    description.model = &model;
+    description.robot_type = robotType(model.name());
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        description.joint_acceleration[i] = arm.limits[i].acceleration;
+    }
+    return description;
+}
+
+std::string upperCase(std::string_view name) {
+    std::string text(name.substr(0, name.size() - (name.ends_with("e") ? 1 : 0)));
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return text;
+}
+
+}  // namespace
+
+Result<RobotOptions> readOptions(const Settings& settings, const motion::RobotModel& model) {
+    if (model.axisCount() != kAxes) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("a UR controller moves 6 axes, model {} has {}", model.name(),
+                                model.axisCount()));
+    }
+    RobotOptions options;
+    const Series series = readSeries(settings, model);
+    options.arm = readArm(settings, model, series);
+    options.description = describe(model, options.arm, series);
+    const ModeTimes usual;
+    options.times.power_on = settings.numberOr("power_on_time", usual.power_on, 0.0, 60.0);
+    options.times.brake_release =
+        settings.numberOr("brake_release_time", usual.brake_release, 0.0, 60.0);
+    options.times.unlock_delay = settings.numberOr("unlock_delay", usual.unlock_delay, 0.0, 60.0);
+    options.power = settings.flagOr("powered", true) ? PowerAtStart::running : PowerAtStart::off;
+    options.control = settings.flagOr("remote_control", true) ? Control::remote : Control::local;
+    options.serial_number = settings.textOr("serial_number", "20195599999");
+    options.robot_model = settings.textOr("robot_model", upperCase(model.name()));
+    options.programs = settings.textOr("programs", "");
+    options.ports = readPorts(settings);
+    return settings.finish().map([&] { return options; });
+}
+
+}  // namespace metier::virtual_ur

@@ -1,0 +1,275 @@
+#include "metier/virtual_ur/rtde_variables.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <type_traits>
+
+#include "rtde_outputs.hpp"
+
+namespace metier::virtual_ur {
+
+namespace {
+
+using Read = RtdeVariable::Read;
+using Write = RtdeVariable::Write;
+using State = RobotState;
+
+struct Input {
+    std::string_view name;
+    RtdeValue type;
+    Write write;
+};
+
+// ---- inputs ----
+
+template <auto member>
+Input control(std::string_view name) {
+    using T = std::remove_reference_t<decltype(ControlInputs{}.*member)>;
+    return {name, T{}, [](const RtdeInputs& inputs, const RtdeValue& given, std::size_t) {
+                inputs.control.*member = std::get<T>(given);
+            }};
+}
+template <std::size_t index>
+Input analogOutput(std::string_view name) {
+    return {name, 0.0, [](const RtdeInputs& inputs, const RtdeValue& given, std::size_t) {
+                inputs.control.standard_analog_output[index] = std::get<double>(given);
+            }};
+}
+
+using Control = ControlInputs;
+const std::array kInputs{
+    control<&Control::speed_slider_mask>("speed_slider_mask"),
+    control<&Control::speed_slider_fraction>("speed_slider_fraction"),
+    control<&Control::standard_digital_output_mask>("standard_digital_output_mask"),
+    control<&Control::standard_digital_output>("standard_digital_output"),
+    control<&Control::configurable_digital_output_mask>("configurable_digital_output_mask"),
+    control<&Control::configurable_digital_output>("configurable_digital_output"),
+    control<&Control::tool_digital_output_mask>("tool_digital_output_mask"),
+    control<&Control::tool_digital_output>("tool_digital_output"),
+    control<&Control::standard_analog_output_mask>("standard_analog_output_mask"),
+    control<&Control::standard_analog_output_type>("standard_analog_output_type"),
+    analogOutput<0>("standard_analog_output_0"),
+    analogOutput<1>("standard_analog_output_1"),
+    control<&Control::external_force_torque>("external_force_torque"),
+};
+
+// ---- registers ----
+
+struct RegisterName {
+    enum class Kind : std::uint8_t { bits, bit, integer, number };
+    Kind kind = Kind::bit;
+    std::size_t number = 0;  // of the first bit for `bits`
+};
+
+std::optional<std::size_t> numberAfter(std::string_view name, std::string_view prefix) {
+    if (!name.starts_with(prefix)) {
+        return std::nullopt;
+    }
+    name.remove_prefix(prefix.size());
+    std::size_t number = 0;
+    const auto* end = name.data() + name.size();
+    const auto parsed = std::from_chars(name.data(), end, number);
+    const bool plain =
+        parsed.ec == std::errc() && parsed.ptr == end && (name.size() == 1 || name.front() != '0');
+    return plain ? std::optional(number) : std::nullopt;
+}
+
+/// \param name without "input_" or "output_"
+std::optional<RegisterName> parseRegister(std::string_view name) {
+    using Kind = RegisterName::Kind;
+    if (name == "bit_registers0_to_31") {
+        return RegisterName{Kind::bits, 0};
+    }
+    if (name == "bit_registers32_to_63") {
+        return RegisterName{Kind::bits, 32};
+    }
+    if (const auto i = numberAfter(name, "bit_register_"); i && *i >= 64 && *i < 128) {
+        return RegisterName{Kind::bit, *i};
+    }
+    if (const auto i = numberAfter(name, "int_register_"); i && *i < 48) {
+        return RegisterName{Kind::integer, *i};
+    }
+    if (const auto i = numberAfter(name, "double_register_"); i && *i < 48) {
+        return RegisterName{Kind::number, *i};
+    }
+    return std::nullopt;
+}
+
+RtdeValue typeOf(RegisterName::Kind kind) {
+    switch (kind) {
+        case RegisterName::Kind::bits:
+            return std::uint32_t{};
+        case RegisterName::Kind::bit:
+            return false;
+        case RegisterName::Kind::integer:
+            return std::int32_t{};
+        case RegisterName::Kind::number:
+            break;
+    }
+    return 0.0;
+}
+
+std::uint32_t packed(const std::bitset<128>& bits, std::size_t first) {
+    std::uint32_t result = 0;
+    for (std::size_t i = 0; i < 32; ++i) {
+        result |= static_cast<std::uint32_t>(bits[first + i]) << i;
+    }
+    return result;
+}
+
+template <auto bank>
+Read readerOf(RegisterName::Kind kind) {
+    switch (kind) {
+        case RegisterName::Kind::bits:
+            return
+                [](const State& s, std::size_t i) { return RtdeValue(packed((s.*bank).bits, i)); };
+        case RegisterName::Kind::bit:
+            return [](const State& s, std::size_t i) {
+                return RtdeValue(static_cast<bool>((s.*bank).bits[i]));
+            };
+        case RegisterName::Kind::integer:
+            return [](const State& s, std::size_t i) { return RtdeValue((s.*bank).integers[i]); };
+        case RegisterName::Kind::number:
+            break;
+    }
+    return [](const State& s, std::size_t i) { return RtdeValue((s.*bank).numbers[i]); };
+}
+
+Write writerOf(RegisterName::Kind kind) {
+    switch (kind) {
+        case RegisterName::Kind::bits:
+            return [](const RtdeInputs& to, const RtdeValue& given, std::size_t first) {
+                for (std::size_t i = 0; i < 32; ++i) {
+                    to.registers.bits[first + i] = (std::get<std::uint32_t>(given) >> i & 1U) != 0;
+                }
+            };
+        case RegisterName::Kind::bit:
+            return [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
+                to.registers.bits[i] = std::get<bool>(given);
+            };
+        case RegisterName::Kind::integer:
+            return [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
+                to.registers.integers[i] = std::get<std::int32_t>(given);
+            };
+        case RegisterName::Kind::number:
+            break;
+    }
+    return [](const RtdeInputs& to, const RtdeValue& given, std::size_t i) {
+        to.registers.numbers[i] = std::get<double>(given);
+    };
+}
+
+/// The name without the prefix; empty if it has another one.
+std::string_view without(std::string_view prefix, std::string_view name) {
+    return name.starts_with(prefix) ? name.substr(prefix.size()) : std::string_view{};
+}
+
+bool isFinite(const RtdeValue& given) {
+    const auto finite = [](double x) { return std::isfinite(x); };
+    if (const auto* one = std::get_if<double>(&given)) {
+        return finite(*one);
+    }
+    const auto* six = std::get_if<Vector6>(&given);
+    return six == nullptr || std::all_of(six->begin(), six->end(), finite);
+}
+
+}  // namespace
+
+std::optional<RtdeVariable> RtdeVariable::output(std::string_view name) {
+    const auto outputs = rtdeOutputs();
+    const auto found = std::find_if(outputs.begin(), outputs.end(),
+                                    [&](const RtdeOutput& o) { return o.name == name; });
+    if (found != outputs.end()) {
+        RtdeVariable variable(found->read(RobotState{}, 0), 0);
+        variable.read_ = found->read;
+        return variable;
+    }
+    const auto written = parseRegister(without("output_", name));
+    const auto given = parseRegister(without("input_", name));
+    if (!written && !given) {
+        return std::nullopt;
+    }
+    const auto& parsed = written ? *written : *given;
+    RtdeVariable variable(typeOf(parsed.kind), parsed.number);
+    variable.read_ =
+        written ? readerOf<&State::outputs>(parsed.kind) : readerOf<&State::inputs>(parsed.kind);
+    return variable;
+}
+
+std::optional<RtdeVariable> RtdeVariable::input(std::string_view name) {
+    const auto* const found = std::find_if(kInputs.begin(), kInputs.end(),
+                                           [&](const Input& i) { return i.name == name; });
+    if (found != kInputs.end()) {
+        RtdeVariable variable(found->type, 0);
+        variable.write_ = found->write;
+        return variable;
+    }
+    const auto parsed = parseRegister(without("input_", name));
+    if (!parsed) {
+        return std::nullopt;
+    }
+    RtdeVariable variable(typeOf(parsed->kind), parsed->number);
+    variable.write_ = writerOf(parsed->kind);
+    return variable;
+}
+
+std::string_view RtdeVariable::typeName() const {
+    constexpr std::array<std::string_view, std::variant_size_v<RtdeValue>> kNames{
+        "BOOL",   "UINT8",    "UINT32",   "UINT64",      "INT32",
+        "DOUBLE", "VECTOR3D", "VECTOR6D", "VECTOR6INT32"};
+    return kNames.at(type_.index());
+}
+
+std::size_t RtdeVariable::size() const {
+    return std::visit([](const auto& alternative) { return sizeof(alternative); }, type_);
+}
+
+void RtdeVariable::append(const RobotState& state, ByteWriter& package) const {
+    std::visit(
+        [&](const auto& present) {
+            if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(present)>>) {
+                package.put(present);
+            } else {
+                package.putAll(present);
+            }
+        },
+        read_(state, number_));
+}
+
+void RtdeVariable::take(ByteReader& package, const RtdeInputs& inputs) const {
+    RtdeValue given = type_;
+    std::visit(
+        [&](auto& to) {
+            using T = std::remove_cvref_t<decltype(to)>;
+            if constexpr (std::is_arithmetic_v<T>) {
+                to = package.get<T>();
+            } else {
+                for (auto& one : to) {
+                    one = package.get<typename T::value_type>();
+                }
+            }
+        },
+        given);
+    if (isFinite(given)) {
+        write_(inputs, given, number_);
+    }
+}
+
+std::vector<std::string> rtdeOutputNames() {
+    std::vector<std::string> names;
+    for (const auto& output : rtdeOutputs()) {
+        names.emplace_back(output.name);
+    }
+    return names;
+}
+
+std::vector<std::string> rtdeInputNames() {
+    std::vector<std::string> names;
+    for (const auto& input : kInputs) {
+        names.emplace_back(input.name);
+    }
+    return names;
+}
+
+}  // namespace metier::virtual_ur

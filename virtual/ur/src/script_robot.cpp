@@ -1,0 +1,290 @@
+#include "metier/virtual_ur/script_robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace metier::virtual_ur {
+
+namespace {
+
+using urscript::AnalogPort;
+using urscript::DigitalPort;
+using urscript::Pose;
+using urscript::RegisterBank;
+
+/// Where a digital port begins in the bits, and how many it has.
+struct BitRange {
+    std::size_t first = 0;
+    int count = 8;
+};
+BitRange bitsOf(DigitalPort port) {
+    switch (port) {
+        case DigitalPort::standard:
+            return {0, 8};
+        case DigitalPort::configurable:
+            return {8, 8};
+        case DigitalPort::tool:
+            break;
+    }
+    return {16, 2};
+}
+
+Result<std::size_t> within(int index, std::size_t count, std::string_view what) {
+    if (index < 0 || static_cast<std::size_t>(index) >= count) {
+        return fail(Errc::out_of_range,
+                    fmt::format("{} {} is not within 0 to {}", what, index, count - 1));
+    }
+    return static_cast<std::size_t>(index);
+}
+
+Result<std::uint64_t> bitOf(DigitalPort port, int index) {
+    const auto range = bitsOf(port);
+    return within(index, static_cast<std::size_t>(range.count), "digital port")
+        .map([&](std::size_t i) { return std::uint64_t{1} << (range.first + i); });
+}
+
+/// Takes what needs no more than the robot's state.
+struct StateSetter {
+    RobotState& state;
+
+    void operator()(const urscript::SetPayload& payload) const {
+        state.payload = payload.mass;
+        state.payload_cog = payload.cog.value_or(state.payload_cog);
+        state.payload_inertia = payload.inertia.value_or(state.payload_inertia);
+    }
+    void operator()(const urscript::SetGravity& gravity) const { state.gravity = gravity.gravity; }
+    void operator()(const urscript::SetToolVoltage& tool) const {
+        state.io.tool_voltage = tool.voltage;
+    }
+    void operator()(const urscript::ZeroForceSensor&) const {
+        for (std::size_t i = 0; i < kAxes; ++i) {
+            state.force_bias[i] += state.actual_tcp_force[i];
+        }
+    }
+    void operator()(const urscript::AnalogDomain& domain) const {
+        if (domain.index < 0 || domain.index > 1) {
+            return;
+        }
+        const auto index = static_cast<std::size_t>(domain.index);
+        const auto value = static_cast<std::uint8_t>(domain.domain != 0);
+        switch (domain.port) {
+            case urscript::AnalogDomain::Port::standard_input:
+                state.io.analog_input_domains[index] = value;
+                break;
+            case urscript::AnalogDomain::Port::standard_output:
+                state.io.analog_output_domains[index] = value;
+                break;
+            case urscript::AnalogDomain::Port::tool_input:
+                state.io.tool_analog_input_domains[index] = value;
+                break;
+        }
+    }
+    // Force control and freedrive of an arm that touches nothing: it stays where it is.
+    template <typename Other>
+    void operator()(const Other&) const {}
+};
+
+}  // namespace
+
+ScriptRobot::ScriptRobot(Parts parts) : parts_(std::move(parts)) {}
+
+void ScriptRobot::beginCycle() {
+    const auto& state = parts_.state;
+    seen_.actual_joint_position = state.actual_q;
+    seen_.target_joint_position = parts_.arm.target().position;
+    seen_.actual_joint_velocity = state.actual_qd;
+    seen_.target_joint_velocity = parts_.arm.target().velocity;
+    seen_.joint_temperature = state.joint_temperature;
+    seen_.actual_tool_pose = Pose{state.actual_tcp_pose};
+    seen_.target_tool_pose = Pose{state.target_tcp_pose};
+    seen_.actual_twist = state.actual_tcp_speed;
+    seen_.target_twist = state.target_tcp_speed;
+    seen_.wrench = state.actual_tcp_force;
+    seen_.flange_from_tool = Pose{state.tcp_offset};
+    seen_.payload_mass = state.payload;
+    seen_.payload_cog = state.payload_cog;
+    seen_.speed_scaling = state.speed_scaling;
+    seen_.time = state.timestamp;
+    seen_.steady = parts_.arm.standing();
+
+    constexpr double kContact = 5.0;  // [N]
+    const auto& force = state.actual_tcp_force;
+    if (std::hypot(force[0], force[1], force[2]) < kContact) {
+        contact_since_ = 0;
+    } else if (contact_since_ == 0) {
+        contact_since_ = state.cycle;
+    }
+}
+
+int ScriptRobot::toolContact(const Vector6& direction) const {
+    if (contact_since_ == 0) {
+        return 0;
+    }
+    double against = 0.0;  // the force pushes back
+    double length = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        against -= direction[i] * parts_.state.actual_tcp_force[i];
+        length += std::abs(direction[i]);
+    }
+    const bool touched = length == 0.0 || against > 0.0;
+    return touched ? static_cast<int>(parts_.state.cycle - contact_since_ + 1) : 0;
+}
+
+void ScriptRobot::setTool(const geometry::Pose& flange_from_tool) {
+    parts_.arm.setTool(flange_from_tool);
+    parts_.state.tcp_offset = toVector(flange_from_tool);
+}
+
+Result<void> ScriptRobot::apply(const urscript::Command& command) {
+    if (const auto* tool = std::get_if<urscript::SetTcp>(&command)) {
+        setTool(toPose(tool->flange_from_tool.value));
+    } else if (const auto* watchdog = std::get_if<urscript::RtdeWatchdog>(&command)) {
+        if (watchdog->min_frequency > 0.0) {
+            watchdogs_[watchdog->variable] = {1.0 / watchdog->min_frequency, 0.0, watchdog->action};
+        } else {
+            watchdogs_.erase(watchdog->variable);
+        }
+    } else if (std::holds_alternative<urscript::PowerDown>(command)) {
+        parts_.power_down();
+    } else {
+        std::visit(StateSetter{parts_.state}, command);
+    }
+    return {};
+}
+
+void ScriptRobot::inputsWritten(const std::vector<std::string>& names) {
+    for (auto& [variable, watchdog] : watchdogs_) {
+        if (std::find(names.begin(), names.end(), variable) != names.end()) {
+            watchdog.silent = 0.0;
+        }
+    }
+}
+
+std::string ScriptRobot::watch() {
+    std::string wanted;
+    for (auto& [variable, watchdog] : watchdogs_) {
+        watchdog.silent += parts_.cycle;
+        if (watchdog.silent > watchdog.period && watchdog.action != "ignore" && wanted != "stop") {
+            wanted = watchdog.action == "stop" ? "stop" : "pause";
+        }
+    }
+    return wanted;
+}
+
+void ScriptRobot::endProgram() {
+    parts_.sockets.closeAll();
+    watchdogs_.clear();
+    motion_.reset();
+    popup_open_ = false;
+}
+
+void ScriptRobot::showPopup(const urscript::Popup& popup) {
+    popup_open_ = true;
+    parts_.popup(popup);
+}
+
+const Registers& ScriptRobot::bank(RegisterBank which) const {
+    return which == RegisterBank::input ? parts_.state.inputs : parts_.state.outputs;
+}
+
+Result<std::int32_t> ScriptRobot::integerRegister(RegisterBank which, int index) const {
+    const auto& integers = bank(which).integers;
+    return within(index, integers.size(), "integer register").map([&](std::size_t i) {
+        return integers[i];
+    });
+}
+
+Result<double> ScriptRobot::floatRegister(RegisterBank which, int index) const {
+    const auto& numbers = bank(which).numbers;
+    return within(index, numbers.size(), "float register").map([&](std::size_t i) {
+        return numbers[i];
+    });
+}
+
+Result<bool> ScriptRobot::bitRegister(RegisterBank which, int index) const {
+    const auto& bits = bank(which).bits;
+    return within(index, bits.size(), "boolean register").map([&](std::size_t i) {
+        return bits[i];
+    });
+}
+
+Result<void> ScriptRobot::writeIntegerRegister(int index, std::int32_t value) {
+    auto& integers = parts_.state.outputs.integers;
+    return within(index, integers.size(), "integer register").map([&](std::size_t i) {
+        integers[i] = value;
+    });
+}
+
+Result<void> ScriptRobot::writeFloatRegister(int index, double value) {
+    auto& numbers = parts_.state.outputs.numbers;
+    return within(index, numbers.size(), "float register").map([&](std::size_t i) {
+        numbers[i] = value;
+    });
+}
+
+Result<void> ScriptRobot::writeBitRegister(int index, bool value) {
+    auto& bits = parts_.state.outputs.bits;
+    return within(index, bits.size(), "boolean register").map([&](std::size_t i) {
+        bits[i] = value;
+    });
+}
+
+Result<bool> ScriptRobot::digitalInput(DigitalPort port, int index) const {
+    return bitOf(port, index).map([&](std::uint64_t bit) {
+        return (parts_.state.io.digital_inputs & bit) != 0;
+    });
+}
+
+Result<bool> ScriptRobot::digitalOutput(DigitalPort port, int index) const {
+    return bitOf(port, index).map([&](std::uint64_t bit) {
+        return (parts_.state.io.digital_outputs & bit) != 0;
+    });
+}
+
+Result<void> ScriptRobot::setDigitalOutput(DigitalPort port, int index, bool value) {
+    return bitOf(port, index).map([&](std::uint64_t bit) {
+        auto& outputs = parts_.state.io.digital_outputs;
+        outputs = value ? outputs | bit : outputs & ~bit;
+    });
+}
+
+Result<double> ScriptRobot::analogInput(AnalogPort port, int index) const {
+    const auto& io = parts_.state.io;
+    const auto& inputs = port == AnalogPort::tool ? io.tool_analog_inputs : io.analog_inputs;
+    return within(index, inputs.size(), "analog input").map([&](std::size_t i) {
+        return inputs[i];
+    });
+}
+
+namespace {
+
+// What a share of 1 is: 4 to 20 mA, or 0 to 10 V.
+constexpr double kLeastCurrent = 0.004;
+constexpr double kCurrentRange = 0.016;
+constexpr double kVoltageRange = 10.0;
+
+}  // namespace
+
+Result<double> ScriptRobot::analogOutput(AnalogPort, int index) const {
+    const auto& io = parts_.state.io;
+    return within(index, io.analog_outputs.size(), "analog output").map([&](std::size_t i) {
+        return io.analog_output_domains[i] != 0
+                   ? io.analog_outputs[i] / kVoltageRange
+                   : std::max(0.0, io.analog_outputs[i] - kLeastCurrent) / kCurrentRange;
+    });
+}
+
+Result<void> ScriptRobot::setAnalogOutput(AnalogPort, int index, double share) {
+    auto& io = parts_.state.io;
+    return within(index, io.analog_outputs.size(), "analog output").map([&](std::size_t i) {
+        const double part = std::clamp(share, 0.0, 1.0);
+        io.analog_outputs[i] = io.analog_output_domains[i] != 0
+                                   ? part * kVoltageRange
+                                   : kLeastCurrent + part * kCurrentRange;
+    });
+}
+
+}  // namespace metier::virtual_ur

@@ -1,0 +1,348 @@
+// The virtual UR as `metier virtual` and cells start it: the robot with its ports.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "metier/urscript/script_splitter.hpp"
+#include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_controller/tcp_server.hpp"
+#include "metier/virtual_ur/dashboard.hpp"
+#include "metier/virtual_ur/pacer.hpp"
+#include "metier/virtual_ur/realtime_package.hpp"
+#include "metier/virtual_ur/robot.hpp"
+
+namespace metier::virtual_ur {
+namespace {
+
+using virtual_controller::Controller;
+using virtual_controller::ControllerRequest;
+using virtual_controller::Injection;
+using virtual_controller::InjectionHelp;
+using virtual_controller::TcpPeer;
+using virtual_controller::TcpServer;
+
+// A client that leaves more than this unread gets no further packages of a stream [bytes].
+constexpr std::size_t kMostUnread = 64'000;
+constexpr std::size_t kLongestLine = 4096;
+constexpr double kPrimaryRate = 10.0;  // [Hz]
+
+void stream(TcpServer& server, const Bytes& package) {
+    server.forEach([&](TcpPeer& peer) {
+        if (peer.queued() <= kMostUnread) {
+            peer.send(package);
+        }
+    });
+}
+
+bool hasPeers(TcpServer& server) {
+    bool any = false;
+    server.forEach([&](TcpPeer&) { any = true; });
+    return any;
+}
+
+class UrController final : public Controller {
+public:
+    UrController(const ControllerRequest& request, const RobotOptions& options)
+        : request_(request),
+          robot_(options, {request.context, request.faults, request.world,
+                           [this](const Bytes& message) { tell(message); }}),
+          dashboard_(robot_, [this](const std::string& text) { robot_.tellText(text); }),
+          rtde_{options.description.version,
+                robot_.rate(),
+                robot_.rtdeInputs(),
+                [this](const auto& names) { robot_.inputsWritten(names); },
+                [](const std::string&) {},
+                {}} {}
+
+    /// Errors: those of TcpServer::listen.
+    Result<void> listen();
+    /// Begins to count cycles.
+    void run() {
+        const auto period = std::chrono::duration<double>(robot_.options().arm.cycle);
+        pacer_.emplace(request_.context, std::chrono::round<std::chrono::nanoseconds>(period),
+                       [this] { cycle(); });
+    }
+
+    std::vector<InjectionHelp> injections() const override;
+    Result<void> inject(const Injection& injection) override;
+    nlohmann::ordered_json state() const override;
+    void restart() override;
+
+private:
+    struct Port {
+        std::string name;
+        std::unique_ptr<TcpServer> server;
+    };
+
+    Result<void> listen(std::string name, std::uint16_t port, TcpServer::Handlers handlers);
+    TcpServer& port(std::string_view name);
+    TcpServer::Handlers stateHandlers(bool scripts);
+    TcpServer::Handlers realtimeHandlers(bool scripts);
+    TcpServer::Handlers rtdeHandlers();
+    TcpServer::Handlers dashboardHandlers();
+    void takeScript(TcpPeer& peer, std::span<const std::byte> bytes);
+    void takeLines(TcpPeer& peer, std::span<const std::byte> bytes);
+    void tell(const Bytes& message);
+    void cycle();
+
+    ControllerRequest request_;
+    Robot robot_;
+    Dashboard dashboard_;
+    RtdeShared rtde_;
+    std::map<TcpPeer*, std::unique_ptr<RtdeSession>> sessions_;
+    std::map<TcpPeer*, urscript::ScriptSplitter> splitters_;
+    std::map<TcpPeer*, std::string> lines_;  // what came since the last line feed
+    std::vector<Port> ports_;
+    std::optional<Pacer> pacer_;
+};
+
+Result<void> UrController::listen() {
+    const auto& ports = robot_.options().ports;
+    return listen("dashboard", ports.dashboard, dashboardHandlers())
+        .and_then([&] { return listen("primary", ports.primary, stateHandlers(true)); })
+        .and_then([&] { return listen("secondary", ports.secondary, stateHandlers(true)); })
+        .and_then([&] { return listen("realtime", ports.realtime, realtimeHandlers(true)); })
+        .and_then([&] { return listen("rtde", ports.rtde, rtdeHandlers()); })
+        .and_then([&] {
+            return listen("primary_read_only", ports.primary_read_only, stateHandlers(false));
+        })
+        .and_then([&] {
+            return listen("secondary_read_only", ports.secondary_read_only, stateHandlers(false));
+        })
+        .and_then([&] {
+            return listen("realtime_read_only", ports.realtime_read_only, realtimeHandlers(false));
+        });
+}
+
+Result<void> UrController::listen(std::string name, std::uint16_t port,
+                                  TcpServer::Handlers handlers) {
+    return TcpServer::listen(request_.context, request_.address, port, request_.faults,
+                             std::move(handlers))
+        .map([&](std::unique_ptr<TcpServer> server) {
+            ports_.push_back({std::move(name), std::move(server)});
+        });
+}
+
+TcpServer& UrController::port(std::string_view name) {
+    return *std::find_if(ports_.begin(), ports_.end(), [&](const Port& one) {
+                return one.name == name;
+            })->server;
+}
+
+TcpServer::Handlers UrController::stateHandlers(bool scripts) {
+    TcpServer::Handlers handlers;
+    handlers.on_connected = [this](TcpPeer& peer) {
+        peer.send(versionMessage(robot_.options().description));
+        peer.send(robotStatePackage(robot_.state(), robot_.options().description));
+    };
+    if (scripts) {
+        handlers.on_data = [this](TcpPeer& peer, auto bytes) { takeScript(peer, bytes); };
+        handlers.on_closed = [this](TcpPeer& peer) { splitters_.erase(&peer); };
+    }
+    return handlers;
+}
+
+TcpServer::Handlers UrController::realtimeHandlers(bool scripts) {
+    TcpServer::Handlers handlers;
+    if (scripts) {
+        handlers.on_data = [this](TcpPeer& peer, auto bytes) { takeScript(peer, bytes); };
+        handlers.on_closed = [this](TcpPeer& peer) { splitters_.erase(&peer); };
+    }
+    return handlers;
+}
+
+TcpServer::Handlers UrController::rtdeHandlers() {
+    TcpServer::Handlers handlers;
+    handlers.on_connected = [this](TcpPeer& peer) {
+        sessions_[&peer] = std::make_unique<RtdeSession>(rtde_, peer);
+    };
+    handlers.on_data = [this](TcpPeer& peer, std::span<const std::byte> bytes) {
+        const auto session = sessions_.find(&peer);
+        if (session != sessions_.end() && !session->second->receive(bytes)) {
+            sessions_.erase(session);
+            peer.close();
+        }
+    };
+    handlers.on_closed = [this](TcpPeer& peer) { sessions_.erase(&peer); };
+    return handlers;
+}
+
+TcpServer::Handlers UrController::dashboardHandlers() {
+    TcpServer::Handlers handlers;
+    handlers.on_connected = [](TcpPeer& peer) {
+        peer.send(std::string(Dashboard::kGreeting) + "\n");
+    };
+    handlers.on_data = [this](TcpPeer& peer, auto bytes) { takeLines(peer, bytes); };
+    handlers.on_closed = [this](TcpPeer& peer) { lines_.erase(&peer); };
+    return handlers;
+}
+
+void UrController::takeScript(TcpPeer& peer, std::span<const std::byte> bytes) {
+    std::vector<std::string> programs;
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()),  // NOLINT: text
+                                bytes.size());
+    if (const auto taken = splitters_[&peer].push(text, programs); !taken) {
+        robot_.tellText(taken.error().message);
+    }
+    for (const auto& program : programs) {
+        robot_.takeScript(program);
+    }
+}
+
+void UrController::takeLines(TcpPeer& peer, std::span<const std::byte> bytes) {
+    auto& line = lines_[&peer];
+    for (const auto byte : bytes) {
+        const auto c = static_cast<char>(byte);
+        if (c != '\n') {
+            line += c;
+            if (line.size() > kLongestLine) {
+                return peer.close();
+            }
+            continue;
+        }
+        const auto answer = dashboard_.answer(std::exchange(line, {}));
+        peer.send(answer.line + "\n");
+        if (answer.then == Dashboard::Answer::Then::disconnect) {
+            return peer.close();
+        }
+    }
+}
+
+void UrController::tell(const Bytes& message) {
+    for (const auto& one : ports_) {
+        if (one.name.starts_with("primary")) {
+            stream(*one.server, message);
+        }
+    }
+}
+
+void UrController::cycle() {
+    robot_.cycle();
+    const auto& state = robot_.state();
+    for (const auto& [peer, session] : sessions_) {
+        session->cycle(state);
+    }
+    const auto& description = robot_.options().description;
+    for (const auto name : {"realtime", "realtime_read_only"}) {
+        if (auto& server = port(name); hasPeers(server)) {
+            stream(server, realtimePackage(state, description.series));
+        }
+    }
+    const auto tenth = [&](std::uint64_t cycle) {
+        return static_cast<std::uint64_t>(static_cast<double>(cycle) * kPrimaryRate /
+                                          robot_.rate());
+    };
+    if (tenth(state.cycle) != tenth(state.cycle - 1)) {
+        for (const auto name :
+             {"primary", "secondary", "primary_read_only", "secondary_read_only"}) {
+            if (auto& server = port(name); hasPeers(server)) {
+                stream(server, robotStatePackage(state, description));
+            }
+        }
+    }
+}
+
+std::vector<InjectionHelp> UrController::injections() const {
+    return {{"emergency-stop", "presses the emergency stop; the arm brakes and loses power"},
+            {"release-emergency-stop", "pulls it out again; the arm stays without power"},
+            {"protective-stop", "stops the arm as after a collision"},
+            {"limit", "axis 1 to 6 leaves its range; the arm is stopped"},
+            {"local-control", "someone switches an e-Series arm to local control"},
+            {"remote-control", "and back"},
+            {"program-stop", "someone stops the program at the panel"}};
+}
+
+Result<void> UrController::inject(const Injection& injection) {
+    const auto& name = injection.name;
+    if (name == "emergency-stop") {
+        robot_.emergencyStop();
+    } else if (name == "release-emergency-stop") {
+        robot_.releaseEmergencyStop();
+    } else if (name == "protective-stop") {
+        constexpr int kCollision = 157;  // of the maker's list of errors (believed)
+        robot_.protectiveStop({kCollision, "collision detected"});
+    } else if (name == "limit") {
+        std::size_t axis = 1;
+        const auto& text = injection.value;
+        const auto parsed = std::from_chars(text.data(), text.data() + text.size(), axis);
+        const bool whole = parsed.ptr == text.data() + text.size();
+        if ((!text.empty() && !whole) || axis < 1 || axis > kAxes) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("limit: axis \"{}\" is not within 1 to 6", text));
+        }
+        robot_.exceedLimit(axis - 1);
+    } else if (name == "local-control" || name == "remote-control") {
+        robot_.setControl(name == "local-control" ? Control::local : Control::remote);
+    } else if (name == "program-stop") {
+        robot_.programs().stop();
+    } else {
+        return fail(Errc::not_found, fmt::format("a virtual UR has no injection \"{}\"", name));
+    }
+    return {};
+}
+
+nlohmann::ordered_json UrController::state() const {
+    const auto& state = robot_.state();
+    nlohmann::ordered_json ports;
+    for (const auto& one : ports_) {
+        ports[one.name] = one.server->port();
+    }
+    constexpr std::array kRuntime{"stopping", "stopped", "playing",
+                                  "pausing",  "paused",  "resuming"};
+    return {{"robot_mode", toText(state.robot_mode)},
+            {"safety_mode", toText(state.safety_mode)},
+            {"runtime_state", kRuntime.at(static_cast<std::size_t>(state.runtime_state))},
+            {"remote_control", robot_.control() == Control::remote},
+            {"joint_position", state.actual_q},
+            {"tool_pose", state.actual_tcp_pose},
+            {"speed_scaling", state.speed_scaling},
+            {"timestamp", state.timestamp},
+            {"ports", std::move(ports)}};
+}
+
+void UrController::restart() {
+    sessions_.clear();
+    splitters_.clear();
+    lines_.clear();
+    for (const auto& one : ports_) {
+        one.server->resetAll();
+    }
+    robot_.restart();
+}
+
+Result<std::unique_ptr<Controller>> start(const ControllerRequest& request) {
+    if (request.model == nullptr) {
+        return fail(Errc::invalid_argument, request.name + ": a UR controller needs a model");
+    }
+    auto options = readOptions(request.settings, *request.model);
+    if (!options) {
+        return fail(options.error());
+    }
+    options->address = request.address;
+    auto controller = std::make_unique<UrController>(request, *options);
+    if (auto listening = controller->listen(); !listening) {
+        return fail(listening.error());
+    }
+    controller->run();
+    return controller;
+}
+
+}  // namespace
+}  // namespace metier::virtual_ur
+
+namespace metier::virtual_controller {
+
+ControllerType urController();  // found by the table of controllers (cmake/MetierDevices.cmake)
+
+ControllerType urController() {
+    return {"ur", "controller of a Universal Robots arm: CB3 or e-Series", &virtual_ur::start};
+}
+
+}  // namespace metier::virtual_controller
