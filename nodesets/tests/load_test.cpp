@@ -42,6 +42,7 @@ constexpr std::array kLoaders{
     Loader{"iiwa", namespace_iiwa_generated},
     Loader{"edo", namespace_edo_generated},
     Loader{"universal_robots", namespace_universal_robots_generated},
+    Loader{"wsg50", namespace_wsg50_generated},
 };
 
 /// A value read from the server, freed with it.
@@ -105,6 +106,7 @@ constexpr std::array kModels{
     Model{"device", device::kUri}, Model{"robotics", robotics::kUri},
     Model{"metier", skills::kUri}, Model{"iiwa", iiwa::kUri},
     Model{"edo", edo::kUri},       Model{"universal_robots", universal_robots::kUri},
+    Model{"wsg50", wsg50::kUri},
 };
 
 /// NodeId to node class, as NodeIds.csv of a folder lists them.

@@ -34,6 +34,7 @@ constexpr std::array kInstances{
     Nodeset{"iiwa", namespace_iiwa_generated},
     Nodeset{"edo", namespace_edo_generated},
     Nodeset{"universal_robots", namespace_universal_robots_generated},
+    Nodeset{"wsg50", namespace_wsg50_generated},
 };
 
 bool named(const Nodeset& nodeset, const std::vector<std::string>& names) {

@@ -2,7 +2,7 @@
  *
  * Each adds the nodes of one namespace to a server and must be called after those that it requires,
  * from the thread that owns the server, before the server runs:
- *   di, ia, rob, device, robotics, metier, then iiwa, edo or universal_robots.
+ *   di, ia, rob, device, robotics, metier, then iiwa, edo, universal_robots or wsg50.
  * A call needs all of its required namespaces and returns Good, or the first error; the server is
  * then not usable. All servers of one process must use the same order: the generated code keeps the
  * namespace indexes of its data types in static tables. */
@@ -29,6 +29,7 @@ UA_StatusCode namespace_metier_generated(UA_Server *server);
 UA_StatusCode namespace_iiwa_generated(UA_Server *server);
 UA_StatusCode namespace_edo_generated(UA_Server *server);
 UA_StatusCode namespace_universal_robots_generated(UA_Server *server);
+UA_StatusCode namespace_wsg50_generated(UA_Server *server);
 
 #ifdef __cplusplus
 }
