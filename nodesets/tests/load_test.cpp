@@ -215,6 +215,24 @@ TEST_F(LoadedServer, LetsSkillControllerAndSystemNotifyOfEvents) {
     }
 }
 
+TEST_F(LoadedServer, ArrangesAGripperAsPublishedClientsLookForIt) {
+    for (const auto id : {wsg50::kWsg50, wsg50::kWsg50_Skills_GraspGripperSkill}) {
+        UA_Byte notifier = 0;
+        ASSERT_EQ(UA_Server_readEventNotifier(server_.get(), nodeId(wsg50::kUri, id), &notifier),
+                  UA_STATUSCODE_GOOD);
+        EXPECT_EQ(notifier, UA_EVENTNOTIFIER_SUBSCRIBE_TO_EVENT) << id;
+    }
+    const auto range = read(wsg50::kUri, wsg50::kWsg50_GripPoints_Tip_Range);
+    ASSERT_TRUE(range.holds(UA_TYPES[UA_TYPES_RANGE]));
+    EXPECT_DOUBLE_EQ(range.as<UA_Range>()->high, 0.11);
+    UA_QualifiedName name;
+    const auto force =
+        nodeId(wsg50::kUri, wsg50::kWsg50_Skills_GraspGripperSkill_ParameterSet_Force);
+    ASSERT_EQ(UA_Server_readBrowseName(server_.get(), force, &name), UA_STATUSCODE_GOOD);
+    EXPECT_EQ(name.namespaceIndex, nodeId(device::kUri, 1).namespaceIndex);
+    UA_QualifiedName_clear(&name);
+}
+
 TEST_F(LoadedServer, KeepsTheEURangeOfAParameter) {
     const auto value =
         read(robotics::kUri,

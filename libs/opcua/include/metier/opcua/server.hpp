@@ -66,8 +66,8 @@ struct ServerOptions {
     /// Loopback addresses only: without security nothing else is offered.
     std::vector<std::string> bind_addresses{"127.0.0.1"};
     /// NodeSets by short name: any of device, robotics, metier brings the whole skill model with
-    /// the official ones it stands on; iiwa, edo, universal_robots add the instances of a robot, wsg50
-    /// those of a gripper.
+    /// the official ones it stands on; iiwa, edo, universal_robots add the instances of a robot,
+    /// wsg50 those of a gripper.
     std::vector<std::string> nodesets;
     /// URIs of further namespaces, in the order of their indices.
     std::vector<std::string> namespaces;
