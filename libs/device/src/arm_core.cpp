@@ -4,8 +4,9 @@
 
 namespace metier::device {
 
-ArmCore::ArmCore(ArmInfo info) : info_(std::move(info)) {
-    known_.text = info_.name + ": not connected yet";
+ArmCore::ArmCore(ArmInfo info)
+    : info_(std::move(info)),
+      safety_({SafetyState::disconnected, info_.name + ": not connected yet"}) {
     ArmState state;
     state.position = JointArray(info_.axisCount());
     state.velocity = state.position;
@@ -20,16 +21,10 @@ ArmCore::~ArmCore() {
     }
 }
 
-Safety ArmCore::safety() const {
-    const std::lock_guard lock(mutex_);
-    return known_;
-}
-
 Result<void> ArmCore::attach(std::shared_ptr<SetPointSource> source) {
     const std::lock_guard lock(mutex_);
-    if (known_.state != SafetyState::normal) {
-        return fail(Errc::device_fault,
-                    fmt::format("{} ({})", known_.text, toString(known_.state)));
+    if (const auto now = safety(); now.state != SafetyState::normal) {
+        return fail(Errc::device_fault, fmt::format("{} ({})", now.text, toString(now.state)));
     }
     if (owner_) {
         return fail(Errc::resource_unavailable, info_.name + ": another source moves the arm");
@@ -45,13 +40,7 @@ void ArmCore::stop() noexcept {
 }
 
 Registration ArmCore::onSafetyChange(Arm::SafetyCallback callback) {
-    const std::lock_guard lock(mutex_);
-    const auto id = next_callback_++;
-    callbacks_.emplace_back(id, std::move(callback));
-    return Registration([this, id] {
-        const std::lock_guard inner(mutex_);
-        std::erase_if(callbacks_, [id](const auto& entry) { return entry.first == id; });
-    });
+    return safety_.onChange(std::move(callback));
 }
 
 bool ArmCore::stopRequested() noexcept {
@@ -63,7 +52,7 @@ bool ArmCore::stopRequested() noexcept {
 }
 
 void ArmCore::publish(ArmState state) noexcept {
-    state.safety = safety_.load();
+    state.safety = safety_.state();
     published_.write(state);
 }
 
@@ -77,39 +66,13 @@ void ArmCore::end(EndCause cause) noexcept {
 }
 
 void ArmCore::setSafety(Safety safety) {
-    const std::lock_guard lock(mutex_);
-    if (safety.state != known_.state) {
-        safety_changed_.store(true);
-    }
-    safety_.store(safety.state);
-    known_ = std::move(safety);
+    const std::lock_guard lock(mutex_);  // an attach() sees either state, and end() comes after it
+    safety_.set(std::move(safety));
 }
 
 void ArmCore::dispatch() {
-    tellSafety();
+    safety_.dispatch();
     tellEnd();
-}
-
-void ArmCore::tellSafety() {
-    if (!safety_changed_.exchange(false)) {
-        return;
-    }
-    std::vector<Arm::SafetyCallback> callbacks;
-    Safety now;
-    {
-        const std::lock_guard lock(mutex_);
-        if (known_.state == told_) {
-            return;
-        }
-        now = known_;
-        told_ = now.state;
-        for (const auto& [id, callback] : callbacks_) {
-            callbacks.push_back(callback);
-        }
-    }
-    for (const auto& callback : callbacks) {
-        callback(now);
-    }
 }
 
 void ArmCore::tellEnd() {
@@ -123,7 +86,7 @@ void ArmCore::tellEnd() {
         const std::lock_guard lock(mutex_);
         source = std::move(owner_);
         owner_.reset();
-        now = known_;
+        now = safety();
     }
     source->ended(cause, now);
 }

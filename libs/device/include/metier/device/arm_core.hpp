@@ -3,11 +3,9 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "metier/device/arm.hpp"
+#include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 
 namespace metier::device {
@@ -26,7 +24,7 @@ public:
     // ---- for device::Arm; any thread ----
     const ArmInfo& info() const noexcept { return info_; }
     ArmState state() const noexcept { return published_.read(); }
-    Safety safety() const;
+    Safety safety() const { return safety_.safety(); }
     Result<void> attach(std::shared_ptr<SetPointSource> source);
     void stop() noexcept;
     Registration onSafetyChange(Arm::SafetyCallback callback);
@@ -40,9 +38,9 @@ public:
     void publish(ArmState state) noexcept;
     /// Lets go of the active source; publish() the state of the end before.
     void end(EndCause cause) noexcept;
-    SafetyState safetyState() const noexcept { return safety_.load(); }
+    SafetyState safetyState() const noexcept { return safety_.state(); }
     /// Whether dispatch() has something to tell.
-    bool toTell() const noexcept { return ended_.load() || safety_changed_.load(); }
+    bool toTell() const noexcept { return ended_.load() || safety_.toTell(); }
 
     // ---- any thread, off the cycle's normal path: they lock ----
     /// A change of state or reason. Its text should name the device and why.
@@ -51,25 +49,19 @@ public:
     void dispatch();
 
 private:
-    void tellSafety();
     void tellEnd();
 
     const ArmInfo info_;
     SharedValue<ArmState> published_;
-    std::atomic<SafetyState> safety_{SafetyState::disconnected};
+    SafetyPublisher safety_;
     std::atomic<SetPointSource*> active_{nullptr};
     std::atomic<SetPointSource*> stop_target_{nullptr};
     std::atomic<bool> ended_{false};
     std::atomic<EndCause> end_cause_{EndCause::done};
-    std::atomic<bool> safety_changed_{false};
     bool stopping_ = false;  // of the cycle thread
 
-    mutable std::mutex mutex_;
+    std::mutex mutex_;
     std::shared_ptr<SetPointSource> owner_;  // shared with whoever attached it
-    Safety known_{SafetyState::disconnected, "not connected yet", false};
-    SafetyState told_ = SafetyState::disconnected;
-    std::vector<std::pair<std::uint64_t, Arm::SafetyCallback>> callbacks_;
-    std::uint64_t next_callback_ = 1;
 };
 
 }  // namespace metier::device

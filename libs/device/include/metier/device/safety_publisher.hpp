@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "metier/device/arm.hpp"
+
+namespace metier::device {
+
+/// The safety state of a device, and who hears of its changes.
+///
+/// Threading: any thread, but dispatch() one thread alone. Only state() and toTell() do not lock.
+class SafetyPublisher {
+public:
+    using Callback = std::function<void(const Safety&)>;
+
+    explicit SafetyPublisher(Safety initial);
+
+    Safety safety() const;
+    SafetyState state() const noexcept { return state_.load(); }
+    /// A change of state or reason.
+    void set(Safety safety);
+    /// Whether dispatch() has something to tell.
+    bool toTell() const noexcept { return changed_.load(); }
+    /// Tells the callbacks if the state is another than the one they know.
+    void dispatch();
+    /// Calls `callback` from dispatch(). The registration must not outlive this.
+    Registration onChange(Callback callback);
+
+private:
+    std::atomic<SafetyState> state_;
+    std::atomic<bool> changed_{false};
+    mutable std::mutex mutex_;
+    Safety known_;
+    SafetyState told_;
+    std::vector<std::pair<std::uint64_t, Callback>> callbacks_;
+    std::uint64_t next_callback_ = 1;
+};
+
+}  // namespace metier::device

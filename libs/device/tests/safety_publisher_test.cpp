@@ -1,0 +1,56 @@
+#include "metier/device/safety_publisher.hpp"
+
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+namespace metier::device {
+namespace {
+
+using ::testing::ElementsAre;
+
+struct Heard {
+    SafetyPublisher publisher{{SafetyState::disconnected, "not connected yet", false}};
+    std::vector<std::string> texts{};
+    Registration registration =
+        publisher.onChange([this](const Safety& safety) { texts.push_back(safety.text); });
+};
+
+TEST(SafetyPublisher, TellsAChangeOnceWithItsText) {
+    Heard heard;
+    heard.publisher.set({SafetyState::fault, "fast stop", false});
+    EXPECT_TRUE(heard.publisher.toTell());
+    EXPECT_EQ(heard.publisher.state(), SafetyState::fault);
+    heard.publisher.dispatch();
+    heard.publisher.dispatch();
+    EXPECT_THAT(heard.texts, ElementsAre("fast stop"));
+}
+
+TEST(SafetyPublisher, KeepsANewTextOfTheSameStateToItself) {
+    Heard heard;
+    heard.publisher.set({SafetyState::disconnected, "refused", false});
+    EXPECT_FALSE(heard.publisher.toTell());
+    heard.publisher.dispatch();
+    EXPECT_THAT(heard.texts, ElementsAre());
+    EXPECT_EQ(heard.publisher.safety().text, "refused");
+}
+
+TEST(SafetyPublisher, TellsNothingOfAStateThatCameAndWent) {
+    Heard heard;
+    heard.publisher.set({SafetyState::normal, "", false});
+    heard.publisher.set({SafetyState::disconnected, "cable", false});
+    heard.publisher.dispatch();
+    EXPECT_THAT(heard.texts, ElementsAre());
+}
+
+TEST(SafetyPublisher, TellsNobodyWhoseRegistrationEnded) {
+    Heard heard;
+    heard.registration = {};
+    heard.publisher.set({SafetyState::normal, "", false});
+    heard.publisher.dispatch();
+    EXPECT_THAT(heard.texts, ElementsAre());
+}
+
+}  // namespace
+}  // namespace metier::device
