@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "metier/base/clock.hpp"
+#include "metier/device/gripper.hpp"
+#include "metier/wsg50_driver/messages.hpp"
+
+namespace metier::wsg50_driver {
+
+/// What the gripper's updates have told of it so far.
+///
+/// Taking an update does not allocate. Threading: one thread.
+class Observation {
+public:
+    /// How many updates of each value had come at some time.
+    using Mark = std::array<std::uint64_t, 4>;
+
+    /// Takes a successful reply if it is an update of one of the four values.
+    /// \return whether it was one
+    /// Errors: invalid_argument, as the parsers.
+    Result<bool> take(const Reply& reply, SteadyTime now);
+
+    Mark mark() const noexcept { return counts_; }
+    /// Whether every value was updated since.
+    bool renewedSince(const Mark& mark) const noexcept;
+    /// The value whose last update is older than `age`, or that came never; nothing if all are
+    /// newer.
+    std::optional<std::string_view> silentValue(SteadyTime now, SteadyTime::duration age) const;
+
+    SystemState system() const noexcept { return system_; }
+    GraspingState grasping() const noexcept { return grasping_; }
+    double width() const noexcept { return width_; }  ///< [m]
+    double force() const noexcept { return force_; }  ///< [N]
+    bool partHeld() const noexcept { return grasping_ == GraspingState::holding; }
+    /// For whoever reads the gripper; its safety is left to the caller.
+    device::GripperState state(SteadyTime now) const noexcept;
+
+private:
+    SystemState system_;
+    GraspingState grasping_ = GraspingState::idle;
+    double width_ = 0.0;
+    double force_ = 0.0;
+    Mark counts_{};
+    std::array<SteadyTime, 4> stamps_{};
+};
+
+}  // namespace metier::wsg50_driver

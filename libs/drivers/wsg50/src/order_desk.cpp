@@ -1,0 +1,84 @@
+#include "metier/wsg50_driver/order_desk.hpp"
+
+#include <utility>
+
+namespace metier::wsg50_driver {
+
+Result<void> OrderDesk::ask(const Motion& motion, device::Gripper::Done done) {
+    const std::lock_guard lock(mutex_);
+    if (closed_) {
+        return fail(*closed_);
+    }
+    if (done_) {
+        return fail(Errc::resource_unavailable, "the jaws already move");
+    }
+    asked_ = motion;
+    done_ = std::move(done);
+    stop_.store(false);
+    return {};
+}
+
+std::future<Result<void>> OrderDesk::askReset() {
+    const std::lock_guard lock(mutex_);
+    reset_asked_ = true;
+    return resets_.emplace_back().get_future();
+}
+
+void OrderDesk::open() {
+    const std::lock_guard lock(mutex_);
+    closed_.reset();
+}
+
+void OrderDesk::close(Error why) {
+    const std::lock_guard lock(mutex_);
+    closed_ = std::move(why);
+}
+
+std::optional<Motion> OrderDesk::takeMotion() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(asked_, std::nullopt);
+}
+
+bool OrderDesk::occupied() const {
+    const std::lock_guard lock(mutex_);
+    return done_ && !outcome_;
+}
+
+bool OrderDesk::takeReset() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(reset_asked_, false);
+}
+
+void OrderDesk::endMotion(Result<device::GripperOutcome> outcome) {
+    const std::lock_guard lock(mutex_);
+    if (done_ && !outcome_) {
+        asked_.reset();
+        outcome_ = std::move(outcome);
+    }
+}
+
+void OrderDesk::endReset(const Result<void>& outcome) {
+    std::vector<std::promise<Result<void>>> answered;
+    {
+        const std::lock_guard lock(mutex_);
+        reset_asked_ = false;
+        answered.swap(resets_);
+    }
+    for (auto& promise : answered) {
+        promise.set_value(outcome);
+    }
+}
+
+void OrderDesk::dispatch() {
+    std::unique_lock lock(mutex_);
+    if (!outcome_) {
+        return;
+    }
+    auto outcome = std::move(*outcome_);
+    outcome_.reset();
+    const auto done = std::exchange(done_, nullptr);
+    lock.unlock();
+    done(std::move(outcome));
+}
+
+}  // namespace metier::wsg50_driver

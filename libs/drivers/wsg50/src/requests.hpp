@@ -1,0 +1,18 @@
+#pragma once
+
+#include "metier/wsg50_driver/wsg50_gripper.hpp"
+
+namespace metier::wsg50_driver {
+
+/// What is known of the gripper since its first connection. Trivially copyable.
+struct Known {
+    Limits limits{};
+    double force_limit = 0.0;  ///< that the gripper had then [N]; 0: never connected
+};
+
+/// The motion that a request stands for, with the driver's settings for what it leaves open.
+/// Errors: out_of_range, with value, limit and unit.
+Result<Motion> motionFor(MotionKind kind, const device::GripperRequest& request,
+                         const Wsg50Options& options, const Known& known);
+
+}  // namespace metier::wsg50_driver

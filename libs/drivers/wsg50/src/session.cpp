@@ -1,0 +1,247 @@
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace metier::wsg50_driver {
+namespace {
+
+using namespace std::chrono_literals;
+using device::SafetyState;
+
+constexpr auto kConnectTimeout = 1s;
+constexpr auto kSendTimeout = 200ms;
+// How long an order from another thread may lie before the gripper gets it.
+constexpr auto kSlice = 5ms;
+constexpr std::chrono::milliseconds kShortestBackOff = 200ms;
+constexpr std::chrono::milliseconds kLongestBackOff = 2s;
+constexpr auto kResetWait = 500ms;
+
+SteadyTime now() {
+    return std::chrono::steady_clock::now();
+}
+
+device::GripperInfo infoFor(const std::string& name, const Limits& limits) {
+    return {.name = name,
+            .stroke = limits.stroke,
+            .min_force = limits.min_force,
+            .max_force = limits.max_force,
+            .max_speed = limits.max_speed};
+}
+
+}  // namespace
+
+Wsg50Gripper::Session::Session(Wsg50Options options)
+    : options_(std::move(options)),
+      usual_info_(infoFor(options_.name, Limits{})),
+      safety_({SafetyState::disconnected, named("not connected yet"), false}),
+      notifier_([this] {
+          safety_.dispatch();
+          desk_.dispatch();
+      }),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Wsg50Gripper::Session::~Session() {
+    thread_.request_stop();
+    thread_.join();
+    lost({Errc::connection_lost, "the driver was shut down"});
+}
+
+std::string Wsg50Gripper::Session::named(std::string_view text) const {
+    return fmt::format("{}: {}", options_.name, text);
+}
+
+Result<void> Wsg50Gripper::Session::ask(MotionKind kind, const device::GripperRequest& request,
+                                        Done done) {
+    const auto safety = safety_.safety();
+    if (safety.state != SafetyState::normal) {
+        return fail(
+            safety.state == SafetyState::disconnected ? Errc::connection_lost : Errc::device_fault,
+            safety.text);
+    }
+    const auto motion = motionFor(kind, request, options_, known_.read());
+    const auto asked =
+        motion.and_then([&](const Motion& checked) { return desk_.ask(checked, std::move(done)); });
+    return asked ? asked : fail(asked.error().code, named(asked.error().message));
+}
+
+Result<void> Wsg50Gripper::Session::resetFault() {
+    const auto safety = safety_.safety();
+    if (safety.state == SafetyState::normal) {
+        return {};
+    }
+    if (safety.state == SafetyState::disconnected) {
+        return fail(Errc::connection_lost, safety.text);
+    }
+    auto answer = desk_.askReset();
+    if (answer.wait_for(kResetWait) == std::future_status::ready) {
+        return answer.get();
+    }
+    return fail(Errc::device_fault, safety_.safety().text + "; Reset again when it is done");
+}
+
+void Wsg50Gripper::Session::run(const std::stop_token& stop) {
+    auto back_off = kShortestBackOff;
+    while (!stop.stop_requested()) {
+        answered_ = false;
+        const auto ended = connection(stop);
+        if (ended) {
+            return;
+        }
+        lost(ended.error());
+        back_off = answered_ ? kShortestBackOff : back_off;
+        std::unique_lock lock(wait_mutex_);
+        wait_.wait_for(lock, stop, back_off, [] { return false; });
+        back_off = std::min(2 * back_off, kLongestBackOff);
+    }
+}
+
+Result<void> Wsg50Gripper::Session::connection(const std::stop_token& stop) {
+    auto link = link::TcpLink::connect(options_.host, options_.port, now() + kConnectTimeout);
+    if (!link) {
+        return fail(link.error());
+    }
+    // What was asked before belongs to the connection before.
+    desk_.endReset(fail(Errc::connection_lost, named("the connection was lost")));
+    link_ = &*link;
+    sent_ = {};
+    auto conversation_options = options_.conversation;
+    conversation_options.home = conversation_options.home && known_.read().force_limit == 0.0;
+    Conversation conversation(conversation_options, now(), *this);
+    auto ended = talk(stop, conversation);
+    if (ended) {
+        takeLeave();
+    }
+    link_ = nullptr;
+    return ended;
+}
+
+Result<void> Wsg50Gripper::Session::talk(const std::stop_token& stop, Conversation& conversation) {
+    FrameReader reader;
+    while (!stop.stop_requested()) {
+        passOrders(conversation);
+        if (auto taken = takeBytes(conversation, reader); !taken) {
+            return taken;
+        }
+        if (auto ticked = conversation.tick(now()); !ticked) {
+            return atPeer(ticked.error());
+        }
+        if (!sent_) {
+            return sent_;
+        }
+    }
+    return {};
+}
+
+/// Waits a slice for bytes, then takes all frames that are whole.
+Result<void> Wsg50Gripper::Session::takeBytes(Conversation& conversation, FrameReader& reader) {
+    const auto count = link_->receive(reader.space(), now() + kSlice);
+    if (!count) {
+        return count.error().code == Errc::timeout ? Result<void>() : fail(count.error());
+    }
+    reader.received(*count);
+    while (const auto frame = reader.next()) {
+        if (auto taken = conversation.take(*frame, now()); !taken) {
+            return atPeer(taken.error());
+        }
+    }
+    return {};
+}
+
+Result<void> Wsg50Gripper::Session::atPeer(const Error& error) const {
+    return fail(error.code, fmt::format("{}: {}", link_->peer(), error.message));
+}
+
+void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
+    const bool stop = desk_.takeStop();
+    const auto motion = desk_.takeMotion();
+    if (motion && stop) {
+        onMotionEnd(fail(Errc::cancelled, "stopped before it began"));
+    } else if (motion && !conversation.ready()) {
+        desk_.endMotion(fail(Errc::device_fault, safety_.safety().text));
+        notifier_.signal();
+    } else if (motion) {
+        conversation.begin(*motion, now());
+    } else if (stop) {
+        conversation.stop(now());
+    }
+    if (conversation.started() && desk_.takeReset()) {
+        conversation.reset(now());
+    }
+}
+
+/// So that the gripper does not take the end of the connection for a failure.
+void Wsg50Gripper::Session::takeLeave() {
+    if (desk_.occupied()) {
+        send(Command(CommandId::stop));
+    }
+    send(Command(CommandId::disconnect));
+}
+
+/// The connection is gone, and with it whatever was under way.
+void Wsg50Gripper::Session::lost(const Error& why) {
+    const auto text = named(why.message);
+    desk_.close({Errc::connection_lost, why.message});
+    setSafety({SafetyState::disconnected, text, false});
+    desk_.endMotion(fail(Errc::connection_lost, text));
+    desk_.endReset(fail(Errc::connection_lost, text));
+    notifier_.signal();
+}
+
+void Wsg50Gripper::Session::publish(device::GripperState state) {
+    state.safety = safety_.state();
+    state_.write(state);
+}
+
+void Wsg50Gripper::Session::setSafety(device::Safety safety) {
+    safety_.set(std::move(safety));
+    publish(state_.read());
+}
+
+void Wsg50Gripper::Session::send(Command command) {
+    if (sent_) {
+        sent_ = link_->send(command.bytes(), now() + kSendTimeout);
+    }
+}
+
+void Wsg50Gripper::Session::onLimits(const Limits& limits, double force_limit) {
+    answered_ = true;
+    auto known = known_.read();
+    known.limits = limits;
+    if (known.force_limit == 0.0) {
+        known.force_limit = force_limit;
+        read_info_ = infoFor(options_.name, limits);
+        info_.store(&read_info_);
+    }
+    known_.write(known);
+}
+
+void Wsg50Gripper::Session::onState(const device::GripperState& state) {
+    publish(state);
+}
+
+void Wsg50Gripper::Session::onSafety(device::Safety safety) {
+    if (safety.state == SafetyState::normal) {
+        desk_.open();
+        setSafety({});
+    } else {
+        desk_.close({Errc::device_fault, safety.text});
+        setSafety({safety.state, named(safety.text), safety.limit_violated});
+    }
+    notifier_.signal();
+}
+
+void Wsg50Gripper::Session::onMotionEnd(Result<device::GripperOutcome> outcome) {
+    desk_.endMotion(outcome ? std::move(outcome)
+                            : fail(outcome.error().code, named(outcome.error().message)));
+    notifier_.signal();
+}
+
+void Wsg50Gripper::Session::onResetEnd(Result<void> outcome) {
+    desk_.endReset(outcome ? outcome : fail(outcome.error().code, named(outcome.error().message)));
+}
+
+}  // namespace metier::wsg50_driver
