@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "metier/base/quantities.hpp"
@@ -14,6 +15,15 @@ namespace metier::device {
 struct ForceCondition {
     /// Largest force along x, y, z of the flange frame [N]; not set: not watched.
     std::array<std::optional<double>, 3> force{};
+};
+
+/// Whoever wants to see the arm while its controller moves it.
+class MotionObserver {
+public:
+    virtual ~MotionObserver() = default;
+    /// The arm in this cycle of the motion. Called by the arm's cycle thread: must not allocate,
+    /// lock, wait, log or throw.
+    virtual void observe(const ArmState& state) noexcept = 0;
 };
 
 /// A motion for the controller's own planner: the same path kinds as metier plans itself.
@@ -30,14 +40,18 @@ struct PlannedMotion {
     double line_velocity = 0.0;
     double line_acceleration = 0.0;
     std::optional<ForceCondition> until{};
+    /// Told of every cycle until the motion is done; shared, since the arm keeps it so long.
+    std::shared_ptr<MotionObserver> observer{};
 };
 
 /// How such a motion ended; the arm stands.
 struct MotionOutcome {
     enum class End : std::uint8_t { at_target, stopped, force };
     End end = End::at_target;
-    std::array<double, 3> force{};   ///< measured at the flange when it ended [N]
+    std::array<double, 3> force{};   ///< measured at the flange, its axes, when it ended [N]
     std::array<double, 3> torque{};  ///< [Nm]
+    /// Largest seen during the motion along x, y, z of the flange, without sign [N].
+    std::array<double, 3> largest_force{};
 };
 
 /// An arm whose controller plans motions by itself.

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "metier/device/arm.hpp"
+#include "metier/device/force_torque_sensor.hpp"
+#include "metier/device/motion_planner.hpp"
+#include "metier/iiwa_driver/wire.hpp"
+#include "metier/motion/robot_model.hpp"
+
+namespace metier::iiwa_driver {
+
+struct IiwaOptions {
+    std::string name = "iiwa";          ///< for texts
+    std::string address = "127.0.0.1";  ///< of this computer, where the cabinet dials in
+    std::uint16_t port = 12225;         ///< 0: a free one
+    Precision precision = Precision::float32;
+    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};  ///< of polling, > 0
+    /// Longest silence of the cabinet after a command.
+    std::chrono::nanoseconds answer_timeout{std::chrono::milliseconds(100)};
+    /// Index in the station's setup of the tool that is attached; -1: none.
+    int tool = -1;
+    /// A force condition also ends a motion if the cabinet's estimate of the force is worse than
+    /// this [N].
+    double force_tolerance = 10.0;
+};
+
+/// An LBR iiwa whose cabinet runs the robot application of libiiwa, which dials in.
+///
+/// As a device::Arm it streams set-points by the servo interface; as a device::MotionPlanner it
+/// lets the cabinet plan. There is no safety state in the protocol: `protective_stop` means that
+/// the cabinet is not ready to move. Not ready is obeyed, and whatever ran is cancelled, so that
+/// the arm does not go on when somebody makes it ready again. If the connection ends for any
+/// reason, the robot application stops the arm and ends; an operator has to start it again.
+/// Source: docs/protocols/iiwa.md.
+class IiwaArm final : public device::Arm, public device::MotionPlanner {
+public:
+    /// \param model must outlive the arm; of an arm with 7 axes
+    /// Errors: invalid_argument (model, cycle, not an address of this computer), already_exists
+    /// (the port is taken).
+    static Result<std::unique_ptr<IiwaArm>> create(const IiwaOptions& options,
+                                                   const motion::RobotModel& model);
+    /// Closes the connection: a moving arm is stopped by the cabinet.
+    ~IiwaArm() override;
+
+    /// Where the cabinet is awaited.
+    std::uint16_t port() const;
+    /// The wrench on the flange as the cabinet estimates it; lives as long as the arm.
+    device::ForceTorqueSensor& flangeForce() noexcept;
+
+    const device::ArmInfo& info() const noexcept override;
+    device::ArmState state() const noexcept override;
+    device::Safety safety() const override;
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
+    void stop() noexcept override;
+    Result<void> resetFault() override;
+    device::Registration onSafetyChange(SafetyCallback callback) override;
+
+    Result<void> move(const device::PlannedMotion& motion, Done done) override;
+    void stopMotion() noexcept override;
+
+private:
+    class Machine;
+    explicit IiwaArm(std::unique_ptr<Machine> machine);
+
+    std::unique_ptr<Machine> machine_;
+};
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,71 @@
+#include "metier/driver/driver.hpp"
+
+#include <cmath>
+
+#include "metier/iiwa_driver/iiwa_arm.hpp"
+
+namespace metier::iiwa_driver {
+
+namespace {
+
+std::chrono::nanoseconds milliseconds(double ms) {
+    return std::chrono::round<std::chrono::nanoseconds>(
+        std::chrono::duration<double, std::milli>(ms));
+}
+
+/// Notes what is wrong in the settings; finish() tells.
+IiwaOptions read(const driver::OpenRequest& request) {
+    const auto& settings = request.settings;
+    IiwaOptions options;
+    options.name = request.name;
+    options.address = request.address;
+    options.port = static_cast<std::uint16_t>(settings.numberOr("port", 12225, 0, 65535));
+    const auto precision = settings.textOr("precision", "single");
+    if (precision != "single" && precision != "double") {
+        settings.reject("precision", "is neither \"single\" nor \"double\"");
+    }
+    options.precision = precision == "double" ? Precision::float64 : Precision::float32;
+    options.cycle = milliseconds(settings.numberOr("poll_period_ms", 10, 1, 1000));
+    options.answer_timeout = milliseconds(settings.numberOr("answer_timeout_ms", 100, 5, 10'000));
+    options.tool = static_cast<int>(std::lround(settings.numberOr("tool", -1, -1, 1000)));
+    options.force_tolerance = settings.numberOr("force_tolerance", 10, 0.1, 1000);
+    return options;
+}
+
+Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+    const auto options = read(request);
+    if (auto finished = request.settings.finish(); !finished) {
+        return fail(std::move(finished.error()));
+    }
+    if (request.model == nullptr) {
+        return fail(Errc::invalid_argument, request.name + ": an iiwa needs a model");
+    }
+    auto arm = IiwaArm::create(options, *request.model);
+    if (!arm) {
+        return fail(std::move(arm.error()));
+    }
+    // Shared, as OpenDevice asks for.
+    const std::shared_ptr<IiwaArm> owner = std::move(*arm);
+    driver::OpenDevice device;
+    device.owner = owner;
+    device.arm = owner.get();
+    device.planner = owner.get();
+    device.force_torque_sensor = &owner->flangeForce();
+    return device;
+}
+
+}  // namespace
+
+}  // namespace metier::iiwa_driver
+
+namespace metier::driver {
+
+Driver iiwaDriver();
+
+Driver iiwaDriver() {
+    return {"iiwa",
+            "KUKA LBR iiwa whose cabinet runs the robot application of libiiwa and dials in (TCP)",
+            iiwa_driver::open};
+}
+
+}  // namespace metier::driver

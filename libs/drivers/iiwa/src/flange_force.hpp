@@ -1,0 +1,39 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+
+#include "metier/device/arm_core.hpp"
+#include "metier/device/force_torque_sensor.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/iiwa_driver/wire.hpp"
+
+namespace metier::iiwa_driver {
+
+/// The cabinet's estimate of the wrench on the flange, from the torques of the joints, as a sensor:
+/// in the axes of the flange frame, once per cycle.
+class FlangeForce final : public device::ForceTorqueSensor {
+public:
+    /// \param core of the arm; must outlive this
+    explicit FlangeForce(device::ArmCore& core);
+
+    /// The cycle thread: neither locks nor allocates.
+    void take(const CabinetState& answer, SteadyTime now) noexcept;
+
+    const std::string& name() const noexcept override { return name_; }
+    device::WrenchSample sample() const noexcept override;
+    device::Safety safety() const override { return core_.safety(); }
+    Result<void> tare() override;
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        return core_.onSafetyChange(std::move(callback));
+    }
+
+private:
+    device::ArmCore& core_;
+    const std::string name_;
+    device::SharedValue<device::WrenchSample> newest_;  ///< as the cabinet gave it
+    device::SharedValue<device::WrenchSample> zero_;
+    std::mutex tare_mutex_;  ///< one writer of zero_
+};
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,133 @@
+#include "metier/iiwa_driver/iiwa_arm.hpp"
+
+#include <fmt/format.h>
+
+#include <thread>
+#include <utility>
+
+#include "metier/device/notifier.hpp"
+#include "session.hpp"
+
+namespace metier::iiwa_driver {
+
+namespace {
+
+device::ArmInfo infoOf(const IiwaOptions& options, const motion::RobotModel& model) {
+    device::ArmInfo info{options.name, {}, options.cycle};
+    for (const auto& joint : model.chain().joints) {
+        info.axis_names.push_back(joint.name);
+    }
+    return info;
+}
+
+Result<void> check(const IiwaOptions& options, const motion::RobotModel& model) {
+    if (model.axisCount() != kAxes) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the model {} has {} axes, an iiwa has {}", options.name,
+                                model.name(), model.axisCount(), kAxes));
+    }
+    if (options.cycle.count() <= 0 || options.answer_timeout.count() <= 0) {
+        return fail(Errc::invalid_argument,
+                    options.name + ": cycle and answer time-out must be over 0");
+    }
+    return {};
+}
+
+}  // namespace
+
+/// The parts and threads behind the faces.
+class IiwaArm::Machine {
+public:
+    Machine(const IiwaOptions& options, const motion::RobotModel& model, link::TcpListener listener)
+        : pilot_(infoOf(options, model), model, {options.force_tolerance, options.tool}),
+          force_(pilot_.core()),
+          notifier_([this] { pilot_.dispatch(); }),
+          session_(std::move(listener), {pilot_, force_, [this] { notifier_.signal(); }},
+                   {options.precision, options.cycle, options.answer_timeout}),
+          thread_([this](const std::stop_token& stop) { session_.run(stop); }) {}
+
+    ~Machine() {
+        thread_.request_stop();
+        session_.shutdown();
+        thread_.join();
+        pilot_.lost(pilot_.core().info().name + ": the driver was shut down");
+        notifier_.signal();
+    }
+    Machine(const Machine&) = delete;
+    Machine& operator=(const Machine&) = delete;
+
+    Pilot& pilot() noexcept { return pilot_; }
+    FlangeForce& force() noexcept { return force_; }
+    std::uint16_t port() const { return session_.port(); }
+
+private:
+    Pilot pilot_;
+    FlangeForce force_;
+    device::Notifier notifier_;
+    Session session_;
+    std::jthread thread_;
+};
+
+Result<std::unique_ptr<IiwaArm>> IiwaArm::create(const IiwaOptions& options,
+                                                 const motion::RobotModel& model) {
+    if (auto checked = check(options, model); !checked) {
+        return fail(std::move(checked.error()));
+    }
+    auto listener = link::TcpListener::listen(options.address, options.port);
+    if (!listener) {
+        return fail(listener.error().code, options.name + ": " + listener.error().message);
+    }
+    return std::unique_ptr<IiwaArm>(
+        new IiwaArm(std::make_unique<Machine>(options, model, std::move(*listener))));
+}
+
+IiwaArm::IiwaArm(std::unique_ptr<Machine> machine) : machine_(std::move(machine)) {}
+
+IiwaArm::~IiwaArm() = default;
+
+std::uint16_t IiwaArm::port() const {
+    return machine_->port();
+}
+
+device::ForceTorqueSensor& IiwaArm::flangeForce() noexcept {
+    return machine_->force();
+}
+
+const device::ArmInfo& IiwaArm::info() const noexcept {
+    return machine_->pilot().core().info();
+}
+
+device::ArmState IiwaArm::state() const noexcept {
+    return machine_->pilot().core().state();
+}
+
+device::Safety IiwaArm::safety() const {
+    return machine_->pilot().core().safety();
+}
+
+Result<void> IiwaArm::attach(std::shared_ptr<device::SetPointSource> source) {
+    return machine_->pilot().attach(std::move(source));
+}
+
+void IiwaArm::stop() noexcept {
+    machine_->pilot().core().stop();
+    machine_->pilot().stopMotion();
+}
+
+Result<void> IiwaArm::resetFault() {
+    return machine_->pilot().resetFault();
+}
+
+device::Registration IiwaArm::onSafetyChange(SafetyCallback callback) {
+    return machine_->pilot().core().onSafetyChange(std::move(callback));
+}
+
+Result<void> IiwaArm::move(const device::PlannedMotion& motion, Done done) {
+    return machine_->pilot().move(motion, std::move(done));
+}
+
+void IiwaArm::stopMotion() noexcept {
+    machine_->pilot().stopMotion();
+}
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,377 @@
+#include "pilot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "commands.hpp"
+#include "metier/geometry/frame.hpp"
+#include "metier/geometry/rotation.hpp"
+#include "motion_check.hpp"
+
+namespace metier::iiwa_driver {
+
+using device::EndCause;
+using device::SafetyState;
+
+namespace {
+
+// A commanded position is kept while the arm is this near [rad].
+constexpr double kHeld = 2e-3;
+// A setting that was refused is tried again after this time [s].
+constexpr double kTryAgain = 1.0;
+
+motion::JointVector toVector(const device::JointArray& joints) noexcept {
+    motion::JointVector vector(kAxes);
+    std::copy_n(joints.begin(), kAxes, vector.begin());
+    return vector;
+}
+
+}  // namespace
+
+Pilot::Pilot(device::ArmInfo info, const motion::RobotModel& model, const PilotOptions& options)
+    : core_(std::move(info)),
+      model_(model),
+      options_(options),
+      servo_(model, core_.info().cycleSeconds()) {
+    state_ = core_.state();
+}
+
+// ---- connection --------------------------------------------------------------------------------
+
+void Pilot::connected(const CabinetState& first, SteadyTime now) {
+    settings_.forget();
+    readiness_ = Readiness();
+    flange_from_tool_ = geometry::Pose::identity();
+    last_answer_ = now;
+    state_.cycle = 0;
+    state_.missed_cycles = 0;
+    holds_ = false;
+    try_again_in_ = 0.0;
+    condition_ = Condition::none;
+    latched_.store(false);
+    note(first, now);
+    settleIn();
+}
+
+/// What every cabinet is told before anything else; none of it moves the arm.
+void Pilot::settleIn() noexcept {
+    mode_ = Mode::settling_in;
+    chores_.clear();
+    chores_.add(asynchronousExecution());
+    chores_.add(chooseInterface(Interface::standard));
+    chores_.add(positionControl());
+    if (options_.tool >= 0) {
+        chores_.add(attachTool(options_.tool));
+    }
+}
+
+void Pilot::takeSettingIn(const Command& sent, const CabinetState& answer) {
+    if (sent.code == Code::state) {
+        return;
+    }
+    if (!answer.executed) {
+        try_again_in_ = kTryAgain;
+        change(Condition::refused_setting, fmt::format("the cabinet refused: {}", describe(sent)));
+        return;
+    }
+    settings_.taken(sent);
+    chores_.drop();
+    if (chores_.empty()) {
+        settledIn(answer);
+    }
+}
+
+/// The arm is ready for motions, unless it is not the one that the model describes.
+void Pilot::settledIn(const CabinetState& answer) {
+    mode_ = Mode::idle;
+    const auto flange = model_.kinematics().forward(toVector(answer.position));
+    const auto pose = geometry::toPose(answer.pose);
+    if (options_.tool >= 0) {
+        flange_from_tool_ = flange.inverse() * pose;
+    } else if (auto same = checkSameFlange(flange, pose); !same) {
+        change(Condition::wrong_model, same.error().message);
+        return;
+    }
+    condition_ = Condition::none;
+    core_.setSafety({SafetyState::normal, "", false});
+}
+
+void Pilot::lost(const std::string& text) {
+    const std::lock_guard admission(admission_);  // nothing that is admitted now may begin later
+    {
+        const std::lock_guard lock(lost_mutex_);
+        lost_text_ = text;
+    }
+    core_.setSafety({SafetyState::disconnected, text, false});
+    condition_ = Condition::none;
+    mode_ = Mode::settling_in;
+    core_.publish(state_);
+    core_.end(EndCause::disconnected);
+    RunEnd end;
+    end.cause = RunEnd::Cause::disconnected;
+    slot_.end(end);
+}
+
+// ---- cycle -------------------------------------------------------------------------------------
+
+Command Pilot::command() noexcept {
+    if (mode_ == Mode::settling_in) {
+        return try_again_in_ > 0.0 ? askState() : chores_.front();
+    }
+    if (mode_ == Mode::idle) {
+        if (!chores_.empty()) {
+            return chores_.front();
+        }
+        beginWhatIsAsked();
+    }
+    if (mode_ == Mode::planned) {
+        if (slot_.stopRequested()) {
+            planned_.stop(RunEnd::Cause::stopped);
+        }
+        return planned_.command();
+    }
+    auto* source = core_.active();
+    if (mode_ != Mode::servo || source == nullptr) {
+        return askState();
+    }
+    if (core_.stopRequested()) {
+        servo_.stop();
+    }
+    return servo_.command(*source, state_);
+}
+
+void Pilot::beginWhatIsAsked() noexcept {
+    if (const auto* motion = slot_.posted()) {
+        mode_ = Mode::planned;
+        planned_.begin({*motion, flange_from_tool_, options_.force_tolerance}, answer_, settings_);
+    } else if (core_.active() != nullptr) {
+        mode_ = Mode::servo;
+        servo_.begin(state_.commanded_position, settings_);
+    }
+}
+
+void Pilot::take(const Command& sent, const CabinetState& answer, SteadyTime now) noexcept {
+    const double step = std::chrono::duration<double>(now - last_answer_).count();
+    last_answer_ = now;
+    note(answer, now);
+    readiness_.take(answer, step);
+    switch (mode_) {
+        case Mode::settling_in:
+            try_again_in_ = std::max(0.0, try_again_in_ - step);
+            takeSettingIn(sent, answer);
+            break;
+        case Mode::idle:
+            takeChore(sent, answer);
+            break;
+        case Mode::planned:
+            takePlanned(sent, answer, step);
+            break;
+        case Mode::servo:
+            takeServo(sent, answer, step);
+            break;
+    }
+    judge();
+    core_.publish(state_);
+}
+
+void Pilot::note(const CabinetState& answer, SteadyTime now) noexcept {
+    answer_ = answer;
+    ++state_.cycle;
+    state_.position = answer.position;
+    state_.velocity = answer.velocity;
+    state_.standstill = stands(answer);
+    state_.stamp = now;
+    if (mode_ != Mode::servo) {
+        hold(answer.position);
+    }
+}
+
+/// Without a stream the arm is commanded to stand where it was last sent, or else where it is.
+void Pilot::hold(const device::JointArray& measured) noexcept {
+    holds_ = holds_ && device::largestDifference(measured, state_.commanded_position) < kHeld;
+    if (!holds_) {
+        state_.commanded_position = measured;
+    }
+}
+
+/// One that was refused is told again by the next motion that needs it.
+void Pilot::takeChore(const Command& sent, const CabinetState& answer) noexcept {
+    if (chores_.empty() || sent.code != chores_.front().code) {
+        return;
+    }
+    chores_.drop();
+    if (answer.executed) {
+        settings_.taken(sent);
+    }
+}
+
+void Pilot::takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept {
+    if (readiness_.notReady()) {
+        planned_.stop(RunEnd::Cause::not_ready);
+    }
+    const bool over = planned_.take(sent, answer, step, settings_);
+    const auto& motion = *slot_.posted();
+    if (motion.observer) {
+        motion.observer->observe(state_);
+    }
+    if (!over) {
+        return;
+    }
+    mode_ = Mode::idle;
+    if (planned_.end().cause == RunEnd::Cause::at_target && !motion.target_flange) {
+        state_.commanded_position = motion.target_joints;
+        holds_ = true;
+    }
+    judge();
+    core_.publish(state_);
+    slot_.end(planned_.end());
+}
+
+void Pilot::takeServo(const Command& sent, const CabinetState& answer, double step) noexcept {
+    if (readiness_.notReady()) {
+        servo_.stop();
+    }
+    const auto status = servo_.take(sent, answer, step, settings_);
+    state_.commanded_position = servo_.commanded();
+    switch (status) {
+        case ServoRun::Status::running:
+            return;
+        case ServoRun::Status::done:
+            endServo(EndCause::done);
+            return;
+        case ServoRun::Status::stopped:
+            endServo(readiness_.notReady() ? EndCause::safety : EndCause::stopped);
+            return;
+        case ServoRun::Status::fault:
+            latch(servo_.fault());
+            endServo(EndCause::safety);
+            return;
+    }
+}
+
+void Pilot::endServo(EndCause cause) noexcept {
+    mode_ = Mode::idle;
+    holds_ = cause == EndCause::done;
+    hold(answer_.position);
+    settings_.require(chooseInterface(Interface::standard), chores_);
+    judge();
+    core_.publish(state_);
+    core_.end(cause);
+}
+
+bool Pilot::hurried() const noexcept {
+    switch (mode_) {
+        case Mode::settling_in:
+            return try_again_in_ == 0.0;
+        case Mode::idle:
+            return !chores_.empty();
+        case Mode::planned:
+            return planned_.hurried();
+        case Mode::servo:
+            return servo_.hurried();
+    }
+    return false;
+}
+
+// ---- safety ------------------------------------------------------------------------------------
+
+/// A fault of a stream stays until resetFault().
+void Pilot::latch(const ServoFault& fault) {
+    if (readiness_.notReady()) {
+        return;  // which says more
+    }
+    const bool limit =
+        fault.kind != ServoFault::Kind::not_following && fault.kind != ServoFault::Kind::refused;
+    latched_.store(true);
+    condition_ = Condition::latched;
+    core_.setSafety({SafetyState::protective_stop,
+                     fmt::format("{}: {}", core_.info().name, toString(fault)), limit});
+}
+
+void Pilot::judge() {
+    const bool stays = condition_ == Condition::wrong_model ||
+                       (condition_ == Condition::latched && latched_.load());
+    if (mode_ == Mode::settling_in || stays) {
+        return;
+    }
+    if (readiness_.notReady()) {
+        change(Condition::not_ready,
+               "the cabinet is not ready to move: stopped for safety, drives off or enabling "
+               "switch released; see its panel");
+    } else if (condition_ != Condition::none) {
+        condition_ = Condition::none;
+        core_.setSafety({SafetyState::normal, "", false});
+    }
+}
+
+void Pilot::change(Condition condition, std::string text) {
+    if (condition == condition_) {
+        return;
+    }
+    condition_ = condition;
+    const bool stop = condition == Condition::not_ready;
+    core_.setSafety({stop ? SafetyState::protective_stop : SafetyState::fault,
+                     core_.info().name + ": " + std::move(text), false});
+}
+
+// ---- any thread --------------------------------------------------------------------------------
+
+Result<void> Pilot::attach(std::shared_ptr<device::SetPointSource> source) {
+    const std::lock_guard lock(admission_);
+    if (slot_.occupied()) {
+        return fail(Errc::resource_unavailable,
+                    core_.info().name + ": a motion of the cabinet's planner runs");
+    }
+    return core_.attach(std::move(source));
+}
+
+Result<void> Pilot::move(const device::PlannedMotion& motion, MotionSlot::Done done) {
+    const std::lock_guard lock(admission_);
+    const auto safety = core_.safety();
+    if (safety.state != SafetyState::normal) {
+        const bool lost = safety.state == SafetyState::disconnected;
+        return fail(lost ? Errc::connection_lost : Errc::device_fault,
+                    fmt::format("{} ({})", safety.text, device::toString(safety.state)));
+    }
+    if (auto possible = checkMotion(model_, motion); !possible) {
+        return possible;
+    }
+    if (core_.active() != nullptr || !slot_.post(motion, std::move(done))) {
+        return fail(Errc::resource_unavailable, core_.info().name + ": another motion runs");
+    }
+    return {};
+}
+
+Result<void> Pilot::resetFault() {
+    const auto safety = core_.safety();
+    if (safety.state == SafetyState::normal) {
+        return {};
+    }
+    if (safety.state == SafetyState::disconnected) {
+        return fail(Errc::connection_lost, safety.text);
+    }
+    if (!latched_.load()) {
+        return fail(Errc::device_fault, safety.text);
+    }
+    if (!core_.state().standstill) {
+        return fail(Errc::device_fault, core_.info().name + ": the arm still brakes");
+    }
+    core_.setSafety({SafetyState::normal, "", false});
+    latched_.store(false);  // from now on the cycle judges again
+    return {};
+}
+
+void Pilot::dispatch() {
+    core_.dispatch();
+    std::string lost;
+    {
+        const std::lock_guard lock(lost_mutex_);
+        lost = lost_text_;
+    }
+    slot_.dispatch(core_.info().name, lost);
+}
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "metier/iiwa_driver/wire.hpp"
+
+namespace metier::iiwa_driver {
+
+/// Tells from the cabinet's states whether the arm may move. The protocol has no safety state: all
+/// there is is "ready to move", which is 0 in every stop, without drives or enabling switch.
+///
+/// Whether a cabinet stays ready while it moves is not documented: it is learned from its states.
+/// Threading: one thread, the cycle. Nothing allocates.
+class Readiness {
+public:
+    /// \param step since the answer before [s]
+    void take(const CabinetState& answer, double step) noexcept;
+    bool notReady() const noexcept { return not_ready_; }
+
+private:
+    bool ready_while_moving_ = false;  ///< seen on this connection
+    double missing_ = 0.0;             ///< [s]
+    bool not_ready_ = false;
+};
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,126 @@
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "commands.hpp"
+
+namespace metier::iiwa_driver {
+
+using std::chrono::steady_clock;
+
+namespace {
+
+// How long one wait for the cabinet lasts; shutdown() ends it at once.
+constexpr auto kAcceptTimeout = std::chrono::milliseconds(500);
+// What the cabinet is told first may take longer: it attaches tools, for example.
+constexpr auto kFirstTimeout = std::chrono::seconds(2);
+// Before the next cabinet is listened to after one was lost.
+constexpr auto kPause = std::chrono::milliseconds(200);
+
+}  // namespace
+
+Session::Session(link::TcpListener listener, Clients clients, const SessionOptions& options)
+    : listener_(std::move(listener)), clients_(std::move(clients)), options_(options) {}
+
+void Session::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        auto link = listener_.accept(steady_clock::now() + kAcceptTimeout);
+        if (link) {
+            serve(*link, stop);
+        } else if (link.error().code != Errc::timeout) {
+            pause(stop);
+        }
+    }
+}
+
+void Session::serve(link::TcpLink& link, const std::stop_token& stop) {
+    answered_ = false;
+    const auto served = poll(link, stop);
+    link.shutdown();
+    if (served) {
+        return;
+    }
+    const auto* hint = answered_ ? "" : " before its first state: does it use another precision?";
+    clients_.pilot.lost(fmt::format("{}: cabinet {}{}", clients_.pilot.core().info().name,
+                                    served.error().message, hint));
+    clients_.signal();
+    pause(stop);
+}
+
+Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
+    auto& pilot = clients_.pilot;
+    auto first = exchange(link, askState(), kFirstTimeout);
+    if (!first) {
+        return fail(std::move(first.error()));
+    }
+    answered_ = true;
+    pilot.connected(*first, steady_clock::now());
+    auto scheduled = steady_clock::now();
+    while (!stop.stop_requested()) {
+        const auto command = pilot.command();
+        const auto answer =
+            exchange(link, command, pilot.settlingIn() ? kFirstTimeout : options_.answer_timeout);
+        if (!answer) {
+            return fail(answer.error());
+        }
+        const auto now = steady_clock::now();
+        clients_.force.take(*answer, now);
+        pilot.take(command, *answer, now);
+        if (pilot.toTell()) {
+            clients_.signal();
+        }
+        if (!pilot.hurried()) {
+            awaitCycle(scheduled);
+        }
+    }
+    return {};
+}
+
+Result<CabinetState> Session::exchange(link::TcpLink& link, const Command& command,
+                                       std::chrono::nanoseconds timeout) {
+    const auto deadline = steady_clock::now() + timeout;
+    const auto encoded = encode(command, options_.precision);
+    if (auto sent = link.send(encoded.bytes(), deadline); !sent) {
+        return fail(std::move(sent.error()));
+    }
+    const std::size_t expected = stateSize(options_.precision);
+    std::size_t received = 0;
+    while (received < expected) {
+        const auto count = link.receive(std::span(buffer_).subspan(received), deadline);
+        if (!count) {
+            return fail(count.error());
+        }
+        received += *count;
+    }
+    const auto state = parseState(std::span(buffer_).first(received), options_.precision);
+    if (!state) {
+        auto error = toError(state.error());
+        error.message = link.peer() + ": " + error.message;
+        return fail(std::move(error));
+    }
+    return *state;
+}
+
+/// Waits for the next cycle; one that is past is not made up for.
+void Session::awaitCycle(SteadyTime& scheduled) {
+    scheduled += options_.cycle;
+    const auto now = steady_clock::now();
+    if (now > scheduled) {
+        const auto late = static_cast<std::uint64_t>((now - scheduled) / options_.cycle);
+        clients_.pilot.missedCycles(late);
+        scheduled = now;
+        return;
+    }
+    std::this_thread::sleep_until(scheduled);
+}
+
+void Session::pause(const std::stop_token& stop) {
+    std::unique_lock lock(pause_mutex_);
+    pause_.wait_for(lock, stop, kPause, [] { return false; });
+}
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+
+#include "flange_force.hpp"
+#include "metier/iiwa_driver/wire.hpp"
+#include "metier/link/tcp_link.hpp"
+#include "pilot.hpp"
+
+namespace metier::iiwa_driver {
+
+struct SessionOptions {
+    Precision precision = Precision::float32;
+    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};
+    std::chrono::nanoseconds answer_timeout{std::chrono::milliseconds(100)};
+};
+
+/// Waits for the cabinet to dial in, then sends one command per cycle and hands its answers on,
+/// until the connection is lost; then waits again.
+///
+/// Threading: run() is the cycle thread.
+class Session {
+public:
+    /// What the session serves; all must outlive it.
+    struct Clients {
+        Pilot& pilot;
+        FlangeForce& force;
+        std::function<void()> signal;  ///< there is something to tell; neither locks nor allocates
+    };
+
+    Session(link::TcpListener listener, Clients clients, const SessionOptions& options);
+
+    std::uint16_t port() const { return listener_.port(); }
+    /// Until `stop` is asked for; within one cycle.
+    void run(const std::stop_token& stop);
+    /// Any thread: ends waiting for the cabinet.
+    void shutdown() noexcept { listener_.shutdown(); }
+
+private:
+    void serve(link::TcpLink& link, const std::stop_token& stop);
+    Result<void> poll(link::TcpLink& link, const std::stop_token& stop);
+    Result<CabinetState> exchange(link::TcpLink& link, const Command& command,
+                                  std::chrono::nanoseconds timeout);
+    void awaitCycle(SteadyTime& scheduled);
+    void pause(const std::stop_token& stop);
+
+    link::TcpListener listener_;
+    Clients clients_;
+    const SessionOptions options_;
+    bool answered_ = false;  ///< on this connection
+    std::array<std::byte, kLongestState + 1> buffer_{};
+    std::mutex pause_mutex_;
+    std::condition_variable_any pause_;
+};
+
+}  // namespace metier::iiwa_driver
