@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include "metier/base/testing/allocation_count.hpp"
+#include "metier/geometry/frame.hpp"
+#include "pilot.hpp"
+#include "scripted_cabinet.hpp"
+
+namespace metier::iiwa_driver {
+namespace {
+
+using namespace std::chrono_literals;
+using Next = device::SetPointSource::Next;
+
+/// A cabinet without a socket, which is at once where it is told to be.
+class Echo {
+public:
+    Echo() {
+        state_.position = device::JointArray(std::span(ScriptedCabinet::kHome));
+        state_.velocity = device::JointArray(kAxes);
+        state_.ready = true;
+    }
+    CabinetState answer(const Command& command, const motion::RobotModel& model) {
+        state_.executed = command.code != Code::state;
+        if (command.code == Code::move_joints) {
+            std::copy_n(command.arguments.begin(), kAxes, state_.position.begin());
+        }
+        motion::JointVector joints(kAxes);
+        std::copy_n(state_.position.begin(), kAxes, joints.begin());
+        const auto pose = model.kinematics().forward(joints);
+        state_.pose = geometry::toFrame(pose);
+        return state_;
+    }
+
+private:
+    CabinetState state_;
+};
+
+class Turn final : public device::SetPointSource {
+public:
+    Next next(const device::ArmState& /*state*/, device::JointArray& set_point) noexcept override {
+        set_point[0] += 1e-3;
+        return Next::set_point;
+    }
+    void ended(device::EndCause /*cause*/, const device::Safety& /*safety*/) override {}
+};
+
+class CycleOfThePilot : public ::testing::Test {
+protected:
+    CycleOfThePilot() {
+        pilot.connected(echo.answer({}, model), now);
+        cycles(10);
+        EXPECT_EQ(pilot.core().safetyState(), device::SafetyState::normal);
+    }
+
+    /// \return the allocations of so many cycles
+    std::size_t cycles(int count) {
+        const auto before = allocationCount();
+        for (int i = 0; i < count; ++i) {
+            now += 10ms;
+            const auto command = pilot.command();
+            const auto bytes = encode(command, Precision::float32);
+            static_cast<void>(bytes);
+            pilot.take(command, echo.answer(command, model), now);
+        }
+        return allocationCount() - before;
+    }
+
+    const motion::RobotModel model = iiwa7();
+    Pilot pilot{{"iiwa", std::vector<std::string>(kAxes, "A"), 10ms}, model, {}};
+    Echo echo;
+    SteadyTime now{};
+};
+
+TEST_F(CycleOfThePilot, DoesNotAllocateWhileItStreams) {
+    ASSERT_TRUE(pilot.attach(std::make_shared<Turn>()));
+    EXPECT_EQ(cycles(1000), 0U);
+    EXPECT_NEAR(pilot.core().state().position[0], 1.0, 0.1);
+    pilot.core().stop();
+    EXPECT_EQ(cycles(20), 0U);
+    EXPECT_TRUE(pilot.toTell());
+}
+
+TEST_F(CycleOfThePilot, DoesNotAllocateWhileItIdles) {
+    EXPECT_EQ(cycles(1000), 0U);
+}
+
+TEST_F(CycleOfThePilot, DoesNotAllocateDuringAPlannedMotion) {
+    device::PlannedMotion motion;
+    motion.target_joints = device::JointArray(std::span(ScriptedCabinet::kHome));
+    motion.target_joints[1] = 0.9;
+    bool done = false;
+    ASSERT_TRUE(pilot.move(motion, [&](const auto& outcome) { done = outcome.has_value(); }));
+    EXPECT_EQ(cycles(100), 0U);
+    pilot.dispatch();
+    EXPECT_TRUE(done);
+}
+
+}  // namespace
+}  // namespace metier::iiwa_driver

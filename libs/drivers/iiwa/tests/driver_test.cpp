@@ -1,0 +1,83 @@
+#include "metier/driver/driver.hpp"
+
+#include <gmock/gmock.h>
+
+#include "arm_bench.hpp"
+
+namespace metier::driver {
+Driver iiwaDriver();
+}
+
+namespace metier::iiwa_driver {
+namespace {
+
+using ::testing::HasSubstr;
+using Values = std::map<std::string, configuration::Settings::Value>;
+
+class IiwaDriver : public ::testing::Test {
+protected:
+    Result<driver::OpenDevice> open(Values values) {
+        values.try_emplace("port", 0.0);
+        return driver::iiwaDriver().open(
+            {"arm", "127.0.0.1", configuration::Settings("cell.toml: arm", std::move(values)),
+             &model});
+    }
+    const motion::RobotModel model = iiwa7();
+};
+
+TEST_F(IiwaDriver, OffersAnArmAPlannerAndASensorOfOneThing) {
+    const auto device = open({});
+    ASSERT_TRUE(device) << device.error().message;
+    ASSERT_NE(device->arm, nullptr);
+    EXPECT_NE(device->planner, nullptr);
+    EXPECT_NE(device->force_torque_sensor, nullptr);
+    EXPECT_EQ(device->arm->info().name, "arm");
+    EXPECT_EQ(device->arm->info().cycle, 10ms);
+    EXPECT_EQ(device->arm->info().axisCount(), 7U);
+    EXPECT_EQ(device->arm->state().safety, device::SafetyState::disconnected);
+}
+
+TEST_F(IiwaDriver, TellsAllThatIsWrongInItsSettings) {
+    const auto device = open({{"precision", std::string("half")},
+                              {"poll_period_ms", 0.0},
+                              {"answer_timeout_ms", -1.0},
+                              {"prot", 1.0}});
+    ASSERT_FALSE(device);
+    for (const auto* name : {"precision", "poll_period_ms", "answer_timeout_ms", "prot"}) {
+        EXPECT_THAT(device.error().message, HasSubstr(name));
+    }
+}
+
+TEST_F(IiwaDriver, NeedsAModelOfSevenAxesAndAnAddressOfThisComputer) {
+    driver::OpenRequest request{"arm", "127.0.0.1", {}, nullptr};
+    EXPECT_FALSE(driver::iiwaDriver().open(request));
+    const auto ur5 = motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/ur5.toml").value();
+    request.model = &ur5;
+    EXPECT_THAT(driver::iiwaDriver().open(request).error().message, HasSubstr("6 axes"));
+    request.model = &model;
+    request.address = "192.0.2.1";
+    EXPECT_EQ(driver::iiwaDriver().open(request).error().code, Errc::invalid_argument);
+}
+
+TEST_F(IiwaDriver, ThePortCanBeTakenOnlyOnce) {
+    const auto arm = IiwaArm::create(ArmBench::quick(), model).value();
+    const auto second = open({{"port", static_cast<double>(arm->port())}});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::already_exists);
+}
+
+TEST(IiwaFlangeForce, IsTheCabinetsEstimateAndCanBeMadeZero) {
+    ArmBench bench;
+    ASSERT_TRUE(bench.ready());
+    auto& sensor = bench.arm->flangeForce();
+    EXPECT_EQ(sensor.sample().health, device::SafetyState::normal);
+    EXPECT_EQ(sensor.sample().force, (std::array{1.0, -2.0, 0.5}));
+    ASSERT_TRUE(sensor.tare());
+    EXPECT_EQ(sensor.sample().force, (std::array{0.0, 0.0, 0.0}));
+    bench.cabinet->die();
+    EXPECT_TRUE(until([&] { return sensor.sample().health == device::SafetyState::disconnected; }));
+    EXPECT_FALSE(sensor.tare());
+}
+
+}  // namespace
+}  // namespace metier::iiwa_driver

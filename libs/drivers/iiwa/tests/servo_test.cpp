@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "arm_bench.hpp"
+
+namespace metier::iiwa_driver {
+namespace {
+
+using device::EndCause;
+using device::SafetyState;
+using Next = device::SetPointSource::Next;
+using ::testing::HasSubstr;
+
+std::shared_ptr<Stream> turning(double step, int cycles) {
+    return std::make_shared<Stream>([=](int cycle, device::JointArray& set_point) {
+        if (cycle >= cycles) {
+            return Next::done;
+        }
+        set_point[0] += step;
+        return Next::set_point;
+    });
+}
+
+class Servo : public ::testing::Test {
+protected:
+    Servo() { EXPECT_TRUE(bench.ready()); }
+
+    void run(const std::shared_ptr<Stream>& stream) {
+        ASSERT_TRUE(bench.arm->attach(stream));
+        ASSERT_TRUE(until([&] { return stream->ends() == 1; }));
+    }
+
+    ArmBench bench;
+};
+
+TEST_F(Servo, EveryCycleSendsItsSetPointAfterTheServoInterfaceWasChosen) {
+    const auto before = bench.cabinet->codes().size();
+    const auto stream = turning(1e-3, 100);
+    run(stream);
+    EXPECT_EQ(stream->cause(), EndCause::done);
+    const auto commands = bench.cabinet->commands();
+    EXPECT_EQ(commands[before][0], 201);
+    EXPECT_EQ(commands[before + 1][0], 202);
+    EXPECT_EQ(commands[before + 2][0], 302);
+    EXPECT_EQ(commands[before + 2][1], 32);
+    for (std::size_t i = 0; i < 100; ++i) {
+        ASSERT_EQ(commands[before + 3 + i][0], 102);
+        ASSERT_NEAR(commands[before + 3 + i][1], 1e-3 * static_cast<double>(i + 1), 1e-6);
+    }
+    EXPECT_NEAR(bench.arm->state().commanded_position[0], 0.1, 1e-9);
+}
+
+TEST_F(Servo, AfterAStreamTheStandardInterfaceIsBack) {
+    run(turning(1e-3, 10));
+    EXPECT_TRUE(until([&] { return bench.cabinet->commands().back()[0] == 302; }));
+    EXPECT_EQ(bench.cabinet->commands().back()[1], 31);
+}
+
+TEST_F(Servo, AStreamCanFollowAStreamAtOnce) {
+    run(turning(1e-3, 10));
+    run(turning(-1e-3, 10));
+    EXPECT_NEAR(bench.arm->state().commanded_position[0], 0.0, 3e-3);
+}
+
+TEST_F(Servo, StopCancelsAndTellsAtStandstill) {
+    const auto stream = turning(1e-3, 1'000'000);
+    ASSERT_TRUE(bench.arm->attach(stream));
+    ASSERT_TRUE(until([&] { return bench.arm->state().position[0] > 0.05; }));
+    bench.arm->stop();
+    ASSERT_TRUE(until([&] { return stream->ends() == 1; }));
+    EXPECT_EQ(stream->cause(), EndCause::stopped);
+    EXPECT_TRUE(bench.arm->state().standstill);
+    EXPECT_THAT(bench.cabinet->codes(), ::testing::Contains(101));
+}
+
+TEST_F(Servo, ASetPointThatTheCabinetWouldReplaceInSilenceIsNeverSent) {
+    const std::vector<std::pair<double, std::string>> bad{
+        {std::numeric_limits<double>::quiet_NaN(), "not finite"},
+        {3.0, "beyond limit"},
+        {0.5, "from the one before"}};
+    for (const auto& [value, text] : bad) {
+        const auto stream =
+            std::make_shared<Stream>([value = value](int cycle, device::JointArray& set_point) {
+                set_point[0] = cycle < 5 ? 0.0 : value;
+                return Next::set_point;
+            });
+        run(stream);
+        EXPECT_EQ(stream->cause(), EndCause::safety);
+        EXPECT_TRUE(stream->safety().limit_violated);
+        EXPECT_THAT(stream->safety().text, HasSubstr(text));
+        EXPECT_EQ(bench.arm->safety().state, SafetyState::protective_stop);
+        EXPECT_FALSE(bench.arm->attach(stream));
+        EXPECT_TRUE(bench.arm->resetFault());
+        EXPECT_EQ(bench.arm->safety().state, SafetyState::normal);
+        for (const auto& command : bench.cabinet->commands()) {
+            EXPECT_FALSE(command[0] == 102 && !(std::abs(command[1]) < 0.1));
+        }
+    }
+}
+
+TEST_F(Servo, AnArmThatDoesNotFollowIsNoticed) {
+    bench.cabinet->change([](auto& behaviour) { behaviour.ignores_moves = true; });
+    const auto stream = turning(2e-3, 1'000'000);
+    run(stream);
+    EXPECT_EQ(stream->cause(), EndCause::safety);
+    EXPECT_FALSE(stream->safety().limit_violated);
+    EXPECT_THAT(stream->safety().text, HasSubstr("from its set-point"));
+}
+
+TEST_F(Servo, ARefusedServoInterfaceEndsTheStream) {
+    bench.cabinet->change([](auto& behaviour) { behaviour.refused.insert(302); });
+    const auto stream = turning(1e-3, 10);
+    run(stream);
+    EXPECT_EQ(stream->cause(), EndCause::safety);
+    EXPECT_THAT(stream->safety().text, HasSubstr("control interface (302)"));
+}
+
+}  // namespace
+}  // namespace metier::iiwa_driver
