@@ -1,10 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <memory>
-#include <string>
 
-#include "execution_source.hpp"
+#include "metier/device/arm.hpp"
 #include "metier/skill/skill.hpp"
 
 namespace metier::robot_skills {
@@ -12,32 +10,26 @@ namespace metier::robot_skills {
 /// Most that any axis may have been moved during a rest for Resume to go on [rad].
 inline constexpr double kMovedTolerance = 2e-3;
 
-/// An execution that moves an arm by a source of set-points.
+/// How far the tool frame is at one joint position from where it is at another [m], for texts.
+using ToolDistance = std::function<double(const device::JointArray&, const device::JointArray&)>;
+
+/// An execution that moves an arm, whoever plans its motion.
 class ArmBody : public skill::Body {
-public:
-    /// How far the tool frame is at one joint position from where it is at another, for texts.
-    using ToolDistance =
-        std::function<double(const device::JointArray&, const device::JointArray&)>;
-
+protected:
     /// \param arm must outlive the body
-    ArmBody(device::Arm& arm, std::shared_ptr<ExecutionSource> source, ToolDistance tool_distance);
-    /// Brakes on the path if it still moves; the arm keeps what it needs for that.
-    ~ArmBody() override;
-    ArmBody(const ArmBody&) = delete;
-    ArmBody& operator=(const ArmBody&) = delete;
+    ArmBody(device::Arm& arm, ToolDistance tool_distance);
 
-    void start(skill::Execution execution) override;
-    Result<void> suspend() override;
-    Result<void> resume() override;
-    void halt() override;
-    void forceStop() noexcept override;
+    /// From now on a change of the safety state ends the execution while the arm is not in motion,
+    /// and has nobody to tell it otherwise. \param in_motion any thread
+    void begin(skill::Execution execution, std::function<bool()> in_motion);
+    /// Errors: out_of_range with the distance if the arm is no longer where it came to rest.
+    Result<void> checkNotMoved(const device::JointArray& rest) const;
+
+    device::Arm& arm() const noexcept { return arm_; }
+    const skill::Execution& execution() const noexcept { return execution_; }
 
 private:
-    Result<void> checkNotMoved(const device::JointArray& position) const;
-    void watchSafety();
-
     device::Arm& arm_;
-    std::shared_ptr<ExecutionSource> source_;  // shared with the arm while it moves
     ToolDistance tool_distance_;
     skill::Execution execution_;
     device::Registration safety_watch_;

@@ -4,11 +4,11 @@
 
 #include <utility>
 
-#include "arm_body.hpp"
 #include "arm_skill.hpp"
 #include "conversions.hpp"
 #include "metier/robot_skills/stream_input.hpp"
 #include "metier/skill/typed_skill.hpp"
+#include "source_body.hpp"
 #include "stream_source.hpp"
 
 namespace metier::robot_skills {
@@ -35,7 +35,7 @@ Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double
 }
 
 /// A stream as an execution of its skill.
-class StreamBody final : public ArmBody {
+class StreamBody final : public SourceBody {
 public:
     /// Whom the set-points come from and where they go.
     struct Stream {
@@ -45,7 +45,7 @@ public:
     };
 
     StreamBody(device::Arm& arm, Stream stream, ToolDistance tool_distance)
-        : ArmBody(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
+        : SourceBody(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
 
     void start(skill::Execution execution) override {
         stream_.times.restart();
@@ -54,12 +54,12 @@ public:
             execution.fail(skill::Reason::error, begun.error().message);
             return;
         }
-        ArmBody::start(std::move(execution));
+        SourceBody::start(std::move(execution));
     }
 
     Result<void> resume() override {
         stream_.times.restart();
-        return ArmBody::resume();
+        return SourceBody::resume();
     }
 
     Result<void> input(std::string_view parameter, const skill::LiveValue& live) override {
@@ -135,7 +135,7 @@ private:
             .and_then([&](const JointVector& position) { return source.checkFirst(position); });
     }
 
-    ArmBody::ToolDistance toolDistance() const {
+    ToolDistance toolDistance() const {
         return [&model = model_](const device::JointArray& a, const device::JointArray& b) {
             const auto& kinematics = model.kinematics();
             return geometry::distanceBetween(kinematics.forward(toVector(a)),
