@@ -1,0 +1,103 @@
+#pragma once
+
+#include <asio/io_context.hpp>
+#include <asio/post.hpp>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "metier/virtual_controller/controller.hpp"
+
+namespace metier::virtual_controller::testing {
+
+/// A world that has what the test says.
+class ScriptedWorld final : public WorldLink {
+public:
+    void report(const WorldReport& report) override { last_report = report; }
+    const WorldEffect& effect() const override { return next_effect; }
+
+    WorldReport last_report;
+    WorldEffect next_effect;
+};
+
+/// What a test starts a controller with.
+struct Start {
+    std::map<std::string, configuration::Settings::Value> settings;
+    const motion::RobotModel* model = nullptr;
+    std::string address = "127.0.0.1";
+};
+
+/// A virtual controller on a thread of its own, as a process has it.
+class RunningController {
+public:
+    RunningController(const ControllerType& type, const Start& start) {
+        auto controller = type.start({context_, "test", start.address,
+                                      configuration::Settings("test", start.settings), start.model,
+                                      faults, world_});
+        if (!controller) {
+            throw std::runtime_error(controller.error().message);
+        }
+        controller_ = std::move(*controller);
+        thread_ = std::jthread([this](const std::stop_token& stop) {
+            const std::stop_callback end(stop, [this] { context_.stop(); });
+            context_.run();
+        });
+    }
+
+    /// Runs on the controller's thread, and waits for it.
+    void inTurn(const std::function<void(Controller&, ScriptedWorld&)>& action) {
+        std::promise<void> done;
+        asio::post(context_, [&] {
+            action(*controller_, world_);
+            done.set_value();
+        });
+        done.get_future().get();
+    }
+    Result<void> inject(const std::string& name, const std::string& value = "") {
+        Result<void> result;
+        inTurn([&](Controller& controller, ScriptedWorld&) {
+            result = controller.inject({name, value});
+        });
+        return result;
+    }
+    nlohmann::ordered_json state() {
+        nlohmann::ordered_json result;
+        inTurn([&](Controller& controller, ScriptedWorld&) { result = controller.state(); });
+        return result;
+    }
+    void setEffect(const WorldEffect& effect) {
+        inTurn([&](Controller&, ScriptedWorld& world) { world.next_effect = effect; });
+    }
+    WorldReport report() {
+        WorldReport result;
+        inTurn([&](Controller&, ScriptedWorld& world) { result = world.last_report; });
+        return result;
+    }
+    /// Looks at state() until it is as wanted. False after `longest`.
+    bool waitUntil(const std::function<bool(const nlohmann::ordered_json&)>& wanted,
+                   std::chrono::milliseconds longest = std::chrono::seconds(10)) {
+        const auto end = std::chrono::steady_clock::now() + longest;
+        while (!wanted(state())) {
+            if (std::chrono::steady_clock::now() > end) {
+                return false;
+            }
+            std::this_thread::yield();
+        }
+        return true;
+    }
+
+    LinkFaults faults;
+
+private:
+    asio::io_context context_;
+    ScriptedWorld world_;
+    std::unique_ptr<Controller> controller_;
+    std::jthread thread_;
+};
+
+}  // namespace metier::virtual_controller::testing

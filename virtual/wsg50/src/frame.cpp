@@ -1,0 +1,97 @@
+#include "metier/virtual_wsg50/frame.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace metier::virtual_wsg50 {
+
+namespace {
+
+constexpr std::byte kPreamble{0xAA};
+constexpr std::size_t kPreambleSize = 3;
+constexpr std::size_t kHeaderSize = 6;
+constexpr std::size_t kChecksumSize = 2;
+
+constexpr std::array<std::uint16_t, 256> makeTable() {
+    std::array<std::uint16_t, 256> table{};
+    for (std::uint32_t index = 0; index < table.size(); ++index) {
+        std::uint32_t rest = index << 8U;
+        for (int bit = 0; bit < 8; ++bit) {
+            rest = (rest & 0x8000U) != 0 ? (rest << 1U) ^ 0x1021U : rest << 1U;
+        }
+        table.at(index) = static_cast<std::uint16_t>(rest);
+    }
+    return table;
+}
+
+constexpr auto kTable = makeTable();
+
+std::size_t u16At(const std::vector<std::byte>& bytes, std::size_t at) {
+    return std::to_integer<std::size_t>(bytes[at]) | std::to_integer<std::size_t>(bytes[at + 1])
+                                                         << 8U;
+}
+
+void appendU16(std::vector<std::byte>& bytes, std::size_t value) {
+    bytes.push_back(static_cast<std::byte>(value & 0xFFU));
+    bytes.push_back(static_cast<std::byte>(value >> 8U & 0xFFU));
+}
+
+}  // namespace
+
+std::uint16_t checksum(std::span<const std::byte> bytes) noexcept {
+    std::uint32_t sum = 0xFFFF;
+    for (const std::byte byte : bytes) {
+        sum = kTable[(sum ^ std::to_integer<std::uint32_t>(byte)) & 0xFFU] ^ sum >> 8U;
+    }
+    return static_cast<std::uint16_t>(sum);
+}
+
+std::vector<std::byte> encode(std::uint8_t id, std::span<const std::byte> payload) {
+    std::vector<std::byte> bytes;
+    bytes.reserve(kHeaderSize + payload.size() + kChecksumSize);
+    bytes.assign(kPreambleSize, kPreamble);
+    bytes.push_back(static_cast<std::byte>(id));
+    appendU16(bytes, payload.size());
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+    appendU16(bytes, checksum(bytes));
+    return bytes;
+}
+
+void FrameReader::feed(std::span<const std::byte> bytes) {
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+}
+
+std::optional<Frame> FrameReader::next() {
+    skipToPreamble();
+    if (buffer_.size() < kHeaderSize) {
+        return std::nullopt;
+    }
+    const std::size_t length = u16At(buffer_, kPreambleSize + 1);
+    const std::size_t size = kHeaderSize + length + kChecksumSize;
+    if (buffer_.size() < size) {
+        return std::nullopt;
+    }
+    const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(size);
+    Frame frame;
+    frame.id = std::to_integer<std::uint8_t>(buffer_[kPreambleSize]);
+    frame.payload.assign(buffer_.begin() + kHeaderSize, end - kChecksumSize);
+    frame.intact = checksum(std::span(buffer_).first(size)) == 0;
+    buffer_.erase(buffer_.begin(), end);
+    return frame;
+}
+
+void FrameReader::skipToPreamble() {
+    const std::array<std::byte, kPreambleSize> preamble{kPreamble, kPreamble, kPreamble};
+    auto found = std::search(buffer_.begin(), buffer_.end(), preamble.begin(), preamble.end());
+    if (found == buffer_.end()) {
+        // The last bytes may be the beginning of a preamble.
+        for (std::size_t kept = 1;
+             kept < kPreambleSize && found != buffer_.begin() && *(found - 1) == kPreamble;
+             ++kept) {
+            --found;
+        }
+    }
+    buffer_.erase(buffer_.begin(), found);
+}
+
+}  // namespace metier::virtual_wsg50
