@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "metier/geometry/twist.hpp"
+#include "metier/virtual_netft/rdt.hpp"
+
+namespace metier::virtual_netft {
+
+/// A unit that the sensor can be set to, with its size in SI units.
+struct Unit {
+    std::string_view name;
+    double size = 1.0;
+};
+
+/// As the sensor's web pages write them.
+std::span<const Unit> forceUnits() noexcept;
+std::span<const Unit> torqueUnits() noexcept;
+
+/// The sensor's own calibration and range.
+struct Calibration {
+    Unit force_unit{"N", 1.0};
+    Unit torque_unit{"Nm", 1.0};
+    double counts_per_force = 1e6;   ///< per force unit
+    double counts_per_torque = 1e6;  ///< per torque unit
+    /// Beyond it a gauge is saturated [N], [Nm]. Of a Gamma SI-65-5.
+    std::array<double, 6> range{65.0, 65.0, 200.0, 5.0, 5.0, 5.0};
+    double force_noise = 0.0;   ///< standard deviation [N]
+    double torque_noise = 0.0;  ///< [Nm]
+};
+
+/// Turns a load into counts and a status word.
+///
+/// Threading: one thread.
+class Sensor {
+public:
+    explicit Sensor(const Calibration& calibration) : calibration_(calibration) {}
+
+    struct Reading {
+        std::array<std::int32_t, 6> counts{};
+        std::uint32_t status = 0;
+    };
+    Reading read(const geometry::Wrench& load);
+
+    /// The last load becomes zero.
+    void setBias() noexcept { bias_ = last_; }
+    /// Ends a warning of the monitor condition.
+    void resetLatch() noexcept;
+    /// The status word of its own, until another one is set.
+    void setStatus(std::uint32_t status) noexcept { status_ = status; }
+
+    const Calibration& calibration() const noexcept { return calibration_; }
+
+private:
+    Calibration calibration_;
+    std::array<double, 6> last_{};  // with its noise [N], [Nm]
+    std::array<double, 6> bias_{};
+    std::uint32_t status_ = status::kHealthy;
+    std::mt19937 random_{1};
+    std::normal_distribution<double> normal_;
+};
+
+}  // namespace metier::virtual_netft

@@ -1,0 +1,310 @@
+#include "metier/virtual_netft/controller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "metier/virtual_netft/web.hpp"
+
+namespace metier::virtual_netft {
+
+namespace {
+
+using virtual_controller::InjectionHelp;
+using virtual_controller::TcpPeer;
+
+constexpr std::size_t kLongestWebRequest = 8192;
+// The sensor's own samples, whatever the rate of the records [1/s].
+constexpr double kSampleRate = 7000.0;
+
+struct NamedStatus {
+    std::string_view name;
+    std::string_view help;
+    std::uint32_t status;
+};
+
+constexpr std::array kStatuses{
+    NamedStatus{"ok", "the status word is 0 again", status::kHealthy},
+    NamedStatus{"saturation", "status word 80020000: a gauge is saturated", status::kSaturated},
+    NamedStatus{"warning", "status word 80010000 until a client resets the latch",
+                status::kMonitorLatched},
+    NamedStatus{"temperature-fault", "status word 80000004: outside its temperature",
+                status::kTemperature},
+};
+
+Unit readUnit(const configuration::Settings& settings, std::string_view name,
+              std::span<const Unit> units) {
+    const auto wanted = settings.textOr(name, std::string(units.front().name));
+    const auto found = std::ranges::find(units, wanted, &Unit::name);
+    if (found != units.end()) {
+        return *found;
+    }
+    settings.reject(name, fmt::format("\"{}\" is no unit that the sensor has", wanted));
+    return units.front();
+}
+
+Options readOptions(const configuration::Settings& settings) {
+    Options options;
+    auto& calibration = options.calibration;
+    options.port = static_cast<std::uint16_t>(settings.numberOr("port", 49152, 0, 65535));
+    options.http_port = static_cast<std::uint16_t>(settings.numberOr("http_port", 0, 0, 65535));
+    options.rate = settings.numberOr("rate", options.rate, 1.0, kSampleRate);
+    options.buffer_size = static_cast<std::size_t>(settings.numberOr("buffer_size", 5, 1, 40));
+    options.product = settings.textOr("product", "Net F/T");
+    calibration.force_unit = readUnit(settings, "force_unit", forceUnits());
+    calibration.torque_unit = readUnit(settings, "torque_unit", torqueUnits());
+    calibration.counts_per_force = settings.numberOr("counts_per_force", 1e6, 1.0, 1e9);
+    calibration.counts_per_torque = settings.numberOr("counts_per_torque", 1e6, 1.0, 1e9);
+    calibration.force_noise = settings.numberOr("force_noise", 0.0, 0.0, 100.0);
+    calibration.torque_noise = settings.numberOr("torque_noise", 0.0, 0.0, 100.0);
+    const auto range = settings.numbersOr(
+        "range", {calibration.range.begin(), calibration.range.end()}, calibration.range.size());
+    if (std::ranges::any_of(range, [](double limit) { return !(limit > 0.0); })) {
+        settings.reject("range", "each limit must be over 0 N or Nm");
+    }
+    std::copy_n(range.begin(), std::min(range.size(), calibration.range.size()),
+                calibration.range.begin());
+    return options;
+}
+
+/// "fx fy fz tx ty tz"; an empty text is no load.
+Result<geometry::Wrench> parseWrench(const std::string& text) {
+    std::istringstream in(text);
+    std::array<double, 6> values{};
+    std::size_t count = 0;
+    for (double value = 0.0; count < values.size() && in >> value; ++count) {
+        values[count] = value;
+    }
+    if ((count != 0 && count != values.size()) || !(in >> std::ws).eof()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("\"{}\" is not three forces [N] and three torques [Nm]", text));
+    }
+    return geometry::Wrench{{values[0], values[1], values[2]}, {values[3], values[4], values[5]}};
+}
+
+template <typename Number>
+Result<Number> parseNumber(std::string_view text, int base) {
+    if (base == 16 && text.starts_with("0x")) {
+        text.remove_prefix(2);
+    }
+    Number number = 0;
+    const auto* end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data(), end, number, base);
+    if (error != std::errc{} || stopped != end) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("\"{}\" is no number of base {}", text, base));
+    }
+    return number;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<NetFtController>> NetFtController::start(
+    const virtual_controller::ControllerRequest& request) {
+    auto options = readOptions(request.settings);
+    if (auto finished = request.settings.finish(); !finished) {
+        return fail(finished.error());
+    }
+    auto controller =
+        std::unique_ptr<NetFtController>(new NetFtController(request, std::move(options)));
+    if (auto opened = controller->open(request); !opened) {
+        return fail(opened.error());
+    }
+    return controller;
+}
+
+NetFtController::NetFtController(const virtual_controller::ControllerRequest& request,
+                                 Options options)
+    : options_(std::move(options)),
+      world_(request.world),
+      sensor_(options_.calibration),
+      timer_(request.context, std::chrono::nanoseconds(std::llround(1e9 / options_.rate)),
+             [this] { cycle(); }) {}
+
+Result<void> NetFtController::open(const virtual_controller::ControllerRequest& request) {
+    asio::error_code error;
+    const auto address = asio::ip::make_address(request.address, error);
+    if (error) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("\"{}\" is not an address", request.address));
+    }
+    auto udp =
+        UdpPort::bind(request.context, {address, options_.port}, request.faults,
+                      [this](const UdpPort::Endpoint& from, std::span<const std::byte> datagram) {
+                          if (const auto parsed = parseRequest(datagram)) {
+                              handle(from, *parsed);
+                          }
+                      });
+    if (!udp) {
+        return fail(udp.error());
+    }
+    udp_ = std::move(*udp);
+    return options_.http_port == 0 ? Result<void>() : openWeb(request);
+}
+
+// ---- web pages ---------------------------------------------------------------------------------
+
+Result<void> NetFtController::openWeb(const virtual_controller::ControllerRequest& request) {
+    auto web = virtual_controller::TcpServer::listen(
+        request.context, request.address, options_.http_port, request.faults,
+        {.on_connected = {},
+         .on_data = [this](TcpPeer& peer,
+                           std::span<const std::byte> bytes) { serveWeb(peer, bytes); },
+         .on_closed = [this](TcpPeer& peer) { web_requests_.erase(&peer); }});
+    if (!web) {
+        return fail(web.error());
+    }
+    web_ = std::move(*web);
+    return {};
+}
+
+void NetFtController::serveWeb(TcpPeer& peer, std::span<const std::byte> bytes) {
+    auto& request = web_requests_[&peer];
+    if (request.size() > kLongestWebRequest) {
+        return;  // already answered
+    }
+    for (const std::byte byte : bytes) {
+        request += static_cast<char>(byte);
+    }
+    if (request.find("\r\n\r\n") != std::string::npos || request.size() > kLongestWebRequest) {
+        peer.send(answerWeb(request, options_.product, options_.calibration));
+        peer.close();
+        request.resize(kLongestWebRequest + 1);
+    }
+}
+
+// ---- records -----------------------------------------------------------------------------------
+
+void NetFtController::handle(const UdpPort::Endpoint& from, const Request& request) {
+    switch (request.command) {
+        case Command::start_real_time:
+        case Command::start_buffered: {
+            const bool buffered = request.command == Command::start_buffered;
+            stream_ = Stream{from, buffered ? options_.buffer_size : 1, request.sample_count};
+            break;
+        }
+        case Command::stop:
+            stream_.reset();
+            break;
+        case Command::reset_latch:
+            sensor_->resetLatch();
+            break;
+        case Command::set_bias:
+            sensor_->setBias();
+            break;
+    }
+}
+
+void NetFtController::cycle() {
+    ++cycles_;
+    geometry::Wrench load = world_.effect().wrench;
+    load.force += extra_load_.force;
+    load.torque += extra_load_.torque;
+    last_ = sensor_->read(load);
+    if (stream_) {
+        stream(last_);
+    }
+}
+
+void NetFtController::stream(const Sensor::Reading& reading) {
+    auto& to = *stream_;
+    ++to.sent;
+    const bool end = to.left != 0 && to.sent == to.left;
+    if (records_to_lose_ > 0) {
+        --records_to_lose_;
+    } else {
+        const double samples = static_cast<double>(cycles_) * kSampleRate / options_.rate;
+        const auto ft_sequence = static_cast<std::uint32_t>(static_cast<std::uint64_t>(samples));
+        append(to.datagram, {to.sent, ft_sequence, reading.status, reading.counts});
+    }
+    if (end || to.sent % to.records_per_datagram == 0) {
+        udp_->send(to.to, std::exchange(to.datagram, {}));
+    }
+    if (end) {
+        stream_.reset();
+    }
+}
+
+// ---- what people and accidents do --------------------------------------------------------------
+
+void NetFtController::restart() {
+    sensor_.emplace(options_.calibration);
+    stream_.reset();
+    extra_load_ = {};
+    records_to_lose_ = 0;
+    cycles_ = 0;
+    if (web_) {
+        web_->resetAll();
+    }
+}
+
+std::vector<InjectionHelp> NetFtController::injections() const {
+    std::vector<InjectionHelp> all{
+        {"status", "the status word, as 80020000 (hexadecimal)"},
+        {"wrench", "a load besides the world's: fx fy fz tx ty tz [N], [Nm]; empty: none"},
+        {"lose", "so many of the next records get lost"},
+    };
+    for (const auto& named : kStatuses) {
+        all.push_back({std::string(named.name), std::string(named.help)});
+    }
+    return all;
+}
+
+Result<void> NetFtController::inject(const virtual_controller::Injection& injection) {
+    const auto named = std::ranges::find(kStatuses, injection.name, &NamedStatus::name);
+    if (named != kStatuses.end()) {
+        sensor_->setStatus(named->status);
+        return {};
+    }
+    if (injection.name == "status") {
+        return parseNumber<std::uint32_t>(injection.value, 16).map([this](std::uint32_t word) {
+            sensor_->setStatus(word);
+        });
+    }
+    if (injection.name == "wrench") {
+        return parseWrench(injection.value).map([this](const geometry::Wrench& load) {
+            extra_load_ = load;
+        });
+    }
+    if (injection.name == "lose") {
+        return parseNumber<std::uint32_t>(injection.value, 10).map([this](std::uint32_t count) {
+            records_to_lose_ = count;
+        });
+    }
+    return fail(Errc::not_found,
+                fmt::format("a Net F/T knows no injection \"{}\"", injection.name));
+}
+
+nlohmann::ordered_json NetFtController::state() const {
+    const auto client = [this] {
+        const auto& to = stream_->to;
+        return fmt::format("{}:{}", to.address().to_string(), to.port());
+    };
+    return {
+        {"port", udp_->port()},
+        {"http_port", web_ ? web_->port() : 0},
+        {"client", stream_ ? client() : ""},
+        {"records", stream_ ? stream_->sent : 0},
+        {"status", fmt::format("{:08x}", last_.status)},
+        {"counts", last_.counts},
+    };
+}
+
+}  // namespace metier::virtual_netft
+
+namespace metier::virtual_controller {
+
+ControllerType netftController();
+ControllerType netftController() {
+    return {"netft", "ATI Net F/T force-torque sensor: RDT over UDP",
+            [](const ControllerRequest& request) -> Result<std::unique_ptr<Controller>> {
+                return virtual_netft::NetFtController::start(request);
+            }};
+}
+
+}  // namespace metier::virtual_controller

@@ -1,0 +1,67 @@
+#include "metier/virtual_netft/sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace metier::virtual_netft {
+
+namespace {
+
+constexpr double kPoundForce = 4.4482216152605;  // [N]
+constexpr double kInch = 0.0254;                 // [m]
+constexpr double kFoot = 0.3048;                 // [m]
+
+constexpr std::array kForceUnits{Unit{"N", 1.0}, Unit{"kN", 1e3}, Unit{"lbf", kPoundForce},
+                                 Unit{"klbf", 1e3 * kPoundForce}};
+constexpr std::array kTorqueUnits{Unit{"Nm", 1.0},
+                                  Unit{"N-m", 1.0},
+                                  Unit{"Nmm", 1e-3},
+                                  Unit{"N-mm", 1e-3},
+                                  Unit{"kN-m", 1e3},
+                                  Unit{"lbf-in", kPoundForce* kInch},
+                                  Unit{"lbf-ft", kPoundForce* kFoot}};
+
+std::int32_t toCounts(double value) {
+    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(std::lround(std::clamp(value, -kMost, kMost)));
+}
+
+}  // namespace
+
+std::span<const Unit> forceUnits() noexcept {
+    return kForceUnits;
+}
+
+std::span<const Unit> torqueUnits() noexcept {
+    return kTorqueUnits;
+}
+
+Sensor::Reading Sensor::read(const geometry::Wrench& load) {
+    Reading reading;
+    reading.status = status_;
+    for (std::size_t axis = 0; axis < last_.size(); ++axis) {
+        const bool force = axis < 3;
+        const auto i = static_cast<Eigen::Index>(axis % 3);
+        const double noise = force ? calibration_.force_noise : calibration_.torque_noise;
+        const double real = force ? load.force[i] : load.torque[i];
+        const double range = calibration_.range[axis];
+        const double wanted = std::isfinite(real) ? real + noise * normal_(random_) : 0.0;
+        last_[axis] = std::clamp(wanted, -range, range);
+        if (last_[axis] != wanted) {
+            reading.status |= status::kSaturated;
+        }
+        const double scale = force ? calibration_.counts_per_force / calibration_.force_unit.size
+                                   : calibration_.counts_per_torque / calibration_.torque_unit.size;
+        reading.counts[axis] = toCounts((last_[axis] - bias_[axis]) * scale);
+    }
+    return reading;
+}
+
+void Sensor::resetLatch() noexcept {
+    if (status_ == status::kMonitorLatched) {
+        status_ = status::kHealthy;
+    }
+}
+
+}  // namespace metier::virtual_netft

@@ -1,0 +1,238 @@
+#include "metier/virtual_netft/controller.hpp"
+
+#include <gmock/gmock.h>
+#include <poll.h>
+
+#include <array>
+#include <asio/buffer.hpp>
+#include <chrono>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "metier/link/tcp_link.hpp"
+#include "metier/virtual_controller/testing/running_controller.hpp"
+
+namespace metier::virtual_controller {
+ControllerType netftController();
+}  // namespace metier::virtual_controller
+
+namespace metier::virtual_netft {
+namespace {
+
+using namespace std::chrono_literals;
+using asio::ip::udp;
+using virtual_controller::testing::RunningController;
+using Bytes = std::vector<unsigned char>;
+
+/// A client that knows of the sensor what its manual says.
+class Client {
+public:
+    explicit Client(RunningController& controller)
+        : sensor_(asio::ip::make_address("127.0.0.1"), controller.state()["port"]) {}
+
+    void request(int command, unsigned char count = 0) {
+        const std::array<unsigned char, 8> bytes{0x12, 0x34, 0, static_cast<unsigned char>(command),
+                                                 0,    0,    0, count};
+        socket_.send_to(asio::buffer(bytes), sensor_);
+    }
+    /// The next datagram; empty if none comes.
+    Bytes next(std::chrono::milliseconds longest = 5s) {
+        pollfd waiting{socket_.native_handle(), POLLIN, 0};
+        if (poll(&waiting, 1, static_cast<int>(longest.count())) != 1) {
+            return {};
+        }
+        Bytes datagram(2048);
+        datagram.resize(socket_.receive(asio::buffer(datagram)));
+        return datagram;
+    }
+
+private:
+    asio::io_context context_;
+    udp::socket socket_{context_, udp::endpoint(asio::ip::make_address("127.0.0.1"), 0)};
+    udp::endpoint sensor_;
+};
+
+std::uint32_t word(const Bytes& datagram, std::size_t index) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4 * index; i < 4 * index + 4; ++i) {
+        value = value << 8U | datagram.at(i);
+    }
+    return value;
+}
+
+double force(const Bytes& datagram) {
+    return static_cast<std::int32_t>(word(datagram, 3)) / 1e6;
+}
+
+class NetFt : public ::testing::Test {
+protected:
+    RunningController controller_{virtual_controller::netftController(),
+                                  {.settings = {{"port", 0.0}}}};
+    Client client_{controller_};
+};
+
+TEST_F(NetFt, StreamsRecordsOfTheWorldsWrench) {
+    controller_.setEffect({.wrench = {{1.5, 0.0, 0.0}, {0.0, 0.0, 0.0}}, .part_width = {}});
+    client_.request(2);
+    std::uint32_t ft_sequence = 0;
+    for (std::uint32_t expected = 1; expected <= 20; ++expected) {
+        const auto record = client_.next();
+        ASSERT_EQ(record.size(), 36U);
+        EXPECT_EQ(word(record, 0), expected);
+        EXPECT_EQ(word(record, 2), 0U);
+        if (expected > 1) {
+            EXPECT_EQ(word(record, 1) - ft_sequence, 7U);
+        }
+        ft_sequence = word(record, 1);
+        EXPECT_NEAR(force(record), 1.5, 1e-6);
+    }
+}
+
+TEST_F(NetFt, CountsFromTheBeginningAtEveryStart) {
+    client_.request(2);
+    for (int i = 0; i < 10; ++i) {
+        ASSERT_FALSE(client_.next().empty());
+    }
+    client_.request(2);
+    std::uint32_t before = 10;
+    auto now = word(client_.next(), 0);
+    for (int i = 0; i < 200 && now > before; ++i) {
+        before = std::exchange(now, word(client_.next(), 0));
+    }
+    EXPECT_EQ(now, 1U);
+}
+
+TEST_F(NetFt, SendsAsManyRecordsAsItIsAskedFor) {
+    client_.request(2, 3);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(client_.next().size(), 36U);
+    }
+    EXPECT_TRUE(client_.next(30ms).empty());
+}
+
+TEST_F(NetFt, SendsSeveralRecordsAtOnceInTheBufferedMode) {
+    client_.request(3, 7);
+    EXPECT_EQ(client_.next().size(), 5 * 36U);
+    EXPECT_EQ(client_.next().size(), 2 * 36U);
+}
+
+TEST_F(NetFt, ServesWhoeverAskedLast) {
+    client_.request(2);
+    ASSERT_FALSE(client_.next().empty());
+    Client second(controller_);
+    second.request(2);
+    ASSERT_FALSE(second.next().empty());
+    while (!client_.next(30ms).empty()) {
+    }
+    EXPECT_FALSE(second.next().empty());
+    second.request(0);
+    while (!second.next(30ms).empty()) {
+    }
+    EXPECT_EQ(controller_.state()["client"], "");
+}
+
+TEST_F(NetFt, IsZeroAfterABias) {
+    ASSERT_TRUE(controller_.inject("wrench", "5 0 0 0 0 0"));
+    client_.request(2);
+    while (force(client_.next()) < 4.9) {
+    }
+    client_.request(0x42);
+    auto value = 5.0;
+    for (int i = 0; i < 500 && value > 0.1; ++i) {
+        value = force(client_.next());
+    }
+    EXPECT_NEAR(value, 0.0, 1e-6);
+}
+
+TEST_F(NetFt, TellsItsStatusAndForgetsAWarningWhenTheLatchIsReset) {
+    ASSERT_TRUE(controller_.inject("saturation"));
+    client_.request(2, 1);
+    EXPECT_EQ(word(client_.next(), 2), 0x80020000U);
+    ASSERT_TRUE(controller_.inject("warning"));
+    client_.request(2, 1);
+    EXPECT_EQ(word(client_.next(), 2), 0x80010000U);
+    client_.request(0x41);
+    client_.request(2, 2);
+    client_.next();
+    EXPECT_EQ(word(client_.next(), 2), 0U);
+    ASSERT_TRUE(controller_.inject("status", "0x80000200"));
+    client_.request(2, 1);
+    EXPECT_EQ(word(client_.next(), 2), 0x80000200U);
+}
+
+TEST_F(NetFt, LosesRecordsWhenToldTo) {
+    ASSERT_TRUE(controller_.inject("lose", "5"));
+    client_.request(2);
+    EXPECT_EQ(word(client_.next(), 0), 6U);
+}
+
+TEST_F(NetFt, IsSilentWhileTheCableIsCut) {
+    client_.request(2);
+    ASSERT_FALSE(client_.next().empty());
+    controller_.faults.cut = true;
+    while (!client_.next(30ms).empty()) {
+    }
+    controller_.faults.cut = false;
+    EXPECT_GT(word(client_.next(), 0), 20U);
+}
+
+TEST_F(NetFt, SendsLaterByTheDelayAndGarbles) {
+    controller_.faults.delay_ms = 60;
+    controller_.faults.garble = 1;
+    const auto begin = std::chrono::steady_clock::now();
+    client_.request(2, 2);
+    const auto garbled = client_.next();
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, 60ms);
+    EXPECT_NE(word(garbled, 4), 0U);
+    EXPECT_EQ(word(client_.next(), 4), 0U);
+}
+
+TEST_F(NetFt, ForgetsItsClientAtARestart) {
+    client_.request(2);
+    ASSERT_FALSE(client_.next().empty());
+    controller_.inTurn([](auto& controller, auto&) { controller.restart(); });
+    EXPECT_EQ(controller_.state()["client"], "");
+}
+
+TEST_F(NetFt, RefusesInjectionsThatItDoesNotKnow) {
+    EXPECT_EQ(controller_.inject("earthquake").error().code, Errc::not_found);
+    EXPECT_EQ(controller_.inject("status", "xyz").error().code, Errc::invalid_argument);
+    EXPECT_EQ(controller_.inject("wrench", "1 2 3").error().code, Errc::invalid_argument);
+    EXPECT_EQ(controller_.inject("lose", "-1").error().code, Errc::invalid_argument);
+}
+
+TEST(NetFtStart, RefusesUnitsThatItDoesNotKnow) {
+    EXPECT_THROW(RunningController(virtual_controller::netftController(),
+                                   {.settings = {{"port", 0.0}, {"force_unit", "stone"}}}),
+                 std::runtime_error);
+}
+
+TEST(NetFtStart, StreamsAtTheRateItIsGiven) {
+    RunningController controller(virtual_controller::netftController(),
+                                 {.settings = {{"port", 0.0}, {"rate", 7000.0}}});
+    Client client(controller);
+    client.request(2);
+    const auto first = word(client.next(), 1);
+    const auto second = word(client.next(), 1);
+    EXPECT_EQ(second - first, 1U);
+}
+
+TEST(NetFtStart, HasWebPagesOnAPortOfItsOwn) {
+    RunningController controller(
+        virtual_controller::netftController(),
+        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.5"});
+    const auto deadline = std::chrono::steady_clock::now() + 5s;
+    auto link = link::TcpLink::connect("127.73.1.5", 8080, deadline).value();
+    const std::string request = "GET /netftapi2.xml HTTP/1.1\r\nHost: sensor\r\n\r\n";
+    ASSERT_TRUE(link.send(std::as_bytes(std::span(request)), deadline));
+    std::string answer;
+    std::array<char, 512> buffer{};
+    while (const auto count = link.receive(std::as_writable_bytes(std::span(buffer)), deadline)) {
+        answer.append(buffer.data(), *count);
+    }
+    EXPECT_THAT(answer, ::testing::HasSubstr("<cfgcpf>1000000</cfgcpf>"));
+}
+
+}  // namespace
+}  // namespace metier::virtual_netft
