@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace metier::motion {
 
@@ -103,6 +104,23 @@ Result<RobotModel> RobotModel::fromChain(ChainDescription chain) {
         return fail(checked.error());
     }
     return RobotModel(std::move(chain));
+}
+
+Result<RobotModel> RobotModel::withChain(ChainDescription chain) const {
+    if (chain.joints.size() != axisCount()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("a chain of {} axes for {}, which has {}", chain.joints.size(),
+                                name_, axisCount()));
+    }
+    auto changed = fromChain(std::move(chain));
+    if (changed) {
+        changed->name_ = name_;
+        changed->maker_ = maker_;
+        changed->product_ = product_;
+        changed->capsules_ = capsules_;
+        changed->visual_ = visual_;
+    }
+    return changed;
 }
 
 Result<ToolFrame> RobotModel::tool(std::string_view tool_name) const {

@@ -52,6 +52,23 @@ TEST_P(ModelOf, IsTheSameWhenBuiltFromItsPublishedChain) {
               0.0);
 }
 
+TEST_P(ModelOf, KeepsItsNamesAndShapeWithAnotherChain) {
+    const RobotModel model = loadRobot(GetParam());
+    auto chain = model.chain();
+    chain.last_from_flange.translation.z() += 0.001;
+    const auto changed = model.withChain(chain);
+    ASSERT_TRUE(changed) << changed.error().message;
+    EXPECT_EQ(changed->name(), model.name());
+    EXPECT_EQ(changed->product(), model.product());
+    EXPECT_EQ(changed->capsules().size(), model.capsules().size());
+    EXPECT_NEAR(geometry::distanceBetween(changed->kinematics().forward(model.home()),
+                                          model.kinematics().forward(model.home())),
+                0.001, 1e-12);
+    chain.joints.pop_back();
+    chain.home = motion::JointVector(chain.joints.size());
+    EXPECT_FALSE(model.withChain(chain));
+}
+
 TEST(RobotModel, NamesTheFlangeByItsNameAndByNone) {
     const RobotModel model = loadRobot("ur5");
     EXPECT_EQ(model.tool("")->name, "flange");

@@ -44,6 +44,10 @@ public:
     /// Errors: invalid_argument (number of axes, axis not a unit vector, limits, home).
     static Result<RobotModel> fromChain(ChainDescription chain);
 
+    /// The same robot with another chain of as many axes, as its controller measured it: names and
+    /// shape stay. Errors: as fromChain().
+    Result<RobotModel> withChain(ChainDescription chain) const;
+
     std::string_view name() const noexcept { return name_; }        ///< as "ur5"
     std::string_view maker() const noexcept { return maker_; }      ///< as "Universal Robots"
     std::string_view product() const noexcept { return product_; }  ///< as "UR5"

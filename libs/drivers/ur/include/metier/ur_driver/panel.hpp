@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "metier/base/queue.hpp"
+#include "metier/link/tcp_link.hpp"
+#include "metier/ur_driver/recovery.hpp"
+#include "metier/ur_driver/servoj_script.hpp"
+#include "metier/ur_driver/streamer.hpp"
+
+namespace metier::ur_driver {
+
+/// What takes its time and therefore is done on a thread of its own.
+struct PanelJob {
+    enum class Kind : std::uint8_t { upload, stop_program, reset };
+    Kind kind{};
+    std::int32_t token = 0;  ///< of the script to upload
+    /// Of a reset; shared with whoever waits for its outcome.
+    std::shared_ptr<std::promise<Result<void>>> outcome{};
+};
+
+using PanelJobs = Queue<PanelJob>;
+
+/// Uploads scripts and stands in for a person at the pendant, one job after another.
+class Panel {
+public:
+    /// \param refused called with the token of a script that could not be uploaded, after the
+    ///                reporter was told why
+    struct Parts {
+        PanelJobs& jobs;
+        SafetyReporter& reporter;
+        std::function<void(std::int32_t token)> refused;
+    };
+
+    Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script,
+          std::function<Observation()> newest);
+
+private:
+    void run(const std::stop_token& stop);
+    void handle(PanelJob& job, const std::stop_token& stop);
+    Result<void> upload(std::int32_t token);
+    Result<void> checkRemoteControl() const;
+    void drain();
+
+    const Parts parts_;
+    const Recovery::Peer peer_;
+    const UrSettings settings_;
+    const ScriptOptions script_;
+    Recovery recovery_;
+    /// Kept open and read for a while: a close with unread bytes could discard the script.
+    std::optional<link::TcpLink> script_link_;
+    SteadyTime close_script_link_{};
+    std::jthread thread_;
+};
+
+}  // namespace metier::ur_driver

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/ur_driver/controller_state.hpp"
+#include "metier/ur_driver/stream_buffer.hpp"
+
+/// The primary client interface of Universal Robots: bytes, no socket.
+/// Source of every layout: docs/protocols/ur.md#primary.
+namespace metier::ur_driver::primary {
+
+inline constexpr std::size_t kHeaderSize = 5;
+/// A longer package is taken for garbage: real ones have one to two thousand bytes.
+inline constexpr std::size_t kMaxPackageSize = 65536;
+
+/// T_i = Rz(q_i + theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i) of this very arm. [rad], [m]
+struct Kinematics {
+    std::array<std::uint32_t, kAxes> checksum{};
+    Joints theta{};
+    Joints a{};
+    Joints d{};
+    Joints alpha{};
+
+    friend bool operator==(const Kinematics&, const Kinematics&) = default;
+};
+
+/// What the controller's safety settings allow, and what kind of arm it is.
+struct Configuration {
+    Joints lower{};             ///< [rad]
+    Joints upper{};             ///< [rad]
+    Joints max_velocity{};      ///< [rad/s]
+    Joints max_acceleration{};  ///< [rad/s2]
+    std::int32_t robot_type = 0;
+
+    friend bool operator==(const Configuration&, const Configuration&) = default;
+};
+
+/// Of the sub-package robot mode, as far as the driver uses it.
+struct ModeData {
+    bool emergency_stopped = false;
+    bool protective_stopped = false;
+    bool program_running = false;
+    bool program_paused = false;
+    RobotMode robot_mode = RobotMode::no_controller;
+};
+
+struct Version {
+    std::string name;
+    int major = 0;
+    int minor = 0;
+    int bugfix = 0;
+    int build = 0;
+    std::string date;
+};
+
+/// Something that the controller tells a person.
+struct Report {
+    enum class Kind : std::uint8_t { text, safety, error, runtime_exception };
+    enum class Level : std::uint8_t { debug, info, warning, violation, fault, critical };
+    Kind kind = Kind::text;
+    Level level = Level::info;
+    std::int32_t code = 0;      ///< of error and safety; the line of a runtime exception
+    std::int32_t argument = 0;  ///< of error and safety; the column of a runtime exception
+    std::string text{};         ///< printable; may be empty
+
+    /// "C153A2: ..." or "runtime exception in line 3, column 4: ...".
+    std::string toText() const;
+};
+
+/// What the driver understands of one package; the rest of it was skipped.
+struct Package {
+    std::optional<Kinematics> kinematics;
+    std::optional<Configuration> configuration;
+    std::optional<ModeData> mode;
+    std::optional<Version> version;
+    std::optional<Report> report;
+};
+
+/// Size of the first package of the buffer with its header; nothing if it is not complete yet.
+/// Errors: invalid_argument if it is under kHeaderSize or over kMaxPackageSize.
+Result<std::optional<std::size_t>> firstPackageSize(const StreamBuffer& buffer);
+
+/// \param bytes one whole package, header included
+/// Errors: invalid_argument: a length inside it does not fit, or a value is not finite.
+Result<Package> parse(std::span<const std::byte> bytes);
+
+}  // namespace metier::ur_driver::primary

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/link/tcp_link.hpp"
+#include "metier/ur_driver/primary.hpp"
+
+namespace metier::ur_driver {
+
+/// A connection to the primary client interface that only listens.
+///
+/// Errors name the peer. Threading: one thread.
+class PrimarySession {
+public:
+    /// Errors: connection_lost, timeout.
+    static Result<PrimarySession> connect(const std::string& host, std::uint16_t port,
+                                          SteadyTime deadline);
+    /// The next package. Errors: timeout, connection_lost, invalid_argument (garbage).
+    Result<primary::Package> next(SteadyTime deadline);
+
+private:
+    explicit PrimarySession(link::TcpLink link);
+
+    link::TcpLink link_;
+    StreamBuffer buffer_;
+};
+
+/// What a controller tells of itself when someone connects to its primary interface.
+struct ControllerDescription {
+    std::optional<primary::Version> version;
+    std::optional<primary::Kinematics> kinematics;
+    std::optional<primary::Configuration> configuration;
+
+    bool complete() const noexcept { return version && kinematics && configuration; }
+    /// Takes what the package tells.
+    void take(const primary::Package& package);
+};
+
+/// Connects and listens until the description is complete or the deadline passed.
+/// \return what was told, perhaps not all. Errors: connection_lost, timeout if there was nothing.
+Result<ControllerDescription> readDescription(const std::string& host, std::uint16_t port,
+                                              SteadyTime deadline);
+
+/// Listens for as long as it lives, on a thread of its own; connects again by itself.
+class PrimaryMonitor {
+public:
+    using Handler = std::function<void(const primary::Package&)>;
+    /// \param handler called for every package, on the monitor's thread
+    PrimaryMonitor(std::string host, std::uint16_t port, Handler handler);
+
+private:
+    void run(const std::stop_token& stop);
+    void listen(PrimarySession& session, const std::stop_token& stop);
+
+    const std::string host_;
+    const std::uint16_t port_;
+    const Handler handler_;
+    std::jthread thread_;
+};
+
+}  // namespace metier::ur_driver

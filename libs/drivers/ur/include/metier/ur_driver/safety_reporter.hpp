@@ -1,0 +1,74 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "metier/base/clock.hpp"
+#include "metier/device/arm_core.hpp"
+#include "metier/ur_driver/controller_state.hpp"
+#include "metier/ur_driver/primary.hpp"
+
+namespace metier::ur_driver {
+
+/// What a person must know and do so that the arm may move; state normal and no text if it may.
+/// The text does not name the device.
+device::Safety judge(RobotMode robot_mode, SafetyMode safety_mode);
+
+/// Joins all that says whether the arm may move: the controller's modes, its messages, what the
+/// driver itself stopped for, and the link. Tells the ArmCore whenever that changes.
+///
+/// Threading: any thread; observe() neither locks nor allocates unless the modes changed.
+class SafetyReporter {
+public:
+    /// \param tell called after each change, on the thread that made it; must not lock
+    SafetyReporter(device::ArmCore& core, std::function<void()> tell);
+
+    /// A data package came. \param limit_broken whether a set-point had been too fast before
+    void observe(const ControllerState& now, bool limit_broken, SteadyTime stamp);
+    /// The link is gone or was not made. \param why names the peer
+    void disconnected(const std::string& why, SteadyTime now);
+    /// The driver stopped the arm; that holds until unlatch().
+    void latch(const std::string& why, SteadyTime now);
+    void unlatch();
+    bool latched() const;
+    /// The controller told something: it is added to what stopped the arm shortly before or stops
+    /// it soon.
+    void report(const primary::Report& report, SteadyTime now);
+    /// Something a person should know although the arm may move; empty: nothing.
+    void note(const std::string& text);
+    /// Since when the safety state is what it is.
+    SteadyTime since() const;
+
+private:
+    struct Modes {
+        RobotMode robot = RobotMode::no_controller;
+        SafetyMode safety = SafetyMode::undefined;
+        friend bool operator==(const Modes&, const Modes&) = default;
+    };
+
+    device::Safety compose() const;
+    /// With mutex_ held.
+    void update(SteadyTime now);
+
+    device::ArmCore& core_;
+    const std::function<void()> tell_;
+    std::atomic<bool> connected_{false};
+    Modes seen_;  // of the thread that observes
+
+    mutable std::mutex mutex_;
+    Modes modes_;
+    std::string link_text_;
+    std::string latch_text_;
+    std::string note_;
+    std::string report_text_;
+    SteadyTime report_stamp_{};
+    SteadyTime since_{};
+    device::SafetyState last_ = device::SafetyState::disconnected;
+    bool limit_broken_ = false;
+};
+
+}  // namespace metier::ur_driver

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "metier/device/arm_core.hpp"
+#include "metier/device/notifier.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/ur_driver/panel.hpp"
+#include "metier/ur_driver/primary_session.hpp"
+#include "metier/ur_driver/recovery.hpp"
+#include "metier/ur_driver/rtde_session.hpp"
+#include "metier/ur_driver/safety_reporter.hpp"
+#include "metier/ur_driver/streamer.hpp"
+#include "metier/ur_driver/ur_settings.hpp"
+
+namespace metier::ur_driver {
+
+/// What an arm is made from.
+struct UrArmOptions {
+    std::string name;
+    std::string host;
+    motion::RobotModel model;  ///< six axes; what the rest of the program plans with
+    UrSettings settings;       ///< with a frequency
+    /// Of the controller's own limits, if it told them [rad/s].
+    Joints max_velocity{};
+};
+
+/// An arm of Universal Robots, of the CB3 and the e-Series: follows set-points by a script that
+/// the driver uploads when a source is attached, over RTDE.
+///
+/// Its cycle is driven by the controller's data packages. It connects, and connects again, by
+/// itself; it never moves by itself. resetFault() waits, at most 500 ms: what takes longer goes on,
+/// and the next resetFault() tells its outcome.
+///
+/// Metier observes the controller's safety and obeys it; it is not safety-rated.
+/// Source: docs/protocols/ur.md.
+class UrArm final : public device::Arm {
+public:
+    explicit UrArm(UrArmOptions options);
+    ~UrArm() override = default;
+    UrArm(const UrArm&) = delete;
+    UrArm& operator=(const UrArm&) = delete;
+
+    const device::ArmInfo& info() const noexcept override { return core_.info(); }
+    device::ArmState state() const noexcept override { return core_.state(); }
+    device::Safety safety() const override { return core_.safety(); }
+    /// Errors: also device_fault if the speed slider is below 100 % or the controller runs a
+    ///         program that is not this driver's.
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
+    void stop() noexcept override { core_.stop(); }
+    Result<void> resetFault() override;
+    device::Registration onSafetyChange(SafetyCallback callback) override;
+
+    /// Force and torque at the tool, in the base frame, as the controller estimates it [N], [Nm].
+    std::array<double, 6> toolForce() const noexcept { return observed_.read().state.tool_force; }
+
+private:
+    void run(const std::stop_token& stop);
+    /// \return why the session ended
+    Error serve(RtdeSession& session, const std::stop_token& stop);
+    Result<void> cycle(RtdeSession& session, const ControllerState& now);
+    void lost(const Error& why);
+    void notify();
+    void hear(const primary::Package& package);
+
+    const UrArmOptions options_;
+    const std::chrono::nanoseconds link_timeout_;
+    device::ArmCore core_;
+    PanelJobs jobs_;
+    SafetyReporter reporter_;
+    Streamer streamer_;
+    device::SharedValue<Observation> observed_;
+    std::atomic<std::int32_t> upload_{0};
+    std::atomic<bool> stop_program_{false};
+    ControllerDescription description_;  // of the primary monitor's thread
+    ControllerDescription compared_;     // of the primary monitor's thread
+
+    std::mutex reset_mutex_;
+    std::shared_future<Result<void>> reset_;  // shared by all that wait for one reset
+
+    // Ended in this order from below: who signals before who is signalled.
+    device::Notifier notifier_;
+    Panel panel_;
+    PrimaryMonitor primary_;
+    std::jthread thread_;
+};
+
+}  // namespace metier::ur_driver

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "metier/base/error.hpp"
+#include "metier/configuration/settings.hpp"
+
+namespace metier::ur_driver {
+
+/// How to talk to one controller. Names, units and ranges: docs/protocols/ur.md#settings.
+struct UrSettings {
+    enum class PowerOn : std::uint8_t { by_a_person, by_reset };
+
+    std::uint16_t rtde_port = 30004;
+    std::uint16_t primary_port = 30001;
+    std::uint16_t secondary_port = 30002;
+    std::uint16_t dashboard_port = 29999;
+    double frequency = 0.0;  ///< of the set-points [Hz]; 0: the controller's highest
+    double servoj_gain = 300.0;
+    double servoj_lookahead = 0.1;   ///< [s]
+    double stop_deceleration = 4.0;  ///< [rad/s2]
+    std::int32_t register_base = 24;
+    PowerOn power_on = PowerOn::by_a_person;
+    std::chrono::nanoseconds link_timeout{};  ///< 0: three cycles
+    std::chrono::nanoseconds receive_timeout = std::chrono::milliseconds(100);
+    std::chrono::nanoseconds start_timeout = std::chrono::seconds(3);
+    std::chrono::nanoseconds unlock_delay = std::chrono::seconds(5);
+    std::chrono::nanoseconds open_wait = std::chrono::seconds(3);
+    double standstill_speed = 0.005;  ///< [rad/s]
+    double follow_tolerance = 0.05;   ///< [rad]
+
+    /// Asks for every setting and calls finish().
+    /// Errors: invalid_argument with everything that is wrong.
+    static Result<UrSettings> read(const configuration::Settings& settings);
+};
+
+}  // namespace metier::ur_driver

@@ -1,0 +1,111 @@
+#include "metier/ur_driver/dashboard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "metier/ur_driver/wire.hpp"
+
+namespace metier::ur_driver::dashboard {
+
+namespace {
+
+constexpr std::size_t kLongestLine = 1024;
+constexpr std::string_view kGreeting = "Connected: Universal Robots Dashboard Server";
+
+}  // namespace
+
+Result<std::optional<std::string>> takeLine(StreamBuffer& buffer) {
+    const auto bytes = buffer.received();
+    const auto end = std::find(bytes.begin(), bytes.end(), std::byte{'\n'});
+    const auto length = static_cast<std::size_t>(end - bytes.begin());
+    if (length > kLongestLine) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("a line of more than {} characters", kLongestLine));
+    }
+    if (end == bytes.end()) {
+        return std::nullopt;
+    }
+    auto line = printable(ByteReader(bytes).text(length));
+    buffer.consume(length + 1);
+    return line;
+}
+
+Result<std::string> valueOf(std::string_view reply, std::string_view head) {
+    if (reply.substr(0, head.size()) != head) {
+        return fail(Errc::device_fault,
+                    fmt::format("the dashboard answered \"{}\", not \"{} ...\"", reply, head));
+    }
+    reply.remove_prefix(head.size());
+    reply.remove_prefix(std::min(reply.find_first_not_of(' '), reply.size()));
+    return std::string(reply);
+}
+
+Result<bool> parseFlag(std::string_view reply) {
+    if (reply != "true" && reply != "false") {
+        return fail(Errc::device_fault,
+                    fmt::format("the dashboard answered \"{}\", neither true nor false", reply));
+    }
+    return reply == "true";
+}
+
+Client::Client(link::TcpLink link) : link_(std::move(link)), buffer_(4 * kLongestLine) {}
+
+Result<Client> Client::connect(const std::string& host, std::uint16_t port, SteadyTime deadline) {
+    auto link = link::TcpLink::connect(host, port, deadline);
+    if (!link) {
+        return fail(link.error());
+    }
+    Client client(std::move(*link));
+    const auto greeting = client.line(deadline);
+    if (!greeting) {
+        return fail(greeting.error());
+    }
+    if (greeting->substr(0, kGreeting.size()) != kGreeting) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: no dashboard server: \"{}\"", client.link_.peer(), *greeting));
+    }
+    return client;
+}
+
+Result<std::string> Client::ask(std::string_view command, SteadyTime deadline) {
+    const std::string line_out = std::string(command) + "\n";
+    if (auto sent = link_.send(std::as_bytes(std::span(line_out)), deadline); !sent) {
+        return fail(sent.error());
+    }
+    return line(deadline);
+}
+
+Result<void> Client::command(std::string_view command, std::string_view expected,
+                             SteadyTime deadline) {
+    const auto reply = ask(command, deadline);
+    if (!reply) {
+        return fail(reply.error());
+    }
+    if (reply->substr(0, expected.size()) != expected) {
+        return fail(Errc::device_fault, fmt::format("\"{}\" was answered with \"{}\", not \"{}\"",
+                                                    command, *reply, expected));
+    }
+    return {};
+}
+
+Result<std::string> Client::line(SteadyTime deadline) {
+    for (;;) {
+        auto line = takeLine(buffer_);
+        if (!line) {
+            return fail(line.error().code, link_.peer() + ": " + line.error().message);
+        }
+        if (*line) {
+            return std::move(**line);
+        }
+        const auto count = link_.receive(buffer_.space(), deadline);
+        if (!count) {
+            return fail(count.error());
+        }
+        buffer_.filled(*count);
+    }
+}
+
+}  // namespace metier::ur_driver::dashboard

@@ -1,0 +1,113 @@
+#include "metier/ur_driver/panel.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <chrono>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace metier::ur_driver {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kUploadTimeout = 2s;
+constexpr auto kRemoteCheckTimeout = 500ms;
+constexpr auto kScriptLinkLife = 2s;
+constexpr auto kSlice = 20ms;  // how soon a new job or the end is seen
+
+}  // namespace
+
+Panel::Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script,
+             std::function<Observation()> newest)
+    : parts_(std::move(parts)),
+      peer_(std::move(peer)),
+      settings_(settings),
+      script_(script),
+      recovery_(peer_, settings, std::move(newest), parts_.reporter),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+void Panel::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        const auto now = std::chrono::steady_clock::now();
+        if (auto job = parts_.jobs.popUntil(script_link_ ? now : now + kSlice)) {
+            handle(*job, stop);
+        }
+        drain();
+    }
+}
+
+void Panel::handle(PanelJob& job, const std::stop_token& stop) {
+    switch (job.kind) {
+        case PanelJob::Kind::upload:
+            if (const auto uploaded = upload(job.token); !uploaded) {
+                parts_.reporter.latch(
+                    "the script could not be uploaded: " + uploaded.error().message,
+                    std::chrono::steady_clock::now());
+                parts_.refused(job.token);
+            }
+            break;
+        case PanelJob::Kind::stop_program:
+            if (const auto stopped = recovery_.stopProgram(); !stopped) {
+                spdlog::warn("{}", stopped.error().message);
+            }
+            break;
+        case PanelJob::Kind::reset:
+            job.outcome->set_value(recovery_.run(stop));
+            break;
+    }
+}
+
+Result<void> Panel::upload(std::int32_t token) {
+    if (auto checked = checkRemoteControl(); !checked) {
+        return checked;
+    }
+    script_link_.reset();
+    const auto now = std::chrono::steady_clock::now();
+    auto link = link::TcpLink::connect(peer_.host, settings_.secondary_port, now + kUploadTimeout);
+    if (!link) {
+        return fail(link.error());
+    }
+    const std::string script = servojScript(script_, token);
+    if (auto sent = link->send(std::as_bytes(std::span(script)), now + kUploadTimeout); !sent) {
+        return sent;
+    }
+    script_link_ = std::move(*link);
+    close_script_link_ = now + kScriptLinkLife;
+    return {};
+}
+
+Result<void> Panel::checkRemoteControl() const {
+    const auto deadline = std::chrono::steady_clock::now() + kRemoteCheckTimeout;
+    auto client = dashboard::Client::connect(peer_.host, settings_.dashboard_port, deadline);
+    if (!client) {
+        return {};  // the script itself will tell whether it may run
+    }
+    const auto reply = client->ask("is in remote control", deadline);
+    if (reply) {
+        const auto remote = dashboard::parseFlag(*reply);  // CB3 does not know the question
+        if (remote && !*remote) {
+            return fail(Errc::device_fault,
+                        "the controller is in local control: switch it to remote control");
+        }
+    }
+    return {};
+}
+
+void Panel::drain() {
+    if (!script_link_) {
+        return;
+    }
+    std::array<std::byte, 4096> ignored{};
+    const auto now = std::chrono::steady_clock::now();
+    const auto count = script_link_->receive(ignored, now + kSlice);
+    if ((!count && count.error().code != Errc::timeout) || now > close_script_link_) {
+        script_link_.reset();
+    }
+}
+
+}  // namespace metier::ur_driver

@@ -1,0 +1,197 @@
+#include "metier/ur_driver/recovery.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+
+#include "metier/ur_driver/back_off.hpp"
+
+namespace metier::ur_driver {
+
+using namespace std::chrono_literals;
+using device::SafetyState;
+
+namespace {
+
+constexpr auto kDashboardTimeout = 1s;  // for one command
+constexpr auto kUnlockTimeout = 3s;
+constexpr auto kStopTimeout = 2s;
+constexpr auto kPowerTimeout = 60s;  // an arm takes 10 to 20 s
+constexpr auto kPoll = 5ms;
+constexpr double kFullSpeed = 0.99;
+
+SteadyTime commandDeadline() {
+    return std::chrono::steady_clock::now() + kDashboardTimeout;
+}
+
+bool isSafe(const ControllerState& state) {
+    return state.safety_mode == SafetyMode::normal || state.safety_mode == SafetyMode::reduced;
+}
+
+}  // namespace
+
+Recovery::Recovery(Peer peer, const UrSettings& settings, std::function<Observation()> newest,
+                   SafetyReporter& reporter)
+    : peer_(std::move(peer)),
+      settings_(settings),
+      newest_(std::move(newest)),
+      reporter_(reporter) {}
+
+tl::unexpected<Error> Recovery::refuse(const std::string& why) const {
+    return fail(Errc::device_fault, peer_.name + ": " + why);
+}
+
+Result<dashboard::Client> Recovery::dial() const {
+    auto client =
+        dashboard::Client::connect(peer_.host, settings_.dashboard_port, commandDeadline());
+    if (!client) {
+        return fail(client.error().code, peer_.name + ": " + client.error().message);
+    }
+    return client;
+}
+
+Result<void> Recovery::run(const std::stop_token& stop) {
+    const auto now = newest_();
+    if (!now.connected) {
+        return fail(Errc::connection_lost, peer_.name + ": no connection to the controller");
+    }
+    if (!now.standing) {
+        return refuse("the arm still moves");
+    }
+    return leaveSafetyStop(stop)
+        .and_then([&] { return powerOn(stop); })
+        .and_then([&] { return endPausedProgram(stop); })
+        .and_then([&] { return checkSlider(); })
+        .and_then([&]() -> Result<void> {
+            reporter_.unlatch();
+            return {};
+        });
+}
+
+Result<void> Recovery::leaveSafetyStop(const std::stop_token& stop) {
+    const auto state = newest_().state;
+    if (isSafe(state)) {
+        return {};
+    }
+    if (state.safety_mode == SafetyMode::protective_stop) {
+        return unlock(stop);
+    }
+    return refuse(judge(state.robot_mode, state.safety_mode).text);
+}
+
+Result<void> Recovery::unlock(const std::stop_token& stop) {
+    const auto left = reporter_.since() + settings_.unlock_delay - std::chrono::steady_clock::now();
+    if (left > 0ns) {
+        return refuse(fmt::format("the protective stop can be unlocked in {:.1f} s",
+                                  std::chrono::duration<double>(left).count()));
+    }
+    auto client = dial();
+    if (!client) {
+        return fail(client.error());
+    }
+    // Their replies tell only whether there was a popup; a link that fails now also fails below.
+    (void)client->ask("close safety popup", commandDeadline());
+    (void)client->ask("close popup", commandDeadline());
+    if (auto unlocked = client->command("unlock protective stop", "Protective stop releasing",
+                                        commandDeadline());
+        !unlocked) {
+        return refuse(unlocked.error().message);
+    }
+    return await(isSafe, kUnlockTimeout, "the protective stop was not released", stop);
+}
+
+Result<void> Recovery::powerOn(const std::stop_token& stop) {
+    const auto mode = newest_().state.robot_mode;
+    if (mode == RobotMode::running) {
+        return {};
+    }
+    const bool can =
+        mode == RobotMode::power_off || mode == RobotMode::power_on || mode == RobotMode::idle;
+    if (!can) {
+        return refuse(judge(mode, SafetyMode::normal).text);
+    }
+    if (settings_.power_on != UrSettings::PowerOn::by_reset) {
+        return refuse(fmt::format(
+            "robot mode {}: power on and release the brakes at the pendant (the setting power_on "
+            "lets Reset do it)",
+            toText(mode)));
+    }
+    auto client = dial();
+    if (!client) {
+        return fail(client.error());
+    }
+    if (mode != RobotMode::idle) {
+        if (auto on = client->command("power on", "Powering on", commandDeadline()); !on) {
+            return refuse(on.error().message);
+        }
+        const auto powered = await(
+            [](const ControllerState& state) {
+                return state.robot_mode == RobotMode::idle ||
+                       state.robot_mode == RobotMode::running;
+            },
+            kPowerTimeout, "the arm was not powered on", stop);
+        if (!powered) {
+            return powered;
+        }
+    }
+    if (auto released = client->command("brake release", "Brake releasing", commandDeadline());
+        !released) {
+        return refuse(released.error().message);
+    }
+    return await([](const ControllerState& s) { return s.robot_mode == RobotMode::running; },
+                 kPowerTimeout, "the brakes were not released", stop);
+}
+
+Result<void> Recovery::endPausedProgram(const std::stop_token& stop) {
+    if (newest_().state.runtime_state != RuntimeState::paused) {
+        return {};
+    }
+    if (auto stopped = stopProgram(); !stopped) {
+        return stopped;
+    }
+    return await(
+        [](const ControllerState& state) { return state.runtime_state == RuntimeState::stopped; },
+        kStopTimeout, "the paused program was not stopped", stop);
+}
+
+Result<void> Recovery::stopProgram() {
+    auto client = dial();
+    if (!client) {
+        return fail(client.error());
+    }
+    if (auto stopped = client->command("stop", "Stopped", commandDeadline()); !stopped) {
+        return refuse(stopped.error().message);
+    }
+    return {};
+}
+
+Result<void> Recovery::checkSlider() const {
+    const double fraction = newest_().state.target_speed_fraction;
+    if (reporter_.latched() && fraction < kFullSpeed) {
+        return refuse(
+            fmt::format("the speed slider is at {:.0f} %: put it to 100 %", 100.0 * fraction));
+    }
+    return {};
+}
+
+Result<void> Recovery::await(const std::function<bool(const ControllerState&)>& reached,
+                             std::chrono::nanoseconds time, const std::string& what,
+                             const std::stop_token& stop) const {
+    const auto deadline = std::chrono::steady_clock::now() + time;
+    while (!stop.stop_requested()) {
+        const auto now = newest_();
+        if (now.connected && reached(now.state)) {
+            return {};
+        }
+        if (std::chrono::steady_clock::now() >= deadline) {
+            return fail(Errc::timeout, fmt::format("{}: {} within {:.0f} s", peer_.name, what,
+                                                   std::chrono::duration<double>(time).count()));
+        }
+        waitFor(stop, kPoll);
+    }
+    return fail(Errc::cancelled, peer_.name + ": the driver was shut down");
+}
+
+}  // namespace metier::ur_driver

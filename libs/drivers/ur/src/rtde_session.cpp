@@ -1,0 +1,183 @@
+#include "metier/ur_driver/rtde_session.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace metier::ur_driver {
+
+using rtde::PackageType;
+
+namespace {
+
+constexpr double kHighestFrequencyCb3 = 125.0;  // [Hz]
+constexpr double kHighestFrequency = 500.0;     // [Hz], since major version 5
+constexpr std::uint32_t kFirstESeries = 5;
+
+}  // namespace
+
+RtdeSession::RtdeSession(link::TcpLink link, std::int32_t register_base)
+    : link_(std::move(link)), buffer_(2 * rtde::kMaxPackageSize + 2), outputs_(register_base) {}
+
+Result<RtdeSession> RtdeSession::open(const RtdeRequest& request, SteadyTime deadline) {
+    auto link = link::TcpLink::connect(request.host, request.port, deadline);
+    if (!link) {
+        return fail(link.error());
+    }
+    RtdeSession session(std::move(*link), request.register_base);
+    if (auto agreed = session.negotiate(request, deadline); !agreed) {
+        return fail(session.atPeer(agreed.error()));
+    }
+    return session;
+}
+
+Result<void> RtdeSession::negotiate(const RtdeRequest& request, SteadyTime deadline) {
+    const auto accepted =
+        ask(rtde::requestProtocolVersion(), deadline).and_then([](const rtde::Bytes& answer) {
+            return rtde::parseAccepted(answer);
+        });
+    if (!accepted) {
+        return fail(accepted.error());
+    }
+    if (!*accepted) {
+        return fail(Errc::not_supported, "the controller does not speak version 2 of RTDE");
+    }
+    const auto version =
+        ask(rtde::getControllerVersion(), deadline).and_then([](const rtde::Bytes& answer) {
+            return rtde::parseControllerVersion(answer);
+        });
+    if (!version) {
+        return fail(version.error());
+    }
+    version_ = *version;
+    const double highest =
+        version_.major < kFirstESeries ? kHighestFrequencyCb3 : kHighestFrequency;
+    if (request.frequency > highest) {
+        return fail(Errc::not_supported,
+                    fmt::format("software {}.{} gives at most {} Hz, asked for are {} Hz: set "
+                                "frequency",
+                                version_.major, version_.minor, highest, request.frequency));
+    }
+    return setUpOutputs(request.frequency, deadline)
+        .and_then([&] { return setUpInputs(request.register_base, deadline); })
+        .and_then([&] { return write({}, deadline); })
+        .and_then([&] { return ask(rtde::start(), deadline); })
+        .and_then([](const rtde::Bytes& answer) { return rtde::parseAccepted(answer); })
+        .and_then([](bool started) -> Result<void> {
+            if (!started) {
+                return fail(Errc::not_supported, "the controller does not start RTDE");
+            }
+            return {};
+        });
+}
+
+Result<void> RtdeSession::setUpOutputs(double frequency, SteadyTime deadline) {
+    for (;;) {
+        const auto in_force =
+            ask(rtde::setupOutputs(frequency, outputs_.names()), deadline)
+                .and_then([](const rtde::Bytes& a) { return rtde::parseRecipeReply(a); })
+                .and_then([this](const rtde::RecipeReply& reply) { return outputs_.take(reply); });
+        if (!in_force) {
+            return fail(in_force.error());
+        }
+        if (*in_force) {
+            return {};
+        }
+    }
+}
+
+Result<void> RtdeSession::setUpInputs(std::int32_t register_base, SteadyTime deadline) {
+    const auto reply =
+        ask(rtde::setupInputs(rtde::setpointNames(register_base)), deadline)
+            .and_then([](const rtde::Bytes& a) { return rtde::parseRecipeReply(a); });
+    if (!reply) {
+        return fail(reply.error());
+    }
+    input_recipe_ = reply->id;
+    return rtde::checkSetpointReply(*reply, register_base);
+}
+
+Result<rtde::Bytes> RtdeSession::ask(const rtde::Bytes& request, SteadyTime deadline) {
+    if (auto sent = link_.send(request, deadline); !sent) {
+        return fail(sent.error());
+    }
+    const auto wanted = static_cast<PackageType>(request[2]);
+    const auto package = nextPackage(deadline);
+    if (!package) {
+        return fail(package.error());
+    }
+    if (package->type != wanted) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("RTDE answered '{:c}' with package {}", static_cast<char>(wanted),
+                                static_cast<int>(package->type)));
+    }
+    return rtde::Bytes(package->payload.begin(), package->payload.end());
+}
+
+Result<rtde::Package> RtdeSession::nextPackage(SteadyTime deadline) {
+    for (;;) {
+        buffer_.consume(std::exchange(to_consume_, 0));
+        const auto package = rtde::firstPackage(buffer_);
+        if (!package) {
+            return fail(package.error());
+        }
+        if (package->has_value()) {
+            to_consume_ = rtde::kHeaderSize + (*package)->payload.size();
+            if ((*package)->type != PackageType::text_message) {
+                return **package;
+            }
+            tell(**package);
+            if (std::chrono::steady_clock::now() >= deadline) {
+                return fail(Errc::timeout, "RTDE sends nothing but text messages");
+            }
+            continue;
+        }
+        const auto count = link_.receive(buffer_.space(), deadline);
+        if (!count) {
+            return fail(count.error());
+        }
+        buffer_.filled(*count);
+    }
+}
+
+void RtdeSession::tell(const rtde::Package& message) const {
+    const auto text = rtde::parseTextMessage(message.payload);
+    if (!text) {
+        spdlog::warn("{}: {}", link_.peer(), text.error().message);
+    } else if (text->level <= rtde::TextMessage::Level::warning) {
+        spdlog::warn("{}: {}: {}", link_.peer(), text->source, text->message);
+    }
+}
+
+Result<ControllerState> RtdeSession::next(SteadyTime deadline) {
+    for (;;) {
+        const auto package = nextPackage(deadline);
+        if (!package) {
+            return fail(atPeer(package.error()));
+        }
+        if (package->type == PackageType::data) {
+            auto state = outputs_.decode(package->payload);
+            if (!state) {
+                return fail(atPeer(state.error()));
+            }
+            return state;
+        }
+        if (std::chrono::steady_clock::now() >= deadline) {
+            return fail(Errc::timeout, link_.peer() + ": RTDE sends no data");
+        }
+    }
+}
+
+Result<void> RtdeSession::write(const rtde::Setpoint& setpoint, SteadyTime deadline) {
+    return link_.send(rtde::setpointPackage(input_recipe_, setpoint), deadline);
+}
+
+Error RtdeSession::atPeer(Error error) const {
+    if (error.message.find(link_.peer()) == std::string::npos) {
+        error.message = link_.peer() + ": " + error.message;
+    }
+    return error;
+}
+
+}  // namespace metier::ur_driver
