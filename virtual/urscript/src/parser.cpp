@@ -195,10 +195,11 @@ Result<void> Parser::conditional() {
     std::vector<std::size_t> ends;
     do {
         take();
+        const Position at = peek().at;
         if (auto done = condition(); !done) {
             return done;
         }
-        const std::size_t otherwise = builder_.emit(Op::jump_if_false, peek().at);
+        const std::size_t otherwise = builder_.emit(Op::jump_if_false, at);
         if (auto done = block(); !done) {
             return done;
         }
@@ -221,7 +222,8 @@ Result<void> Parser::conditional() {
 }
 
 Result<void> Parser::loop() {
-    const Position at = take().at;
+    take();
+    const Position at = peek().at;
     const std::size_t begin = builder_.here();
     if (auto done = condition(); !done) {
         return done;

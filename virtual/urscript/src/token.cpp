@@ -234,7 +234,7 @@ LineBlocks blocksOf(std::string_view line) {
             blocks.empty = blocks.empty && token.has_value();
             return blocks;
         }
-        blocks.empty = false;
+        blocks.empty = blocks.empty && token->kind == Kind::new_line;
         switch (token->kind) {
             case Kind::word_def:
             case Kind::word_sec:
