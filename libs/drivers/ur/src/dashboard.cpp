@@ -33,16 +33,6 @@ Result<std::optional<std::string>> takeLine(StreamBuffer& buffer) {
     return line;
 }
 
-Result<std::string> valueOf(std::string_view reply, std::string_view head) {
-    if (reply.substr(0, head.size()) != head) {
-        return fail(Errc::device_fault,
-                    fmt::format("the dashboard answered \"{}\", not \"{} ...\"", reply, head));
-    }
-    reply.remove_prefix(head.size());
-    reply.remove_prefix(std::min(reply.find_first_not_of(' '), reply.size()));
-    return std::string(reply);
-}
-
 Result<bool> parseFlag(std::string_view reply) {
     if (reply != "true" && reply != "false") {
         return fail(Errc::device_fault,

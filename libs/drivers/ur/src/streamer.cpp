@@ -298,17 +298,19 @@ void Streamer::fail(const StreamFault& fault, Output& out) noexcept {
 void Streamer::finish(const ControllerState& now, Output& out) noexcept {
     const bool running =
         now.runtime_state == RuntimeState::playing || now.runtime_state == RuntimeState::stopping;
-    const bool patient = seconds(phase_cycles_) < kStopPatience;
-    if (standing() && (!running || !patient)) {
+    const bool overdue = seconds(phase_cycles_) >= kStopPatience;
+    if (running && overdue && !stop_asked_ && now.script_token == token_.load()) {
+        stop_asked_ = true;
+        out.stop_program = true;
+    }
+    if (standing() && (!running || overdue)) {
         enter(Phase::idle);
     }
-    const bool overdue =
-        phase_cycles_ == static_cast<std::uint32_t>(std::ceil(kStopPatience / seconds(1)));
-    out.stop_program = running && overdue && now.script_token == token_.load();
 }
 
 void Streamer::brake() noexcept {
     setpoint_.token = 0;
+    stop_asked_ = false;
     enter(Phase::ending);
 }
 

@@ -18,10 +18,6 @@ namespace metier::ur_driver::dashboard {
 /// it is not complete yet. Errors: invalid_argument if it is longer than 1024 characters.
 Result<std::optional<std::string>> takeLine(StreamBuffer& buffer);
 
-/// What follows `head` in a reply, as "RUNNING" of "Robotmode: RUNNING".
-/// Errors: device_fault if the reply is another one; the text tells the reply.
-Result<std::string> valueOf(std::string_view reply, std::string_view head);
-
 /// Errors: device_fault if it is neither "true" nor "false".
 Result<bool> parseFlag(std::string_view reply);
 

@@ -121,6 +121,7 @@ private:
     int cycles_since_violation_ = kViolationMemory;
     double last_timestamp_ = -1.0;
     bool done_ = false;
+    bool stop_asked_ = false;  // at the dashboard, since it began to brake
     std::array<Joints, kHistory> history_{};
     std::size_t history_size_ = 0;
     std::size_t history_next_ = 0;

@@ -1,0 +1,24 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "metier/ur_driver/primary.hpp"
+
+using namespace metier::ur_driver;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto bytes = std::as_bytes(std::span(data, size));
+    if (const auto package = primary::parse(bytes); package && package->report) {
+        (void)package->report->toText();
+    }
+    StreamBuffer buffer(std::max<std::size_t>(2 * size, 16));
+    std::copy(bytes.begin(), bytes.end(), buffer.space().begin());
+    buffer.filled(size);
+    for (auto length = primary::firstPackageSize(buffer); length && *length;
+         length = primary::firstPackageSize(buffer)) {
+        (void)primary::parse(buffer.received().first(**length));
+        buffer.consume(**length);
+    }
+    return 0;
+}

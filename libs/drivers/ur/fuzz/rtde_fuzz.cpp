@@ -1,0 +1,45 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "metier/ur_driver/rtde.hpp"
+
+using namespace metier::ur_driver;
+
+namespace {
+
+void parseAll(std::span<const std::byte> payload) {
+    (void)rtde::parseAccepted(payload);
+    (void)rtde::parseControllerVersion(payload);
+    (void)rtde::parseTextMessage(payload);
+    if (const auto reply = rtde::parseRecipeReply(payload)) {
+        (void)rtde::OutputRecipe(24).take(*reply);
+        (void)rtde::checkSetpointReply(*reply, 24);
+    }
+    (void)rtde::OutputRecipe(24).decode(payload);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto bytes = std::as_bytes(std::span(data, size));
+    parseAll(bytes);
+    StreamBuffer buffer(256);
+    for (std::size_t at = 0; at < bytes.size();) {
+        const auto space = buffer.space();
+        const auto count = std::min(space.size(), bytes.size() - at);
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, space.begin());
+        buffer.filled(count);
+        at += count;
+        for (auto package = rtde::firstPackage(buffer); package && *package;
+             package = rtde::firstPackage(buffer)) {
+            parseAll((*package)->payload);
+            buffer.consume(rtde::kHeaderSize + (*package)->payload.size());
+        }
+        if (count == 0) {
+            return 0;
+        }
+    }
+    return 0;
+}
