@@ -18,8 +18,20 @@ void tellLost(const std::vector<skill::Program*>& programs, const std::string& t
 DeviceWatch::DeviceWatch(device::Arm& arm, std::shared_ptr<skill::Executor> executor,
                          std::vector<skill::Program*> programs)
     : programs_(std::make_shared<const Programs>(std::move(programs))) {
-    registration_ = arm.onSafetyChange(
-        [executor = std::move(executor), watched = std::weak_ptr(programs_)](const auto& safety) {
+    watch(arm, std::move(executor));
+}
+
+DeviceWatch::DeviceWatch(device::Gripper& gripper, std::shared_ptr<skill::Executor> executor,
+                         std::vector<skill::Program*> programs)
+    : programs_(std::make_shared<const Programs>(std::move(programs))) {
+    watch(gripper, std::move(executor));
+}
+
+template <typename Device>
+void DeviceWatch::watch(Device& device, std::shared_ptr<skill::Executor> executor) {
+    registration_ =
+        device.onSafetyChange([executor = std::move(executor),
+                               watched = std::weak_ptr(programs_)](const device::Safety& safety) {
             if (safety.state != device::SafetyState::disconnected) {
                 return;
             }

@@ -46,7 +46,9 @@ void give(std::span<const std::byte> bytes) {
         if (conversation.ready()) {
             conversation.begin({MotionKind::grasp, 0.03, 0.05, 20.0}, now);
         }
-        conversation.reset(now);
+        if (conversation.started()) {
+            conversation.reset(now);
+        }
     }
 }
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "metier/device/gripper.hpp"
+#include "metier/skill/field_list.hpp"
+#include "metier/skill/resource.hpp"
+#include "metier/skill/skill.hpp"
+
+namespace metier::robot_skills {
+
+/// What the skills of a gripper take.
+struct GripperParameters {
+    double force = 0.0;  ///< [N]; 0: the gripper's own
+    double width = 0.0;  ///< [m]; 0: not known (grasp), as far as it goes (release)
+};
+
+/// What they tell when they are done.
+struct GripperResults {
+    double width_reached = 0.0;  ///< [m]
+    bool part_held = false;
+};
+
+const skill::FieldList<GripperResults>& gripperResultFields();
+
+/// All skills that a gripper can have. A server offers those it wants to.
+struct GripperSkills {
+    /// For the ProgramOptions of every skill of this gripper: they exclude each other.
+    std::shared_ptr<skill::Resource> resource;
+    /// Grasp-, Release-, MoveGripperSkill.
+    std::vector<std::unique_ptr<skill::Skill>> skills;
+};
+
+/// Makes the skills of a gripper with jaws.
+///
+/// Start refuses a force or a width that the gripper cannot do, and a gripper that is not ready.
+/// Suspend stops the jaws, Resume asks for the same motion again, Halt stops them; they keep
+/// holding what they hold. A grasp that holds no part in the end is Halted with an error, also if
+/// the gripper tells success; so is a release that still holds one. Reset is
+/// device::Gripper::resetFault().
+///
+/// \param gripper must outlive the skills
+GripperSkills makeGripperSkills(device::Gripper& gripper);
+
+}  // namespace metier::robot_skills

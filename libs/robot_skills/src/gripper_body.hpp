@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "metier/device/gripper.hpp"
+#include "metier/skill/skill.hpp"
+
+namespace metier::robot_skills {
+
+/// An execution that moves the jaws of a gripper once; again after each rest.
+class GripperBody : public skill::Body {
+public:
+    /// Asks the gripper for the motion.
+    using Ask = std::function<Result<void>(device::Gripper&, device::Gripper::Done)>;
+    /// The result for the client. Errors: the outcome is not what was asked for.
+    using Judge = std::function<Result<skill::ValueMap>(const device::GripperOutcome&)>;
+
+    /// \param gripper must outlive the body
+    GripperBody(device::Gripper& gripper, Ask ask, Judge judge);
+    /// Stops the jaws if they still move.
+    ~GripperBody() override;
+    GripperBody(const GripperBody&) = delete;
+    GripperBody& operator=(const GripperBody&) = delete;
+
+    void start(skill::Execution execution) override;
+    Result<void> suspend() override;
+    Result<void> resume() override;
+    void halt() override;
+    void forceStop() noexcept override;
+
+private:
+    /// What the gripper's end of a motion needs, which may come when the body is gone.
+    struct Telling {
+        skill::Execution execution;
+        Judge judge;
+        std::atomic<bool> moving{false};
+    };
+
+    static void tell(const Telling& telling, const Result<device::GripperOutcome>& outcome);
+    Result<void> move();
+    void watchSafety();
+
+    device::Gripper& gripper_;
+    Ask ask_;
+    std::shared_ptr<Telling> telling_;  // shared with the gripper while it moves
+    device::Registration safety_watch_;
+};
+
+}  // namespace metier::robot_skills
