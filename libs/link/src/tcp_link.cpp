@@ -3,42 +3,16 @@
 #include <fmt/format.h>
 #include <poll.h>
 
-#include <algorithm>
 #include <asio/buffer.hpp>
 #include <asio/error.hpp>
-#include <cerrno>
-#include <chrono>
 #include <utility>
+
+#include "poll_until.hpp"
 
 namespace metier::link {
 namespace {
 
 using asio::ip::tcp;
-
-// Longest wait of one poll(); only a bound for its argument.
-constexpr auto kLongestPoll = std::chrono::milliseconds(60'000);
-
-/// Waits until one of `events` is there. Errors: timeout.
-Result<void> pollUntil(int descriptor, short events, SteadyTime deadline, const std::string& name) {
-    for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-            deadline - std::chrono::steady_clock::now());
-        const auto wait =
-            std::clamp(left, std::chrono::milliseconds(0), std::chrono::milliseconds(kLongestPoll));
-        pollfd request{descriptor, events, 0};
-        const int ready = ::poll(&request, 1, static_cast<int>(wait.count()));
-        if (ready > 0) {
-            return {};
-        }
-        if (ready == 0 && left <= kLongestPoll) {
-            return fail(Errc::timeout, name + ": no answer in time");
-        }
-        if (ready < 0 && errno != EINTR) {
-            return fail(Errc::connection_lost,
-                        name + ": " + std::generic_category().message(errno));
-        }
-    }
-}
 
 Result<tcp::resolver::results_type> resolve(asio::io_context& context, const std::string& host,
                                             std::uint16_t port) {

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
+
+#include "metier/link/back_off.hpp"
 
 namespace metier::wsg50_driver {
 namespace {
@@ -16,8 +17,6 @@ constexpr auto kConnectTimeout = 1s;
 constexpr auto kSendTimeout = 200ms;
 // How long an order from another thread may lie before the gripper gets it.
 constexpr auto kSlice = 5ms;
-constexpr std::chrono::milliseconds kShortestBackOff = 200ms;
-constexpr std::chrono::milliseconds kLongestBackOff = 2s;
 constexpr auto kResetWait = 500ms;
 
 SteadyTime now() {
@@ -84,7 +83,7 @@ Result<void> Wsg50Gripper::Session::resetFault() {
 }
 
 void Wsg50Gripper::Session::run(const std::stop_token& stop) {
-    auto back_off = kShortestBackOff;
+    link::BackOff back_off;
     while (!stop.stop_requested()) {
         answered_ = false;
         const auto ended = connection(stop);
@@ -92,10 +91,10 @@ void Wsg50Gripper::Session::run(const std::stop_token& stop) {
             return;
         }
         lost(ended.error());
-        back_off = answered_ ? kShortestBackOff : back_off;
-        std::unique_lock lock(wait_mutex_);
-        wait_.wait_for(lock, stop, back_off, [] { return false; });
-        back_off = std::min(2 * back_off, kLongestBackOff);
+        if (answered_) {
+            back_off.reset();
+        }
+        back_off.wait(stop);
     }
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <condition_variable>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 
@@ -69,8 +67,6 @@ private:
     Result<void> sent_;              // the first failure of this connection
     bool answered_ = false;          // this connection got as far as the limits
 
-    std::mutex wait_mutex_;
-    std::condition_variable_any wait_;
     device::Notifier notifier_;
     std::jthread thread_;
 };

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <chrono>
+#include <stop_token>
+
+namespace metier::link {
+
+/// The pauses between attempts to connect: 0.2 s, doubled up to 2 s.
+///
+/// Threading: one thread; the stop may be requested by any.
+class BackOff {
+public:
+    static constexpr std::chrono::milliseconds kShortest{200};
+    static constexpr std::chrono::milliseconds kLongest{2'000};
+
+    /// After a success: the next pause is the shortest again.
+    void reset() noexcept { pause_ = kShortest; }
+    std::chrono::milliseconds next() const noexcept { return pause_; }
+    /// Waits for the pause, or until a stop is requested.
+    void wait(const std::stop_token& stop);
+
+private:
+    std::chrono::milliseconds pause_ = kShortest;
+};
+
+}  // namespace metier::link

@@ -1,0 +1,68 @@
+#include "metier/link/udp_link.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <asio/buffer.hpp>
+#include <asio/error.hpp>
+#include <utility>
+
+#include "poll_until.hpp"
+
+namespace metier::link {
+
+using asio::ip::udp;
+
+UdpLink::UdpLink(std::unique_ptr<asio::io_context> context, udp::socket socket, std::string peer)
+    : context_(std::move(context)), socket_(std::move(socket)), peer_(std::move(peer)) {}
+
+Result<UdpLink> UdpLink::connect(const std::string& host, std::uint16_t port) {
+    auto name = fmt::format("{}:{}", host, port);
+    auto context = std::make_unique<asio::io_context>();
+    asio::error_code error;
+    const auto found = udp::resolver(*context).resolve(host, std::to_string(port),
+                                                       udp::resolver::numeric_service, error);
+    if (error || found.empty()) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", name, error.message()));
+    }
+    udp::socket socket(*context);
+    const auto endpoint = found.begin()->endpoint();
+    socket.open(endpoint.protocol(), error);
+    if (!error) {
+        socket.connect(endpoint, error);
+    }
+    if (!error) {
+        socket.non_blocking(true, error);
+    }
+    if (error) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", name, error.message()));
+    }
+    return UdpLink(std::move(context), std::move(socket), std::move(name));
+}
+
+Result<std::size_t> UdpLink::receive(std::span<std::byte> buffer, SteadyTime deadline) {
+    for (;;) {
+        asio::error_code error;
+        const auto count = socket_.receive(asio::buffer(buffer.data(), buffer.size()), 0, error);
+        if (!error) {
+            return count;
+        }
+        if (error != asio::error::would_block && error != asio::error::interrupted) {
+            return fail(Errc::connection_lost, fmt::format("{}: {}", peer_, error.message()));
+        }
+        if (auto ready = pollUntil(socket_.native_handle(), POLLIN, deadline, peer_); !ready) {
+            return fail(std::move(ready.error()));
+        }
+    }
+}
+
+Result<void> UdpLink::send(std::span<const std::byte> bytes) {
+    asio::error_code error;
+    socket_.send(asio::buffer(bytes.data(), bytes.size()), 0, error);
+    if (error) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", peer_, error.message()));
+    }
+    return {};
+}
+
+}  // namespace metier::link
