@@ -1,27 +1,77 @@
 #include "metier/robot_skills/arm_skills.hpp"
 
+#include <utility>
+
+#include "metier/robot_skills/force_move_skill.hpp"
 #include "metier/robot_skills/move_skills.hpp"
+#include "metier/robot_skills/planned_move_skills.hpp"
 
 namespace metier::robot_skills {
 
-Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
-                                const Clock& clock, const PositionStreamOptions& stream_options) {
-    ArmSkills skills;
-    skills.resource = std::make_shared<skill::Resource>("arm " + arm.info().name);
+namespace {
+
+using MadeSkill = Result<std::unique_ptr<skill::Skill>>;
+using Skills = std::vector<std::unique_ptr<skill::Skill>>;
+
+/// `skills` and one more.
+Result<Skills> with(Skills skills, MadeSkill made) {
+    if (!made) {
+        return fail(std::move(made.error()));
+    }
+    skills.push_back(std::move(*made));
+    return skills;
+}
+
+Result<Skills> streamedMoves(device::Arm& arm, const motion::RobotModel& model) {
+    Result<Skills> moves;
     for (auto* make : {makeCartesianPtpMoveSkill, makeCartesianLinearMoveSkill,
                        makeJointPtpMoveSkill, makeJointLinearMoveSkill}) {
-        auto move = make(arm, model);
-        if (!move) {
-            return fail(std::move(move.error()));
+        if (moves) {
+            moves = with(std::move(*moves), make(arm, model));
         }
-        skills.moves.push_back(std::move(*move));
     }
-    auto stream = makePositionStreamSkill(arm, model, clock, stream_options);
-    if (!stream) {
-        return fail(std::move(stream.error()));
+    return moves;
+}
+
+Result<Skills> makeMoves(const ArmFaces& faces, const motion::RobotModel& model,
+                         const Clock& clock) {
+    if (faces.planner != nullptr) {
+        const PlanningArm arm{faces.arm, *faces.planner, model, clock};
+        auto moves = makePlannedMoveSkills(arm);
+        if (!moves) {
+            return moves;
+        }
+        return with(std::move(*moves), makePlannedForceMoveSkill(arm));
     }
-    skills.position_stream = std::move(*stream);
+    auto moves = streamedMoves(faces.arm, model);
+    if (!moves || faces.sensor == nullptr) {
+        return moves;
+    }
+    return with(std::move(*moves), makeForceMoveSkill({faces.arm, *faces.sensor, model}));
+}
+
+}  // namespace
+
+Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel& model,
+                                const Clock& clock, const PositionStreamOptions& stream) {
+    ArmSkills skills;
+    skills.resource = std::make_shared<skill::Resource>("arm " + faces.arm.info().name);
+    auto moves = makeMoves(faces, model, clock);
+    if (!moves) {
+        return fail(std::move(moves.error()));
+    }
+    skills.moves = std::move(*moves);
+    auto position_stream = makePositionStreamSkill(faces.arm, model, clock, stream);
+    if (!position_stream) {
+        return fail(std::move(position_stream.error()));
+    }
+    skills.position_stream = std::move(*position_stream);
     return skills;
+}
+
+Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
+                                const Clock& clock, const PositionStreamOptions& stream) {
+    return makeArmSkills(ArmFaces{arm}, model, clock, stream);
 }
 
 }  // namespace metier::robot_skills

@@ -128,9 +128,35 @@ Field redundancyField() {
     return field;
 }
 
+Field maxForceField() {
+    Field field{.name = "MaxForce",
+                .description =
+                    "Force along each axis of the base frame that ends the motion; 0: "
+                    "no limit along this axis",
+                .unit = skill::kNewton};
+    field.range = Range{0.0, 1000.0};
+    field.extra_check = [](const Value& value) -> Result<void> {
+        if (std::get<skill::Vector3>(value) == skill::Vector3{}) {
+            return fail(Errc::out_of_range, "no axis has a limit over 0 N");
+        }
+        return {};
+    };
+    return field;
+}
+
+Field haltOnForceField() {
+    Field field{.name = "HaltOnForce",
+                .description =
+                    "Whether a force over its limit is an error: Halted, instead of "
+                    "finished with what was met"};
+    field.place = Place::options;
+    field.default_value = false;
+    return field;
+}
+
 /// FieldList::add() for a member that Parameters inherits.
-template <typename Parameters, typename Member>
-void add(skill::FieldList<Parameters>& fields, Member MoveParameters::*member, Field field) {
+template <typename Parameters, typename Base, typename Member>
+void add(skill::FieldList<Parameters>& fields, Member Base::*member, Field field) {
     Member Parameters::*own = member;
     fields.add(own, std::move(field));
 }
@@ -155,28 +181,81 @@ void addMoveFields(skill::FieldList<Parameters>& fields, const motion::RobotMode
     add(fields, &MoveParameters::redundancy_angle, redundancyField());
 }
 
+template <typename Parameters>
+void addCartesianFields(skill::FieldList<Parameters>& fields, const motion::RobotModel& model,
+                        MoveKind kind) {
+    add(fields, &CartesianMoveParameters::target_position,
+        Field{
+            .name = "TargetPosition",
+            .description = "Pose of the tool frame to move to, in the base frame",
+            .unit = skill::kMetre,
+        });
+    const auto axes = model.axisCount();
+    add(fields, &CartesianMoveParameters::axis_bounds,
+        Field{.name = "AxisBounds",
+              .description = "Bounds of each axis; all zero: the robot's own",
+              .unit = skill::kRadian,
+              .default_value = std::vector<Range>(axes),
+              .extra_check = [axes](const Value& value) {
+                  return checkBounds(std::get<std::vector<Range>>(value), axes);
+              }});
+    addMoveFields(fields, model, kind);
+    add(fields, &MoveParameters::relative, relativeField(Relative::tool));
+}
+
+template <typename Results>
+void addMoveResults(skill::FieldList<Results>& list) {
+    add(list, &MoveResults::reached_pose,
+        Field{.name = "ReachedPose",
+              .description = "Measured pose of the tool frame in the base frame",
+              .unit = skill::kMetre});
+    add(list, &MoveResults::reached_joint_position,
+        Field{.name = "ReachedJointPosition",
+              .description = "Measured joint position",
+              .unit = skill::kRadian});
+    add(list, &MoveResults::duration,
+        Field{.name = "Duration",
+              .description = "Time in motion, without the time suspended",
+              .unit = skill::kSecond});
+    add(list, &MoveResults::largest_path_deviation,
+        Field{.name = "LargestPathDeviation",
+              .description = "Largest distance of the measured tool frame from its path",
+              .unit = skill::kMetre});
+}
+
+void addForceResults(skill::FieldList<ForceMoveResults>& list) {
+    list.add(&ForceMoveResults::contact_force,
+             Field{.name = "ContactForce",
+                   .description = "Force at the end of the motion, in the base frame",
+                   .unit = skill::kNewton});
+    list.add(&ForceMoveResults::contact_torque,
+             Field{.name = "ContactTorque",
+                   .description = "Torque at the end of the motion, in the base frame",
+                   .unit = skill::kNewtonMetre});
+    list.add(&ForceMoveResults::forces_exceeded,
+             Field{.name = "ForcesExceeded",
+                   .description = "Force that ended the motion, in the base frame; zero: none did",
+                   .unit = skill::kNewton});
+    list.add(&ForceMoveResults::forces_max,
+             Field{.name = "ForcesMax",
+                   .description = "Largest force along each axis of the base frame",
+                   .unit = skill::kNewton});
+}
+
 }  // namespace
 
 skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::RobotModel& model,
                                                               MoveKind kind) {
     skill::FieldList<CartesianMoveParameters> fields;
-    fields.add(&CartesianMoveParameters::target_position,
-               Field{
-                   .name = "TargetPosition",
-                   .description = "Pose of the tool frame to move to, in the base frame",
-                   .unit = skill::kMetre,
-               });
-    const auto axes = model.axisCount();
-    fields.add(&CartesianMoveParameters::axis_bounds,
-               Field{.name = "AxisBounds",
-                     .description = "Bounds of each axis; all zero: the robot's own",
-                     .unit = skill::kRadian,
-                     .default_value = std::vector<Range>(axes),
-                     .extra_check = [axes](const Value& value) {
-                         return checkBounds(std::get<std::vector<Range>>(value), axes);
-                     }});
-    addMoveFields(fields, model, kind);
-    add(fields, &MoveParameters::relative, relativeField(Relative::tool));
+    addCartesianFields(fields, model, kind);
+    return fields;
+}
+
+skill::FieldList<ForceMoveParameters> forceMoveFields(const motion::RobotModel& model) {
+    skill::FieldList<ForceMoveParameters> fields;
+    addCartesianFields(fields, model, MoveKind::linear);
+    fields.add(&ForceMoveParameters::max_force, maxForceField());
+    fields.add(&ForceMoveParameters::halt_on_force, haltOnForceField());
     return fields;
 }
 
@@ -197,22 +276,17 @@ skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& 
 const skill::FieldList<MoveResults>& moveResultFields() {
     static const auto fields = [] {
         skill::FieldList<MoveResults> list;
-        list.add(&MoveResults::reached_pose,
-                 Field{.name = "ReachedPose",
-                       .description = "Measured pose of the tool frame in the base frame",
-                       .unit = skill::kMetre});
-        list.add(&MoveResults::reached_joint_position,
-                 Field{.name = "ReachedJointPosition",
-                       .description = "Measured joint position",
-                       .unit = skill::kRadian});
-        list.add(&MoveResults::duration,
-                 Field{.name = "Duration",
-                       .description = "Time in motion, without the time suspended",
-                       .unit = skill::kSecond});
-        list.add(&MoveResults::largest_path_deviation,
-                 Field{.name = "LargestPathDeviation",
-                       .description = "Largest distance of the measured tool frame from its path",
-                       .unit = skill::kMetre});
+        addMoveResults(list);
+        return list;
+    }();
+    return fields;
+}
+
+const skill::FieldList<ForceMoveResults>& forceMoveResultFields() {
+    static const auto fields = [] {
+        skill::FieldList<ForceMoveResults> list;
+        addMoveResults(list);
+        addForceResults(list);
         return list;
     }();
     return fields;

@@ -1,6 +1,7 @@
 #include "move_source.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "conversions.hpp"
 #include "metier/geometry/frame.hpp"
@@ -16,10 +17,11 @@ constexpr double kWayBack = 0.2;
 }  // namespace
 
 MoveSource::MoveSource(const device::ArmInfo& info, const motion::Trajectory& trajectory,
-                       PathDeviationMeter::Path path)
+                       PathDeviationMeter::Path path, std::unique_ptr<ContactWatch> contact)
     : cycle_(info.cycleSeconds()),
       execution_(trajectory),
       deviation_(trajectory, path),
+      contact_(std::move(contact)),
       offset_(info.axisCount()),
       way_back_(kWayBack) {}
 
@@ -42,6 +44,7 @@ void MoveSource::goOnFrom(const device::JointArray& from) {
 device::SetPointSource::Next MoveSource::next(const device::ArmState& state,
                                               device::JointArray& set_point) noexcept {
     obey();
+    watchContact(state);
     measure(state);
     if (way_back_ < kWayBack) {
         way_back_ += cycle_;
@@ -70,12 +73,26 @@ void MoveSource::obey() noexcept {
     }
 }
 
+/// Beyond a limit it brakes at once and harder than for a stop, and does not go on.
+void MoveSource::watchContact(const device::ArmState& state) noexcept {
+    if (!contact_ || in_contact_ || !contact_->mustEnd(state)) {
+        return;
+    }
+    in_contact_ = true;
+    stop_asked_ = true;
+    execution_.halt();
+}
+
 void MoveSource::measure(const device::ArmState& state) noexcept {
     reached_ = state.position;
     deviation_.take(toVector(state.position));
 }
 
 device::SetPointSource::Next MoveSource::settle(const device::ArmState& state) noexcept {
+    if (in_contact_ && state.standstill) {
+        outcome_ = Outcome::in_contact;  // what it pressed against may keep it off its set-point
+        return Next::done;
+    }
     switch (settling_.take(state, restingPlace(), cycle_)) {
         case Settling::Status::waiting:
             return Next::set_point;  // the one it holds
@@ -110,7 +127,14 @@ MoveResults MoveSource::results() const {
 
 void MoveSource::tellDone(const skill::Execution& tell) {
     switch (outcome_) {
+        case Outcome::in_contact:
+            contact_->tell(tell, results());
+            return;
         case Outcome::finished:
+            if (contact_) {
+                contact_->tell(tell, results());
+                return;
+            }
             tell.finish(moveResultFields().write(results()));
             return;
         case Outcome::none:

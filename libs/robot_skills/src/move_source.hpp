@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "execution_source.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
@@ -8,22 +10,33 @@
 
 namespace metier::robot_skills {
 
+/// Watches for a contact that ends a motion before its target, and tells how the motion ended.
+class ContactWatch {
+public:
+    virtual ~ContactWatch() = default;
+    /// Whether the motion must end now. Cycle thread, each cycle: must not allocate, lock or throw.
+    virtual bool mustEnd(const device::ArmState& state) noexcept = 0;
+    /// The arm stands, at its target or where it came to rest after mustEnd(). Notifying thread.
+    virtual void tell(const skill::Execution& tell, const MoveResults& results) = 0;
+};
+
 /// Gives an arm the set-points of one planned motion, from rest to rest.
 class MoveSource final : public ExecutionSource {
 public:
     MoveSource(const device::ArmInfo& info, const motion::Trajectory& trajectory,
-               PathDeviationMeter::Path path);
+               PathDeviationMeter::Path path, std::unique_ptr<ContactWatch> contact = nullptr);
 
     Next next(const device::ArmState& state, device::JointArray& set_point) noexcept override;
     device::JointArray restingPlace() const noexcept override;
 
 private:
-    enum class Outcome : std::uint8_t { none, finished, at_rest, off_target };
+    enum class Outcome : std::uint8_t { none, finished, at_rest, in_contact, off_target };
 
     void goOnFrom(const device::JointArray& from) override;
     void tellDone(const skill::Execution& tell) override;
 
     void obey() noexcept;
+    void watchContact(const device::ArmState& state) noexcept;
     void measure(const device::ArmState& state) noexcept;
     Next settle(const device::ArmState& state) noexcept;
     device::JointArray wayBack() const noexcept;
@@ -33,6 +46,8 @@ private:
     motion::MotionExecution execution_;
     PathDeviationMeter deviation_;
     Settling settling_;
+    std::unique_ptr<ContactWatch> contact_;  ///< nullptr: none is watched for
+    bool in_contact_ = false;
     device::JointArray offset_;  ///< from the path when the motion went on after a rest
     double way_back_ = 0.0;      ///< time since then [s]
     double in_motion_ = 0.0;     ///< [s]

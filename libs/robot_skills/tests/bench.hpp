@@ -42,18 +42,24 @@ public:
 };
 
 using Change = std::function<void(virtual_robots::JointSimulatorOptions&)>;
+/// What else there is of the simulated arm.
+using MakeFaces =
+    std::function<ArmFaces(virtual_robots::JointSimulator&, const motion::RobotModel&)>;
 
 /// One simulated arm with all its skills as Programs, and time moved by hand.
 class Bench {
 public:
-    explicit Bench(const std::string& robot = "ur5", const Change& change = {})
+    explicit Bench(const std::string& robot = "ur5", const Change& change = {},
+                   const MakeFaces& faces = {})
         : model_(modelOf(robot)), executor_(std::make_shared<skill::testing::ManualExecutor>()) {
         auto options = virtual_robots::optionsFor(model_);
         if (change) {
             change(options);
         }
         arm_ = virtual_robots::JointSimulator::create(std::move(options)).value();
-        auto skills = makeArmSkills(*arm_, model_, executor_->clock()).value();
+        auto skills = makeArmSkills(faces ? faces(*arm_, model_) : ArmFaces{*arm_}, model_,
+                                    executor_->clock())
+                          .value();
         resource_ = skills.resource;
         for (auto& move : skills.moves) {
             add(std::move(move));
@@ -137,6 +143,7 @@ inline const std::string kCartesianPtp = "CartesianPtpMoveSkill";
 inline const std::string kCartesianLinear = "CartesianLinearMoveSkill";
 inline const std::string kJointPtp = "JointPtpMoveSkill";
 inline const std::string kJointLinear = "JointLinearMoveSkill";
+inline const std::string kForceMove = "CartesianLinearForceMoveSkill";
 inline const std::string kPositionStream = "PositionStreamSkill";
 
 /// Distance of a point from the straight line through two others [m].

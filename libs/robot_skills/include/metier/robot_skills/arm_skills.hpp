@@ -5,6 +5,8 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/device/arm.hpp"
+#include "metier/device/force_torque_sensor.hpp"
+#include "metier/device/motion_planner.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/robot_skills/position_stream_skill.hpp"
 #include "metier/skill/resource.hpp"
@@ -16,13 +18,28 @@ namespace metier::robot_skills {
 struct ArmSkills {
     /// For the ProgramOptions of every skill of this arm: they exclude each other.
     std::shared_ptr<skill::Resource> resource;
-    /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill.
+    /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill; then, if the arm has a
+    /// planner or a sensor of force, CartesianLinearForceMoveSkill.
     std::vector<std::unique_ptr<skill::Skill>> moves;
     std::unique_ptr<skill::Skill> position_stream;
 };
 
-/// \param arm, model, clock must outlive the skills
+/// What there is of an arm; all must outlive its skills.
+struct ArmFaces {
+    device::Arm& arm;
+    /// Runs the moves, if there is one; else the arm takes the set-points of metier's planner.
+    device::MotionPlanner* planner = nullptr;
+    /// Ends the force move if there is no planner: the planner's own force condition is nearer to
+    /// the arm.
+    device::ForceTorqueSensor* sensor = nullptr;
+};
+
+/// \param model, clock must outlive the skills
 /// Errors: invalid_argument if arm and model differ in their number of axes.
+Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel& model,
+                                const Clock& clock, const PositionStreamOptions& stream = {});
+
+/// All moves by set-points, no force move. \param arm must outlive the skills
 Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream = {});
 

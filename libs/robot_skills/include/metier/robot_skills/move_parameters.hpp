@@ -34,6 +34,12 @@ struct CartesianMoveParameters : MoveParameters {
     std::vector<skill::Range> axis_bounds{};  ///< [rad]; all zero: the robot's own
 };
 
+/// A move to a pose that a contact force ends.
+struct ForceMoveParameters : CartesianMoveParameters {
+    skill::Vector3 max_force;    ///< along x, y, z of the base frame [N]; 0: no limit
+    bool halt_on_force = false;  ///< a force over its limit is an error: Halted, not Ready
+};
+
 /// A move to a joint position.
 struct JointMoveParameters : MoveParameters {
     std::vector<double> target_joint_position{};  ///< [rad]
@@ -45,6 +51,14 @@ struct MoveResults {
     std::vector<double> reached_joint_position{};  ///< measured [rad]
     double duration = 0.0;                         ///< in motion, without the time suspended [s]
     double largest_path_deviation = 0.0;  ///< measured tool frame from the planned path [m]
+};
+
+/// What a force move tells when it is done; forces in the base frame.
+struct ForceMoveResults : MoveResults {
+    skill::Vector3 contact_force;    ///< at the end [N]
+    skill::Vector3 contact_torque;   ///< at the end [Nm]
+    skill::Vector3 forces_exceeded;  ///< that ended the motion [N]; zero if none did
+    skill::Vector3 forces_max;       ///< largest along each axis, without sign [N]
 };
 
 /// What MaxVelocity and MaxAcceleration bound.
@@ -63,5 +77,7 @@ skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::Robo
 skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& model,
                                                       MoveKind kind);
 const skill::FieldList<MoveResults>& moveResultFields();
+skill::FieldList<ForceMoveParameters> forceMoveFields(const motion::RobotModel& model);
+const skill::FieldList<ForceMoveResults>& forceMoveResultFields();
 
 }  // namespace metier::robot_skills

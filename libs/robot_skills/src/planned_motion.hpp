@@ -1,0 +1,21 @@
+#pragma once
+
+#include "metier/device/motion_planner.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/motion/trajectory.hpp"
+#include "path_deviation.hpp"
+
+namespace metier::robot_skills {
+
+/// What the controller's own planner is asked for so that the arm does what metier has planned, no
+/// faster.
+///
+/// A PTP becomes a motion to the joints at its end, so that the controller chooses no other
+/// configuration. A line becomes a line of the flange.
+/// Errors: not_supported if the flange's line is not the tool frame's, or if the arm would have to
+/// turn its elbow on the way, which a controller's line does not.
+Result<device::PlannedMotion> plannedMotion(const motion::RobotModel& model,
+                                            const motion::Trajectory& trajectory,
+                                            PathDeviationMeter::Path path);
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "bench.hpp"
+#include "simulated_planner.hpp"
+
+namespace metier::robot_skills {
+
+/// An arm whose skills are run by the planner of its controller.
+class PlannedBench {
+public:
+    explicit PlannedBench(const std::string& robot = "iiwa7")
+        : bench(robot, {}, [this](auto& arm, const auto& model) {
+              planner_ = std::make_unique<SimulatedPlanner>(arm, model);
+              return ArmFaces{arm, planner_.get()};
+          }) {}
+
+    SimulatedPlanner& planner() { return *planner_; }
+
+private:
+    std::unique_ptr<SimulatedPlanner> planner_;
+
+public:
+    Bench bench;  // after the planner, which outlives its skills
+};
+
+}  // namespace metier::robot_skills
