@@ -1,0 +1,301 @@
+#include "metier/virtual_iiwa/controller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace metier::virtual_iiwa {
+
+namespace {
+
+using namespace std::chrono_literals;
+using virtual_controller::InjectionHelp;
+using virtual_controller::TcpPeer;
+
+constexpr std::size_t kAxes = 7;
+// What a PC may send while the application is busy; more ends it [bytes].
+constexpr std::size_t kLongestBacklog = 65'536;
+
+Options readOptions(const virtual_controller::ControllerRequest& request) {
+    const auto& settings = request.settings;
+    Options options;
+    options.pc_address = settings.textOr("pc_address", request.address);
+    options.pc_port = static_cast<std::uint16_t>(settings.numberOr("pc_port", 12225, 1, 65535));
+    options.precision = settings.flagOr("double_precision", false) ? Precision::double_precision
+                                                                   : Precision::single_precision;
+    options.redial = settings.flagOr("redial", true);
+    options.redial_delay = settings.numberOr("redial_delay", options.redial_delay, 0.001, 3600.0);
+    options.answer_delay = settings.numberOr("answer_delay", options.answer_delay, 0.0, 1.0);
+    options.force_noise = settings.numberOr("force_noise", 0.0, 0.0, 100.0);
+    options.torque_noise = settings.numberOr("torque_noise", 0.0, 0.0, 100.0);
+    const auto& home = request.model->home();
+    const auto start = settings.numbersOr("start_position", {home.begin(), home.end()}, kAxes);
+    options.start = motion::JointVector::from(start).value_or(home);
+    if (options.start.size() != kAxes || !request.model->kinematics().withinLimits(options.start)) {
+        settings.reject("start_position", "is not within the joint limits");
+        options.start = home;
+    }
+    return options;
+}
+
+int toCycles(double seconds) {
+    return static_cast<int>(std::lround(seconds / kCycleSeconds));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<IiwaController>> IiwaController::start(
+    const virtual_controller::ControllerRequest& request) {
+    if (request.model == nullptr || request.model->axisCount() != kAxes) {
+        return fail(Errc::invalid_argument,
+                    request.name + ": an iiwa needs the model of an arm with 7 axes");
+    }
+    auto options = readOptions(request);
+    if (auto finished = request.settings.finish(); !finished) {
+        return fail(finished.error());
+    }
+    auto controller =
+        std::unique_ptr<IiwaController>(new IiwaController(request, std::move(options)));
+    if (auto made = controller->makeDialer(request); !made) {
+        return fail(made.error());
+    }
+    return controller;
+}
+
+IiwaController::IiwaController(const virtual_controller::ControllerRequest& request,
+                               Options options)
+    : options_(std::move(options)),
+      world_(request.world),
+      cabinet_{.arm = Arm(*request.model, options_.start),
+               .torque_noise = motion::JointVector(kAxes)},
+      timer_(request.context, 1ms, [this] { cycle(); }) {}
+
+Result<void> IiwaController::makeDialer(const virtual_controller::ControllerRequest& request) {
+    auto dialer = virtual_controller::TcpDialer::create(
+        request.context, {request.address, options_.pc_address, options_.pc_port}, request.faults,
+        {.peer = {.on_connected = [this](TcpPeer& peer) { connected(peer); },
+                  .on_data =
+                      [this](TcpPeer& peer, std::span<const std::byte> bytes) {
+                          if (&peer == pc_) {
+                              received(bytes);
+                          }
+                      },
+                  .on_closed =
+                      [this](TcpPeer& peer) {
+                          if (&peer == pc_) {
+                              pc_ = nullptr;
+                              endApplication();
+                          }
+                      }},
+         .on_failed = [this](const Error& error) {
+             last_failure_ = error.message;
+             redialLater();
+         }});
+    if (!dialer) {
+        return fail(dialer.error());
+    }
+    dialer_ = std::move(*dialer);
+    dialer_->dial();
+    return {};
+}
+
+// ---- the robot application ---------------------------------------------------------------------
+
+void IiwaController::connected(TcpPeer& peer) {
+    pc_ = &peer;
+    last_failure_.clear();
+    received_.clear();
+    due_.reset();
+    silent_ = false;
+    application_.emplace(cabinet_);
+}
+
+void IiwaController::received(std::span<const std::byte> bytes) {
+    if (received_.size() + bytes.size() > kLongestBacklog) {
+        endApplication();
+        return;
+    }
+    received_.insert(received_.end(), bytes.begin(), bytes.end());
+    takeCommands();
+}
+
+void IiwaController::takeCommands() {
+    const auto size = commandSize(options_.precision);
+    while (application_ && !due_ && !silent_ && !received_.empty()) {
+        // One read call: what comes in parts is not put together.
+        if (received_.size() < size) {
+            endApplication();
+            return;
+        }
+        const auto command = decodeCommand(std::span(received_).first(size), options_.precision);
+        received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(size));
+        const auto wanted = application_->execute(command);
+        if (wanted == RobotApplication::Answer::application_ends) {
+            endApplication();
+            return;
+        }
+        due_ = wanted;
+        answer_cycles_ = toCycles(options_.answer_delay);
+        if (answer_cycles_ == 0 && !application_->waiting()) {
+            answer();
+        }
+    }
+}
+
+void IiwaController::answer() {
+    ++answers_;
+    silent_ = *due_ == RobotApplication::Answer::then_no_more;
+    due_.reset();
+    pc_->send(encodeState(application_->state(), options_.precision));
+}
+
+void IiwaController::endApplication() {
+    cabinet_.arm.brake(Arm::End::cancelled);
+    application_.reset();
+    received_.clear();
+    due_.reset();
+    if (auto* pc = std::exchange(pc_, nullptr)) {
+        pc->close();
+    } else {
+        dialer_->reset();
+    }
+    redialLater();
+}
+
+void IiwaController::redialLater() {
+    redial_cycles_ = options_.redial ? std::max(1, toCycles(options_.redial_delay)) : 0;
+}
+
+// ---- one cycle ---------------------------------------------------------------------------------
+
+void IiwaController::cycle() {
+    stepArm();
+    stepAnswer();
+    if (redial_cycles_ > 0 && --redial_cycles_ == 0) {
+        dialer_->dial();
+    }
+}
+
+void IiwaController::stepArm() {
+    cabinet_.wrench = world_.effect().wrench;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        cabinet_.wrench.force[i] += options_.force_noise * normal_(random_);
+        cabinet_.wrench.torque[i] += options_.torque_noise * normal_(random_);
+    }
+    for (double& noise : cabinet_.torque_noise) {
+        noise = options_.torque_noise * normal_(random_);
+    }
+    const auto end = cabinet_.arm.step();
+    if (application_) {
+        application_->step(end);
+    }
+    virtual_controller::WorldReport report;
+    report.base_from_flange = cabinet_.arm.model().kinematics().forward(cabinet_.arm.position());
+    world_.report(report);
+}
+
+void IiwaController::stepAnswer() {
+    if (!due_ || application_->waiting()) {
+        return;
+    }
+    if (--answer_cycles_ <= 0) {
+        answer();
+        takeCommands();
+    }
+}
+
+// ---- what people and accidents do --------------------------------------------------------------
+
+void IiwaController::restart() {
+    pc_ = nullptr;
+    application_.reset();
+    received_.clear();
+    due_.reset();
+    dialer_->reset();
+    cabinet_.arm.halt();
+    cabinet_.emergency_stop = false;
+    cabinet_.enabled = true;
+    cabinet_.limit_violated = false;
+    redialLater();
+}
+
+std::vector<InjectionHelp> IiwaController::injections() const {
+    return {
+        {"emergency-stop", "the button is pressed: the motion ends, the robot is not ready"},
+        {"release-emergency-stop", "the button is released"},
+        {"protective-stop", "the motion fails: error -14, -13 if it is synchronous"},
+        {"limit", "an axis is beyond its limit: the motion fails; not ready until `ready`"},
+        {"not-ready", "the enabling signal goes: the motion ends; not ready until `ready`"},
+        {"ready", "ends `limit` and `not-ready`"},
+        {"end-application", "the robot application ends, as by the operator's key"},
+    };
+}
+
+Result<void> IiwaController::inject(const virtual_controller::Injection& injection) {
+    const auto& name = injection.name;
+    auto& arm = cabinet_.arm;
+    if (name == "emergency-stop") {
+        cabinet_.emergency_stop = true;
+        arm.brake(Arm::End::cancelled);
+    } else if (name == "release-emergency-stop") {
+        cabinet_.emergency_stop = false;
+    } else if (name == "protective-stop" || name == "limit") {
+        cabinet_.limit_violated |= name == "limit";
+        if (application_) {
+            application_->fail();
+        }
+        arm.brake(Arm::End::failed);
+    } else if (name == "not-ready") {
+        cabinet_.enabled = false;
+        arm.brake(Arm::End::cancelled);
+    } else if (name == "ready") {
+        cabinet_.enabled = true;
+        cabinet_.limit_violated = false;
+    } else if (name == "end-application") {
+        endApplication();
+    } else {
+        return fail(Errc::not_found, fmt::format("an iiwa knows no injection \"{}\"", name));
+    }
+    return {};
+}
+
+nlohmann::ordered_json IiwaController::state() const {
+    const auto& arm = cabinet_.arm;
+    const auto velocity = arm.velocity();
+    nlohmann::ordered_json state{
+        {"pc", pc_ == nullptr ? "" : pc_->address()},
+        {"last_failure", last_failure_},
+        {"answers", answers_},
+        {"ready", cabinet_.ready()},
+        {"emergency_stop", cabinet_.emergency_stop},
+        {"moving", arm.moving()},
+        {"position", std::vector(arm.position().begin(), arm.position().end())},
+        {"velocity", std::vector(velocity.begin(), velocity.end())},
+    };
+    if (application_) {
+        state["error"] = static_cast<int>(application_->error());
+        state["condition_fired"] = application_->conditionFired();
+        state["servo"] = application_->servo();
+        state["synchronous"] = application_->synchronous();
+        state["motion_type"] = application_->motionType();
+        state["control_mode"] = application_->controlMode();
+        state["impedance_settings"] = application_->impedance().size();
+    }
+    return state;
+}
+
+}  // namespace metier::virtual_iiwa
+
+namespace metier::virtual_controller {
+
+ControllerType iiwaController();
+ControllerType iiwaController() {
+    return {"iiwa", "KUKA LBR iiwa: a cabinet whose robot application (libiiwa) dials the PC",
+            [](const ControllerRequest& request) -> Result<std::unique_ptr<Controller>> {
+                return virtual_iiwa::IiwaController::start(request);
+            }};
+}
+
+}  // namespace metier::virtual_controller
