@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "metier/edo_driver/generation.hpp"
+#include "metier/edo_driver/messages.hpp"
+
+namespace metier::edo_driver {
+
+// Texts for the rosbridge server. Fields that older software does not know are left out: missing
+// fields keep their defaults, an unknown one would make the server drop the whole message.
+
+std::string advertiseText(std::string_view topic, std::string_view type);
+/// Every message, as soon as it is there: no throttle, no fragments, no compression.
+std::string subscribeText(std::string_view topic, std::string_view type);
+std::string softwareVersionCallText(std::string_view id);
+/// \param mode of ControlSwitch: 0 to 255
+std::string controlSwitchCallText(std::string_view id, int mode);
+/// Discovery of the joints (mode 0).
+std::string initText(const JointLayout& layout);
+std::string resetText(const JointLayout& layout, const ResetRequest& request);
+std::string moveText(const JointLayout& layout, const JointMove& move);
+/// Cancels all moves.
+std::string cancelText();
+
+/// Writes the text of a set-point into memory of its own, once per cycle.
+///
+/// Threading: one thread. write() does not allocate.
+class SetPointText {
+public:
+    /// \param set_point finite values, layout.count() of them; not checked
+    /// \return the text, valid until the next call
+    std::string_view write(const Generation& generation, const JointLayout& layout,
+                           const JointSetPoint& set_point) noexcept;
+
+private:
+    template <typename... Args>
+    void append(fmt::format_string<Args...> format, const Args&... args) noexcept;
+    void writeControlArray(const JointLayout& layout, const JointSetPoint& set_point) noexcept;
+    void writeJointValue(const JointLayout& layout, const JointSetPoint& set_point) noexcept;
+
+    // Seven joints take some 700 characters.
+    std::array<char, 2048> buffer_{};
+    std::size_t size_ = 0;
+};
+
+}  // namespace metier::edo_driver

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "metier/device/shared_value.hpp"
+#include "metier/edo_driver/arm_drive.hpp"
+#include "metier/edo_driver/gripper_desk.hpp"
+#include "metier/edo_driver/recovery.hpp"
+#include "metier/edo_driver/reset_desk.hpp"
+
+namespace metier::edo_driver {
+
+/// The dialogue with one robot, without socket and thread: texts and time go in, texts come out.
+///
+/// Threading: the cycle thread, but for the desks and gripperState().
+class Session {
+public:
+    /// Both must outlive this.
+    Session(const EdoOptions& options, device::ArmCore& core);
+
+    /// A new connection: asks for the software version, then for all that the driver follows.
+    void linkUp(SteadyTime now, Wire& wire);
+    /// The connection is lost, or there was none; who waits for something hears of it.
+    void linkDown(const std::string& why);
+    void onText(std::string_view text, SteadyTime now, Wire& wire);
+    /// At least every 20 ms.
+    /// Errors: connection_lost if the robot is silent and a new connection might help.
+    Result<void> tick(SteadyTime now, Wire& wire);
+
+    /// Nobody shall move anything any more: brakes and gives control back.
+    void close() noexcept;
+    /// Whether control is with the robot.
+    bool closed() const noexcept { return arm_.free(); }
+
+    ResetDesk& resetDesk() noexcept { return reset_desk_; }
+    GripperDesk& gripperDesk() noexcept { return gripper_desk_; }
+    device::GripperState gripperState() const noexcept { return gripper_state_.read(); }
+
+private:
+    enum class Phase : std::uint8_t { down, asking, up };
+    enum class Reset : std::uint8_t { none, freeing, giving_back, recovering };
+
+    void on(const Ignored&, SteadyTime, Wire&) {}
+    void on(const JointStates& states, SteadyTime now, Wire& wire);
+    void on(const MachineState& machine, SteadyTime now, Wire& wire);
+    void on(const AlgorithmState& state, SteadyTime now, Wire& wire);
+    void on(const MovementFeedback& feedback, SteadyTime now, Wire& wire);
+    void on(const ServiceResponse& response, SteadyTime now, Wire& wire);
+    void on(const Status& status, SteadyTime now, Wire& wire);
+
+    void subscribe(Wire& wire);
+    void begin(const Generation& generation, SteadyTime now, Wire& wire);
+    void tickReset(SteadyTime now, Wire& wire);
+    void startReset();
+    void endReset(Result<void> outcome);
+    void tickGripper(SteadyTime now, Wire& wire);
+    void loseGripper(Errc code);
+    void publishGripper(SteadyTime now) noexcept;
+    bool valid(const JointStates& states) const noexcept;
+
+    const EdoOptions& options_;
+    device::ArmCore& core_;
+    SafetyKeeper safety_;
+    ArmDrive arm_;
+    GripperDrive gripper_;
+    Recovery recovery_;
+    ResetDesk reset_desk_;
+    GripperDesk gripper_desk_;
+    device::SharedValue<device::GripperState> gripper_state_;
+
+    Phase phase_ = Phase::down;
+    Reset reset_ = Reset::none;
+    bool started_once_ = false;
+    bool closing_ = false;
+    bool complained_ = false;  // about a text that was not understood, on this connection
+    SteadyTime answer_by_{};
+    SteadyTime heard_at_{};
+};
+
+}  // namespace metier::edo_driver

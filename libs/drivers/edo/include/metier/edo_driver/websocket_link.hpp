@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+
+namespace metier::edo_driver {
+
+/// A websocket client (RFC 6455) for texts, on which every wait has a deadline.
+///
+/// Errors name the peer, as "10.42.0.49:9090: ...". After connection_lost only shutdown() and the
+/// destructor are of use. Pings of the server are answered while receive() or send() waits.
+/// Threading: one thread; shutdown() from any.
+class WebSocketLink {
+public:
+    /// \param host a name or an address
+    /// Errors: connection_lost (no such host, nobody listens, no websocket server), timeout.
+    static Result<WebSocketLink> connect(const std::string& host, std::uint16_t port,
+                                         SteadyTime deadline);
+
+    WebSocketLink(WebSocketLink&&) noexcept;
+    WebSocketLink& operator=(WebSocketLink&&) noexcept;
+    ~WebSocketLink();
+
+    /// Sends one message, in one write if the system takes it. Without an error nothing allocates.
+    /// Errors: timeout if the peer does not read (the link is of no use then), connection_lost.
+    Result<void> send(std::string_view text, SteadyTime deadline);
+
+    /// The next message, valid until the next call. What came in part at the deadline is not lost.
+    /// Without an error nothing allocates, once the longest message was seen.
+    /// Errors: timeout, connection_lost (also for a message over 1 MiB).
+    Result<std::string_view> receive(SteadyTime deadline);
+
+    /// Ends both directions: a receive() that waits returns connection_lost. Idempotent.
+    void shutdown() noexcept;
+    const std::string& peer() const noexcept;
+
+private:
+    struct Impl;
+    explicit WebSocketLink(std::unique_ptr<Impl> impl);
+
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace metier::edo_driver

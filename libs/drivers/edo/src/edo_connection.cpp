@@ -1,0 +1,187 @@
+#include "metier/edo_driver/edo_connection.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <utility>
+
+#include "metier/edo_driver/wire.hpp"
+
+namespace metier::edo_driver {
+
+using device::SafetyState;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kConnectTime = 1s;
+constexpr auto kSendTime = 100ms;
+// Longest wait for a message; the robot sends one each 10 ms at least.
+constexpr auto kTick = 20ms;
+constexpr auto kCloseTime = 2s;
+constexpr std::chrono::milliseconds kFirstPause = 200ms;
+constexpr std::chrono::milliseconds kLongestPause = 2s;
+
+SteadyTime now() {
+    return std::chrono::steady_clock::now();
+}
+
+device::ArmInfo infoFor(const EdoOptions& options) {
+    return {options.name, options.axis_names, EdoOptions::kCycle};
+}
+
+void pause(std::chrono::milliseconds time, const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any stopped;
+    std::unique_lock lock(mutex);
+    stopped.wait_for(lock, stop, time, [] { return false; });
+}
+
+}  // namespace
+
+/// Sends through the link and keeps the first failure.
+class EdoConnection::LinkWire final : public Wire {
+public:
+    explicit LinkWire(WebSocketLink& link) : link_(link) {}
+
+    void send(std::string_view text) noexcept override {
+        if (state_) {
+            state_ = link_.send(text, now() + kSendTime);
+        }
+    }
+    const Result<void>& state() const noexcept { return state_; }
+
+private:
+    WebSocketLink& link_;
+    Result<void> state_;
+};
+
+EdoConnection::EdoConnection(EdoOptions options)
+    : options_(std::move(options)),
+      core_(infoFor(options_)),
+      session_(options_, core_),
+      notifier_([this] {
+          core_.dispatch();
+          session_.gripperDesk().dispatch();
+      }),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+EdoConnection::~EdoConnection() {
+    thread_.request_stop();
+    thread_.join();
+}
+
+Result<void> EdoConnection::attach(std::shared_ptr<device::SetPointSource> source) {
+    const std::lock_guard lock(turn_);
+    if (session_.gripperDesk().busy()) {
+        return fail(Errc::resource_unavailable, options_.name + ": the gripper moves");
+    }
+    return core_.attach(std::move(source));
+}
+
+Result<void> EdoConnection::moveJaws(GripperTask::Kind kind, const device::GripperRequest& request,
+                                     device::Gripper::Done done) {
+    const auto task = taskFor(kind, request, options_.gripper);
+    if (!task) {
+        return fail(task.error().code, options_.name + " gripper: " + task.error().message);
+    }
+    const std::lock_guard lock(turn_);
+    if (const auto safety = core_.safety(); safety.state != SafetyState::normal) {
+        const bool lost = safety.state == SafetyState::disconnected;
+        return fail(lost ? Errc::connection_lost : Errc::device_fault, safety.text);
+    }
+    if (core_.active() != nullptr) {
+        return fail(Errc::resource_unavailable, options_.name + " gripper: the arm moves");
+    }
+    return session_.gripperDesk().ask(*task, std::move(done));
+}
+
+device::GripperState EdoConnection::gripperState() const noexcept {
+    auto state = session_.gripperState();
+    state.safety = core_.safetyState();
+    return state;
+}
+
+Result<void> EdoConnection::resetFault() {
+    const auto safety = core_.safety();
+    if (safety.state == SafetyState::normal) {
+        return {};
+    }
+    if (safety.state == SafetyState::disconnected) {
+        return fail(Errc::connection_lost, safety.text);
+    }
+    return session_.resetDesk().ask(options_.reset_wait);
+}
+
+// ---- cycle thread ------------------------------------------------------------------------------
+
+void EdoConnection::run(const std::stop_token& stop) {
+    auto next_pause = kFirstPause;
+    while (!stop.stop_requested()) {
+        auto link = WebSocketLink::connect(options_.host, options_.port, now() + kConnectTime);
+        Result<void> served = link ? serve(*link, stop) : fail(link.error());
+        if (served) {
+            break;
+        }
+        next_pause = link ? kFirstPause : std::min(2 * next_pause, kLongestPause);
+        session_.linkDown(served.error().message);
+        tell();
+        pause(next_pause, stop);
+    }
+    session_.linkDown("the driver was shut down");
+    tell();
+}
+
+/// \return nothing once the driver is to end, else why the link is of no use any more
+Result<void> EdoConnection::serve(WebSocketLink& link, const std::stop_token& stop) {
+    LinkWire wire(link);
+    session_.linkUp(now(), wire);
+    while (!stop.stop_requested()) {
+        if (auto stepped = step(link, wire); !stepped) {
+            return stepped;
+        }
+    }
+    close(link, wire);
+    return {};
+}
+
+Result<void> EdoConnection::step(WebSocketLink& link, LinkWire& wire) {
+    const auto text = link.receive(now() + kTick);
+    if (text) {
+        session_.onText(*text, now(), wire);
+    } else if (text.error().code != Errc::timeout) {
+        return fail(text.error());
+    }
+    if (auto ticked = session_.tick(now(), wire); !ticked) {
+        return fail(ticked.error().code, link.peer() + ": " + ticked.error().message);
+    }
+    tell();
+    return wire.state();
+}
+
+void EdoConnection::close(WebSocketLink& link, LinkWire& wire) {
+    const auto deadline = now() + kCloseTime;
+    while (!session_.closed() && now() < deadline) {
+        session_.close();
+        if (!step(link, wire)) {
+            return;
+        }
+    }
+}
+
+void EdoConnection::tell() noexcept {
+    if (core_.toTell() || session_.gripperDesk().toTell()) {
+        notifier_.signal();
+    }
+}
+
+// ---- gripper -----------------------------------------------------------------------------------
+
+EdoGripper::EdoGripper(EdoConnection& connection) : connection_(connection) {
+    const auto& options = connection.options();
+    info_.name = options.name + " gripper";
+    info_.stroke = options.gripper.stroke;
+    info_.max_speed = options.gripper.speed;
+}
+
+}  // namespace metier::edo_driver

@@ -1,0 +1,43 @@
+#include <memory>
+#include <utility>
+
+#include "metier/driver/driver.hpp"
+#include "metier/edo_driver/edo_connection.hpp"
+
+namespace metier::driver {
+
+Driver edoDriver();
+
+namespace {
+
+struct Edo {
+    explicit Edo(edo_driver::EdoOptions options)
+        : connection(std::move(options)), arm(connection), gripper(connection) {}
+
+    edo_driver::EdoConnection connection;
+    edo_driver::EdoArm arm;
+    edo_driver::EdoGripper gripper;
+};
+
+Result<OpenDevice> open(const OpenRequest& request) {
+    auto options = edo_driver::readOptions(request);
+    if (!options) {
+        return fail(options.error());
+    }
+    const bool has_gripper = options->layout.gripper;
+    auto edo = std::make_shared<Edo>(std::move(*options));
+    OpenDevice device;
+    device.arm = &edo->arm;
+    device.gripper = has_gripper ? &edo->gripper : nullptr;
+    device.owner = std::move(edo);
+    return device;
+}
+
+}  // namespace
+
+Driver edoDriver() {
+    return {"edo", "Comau e.DO with its gripper, by rosbridge (software up to 3.0.1, and 3.1.2 on)",
+            open};
+}
+
+}  // namespace metier::driver
