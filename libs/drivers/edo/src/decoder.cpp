@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "published.hpp"
 #include "units.hpp"
 
 namespace metier::edo_driver {
@@ -215,6 +216,13 @@ Result<Incoming> decodeResponse(Fields& fields) {
 }  // namespace
 
 Result<Incoming> decode(std::string_view text, const JointLayout& layout) {
+    if (auto usual = readPublished(text, layout)) {
+        return *std::move(usual);
+    }
+    return decodeInFull(text, layout);
+}
+
+Result<Incoming> decodeInFull(std::string_view text, const JointLayout& layout) {
     const auto json = Json::parse(text, nullptr, false);
     if (json.is_discarded()) {
         return fail(Errc::invalid_argument,

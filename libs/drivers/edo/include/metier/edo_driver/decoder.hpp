@@ -13,7 +13,11 @@ namespace metier::edo_driver {
 ///
 /// Errors: invalid_argument (not JSON, wrong type, out of range, more joints than an e.DO has),
 ///         not_supported (a message in fragments, which the driver never asks for).
+/// Does not allocate for what the robot publishes in each cycle, in its usual form.
 /// Threading: any; pure.
 Result<Incoming> decode(std::string_view text, const JointLayout& layout);
+
+/// The same by a general reader of JSON, which allocates.
+Result<Incoming> decodeInFull(std::string_view text, const JointLayout& layout);
 
 }  // namespace metier::edo_driver
