@@ -1,0 +1,104 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "metier/motion/robot_model.hpp"
+#include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_edo/joint_bus.hpp"
+#include "metier/virtual_edo/machine.hpp"
+#include "metier/virtual_edo/rosbridge.hpp"
+#include "metier/virtual_edo/software.hpp"
+#include "metier/virtual_edo/trajectory_node.hpp"
+
+namespace metier::virtual_edo {
+
+/// What an e.DO is made as.
+struct RobotOptions {
+    Software software;
+    std::size_t axes = kMostAxes;  ///< 7 with the gripper, 6 without
+    /// Whether it starts calibrated with free brakes, at the model's home position; otherwise in
+    /// INIT, at zero, uncalibrated.
+    bool ready = true;
+    double collision_force = 50.0;  ///< on the flange [N], from which on it is a collision
+};
+
+/// The e.DO behind the bridge: its nodes, topics and services, in cycles of 10 ms.
+///
+/// Threading: one thread.
+/// Source: Comau/eDO_core.
+class Robot final : private MachinePeers {
+public:
+    /// Gives a whole message of a topic to whom it concerns.
+    using Publish = std::function<void(const std::string& topic, const Json& message)>;
+    using Wanted = std::function<bool(std::string_view topic)>;
+
+    /// \param model of an arm of six axes; outlives the robot
+    Robot(RobotOptions options, const motion::RobotModel& model);
+
+    /// Topics and services, bound to this robot.
+    RosGraph graph();
+    /// \param wanted whether a topic has subscribers
+    void connect(Publish publish, Wanted wanted);
+
+    /// One cycle of 10 ms.
+    /// \return what it shows the world
+    virtual_controller::WorldReport step(const virtual_controller::WorldEffect& effect);
+
+    std::vector<virtual_controller::InjectionHelp> injections() const;
+    /// Errors: not_found, invalid_argument.
+    Result<void> inject(const virtual_controller::Injection& injection);
+    Json state() const;
+
+private:
+    void publishJointStates(const BusReport& report);
+    void publishControl();
+    void publishMachineState();
+    void publishPose();
+    void sayMode();
+    void send(const std::string& topic, const Json& message);
+    bool wants(std::string_view topic) const { return wanted_ && wanted_(topic); }
+    Json jointState(const JointReport& joint) const;
+
+    void onMessage(const std::string& topic, const Json& message);
+    void onSetPoints(const Json& message);
+    void onExternalControl(const Json& message);
+    bool isCommand(const std::string& topic) const;
+    Result<Json> jointsNumber() const;
+    Result<Json> softwareVersions() const;
+    Result<Json> directKinematics(const Json& arguments) const;
+    Result<Json> inverseKinematics(const Json& arguments) const;
+    std::int8_t tool() const;
+    std::vector<double> targets() const;
+
+    Result<void> setJointFault(const virtual_controller::Injection& injection,
+                               std::initializer_list<JointFlag> flags);
+    Result<void> silence(const virtual_controller::Injection& injection);
+    std::optional<double> partWidth(const virtual_controller::WorldEffect& effect);
+
+    std::size_t loadConfiguration(std::size_t axes) override { return node_.load(axes); }
+    JointBus& bus() override { return bus_; }
+    void passMove(const Movement& movement) override { node_.move(movement); }
+    void passJog(const Movement& movement) override { node_.jog(movement); }
+    bool algorithmBusy() const override { return node_.isBusy(); }
+    void publishFeedback(Feedback feedback) override;
+    void publishBrakesCheck(std::int8_t state, std::uint8_t mask) override;
+    void onBraked() override { node_.onBraked(); }
+
+    RobotOptions options_;
+    JointBus bus_;
+    TrajectoryNode node_;
+    Machine machine_;
+    Publish publish_;
+    Wanted wanted_;
+    std::uint64_t cycles_ = 0;
+    std::uint64_t calibrations_ = 0;
+    std::int8_t tool_ = -1;  // as configured by /tool_configuration or the start-up
+    std::size_t commands_to_drop_ = 0;
+    int contact_left_ = 0;  // cycles that an injected collision lasts
+    bool part_lost_ = false;
+    bool client_set_points_ = false;  // /algo_jnt_ctrl was written by a client in this cycle
+};
+
+}  // namespace metier::virtual_edo

@@ -1,0 +1,152 @@
+#include "metier/virtual_controller/controller.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_edo/bridge_port.hpp"
+#include "metier/virtual_edo/robot.hpp"
+
+namespace metier::virtual_edo {
+namespace {
+
+using namespace virtual_controller;
+
+struct Options {
+    RobotOptions robot;
+    std::uint16_t port = 0;
+    double time_scale = 1.0;
+};
+
+constexpr double kDefaultPort = 9090;
+
+Result<Options> readOptions(const ControllerRequest& request) {
+    const auto& settings = request.settings;
+    const std::string version = settings.textOr("software", "3.2.0");
+    const auto software = Software::find(version);
+    if (!software) {
+        settings.reject("software", software.error().message);
+    }
+    const double axes = settings.numberOr("axes", kMostAxes, kArmAxes, kMostAxes);
+    Options options{
+        .robot = {.software = software.value_or(Software{}),
+                  .axes = static_cast<std::size_t>(axes),
+                  .ready = settings.flagOr("ready", true),
+                  .collision_force = settings.numberOr("collision_force", 50.0, 1.0, 1000.0)},
+        .port = static_cast<std::uint16_t>(settings.numberOr("port", kDefaultPort, 0, 65535)),
+        .time_scale = settings.numberOr("time_scale", 1.0, 0.01, 100.0)};
+    if (auto read = settings.finish(); !read) {
+        return fail(read.error());
+    }
+    if (request.model == nullptr || request.model->axisCount() != kArmAxes) {
+        return fail(Errc::invalid_argument, request.name + ": an e.DO is an arm of six axes");
+    }
+    return options;
+}
+
+/// One e.DO with its bridge and its port.
+///
+/// The port stays open over a restart, as the address does; all else begins anew.
+class EdoController final : public Controller {
+public:
+    EdoController(const ControllerRequest& request, Options options)
+        : context_(request.context),
+          faults_(request.faults),
+          world_(request.world),
+          model_(*request.model),
+          address_(request.address),
+          options_(std::move(options)),
+          types_(options_.robot.software) {}
+
+    /// Errors: as BridgePort::open().
+    Result<void> start() {
+        powerOn();
+        auto opened = openPort();
+        if (opened) {
+            const std::chrono::duration<double> period(kCycleSeconds / options_.time_scale);
+            timer_ = std::make_unique<CycleTimer>(
+                context_, std::chrono::duration_cast<std::chrono::nanoseconds>(period),
+                [this] { step(); });
+        }
+        return opened;
+    }
+
+    std::vector<InjectionHelp> injections() const override { return robot_->injections(); }
+    Result<void> inject(const Injection& injection) override { return robot_->inject(injection); }
+    Json state() const override {
+        Json shown = robot_->state();
+        shown["clients"] = port_->clients();
+        shown["port"] = port_->port();
+        return shown;
+    }
+    void restart() override {
+        port_->disconnectAll();
+        powerOn();
+        port_->serve(*bridge_);
+    }
+
+private:
+    void powerOn() {
+        robot_ = std::make_unique<Robot>(options_.robot, model_);
+        bridge_ = std::make_unique<Rosbridge>(types_, robot_->graph());
+        bridge_->setTime(now_);
+        robot_->connect([this](const std::string& topic,
+                               const Json& message) { bridge_->publish(topic, message); },
+                        [this](std::string_view topic) { return bridge_->hasSubscribers(topic); });
+    }
+
+    Result<void> openPort() {
+        auto port = BridgePort::open(context_, address_, options_.port, faults_, *bridge_);
+        if (!port) {
+            return fail(port.error());
+        }
+        port_ = std::move(*port);
+        return {};
+    }
+
+    void step() {
+        now_ += kCycle;
+        bridge_->setTime(now_);
+        world_.report(robot_->step(world_.effect()));
+    }
+
+    asio::io_context& context_;
+    LinkFaults& faults_;
+    WorldLink& world_;
+    const motion::RobotModel& model_;
+    std::string address_;
+    Options options_;
+    MessageTypes types_;
+    SteadyTime now_{};  // the robot's own, which time_scale makes faster
+    std::unique_ptr<Robot> robot_;
+    std::unique_ptr<Rosbridge> bridge_;
+    std::unique_ptr<BridgePort> port_;
+    std::unique_ptr<CycleTimer> timer_;
+};
+
+Result<std::unique_ptr<Controller>> startEdo(const ControllerRequest& request) {
+    auto options = readOptions(request);
+    if (!options) {
+        return fail(options.error());
+    }
+    auto controller = std::make_unique<EdoController>(request, std::move(*options));
+    if (auto started = controller->start(); !started) {
+        return fail(started.error());
+    }
+    return controller;
+}
+
+}  // namespace
+}  // namespace metier::virtual_edo
+
+namespace metier::virtual_controller {
+
+ControllerType edoController();
+
+ControllerType edoController() {
+    return {.name = "edo",
+            .help = "Comau e.DO with gripper: rosbridge (JSON over WebSocket), port 9090",
+            .start = &virtual_edo::startEdo};
+}
+
+}  // namespace metier::virtual_controller

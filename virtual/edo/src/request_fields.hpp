@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "metier/base/error.hpp"
+#include "metier/virtual_edo/message_types.hpp"
+
+namespace metier::virtual_edo {
+
+/// The id of a rosbridge request as text; empty if it has none.
+std::string requestId(const Json& request);
+
+/// Errors: invalid_argument if the field is missing or no text, in rosbridge's words.
+Result<std::string> requiredText(const Json& request, const char* field);
+
+/// Text of a field that may be missing. Errors: invalid_argument if it is no text.
+Result<std::string> optionalText(const Json& request, const char* field);
+
+/// A whole number >= 0 of a field that may be missing or null, then 0.
+/// Errors: invalid_argument if it is something else.
+Result<std::int64_t> optionalCount(const Json& request, const char* field);
+
+}  // namespace metier::virtual_edo

@@ -1,0 +1,280 @@
+#include "metier/virtual_edo/rosbridge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "json_text.hpp"
+#include "request_fields.hpp"
+
+namespace metier::virtual_edo {
+namespace {
+
+/// Most things of one kind that a client may have open.
+constexpr std::size_t kMost = 256;
+
+constexpr std::array<std::string_view, 4> kLevels{"none", "error", "warning", "info"};
+
+}  // namespace
+
+Rosbridge::Rosbridge(const MessageTypes& types, RosGraph graph)
+    : types_(types), graph_(std::move(graph)) {}
+
+Rosbridge::ClientId Rosbridge::addClient(Send send) {
+    clients_[++last_id_].send = std::move(send);
+    return last_id_;
+}
+
+void Rosbridge::removeClient(ClientId id) {
+    clients_.erase(id);
+}
+
+void Rosbridge::receive(ClientId id, std::string_view text) {
+    const auto client = clients_.find(id);
+    if (client != clients_.end()) {
+        receiveFrom(client->second, text);
+    }
+}
+
+void Rosbridge::receiveFrom(Client& client, std::string_view text) {
+    const Json request = parseJson(text);
+    if (!request.is_object()) {
+        // The real bridge waits for the rest of the JSON, which never comes in a message of its
+        // own.
+        sendStatus(client, "a message is one JSON object", Json::object());
+        return;
+    }
+    if (auto done = perform(client, request); !done) {
+        sendStatus(client, done.error().message, request);
+    }
+}
+
+Result<void> Rosbridge::perform(Client& client, const Json& request) {
+    static const std::map<std::string, Operation, std::less<>> kOperations{
+        {"advertise", &Rosbridge::advertise},     {"unadvertise", &Rosbridge::unadvertise},
+        {"publish", &Rosbridge::publishFrom},     {"subscribe", &Rosbridge::subscribe},
+        {"unsubscribe", &Rosbridge::unsubscribe}, {"call_service", &Rosbridge::callService},
+        {"set_level", &Rosbridge::setLevel},      {"status_level", &Rosbridge::setLevel},
+        {"fragment", &Rosbridge::takeFragment},
+    };
+    const auto name = optionalText(request, "op");
+    if (!request.contains("op") || !name) {
+        return fail(Errc::invalid_argument,
+                    "Received a message without an op. All messages "
+                    "require 'op' field");
+    }
+    const auto operation = kOperations.find(*name);
+    if (operation == kOperations.end()) {
+        return fail(Errc::not_supported, fmt::format("Unknown operation: {}", *name));
+    }
+    const auto size = request.find("fragment_size");
+    if (size != request.end() && size->is_number_unsigned() && size->get<std::uint64_t>() > 0) {
+        client.fragment_size = size->get<std::size_t>();
+    }
+    auto done = (this->*operation->second)(client, request);
+    if (!done) {
+        done.error().message = *name + ": " + done.error().message;
+    }
+    return done;
+}
+
+Result<void> Rosbridge::establish(const std::string& topic, const Json& request) {
+    const auto type = optionalText(request, "type");
+    if (!type) {
+        return fail(type.error());
+    }
+    const auto known = graph_.topics.find(topic);
+    if (known != graph_.topics.end()) {
+        if (!type->empty() && *type != known->second) {
+            return fail(Errc::type_mismatch,
+                        fmt::format("Tried to register topic {} with type {} but it is already "
+                                    "established with type {}",
+                                    topic, *type, known->second));
+        }
+        return {};
+    }
+    if (type->empty()) {
+        return fail(Errc::not_found,
+                    fmt::format("Cannot infer topic type for topic {} as it is not "
+                                "yet advertised",
+                                topic));
+    }
+    if (!types_.has(*type) || graph_.topics.size() > kMost) {
+        return fail(Errc::not_found, fmt::format("Unable to import {}", *type));
+    }
+    graph_.topics.emplace(topic, *type);
+    return {};
+}
+
+Result<void> Rosbridge::advertise(Client& client, const Json& request) {
+    const auto topic = requiredText(request, "topic");
+    if (!topic) {
+        return fail(topic.error());
+    }
+    const auto type = requiredText(request, "type");
+    if (!type) {
+        return fail(type.error());
+    }
+    if (auto established = establish(*topic, request); !established) {
+        return established;
+    }
+    auto& ids = client.advertised[*topic];
+    if (ids.size() < kMost) {
+        ids.insert(requestId(request));
+    }
+    return {};
+}
+
+Result<void> Rosbridge::unadvertise(Client& client, const Json& request) {
+    const auto topic = requiredText(request, "topic");
+    if (!topic) {
+        return fail(topic.error());
+    }
+    const auto advertised = client.advertised.find(*topic);
+    if (advertised == client.advertised.end()) {
+        return {};
+    }
+    const std::string id = requestId(request);
+    advertised->second.erase(id);
+    if (id.empty() || advertised->second.empty()) {
+        client.advertised.erase(advertised);
+    }
+    return {};
+}
+
+Result<void> Rosbridge::publishFrom(Client&, const Json& request) {
+    const auto topic = requiredText(request, "topic");
+    if (!topic) {
+        return fail(topic.error());
+    }
+    if (auto established = establish(*topic, request); !established) {
+        return established;
+    }
+    const auto message = types_.complete(graph_.topics.find(*topic)->second,
+                                         request.contains("msg") ? request["msg"] : Json::object());
+    if (!message) {
+        return fail(message.error());
+    }
+    publish(*topic, *message);
+    graph_.on_message(*topic, *message);
+    return {};
+}
+
+Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
+    const auto topic = requiredText(request, "topic");
+    if (!topic) {
+        return fail(topic.error());
+    }
+    const auto throttle = optionalCount(request, "throttle_rate");
+    const auto queue = optionalCount(request, "queue_length");
+    const auto compression = optionalText(request, "compression");
+    if (!throttle || !queue || !compression) {
+        return fail(!throttle ? throttle.error() : (!queue ? queue.error() : compression.error()));
+    }
+    if (!compression->empty() && *compression != "none") {
+        return fail(Errc::not_supported,
+                    fmt::format("compression {}: only none is there", *compression));
+    }
+    if (auto established = establish(*topic, request); !established) {
+        return established;
+    }
+    auto& wishes = client.subscriptions[*topic].wishes;
+    if (wishes.size() < kMost) {
+        wishes[requestId(request)] = {.throttle_ms = *throttle, .queue_length = *queue};
+    }
+    return {};
+}
+
+Result<void> Rosbridge::unsubscribe(Client& client, const Json& request) {
+    const auto topic = requiredText(request, "topic");
+    if (!topic) {
+        return fail(topic.error());
+    }
+    const auto subscription = client.subscriptions.find(*topic);
+    if (subscription == client.subscriptions.end()) {
+        return {};
+    }
+    const std::string id = requestId(request);
+    subscription->second.wishes.erase(id);
+    if (id.empty() || subscription->second.wishes.empty()) {
+        client.subscriptions.erase(subscription);
+    }
+    return {};
+}
+
+Result<void> Rosbridge::callService(Client& client, const Json& request) {
+    const auto named = requiredText(request, "service");
+    if (!named) {
+        return fail(named.error());
+    }
+    const std::string service = named->substr(0, named->find('#'));
+    const auto answer = call(service, request.contains("args") ? request["args"] : Json::object());
+    Json response{{"op", "service_response"}, {"service", *named}};
+    response["values"] = answer ? *answer : Json(answer.error().message);
+    response["result"] = answer.has_value();
+    if (request.contains("id") && request["id"].is_primitive()) {
+        response["id"] = request["id"];
+    }
+    send(client, toText(response));
+    if (!answer) {
+        return fail(answer.error());
+    }
+    return {};
+}
+
+Result<Json> Rosbridge::call(const std::string& service, const Json& arguments) const {
+    const auto known = graph_.services.find(service);
+    if (known == graph_.services.end()) {
+        return fail(Errc::not_found, fmt::format("Service {} does not exist", service));
+    }
+    const auto whole = types_.completeArguments(known->second.type + ".Request", arguments);
+    if (!whole) {
+        return whole;
+    }
+    const auto answer = known->second.call(*whole);
+    return answer ? types_.complete(known->second.type + ".Response", *answer) : answer;
+}
+
+Result<void> Rosbridge::setLevel(Client& client, const Json& request) {
+    const auto level = requiredText(request, "level");
+    if (!level) {
+        return fail(level.error());
+    }
+    const auto* const known = std::find(kLevels.begin(), kLevels.end(), *level);
+    if (known == kLevels.end()) {
+        return fail(Errc::invalid_argument, "level is none, error, warning or info");
+    }
+    client.level = static_cast<int>(known - kLevels.begin());
+    return {};
+}
+
+Result<void> Rosbridge::takeFragment(Client& client, const Json& request) {
+    const auto data = requiredText(request, "data");
+    const auto number = optionalCount(request, "num");
+    const auto total = optionalCount(request, "total");
+    const std::string id = requestId(request);
+    if (!data || !number || !total || id.empty() || *total < 1 || *number >= *total ||
+        static_cast<std::size_t>(*total) > kMost || client.fragments.size() >= kMost) {
+        return fail(Errc::invalid_argument,
+                    "needs id, data, num and total, num below total, total "
+                    "at most 256");
+    }
+    auto& parts = client.fragments[id];
+    parts.resize(static_cast<std::size_t>(*total));
+    parts[static_cast<std::size_t>(*number)] = *data;
+    if (std::any_of(parts.begin(), parts.end(), [](const auto& part) { return !part; })) {
+        return {};
+    }
+    std::string whole;
+    for (const auto& part : parts) {
+        whole += *part;
+    }
+    client.fragments.erase(id);
+    const Json message = parseJson(whole);
+    if (!message.is_object() || optionalText(message, "op").value_or("fragment") == "fragment") {
+        return fail(Errc::invalid_argument, "the fragments are no message together");
+    }
+    return perform(client, message);
+}
+
+}  // namespace metier::virtual_edo
