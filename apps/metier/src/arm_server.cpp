@@ -1,47 +1,17 @@
 #include "arm_server.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <map>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "device_opening.hpp"
+#include "metier/robot_skills/gripper_skills.hpp"
 
 namespace metier::app {
 namespace {
-
-// A controller that answers later than this finds its skills Halted.
-constexpr std::chrono::seconds kFirstAnswer{10};
-
-using SkillsByName = std::map<std::string, std::unique_ptr<skill::Skill>, std::less<>>;
-
-SkillsByName byName(robot_skills::ArmSkills skills) {
-    SkillsByName result;
-    for (auto& move : skills.moves) {
-        const auto name = move->description().name;
-        result.emplace(name, std::move(move));
-    }
-    const auto name = skills.position_stream->description().name;
-    result.emplace(name, std::move(skills.position_stream));
-    return result;
-}
-
-/// Skill objects of the NodeSet that the cell file does not ask for would stay without a skill.
-Result<void> checkAllAsked(const std::vector<opcua::Reference>& nodes,
-                           const configuration::ArmServer& config) {
-    for (const auto& node : nodes) {
-        const auto& name = node.browse_name.name;
-        if (std::find(config.skills.begin(), config.skills.end(), name) == config.skills.end()) {
-            return fail(Errc::invalid_argument,
-                        fmt::format("skills = [{}], but the NodeSet '{}' also has {}",
-                                    fmt::join(config.skills, ", "), config.nodeset, name));
-        }
-    }
-    return {};
-}
 
 /// Objects for a robot without a NodeSet of its own.
 opcua_skill::MotionDeviceSystemSpec specOf(const configuration::ServerConfig& config,
@@ -64,6 +34,23 @@ std::vector<std::string> nodesetsOf(const configuration::ArmServer& config) {
     return {config.nodeset};
 }
 
+/// \return nothing if the cell file names none
+Result<std::optional<driver::OpenDevice>> openSensor(const configuration::ServerConfig& config) {
+    if (!config.arm.force_torque_sensor) {
+        return std::optional<driver::OpenDevice>();
+    }
+    auto sensor = openDevice(*config.arm.force_torque_sensor, config.name, nullptr);
+    if (!sensor) {
+        return fail(sensor.error());
+    }
+    if (sensor->force_torque_sensor == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the driver \"{}\" is not one of a force-torque sensor",
+                                config.name, config.arm.force_torque_sensor->type));
+    }
+    return std::optional(std::move(*sensor));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerConfig& config) {
@@ -71,7 +58,8 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
     if (!loaded) {
         return fail(loaded.error());
     }
-    auto device = openDevice(config.arm.driver, config.name, &*loaded);
+    auto model = std::make_unique<const motion::RobotModel>(std::move(*loaded));
+    auto device = openDevice(config.arm.driver, config.name, model.get());
     if (!device) {
         return fail(device.error());
     }
@@ -84,11 +72,13 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
     if (!host) {
         return fail(host.error());
     }
-    if (!awaitConnection(*device, kFirstAnswer)) {
-        spdlog::warn("{}", device->arm->safety().text);
+    auto sensor = openSensor(config);
+    if (!sensor) {
+        return fail(sensor.error());
     }
+    awaitConnection(*device);
     std::unique_ptr<ArmServer> server(
-        new ArmServer(std::move(*loaded), std::move(*device), std::move(*host)));
+        new ArmServer(std::move(model), std::move(*device), std::move(*sensor), std::move(*host)));
     if (auto offered = server->offer(config); !offered) {
         return fail(offered.error());
     }
@@ -98,10 +88,13 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
     return server;
 }
 
-ArmServer::ArmServer(motion::RobotModel model, driver::OpenDevice device,
+ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
+                     driver::OpenDevice device, std::optional<driver::OpenDevice> sensor,
                      std::unique_ptr<SkillHost> host)
-    : model_(device.model ? std::move(*device.model) : std::move(model)),
+    : file_model_(std::move(file_model)),
       device_(std::move(device)),
+      sensor_(std::move(sensor)),
+      model_(device_.model ? *device_.model : *file_model_),
       host_(std::move(host)) {}
 
 Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
@@ -124,42 +117,22 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
                                     const configuration::ArmServer& config) {
-    const auto nodes = host_->nodes().browse(system.skills);
-    if (!nodes) {
-        return fail(nodes.error());
+    auto arm = robot_skills::makeArmSkills(
+        {.arm = *device_.arm,
+         .planner = device_.planner,
+         .sensor = sensor_ ? sensor_->force_torque_sensor : nullptr},
+        model_, host_->clock(), {.longest_silence = config.stream_silence});
+    if (!arm) {
+        return fail(arm.error());
     }
-    if (auto all_asked = checkAllAsked(*nodes, config); !all_asked) {
-        return all_asked;
+    auto skills = std::move(arm->moves);
+    skills.push_back(std::move(arm->position_stream));
+    if (device_.gripper != nullptr) {
+        // A gripper of the arm's own controller is moved by it, as the axes are.
+        auto gripper = robot_skills::makeGripperSkills(*device_.gripper);
+        std::move(gripper.skills.begin(), gripper.skills.end(), std::back_inserter(skills));
     }
-    auto arm_skills = robot_skills::makeArmSkills(*device_.arm, model_, host_->clock(),
-                                                  {.longest_silence = config.stream_silence});
-    if (!arm_skills) {
-        return fail(arm_skills.error());
-    }
-    const skill::ProgramOptions options{.resource = arm_skills->resource,
-                                        .control = host_->control()};
-    auto skills = byName(std::move(*arm_skills));
-    for (const auto& name : config.skills) {
-        const auto found = skills.find(name);
-        if (found == skills.end()) {
-            return fail(Errc::not_supported, fmt::format("no skill '{}' for this arm", name));
-        }
-        const auto node = std::find_if(nodes->begin(), nodes->end(), [&](const auto& reference) {
-            return reference.browse_name.name == name;
-        });
-        if (node == nodes->end()) {
-            if (auto published =
-                    host_->skills().publish(system.skills, std::move(found->second), options);
-                !published) {
-                return fail(published.error());
-            }
-        } else if (auto bound =
-                       host_->skills().bind(node->target, std::move(found->second), options);
-                   !bound) {
-            return fail(bound.error());
-        }
-    }
-    return {};
+    return host_->offerSkills(system.skills, config.skills, std::move(skills), arm->resource);
 }
 
 }  // namespace metier::app

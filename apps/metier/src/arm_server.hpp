@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "metier/base/error.hpp"
@@ -23,13 +24,16 @@ public:
     std::string url() const { return host_->url(); }
 
 private:
-    ArmServer(motion::RobotModel model, driver::OpenDevice device, std::unique_ptr<SkillHost> host);
+    ArmServer(std::unique_ptr<const motion::RobotModel> file_model, driver::OpenDevice device,
+              std::optional<driver::OpenDevice> sensor, std::unique_ptr<SkillHost> host);
     Result<void> offer(const configuration::ServerConfig& config);
     Result<void> offerSkills(const opcua_skill::MotionDeviceSystem& system,
                              const configuration::ArmServer& config);
 
-    motion::RobotModel model_;
+    std::unique_ptr<const motion::RobotModel> file_model_;  // outlives the device, which reads it
     driver::OpenDevice device_;
+    std::optional<driver::OpenDevice> sensor_;
+    const motion::RobotModel& model_;  // as the controller describes the robot, else of the file
     std::unique_ptr<SkillHost> host_;  // ends before the device
 };
 

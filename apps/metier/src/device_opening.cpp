@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <vector>
@@ -13,6 +15,9 @@ namespace {
 
 using device::Safety;
 using device::SafetyState;
+
+// A controller that answers later than this finds its skills Halted.
+constexpr std::chrono::seconds kFirstAnswer{10};
 
 /// Whichever face a device has tells of its safety.
 template <typename Callback>
@@ -26,12 +31,12 @@ device::Registration onSafetyChange(const driver::OpenDevice& device, Callback c
     return device.force_torque_sensor->onSafetyChange(callback);
 }
 
-SafetyState safetyOf(const driver::OpenDevice& device) {
+Safety safetyOf(const driver::OpenDevice& device) {
     if (device.arm != nullptr) {
-        return device.arm->safety().state;
+        return device.arm->safety();
     }
-    return device.gripper != nullptr ? device.gripper->safety().state
-                                     : device.force_torque_sensor->safety().state;
+    return device.gripper != nullptr ? device.gripper->safety()
+                                     : device.force_torque_sensor->safety();
 }
 
 }  // namespace
@@ -53,7 +58,7 @@ Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
     return found->open({name, choice.controller, choice.settings, model});
 }
 
-bool awaitConnection(const driver::OpenDevice& device, std::chrono::milliseconds longest) {
+void awaitConnection(const driver::OpenDevice& device) {
     struct Seen {
         std::mutex mutex;
         std::condition_variable changed;
@@ -66,11 +71,14 @@ bool awaitConnection(const driver::OpenDevice& device, std::chrono::milliseconds
         seen->state = safety.state;
         seen->changed.notify_one();
     });
-    const auto now = safetyOf(device);
+    if (safetyOf(device).state != SafetyState::disconnected) {
+        return;
+    }
     std::unique_lock lock(seen->mutex);
-    return now != SafetyState::disconnected || seen->changed.wait_for(lock, longest, [&] {
-        return seen->state != SafetyState::disconnected;
-    });
+    if (!seen->changed.wait_for(lock, kFirstAnswer,
+                                [&] { return seen->state != SafetyState::disconnected; })) {
+        spdlog::warn("{}", safetyOf(device).text);
+    }
 }
 
 }  // namespace metier::app

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 
 #include "metier/base/error.hpp"
@@ -17,8 +16,8 @@ namespace metier::app {
 Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
                                       const std::string& name, const motion::RobotModel* model);
 
-/// Waits until the controller of the device has answered, at most so long.
-/// \return whether it has
-bool awaitConnection(const driver::OpenDevice& device, std::chrono::milliseconds longest);
+/// Waits until the controller of the device has answered; logs a warning if it does not within 10
+/// s.
+void awaitConnection(const driver::OpenDevice& device);
 
 }  // namespace metier::app

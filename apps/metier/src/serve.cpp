@@ -6,6 +6,7 @@
 
 #include "arm_server.hpp"
 #include "commands.hpp"
+#include "gripper_server.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
 #include "stop_signal.hpp"
@@ -86,6 +87,9 @@ Exit runServe(const ServeOptions& options) {
     }
     if (config->kind == configuration::ServerKind::arm) {
         return serveUntil(stop, ArmServer::start(*config));
+    }
+    if (config->kind == configuration::ServerKind::gripper) {
+        return serveUntil(stop, GripperServer::start(*config));
     }
     resolveRobot(*cell, *config);
     return serveUntil(stop, MoveServer::start(*config));

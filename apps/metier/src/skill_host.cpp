@@ -1,6 +1,9 @@
 #include "skill_host.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include <utility>
 
@@ -38,6 +41,20 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::Robot
     result.safety_state = safetyKind(state.safety);
     result.missed_cycles = state.missed_cycles;
     return result;
+}
+
+/// Skill objects of the NodeSet that nobody wants would stay without a skill.
+Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
+                            const std::vector<std::string>& wanted) {
+    for (const auto& node : nodes) {
+        const auto& name = node.browse_name.name;
+        if (std::find(wanted.begin(), wanted.end(), name) == wanted.end()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("skills = [{}], but the NodeSet also has {}",
+                                    fmt::join(wanted, ", "), name));
+        }
+    }
+    return {};
 }
 
 }  // namespace
@@ -81,8 +98,36 @@ Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {
     return skills_->serveControl(controller, control_);
 }
 
-void SkillHost::haltOnLossOf(device::Arm& arm) {
-    device_watch_.emplace(arm, skills_->executor(), skills_->programs());
+Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
+                                    const std::vector<std::string>& wanted,
+                                    std::vector<std::unique_ptr<skill::Skill>> skills,
+                                    const std::shared_ptr<skill::Resource>& resource) {
+    const auto nodes = server_->nodes().browse(folder);
+    if (!nodes) {
+        return fail(nodes.error());
+    }
+    if (auto all_wanted = checkAllWanted(*nodes, wanted); !all_wanted) {
+        return all_wanted;
+    }
+    for (const auto& name : wanted) {
+        const auto found = std::find_if(skills.begin(), skills.end(), [&](const auto& skill) {
+            return skill && skill->description().name == name;
+        });
+        if (found == skills.end()) {
+            return fail(Errc::not_supported, fmt::format("no skill '{}' for this device", name));
+        }
+        const auto node = std::find_if(nodes->begin(), nodes->end(), [&](const auto& reference) {
+            return reference.browse_name.name == name;
+        });
+        const skill::ProgramOptions options{.resource = resource, .control = control_};
+        const auto offered = node == nodes->end()
+                                 ? skills_->publish(folder, std::move(*found), options)
+                                 : skills_->bind(node->target, std::move(*found), options);
+        if (!offered) {
+            return fail(offered.error());
+        }
+    }
+    return {};
 }
 
 }  // namespace metier::app

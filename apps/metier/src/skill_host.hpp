@@ -43,8 +43,25 @@ public:
     Result<void> offerControl(const opcua::NodeId& controller);
     /// For the Programs of the controller's skills.
     const std::shared_ptr<skill::Control>& control() const noexcept { return control_; }
-    /// Halts every skill that is offered by now when the arm is lost. `arm` must outlive this.
-    void haltOnLossOf(device::Arm& arm);
+    /// Offers those of `skills` that are `wanted`: at the nodes of the NodeSet that have their
+    /// names, at new nodes below `folder` for others. They exclude each other by `resource`.
+    /// Errors: not_supported (no skill of a wanted name), invalid_argument (the NodeSet has one
+    /// that
+    ///         is not wanted); those of SkillServer.
+    Result<void> offerSkills(const opcua::NodeId& folder, const std::vector<std::string>& wanted,
+                             std::vector<std::unique_ptr<skill::Skill>> skills,
+                             const std::shared_ptr<skill::Resource>& resource);
+    /// Halts every skill that is offered by now when the device is lost, at once if it is not
+    /// there. The device must outlive this.
+    template <typename Device>
+    void haltOnLossOf(Device& device) {
+        device_watch_.emplace(device, skills_->executor(), skills_->programs());
+        if (const auto now = device.safety(); now.state == device::SafetyState::disconnected) {
+            for (auto* program : skills_->programs()) {
+                program->deviceLost(now.text);
+            }
+        }
+    }
     Result<void> start() { return server_->start(); }
 
 private:

@@ -28,10 +28,11 @@ struct OpenDevice {
 
 /// What a driver is asked to open.
 struct OpenRequest {
-    std::string name;                           ///< of the server, for messages
-    std::string address;                        ///< of the controller, without a port
-    configuration::Settings settings;           ///< the driver's own; it calls finish()
-    const motion::RobotModel* model = nullptr;  ///< of the arm; nullptr for other devices
+    std::string name;                  ///< of the server, for messages
+    std::string address;               ///< of the controller, without a port
+    configuration::Settings settings;  ///< the driver's own; it calls finish()
+    /// Of the arm, must outlive the device; nullptr for other devices.
+    const motion::RobotModel* model = nullptr;
 };
 
 /// One kind of controller that metier can talk to. To add one: docs/guide/add-a-robot.md.

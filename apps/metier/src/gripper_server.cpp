@@ -1,0 +1,60 @@
+#include "gripper_server.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "device_opening.hpp"
+#include "metier/opcua_skill/skill_controller.hpp"
+#include "metier/robot_skills/gripper_skills.hpp"
+
+namespace metier::app {
+
+Result<std::unique_ptr<GripperServer>> GripperServer::start(
+    const configuration::ServerConfig& config) {
+    auto device = openDevice(config.gripper.driver, config.name, nullptr);
+    if (!device) {
+        return fail(device.error());
+    }
+    if (device->gripper == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the driver \"{}\" is not one of a gripper", config.name,
+                                config.gripper.driver.type));
+    }
+    auto host = SkillHost::create(config, {config.gripper.nodeset});
+    if (!host) {
+        return fail(host.error());
+    }
+    awaitConnection(*device);
+    std::unique_ptr<GripperServer> server(new GripperServer(std::move(*device), std::move(*host)));
+    if (auto offered = server->offer(config.gripper); !offered) {
+        return fail(offered.error());
+    }
+    if (auto started = server->host_->start(); !started) {
+        return fail(started.error());
+    }
+    return server;
+}
+
+GripperServer::GripperServer(driver::OpenDevice device, std::unique_ptr<SkillHost> host)
+    : device_(std::move(device)), host_(std::move(host)) {}
+
+Result<void> GripperServer::offer(const configuration::GripperServer& config) {
+    const auto found = opcua_skill::findSkillController(host_->nodes());
+    if (!found) {
+        return fail(found.error());
+    }
+    auto skills = robot_skills::makeGripperSkills(*device_.gripper);
+    if (auto offered = host_->offerSkills(found->skills, config.skills, std::move(skills.skills),
+                                          skills.resource);
+        !offered) {
+        return offered;
+    }
+    if (auto offered = host_->offerControl(found->controller); !offered) {
+        return offered;
+    }
+    host_->haltOnLossOf(*device_.gripper);
+    return {};
+}
+
+}  // namespace metier::app

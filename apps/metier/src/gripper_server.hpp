@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/driver/driver.hpp"
+#include "skill_host.hpp"
+
+namespace metier::app {
+
+/// A gripper behind its OPC UA server: the instances of its NodeSet, served by its skills.
+///
+/// Threading: one thread starts and ends it.
+class GripperServer {
+public:
+    /// Errors: what is wrong with the driver, the NodeSet, the skills or the port.
+    static Result<std::unique_ptr<GripperServer>> start(const configuration::ServerConfig& config);
+
+    std::string url() const { return host_->url(); }
+
+private:
+    GripperServer(driver::OpenDevice device, std::unique_ptr<SkillHost> host);
+    Result<void> offer(const configuration::GripperServer& config);
+
+    driver::OpenDevice device_;
+    std::unique_ptr<SkillHost> host_;  // ends before the device
+};
+
+}  // namespace metier::app
