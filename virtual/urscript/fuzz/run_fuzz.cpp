@@ -1,7 +1,9 @@
-// Each byte is one word of a script, so that random inputs are mostly programs that run.
+// The input decides what a program consists of, so that every input is a program that runs.
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -9,125 +11,156 @@
 
 namespace {
 
-constexpr auto kWords = std::to_array<std::string_view>({
-    "\n",
-    "\n",
-    "\n",
-    "end\n",
-    "end\n",
-    "a",
-    "b",
-    "c",
-    "a = ",
-    "b = ",
-    "local c = ",
-    "global a = ",
-    "0",
-    "1",
-    "2",
-    "-1",
-    "0.5",
-    "1e300",
-    "2147483647",
-    "True",
-    "False",
-    "\"text\"",
-    "(",
-    ")",
-    "[",
-    "]",
-    ", ",
-    " + ",
-    " - ",
-    " * ",
-    " / ",
-    " % ",
-    " == ",
-    " < ",
-    " >= ",
-    " and ",
-    " or ",
-    " xor ",
-    " not ",
-    "-",
-    "[0, 1, 2, 3, 4, 5]",
-    "p[0, 0, 0, 0, 0, 0]",
-    "[a]",
-    "[[1, 2], [3, 4]]",
-    "a[0] = ",
-    "b[1, 0] = ",
-    "a[b]",
-    "if True:\n",
-    "elif False:\n",
-    "else:\n",
-    "while True:\n",
-    "while a < 3:\n",
-    "break\n",
-    "continue\n",
-    "return a\n",
-    "halt\n",
-    "def f(x, y=1):\n",
-    "f(a)",
-    "f(y=b, x=a)",
-    "thread t():\n",
-    "a = run t()\n",
-    "kill a\n",
-    "join a\n",
-    "enter_critical\n",
-    "exit_critical\n",
-    "sync()\n",
-    "sleep(0.01)\n",
-    "a = [a, a]\n",
-    "a = str_cat(a, a)\n",
-    "movej(a)\n",
-    "servoj([0, 0, 0, 0, 0, 0], t=0.008)\n",
-    "stopj(a)\n",
-    "a = socket_open(\"h\", 1, \"s\")\n",
-    "a = socket_read_binary_integer(2, \"s\", a)\n",
-    "a = socket_read_string(\"s\")\n",
-    "socket_send_string(a, \"s\")\n",
-    "textmsg(a, b)\n",
-    "a = make_list(b, a)\n",
-    "a = to_str(a)\n",
-    "a = str_sub(a, b)\n",
-    "a = to_num(a)\n",
-    "a = pose_trans(a, a)\n",
-    "a = norm(a)\n",
-    "a = pow(a, b)\n",
-    "a = floor(a)\n",
-    "a = read_input_integer_register(a)\n",
-    "write_output_float_register(a, b)\n",
-    "a = binary_list_to_integer(integer_to_binary_list(a))\n",
-    "a = get_inverse_kin(a, b)\n",
-    "popup(a, blocking=True)\n",
-    "a = 1\n",
-    "b = 1\n",
-    "c = 1\n",
-    "b = a + 1\n",
-});
+/// Writes a script from bytes, each of which is one decision.
+class Writer {
+public:
+    explicit Writer(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    std::string program() {
+        std::string text = "def fuzzed():\na = 0\nb = 1\nglobal c = [0, 1]\ndef f(x, y=1):\n" +
+                           block(2) + "return x\nend\nthread t():\n" + block(2) + "end\n";
+        while (!bytes_.empty()) {
+            text += statement(0);
+        }
+        return text + "end\n";
+    }
+
+private:
+    std::size_t choice(std::size_t count) {
+        if (bytes_.empty()) {
+            return 0;
+        }
+        const std::size_t chosen = bytes_[0] % count;
+        bytes_ = bytes_.subspan(1);
+        return chosen;
+    }
+
+    template <std::size_t n>
+    std::string_view oneOf(const std::array<std::string_view, n>& words) {
+        return words[choice(n)];
+    }
+
+    std::string variable() {
+        return std::string(oneOf(std::to_array<std::string_view>({"a", "b", "c", "d"})));
+    }
+
+    std::string value(int depth) {
+        switch (depth > 3 ? choice(3) : choice(10)) {
+            case 0:
+                return std::string(oneOf(std::to_array<std::string_view>(
+                    {"0", "1", "-1", "2147483647", "0.5", "1e300", "31", "True", "\"text\"",
+                     "\"s\"", "[]", "[0, 1, 2, 3, 4, 5]", "[[1, 2], [3, 4]]",
+                     "p[0, 0, 0, 1, 2, 3]"})));
+            case 1:
+            case 2:
+                return variable();
+            case 3:
+                return "[" + value(depth + 1) + ", " + value(depth + 1) + "]";
+            case 4:
+                return variable() + "[" + value(depth + 1) + "]";
+            case 5:
+                return "f(" + value(depth + 1) + ")";
+            case 6:
+                return call(depth);
+            default:
+                return "(" + value(depth + 1) + operation() + value(depth + 1) + ")";
+        }
+    }
+
+    std::string operation() {
+        return std::string(oneOf(std::to_array<std::string_view>(
+            {" + ", " - ", " * ", " / ", " % ", " == ", " != ", " < ", " >= ", " and ", " or ",
+             " xor "})));
+    }
+
+    std::string call(int depth) {
+        constexpr auto kOne = std::to_array<std::string_view>({"norm",
+                                                               "floor",
+                                                               "to_str",
+                                                               "to_num",
+                                                               "str_len",
+                                                               "length",
+                                                               "size",
+                                                               "normalize",
+                                                               "sqrt",
+                                                               "inv",
+                                                               "integer_to_binary_list",
+                                                               "binary_list_to_integer",
+                                                               "read_input_float_register",
+                                                               "get_inverse_kin",
+                                                               "get_forward_kin",
+                                                               "rotvec2rpy",
+                                                               "rpy2rotvec",
+                                                               "get_digital_in",
+                                                               "socket_read_line",
+                                                               "socket_read_string",
+                                                               "tool_contact",
+                                                               "get_joint_temp"});
+        constexpr auto kTwo = std::to_array<std::string_view>(
+            {"pow", "log", "atan2", "str_cat", "str_at", "str_find", "str_sub", "make_list",
+             "pose_trans", "pose_add", "pose_sub", "point_dist", "socket_open",
+             "socket_read_binary_integer", "socket_read_ascii_float", "socket_read_byte_list",
+             "socket_send_int", "socket_get_var"});
+        return choice(2) == 0 ? std::string(oneOf(kOne)) + "(" + value(depth + 1) + ")"
+                              : std::string(oneOf(kTwo)) + "(" + value(depth + 1) + ", " +
+                                    value(depth + 1) + ")";
+    }
+
+    std::string block(int depth) {
+        std::string text;
+        for (std::size_t left = choice(3); left > 0; --left) {
+            text += statement(depth + 1);
+        }
+        return text;
+    }
+
+    std::string statement(int depth) {
+        switch (depth > 3 ? choice(5) : choice(12)) {
+            case 0:
+            case 1:
+                return variable() + " = " + value(0) + "\n";
+            case 2:
+                return variable() + "[" + value(1) + "] = " + value(0) + "\n";
+            case 3:
+                return std::string(oneOf(std::to_array<std::string_view>(
+                    {"sync()\n", "a = run t()\n", "kill a\n", "join a\n", "halt\n", "sleep(a)\n",
+                     "movej(c)\n", "stopj(b)\n", "popup(a, blocking=b)\n", "local d = 5\n",
+                     "textmsg(a, c)\n", "set_payload(a, c)\n", "enter_critical\n"})));
+            case 4:
+                return call(0) + "\n";
+            case 5:
+            case 6:
+                return "if " + value(0) + ":\n" + block(depth) + "else:\n" + block(depth) + "end\n";
+            case 7:
+                return "while " + value(0) + ":\n" + block(depth) + "break\nend\n";
+            case 8:
+                return "while " + value(0) + ":\n" + block(depth) + "sync()\nend\n";
+            default:
+                return variable() + " = " + value(0) + "\n";
+        }
+    }
+
+    std::span<const std::uint8_t> bytes_;
+};
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace metier::urscript;
     constexpr int kCycles = 20;
-    std::string text = "a = 0\nb = 1\n";
-    for (std::size_t i = 0; i < size; ++i) {
-        text += kWords[data[i] % kWords.size()];
+    const auto program = Program::parse(Writer({data, size}).program() + "d = 1\n");
+    const auto defined = Program::parse(Writer({data, size}).program());
+    if (program || (!defined && defined.error().message.find("'d'") == std::string::npos)) {
+        std::abort();  // the first has text behind its end; the second is a program
     }
-    // Blocks that are still open are closed, so that more inputs are programs.
-    for (int end = 0; end < 4; ++end) {
-        if (const auto program = Program::parse(text)) {
-            FakeRobot robot;
-            RunLimits limits;
-            limits.instructions_per_cycle = 2000;
-            Interpreter interpreter(*program, robot, limits);
-            for (int cycle = 0; cycle < kCycles; ++cycle) {
-                interpreter.step();
-            }
-            break;
+    if (defined) {
+        FakeRobot robot;
+        RunLimits limits;
+        limits.instructions_per_cycle = 2000;
+        Interpreter interpreter(*defined, robot, limits);
+        for (int cycle = 0; cycle < kCycles; ++cycle) {
+            interpreter.step();
         }
-        text += "\nend\n";
     }
     return 0;
 }

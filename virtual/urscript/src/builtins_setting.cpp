@@ -90,6 +90,12 @@ Value analogDomain(Call& call) {
     return call.applies(AnalogDomain{port, call.integer(0), call.integer(1)});
 }
 
+Value other(Call& call) {
+    const auto arguments = call.arguments();
+    return call.applies(
+        OtherCommand{std::string(call.name()), {arguments.begin(), arguments.end()}});
+}
+
 }  // namespace
 
 std::span<const Builtin> settingBuiltins() {
@@ -107,20 +113,38 @@ std::span<const Builtin> settingBuiltins() {
          [](Call& call) { return call.applies(ForceModeGainScaling{call.number(0)}); }},
         {"freedrive_mode", "freeAxes feature", 0, freedriveMode},
         {"ft_rtde_input_enable", kSensor, 1, forceSensorInput},
+        {"position_deviation_warning", "enabled threshold", 1, other},
         {"powerdown", "", 0, simple<PowerDown>},
+        {"reset_revolution_counter", "qNear", 0, other},
         {"rtde_set_watchdog", "variable_name min_frequency action", 2, watchdog},
         {"set_analog_inputrange", "port range", 2, analogDomain<Port::standard_input>},
         {"set_analog_outputdomain", "port domain", 2, analogDomain<Port::standard_output>},
+        {"set_baselight", "color brightness", 0, other},
+        {"set_configurable_digital_input_action", "port action", 2, other},
+        {"set_gp_boolean_input_action", "port action", 2, other},
         {"set_gravity", "d", 1,
          [](Call& call) { return call.applies(SetGravity{call.vector3(0)}); }},
+        {"set_input_actions_to_default", "", 0, other},
         {"set_payload", "m cog inertia", 1, setPayload},
         {"set_payload_cog", "CoG", 1, setPayloadCog},
         {"set_payload_mass", "m", 1, setPayloadMass},
+        {"set_runstate_configurable_digital_output_to_value", "outputId state", 2, other},
+        {"set_runstate_gp_boolean_output_to_value", "outputId state", 2, other},
+        {"set_runstate_standard_analog_output_to_value", "outputId state", 2, other},
+        {"set_runstate_standard_digital_output_to_value", "outputId state", 2, other},
+        {"set_runstate_tool_digital_output_to_value", "outputId state", 2, other},
+        {"set_safety_mode_transition_hardness", "type", 1, other},
         {"set_standard_analog_input_domain", "port domain", 2, analogDomain<Port::standard_input>},
+        {"set_standard_digital_input_action", "port action", 2, other},
         {"set_target_payload", "m cog inertia transition_time", 1, setTargetPayload},
         {"set_tcp", "pose tcp_name", 1,
          [](Call& call) { return call.applies(SetTcp{call.pose(0)}); }},
         {"set_tool_analog_input_domain", "port domain", 2, analogDomain<Port::tool_input>},
+        {"set_tool_communication", "enabled baud_rate parity stop_bits rx_idle_chars tx_idle_chars",
+         6, other},
+        {"set_tool_digital_input_action", "port action", 2, other},
+        {"set_tool_digital_output_mode", "n mode", 2, other},
+        {"set_tool_output_mode", "mode", 1, other},
         {"set_tool_voltage", "voltage", 1,
          [](Call& call) { return call.applies(SetToolVoltage{call.integer(0)}); }},
         {"teach_mode", "", 0, simple<FreedriveMode>},

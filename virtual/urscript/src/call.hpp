@@ -41,6 +41,8 @@ public:
     Robot& robot() { return context_.robot(); }
     CallContext& context() { return context_; }
 
+    std::string_view name() const { return builtin_.name; }
+    std::span<const Value> arguments() const { return arguments_; }
     bool given(std::size_t index) const { return !arguments_[index].isNone(); }
     const Value& value(std::size_t index) const { return arguments_[index]; }
     double number(std::size_t index);

@@ -12,14 +12,13 @@ using Kind = TokenKind;
 constexpr int kDeepest = 100;
 constexpr std::size_t kMostParameters = 64;
 
-bool isDefinition(const std::vector<Token>& tokens) {
-    const Kind kind = tokens[0].kind;
+bool isDefinition(Kind kind) {
     return kind == Kind::word_def || kind == Kind::word_sec;
 }
 
 CodeBuilder builderFor(const std::vector<Token>& tokens) {
     const bool secondary = tokens[0].kind == Kind::word_sec;
-    const bool named = isDefinition(tokens) && tokens[1].kind == Kind::name;
+    const bool named = isDefinition(tokens[0].kind) && tokens[1].kind == Kind::name;
     return CodeBuilder(secondary ? ProgramKind::secondary : ProgramKind::primary,
                        named ? tokens[1].text : std::string_view());
 }
@@ -32,10 +31,11 @@ bool endsBlock(Kind kind) {
 }  // namespace
 
 // A program without a name is a block that the end of the text closes.
-Parser::Parser(const std::vector<Token>& tokens) : tokens_(tokens), builder_(builderFor(tokens)) {}
+Parser::Parser(const std::vector<Token>& tokens)
+    : TokenReader(tokens), builder_(builderFor(tokens)) {}
 
 Result<Code> Parser::program() {
-    const bool defined = isDefinition(tokens_);
+    const bool defined = isDefinition(peek().kind);
     if (defined) {
         take();
         for (const auto& [kind, what] :
@@ -338,26 +338,6 @@ Result<void> Parser::critical() {
     return takeIf(Kind::left_paren) ? expect(Kind::right_paren, "')'") : Result<void>();
 }
 
-const Token& Parser::peek(std::size_t ahead) const {
-    return tokens_[std::min(next_ + ahead, tokens_.size() - 1)];
-}
-
-const Token& Parser::take() {
-    const Token& token = peek();
-    ++next_;
-    return token;
-}
-
-bool Parser::takeIf(Kind kind) {
-    const bool found = peek().kind == kind;
-    next_ += found ? 1 : 0;
-    return found;
-}
-
-Result<void> Parser::expect(Kind kind, std::string_view what) {
-    return takeIf(kind) ? Result<void>() : unexpected(what);
-}
-
 Result<void> Parser::nested(Step step) {
     if (depth_ >= kDeepest) {
         return failAt(peek().at, fmt::format("more than {} levels within each other", kDeepest));
@@ -366,16 +346,6 @@ Result<void> Parser::nested(Step step) {
     auto done = (this->*step)();
     --depth_;
     return done;
-}
-
-tl::unexpected<Error> Parser::unexpected(std::string_view wanted) const {
-    const Token& token = peek();
-    if (token.kind == Kind::end_of_text || token.kind == Kind::new_line) {
-        return failAt(token.at, fmt::format("{} is missing", wanted));
-    }
-    constexpr std::size_t kMostShown = 40;
-    return failAt(token.at, fmt::format("{} is missing before '{}'", wanted,
-                                        token.text.substr(0, kMostShown)));
 }
 
 }  // namespace metier::urscript

@@ -6,13 +6,13 @@
 
 #include "code_builder.hpp"
 #include "metier/base/error.hpp"
-#include "token.hpp"
+#include "token_reader.hpp"
 
 namespace metier::urscript {
 
 /// Reads the tokens of one program and writes its code in the same pass.
 /// Errors of all: invalid_argument, "line L, column C: why".
-class Parser {
+class Parser : private TokenReader {
 public:
     /// \param tokens as tokenize() gives them; outlive the parser
     explicit Parser(const std::vector<Token>& tokens);
@@ -67,15 +67,8 @@ private:
     Result<std::size_t> expressions(TokenKind end, std::size_t most);
     bool isPose() const;
 
-    const Token& peek(std::size_t ahead = 0) const;
-    const Token& take();
-    bool takeIf(TokenKind kind);
-    Result<void> expect(TokenKind kind, std::string_view what);
     Result<void> nested(Step step);
-    tl::unexpected<Error> unexpected(std::string_view wanted) const;
 
-    const std::vector<Token>& tokens_;
-    std::size_t next_ = 0;
     int depth_ = 0;  // of blocks and expressions within each other
     std::vector<Loop> loops_;
     CodeBuilder builder_;

@@ -172,6 +172,14 @@ TEST(UrscriptSetting, CommandsReachTheRobot) {
                 HasSubstr("'run' is not ignore, pause or stop"));
 }
 
+TEST(UrscriptSetting, WhatChangesNothingReachesTheRobotWithItsName) {
+    FakeRobot robot;
+    EXPECT_EQ(resultOf("set_tool_communication(True, 115200, 1, 2, 1.0, 3.5)\nresult = 1", robot),
+              "1");
+    EXPECT_EQ(robot.lastCommand<OtherCommand>().name, "set_tool_communication");
+    EXPECT_EQ(robot.lastCommand<OtherCommand>().arguments.at(1).text(), "115200");
+}
+
 TEST(UrscriptRegister, ReadsInputsAndWritesOutputs) {
     FakeRobot robot;
     robot.input_integers[3] = -7;

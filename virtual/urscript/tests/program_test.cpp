@@ -8,7 +8,6 @@
 namespace metier::urscript {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
 
 // As a client of RTDE registers sends it.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "metier/urscript/value.hpp"
 
@@ -66,10 +67,16 @@ struct AnalogDomain {
     int domain = 0;  ///< 0 current, 1 voltage
 };
 struct PowerDown {};
+/// A function that exists but changes nothing that other functions can see, as
+/// `set_tool_communication`.
+struct OtherCommand {
+    std::string name;
+    std::vector<Value> arguments;
+};
 
 using Command = std::variant<SetPayload, SetTargetPayload, SetTcp, SetGravity, SetToolVoltage,
                              ForceMode, EndForceMode, ForceModeDamping, ForceModeGainScaling,
                              FreedriveMode, EndFreedriveMode, ZeroForceSensor, ForceSensorInput,
-                             RtdeWatchdog, AnalogDomain, PowerDown>;
+                             RtdeWatchdog, AnalogDomain, PowerDown, OtherCommand>;
 
 }  // namespace metier::urscript
