@@ -23,7 +23,7 @@ public:
     /// What is around it; all of it outlives the robot.
     struct Surroundings {
         asio::io_context& context;
-        const virtual_controller::LinkFaults& faults;
+        virtual_controller::LinkFaults& faults;
         virtual_controller::WorldLink& world;
         /// Gets each message of the primary port.
         std::function<void(const Bytes&)> tell;

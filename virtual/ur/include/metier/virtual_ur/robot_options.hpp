@@ -37,7 +37,7 @@ struct RobotOptions {
     std::string robot_model;         ///< as the dashboard tells it, "UR5"
     std::filesystem::path programs;  ///< folder of what the dashboard loads; empty: none
     Ports ports;
-    std::string address;  ///< the robot's own, where its sockets come from
+    std::string address = "127.0.0.1";  ///< the robot's own, where its sockets come from
 };
 
 /// \param model of six axes; outlives what is made of the options

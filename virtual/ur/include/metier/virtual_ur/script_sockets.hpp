@@ -11,16 +11,16 @@
 
 namespace metier::virtual_ur {
 
-/// The sockets that programs dial out with. What comes beyond 1 MB unread waits at the peer; over a
-/// cut cable nothing comes or leaves.
+/// The sockets that programs dial out with, to addresses, not to names. One whose program leaves
+/// 1 MB unread is cut.
 ///
 /// Threading: the thread that runs the io_context.
 class ScriptSockets final : public urscript::Sockets {
 public:
-    /// \param address where they come from; the system's choice if it cannot be used
+    /// \param address where they come from
     /// \param faults  outlives the sockets
     ScriptSockets(asio::io_context& context, std::string address,
-                  const virtual_controller::LinkFaults& faults);
+                  virtual_controller::LinkFaults& faults);
     ~ScriptSockets() override;
 
     void open(const std::string& name, const std::string& host, int port) override;
@@ -33,13 +33,13 @@ public:
     void closeAll();
 
 private:
-    class Socket;
+    struct Socket;
     Socket* find(const std::string& name) const;
 
     asio::io_context& context_;
     const std::string address_;
-    const virtual_controller::LinkFaults& faults_;
-    std::map<std::string, std::shared_ptr<Socket>> sockets_;  // shared with their operations
+    virtual_controller::LinkFaults& faults_;
+    std::map<std::string, std::unique_ptr<Socket>> sockets_;
 };
 
 }  // namespace metier::virtual_ur

@@ -1,0 +1,50 @@
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "../tests/fake_peer.hpp"
+#include "metier/virtual_ur/rtde_session.hpp"
+
+// Bytes as they come on port 30004, in two reads, with a cycle after each; and the same bytes as
+// the payload of each package type, in both versions.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace metier::virtual_ur;
+    RobotState state;
+    ControlInputs control;
+    RtdeShared shared{{3, 15, 8, 0},
+                      125.0,
+                      {state.inputs, control},
+                      [](const auto&) {},
+                      [](const std::string&) {},
+                      {}};
+    FakePeer peer;
+    const auto bytes = std::as_bytes(std::span(data, size));
+    {
+        RtdeSession session(shared, peer);
+        if (session.receive(bytes.first(size / 2))) {
+            session.cycle(state);
+            (void)session.receive(bytes.subspan(size / 2));
+            session.cycle(state);
+        }
+        RtdeSession framed(shared, peer);
+        for (const char* types = "OIUSOVvPMUIS"; *types != 0; ++types) {
+            ByteWriter package;
+            package.put(static_cast<std::uint16_t>(size + 3))
+                .put(static_cast<std::uint8_t>(*types))
+                .bytes(bytes);
+            (void)framed.receive(std::move(package).take());
+            framed.cycle(state);
+        }
+    }
+    for (const auto& sent : peer.sent) {
+        ByteReader head(sent);
+        if (head.get<std::uint16_t>() != sent.size()) {
+            std::abort();
+        }
+    }
+    if (!shared.claimed.empty()) {
+        std::abort();
+    }
+    return 0;
+}
