@@ -50,14 +50,13 @@ Result<void> RtdeSession::negotiate(const RtdeRequest& request, SteadyTime deadl
     if (!version) {
         return fail(version.error());
     }
-    version_ = *version;
     const double highest =
-        version_.major < kFirstESeries ? kHighestFrequencyCb3 : kHighestFrequency;
+        version->major < kFirstESeries ? kHighestFrequencyCb3 : kHighestFrequency;
     if (request.frequency > highest) {
         return fail(Errc::not_supported,
                     fmt::format("software {}.{} gives at most {} Hz, asked for are {} Hz: set "
                                 "frequency",
-                                version_.major, version_.minor, highest, request.frequency));
+                                version->major, version->minor, highest, request.frequency));
     }
     return setUpOutputs(request.frequency, deadline)
         .and_then([&] { return setUpInputs(request.register_base, deadline); })
@@ -171,6 +170,12 @@ Result<ControllerState> RtdeSession::next(SteadyTime deadline) {
 
 Result<void> RtdeSession::write(const rtde::Setpoint& setpoint, SteadyTime deadline) {
     return link_.send(rtde::setpointPackage(input_recipe_, setpoint), deadline);
+}
+
+void RtdeSession::end(SteadyTime deadline) {
+    if (write({}, deadline)) {
+        (void)link_.send(rtde::pause(), deadline);
+    }
 }
 
 Error RtdeSession::atPeer(Error error) const {

@@ -113,6 +113,9 @@ Result<void> UrArm::resetFault() {
     if (core_.safetyState() == SafetyState::normal) {
         return {};
     }
+    if (core_.safetyState() == SafetyState::disconnected) {
+        return fail(Errc::connection_lost, core_.safety().text);
+    }
     const std::lock_guard lock(reset_mutex_);
     if (!reset_.valid()) {
         auto outcome = std::make_shared<std::promise<Result<void>>>();
@@ -174,6 +177,7 @@ void UrArm::run(const std::stop_token& stop) {
         if (session) {
             back_off.reset();
             lost(serve(*session, stop));
+            session->end(std::chrono::steady_clock::now() + link_timeout_);
         } else {
             lost(session.error());
         }

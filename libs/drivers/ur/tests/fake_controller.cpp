@@ -215,9 +215,9 @@ std::vector<std::string> FakeController::commands() const {
     return commands_;
 }
 
-int FakeController::rtdeConnections() const {
+bool FakeController::paused() const {
     const std::lock_guard lock(mutex_);
-    return rtde_connections_;
+    return !streaming_;
 }
 
 // ---- servers -----------------------------------------------------------------------------------
@@ -248,7 +248,6 @@ void FakeController::serveRtde(link::TcpLink& link, const std::stop_token& stop)
     {
         const std::lock_guard lock(mutex_);
         streaming_ = false;
-        ++rtde_connections_;
         generation = generation_ + rtde_generation_;
     }
     while (!stop.stop_requested()) {
@@ -302,6 +301,9 @@ std::vector<std::byte> FakeController::answer(std::uint8_t type,
         case 'S':
             streaming_ = knobs_.accepts_start;
             return rtdePackage('S', WireBytes().u8(knobs_.accepts_start ? 1 : 0).bytes());
+        case 'P':
+            streaming_ = false;
+            return rtdePackage('P', WireBytes().u8(1).bytes());
         case 'U':
             takeInput(payload);
             return {};

@@ -81,12 +81,11 @@ public:
     /// Bytes of the set-point package that came last.
     std::vector<std::byte> lastInput() const;
     std::vector<std::string> commands() const;
-    int rtdeConnections() const;
+    bool paused() const;
 
 private:
     using Serve = void (FakeController::*)(link::TcpLink&, const std::stop_token&);
 
-    void start();
     void accept(std::size_t index, Serve serve, const std::stop_token& stop);
     void serveRtde(link::TcpLink& link, const std::stop_token& stop);
     void servePrimary(link::TcpLink& link, const std::stop_token& stop);
@@ -126,7 +125,6 @@ private:
     std::int32_t script_token_ = 0;
     int script_silence_ = 0;
     int uploads_ = 0;
-    int rtde_connections_ = 0;
     std::string script_;
     std::vector<std::byte> last_input_;
     std::vector<std::vector<std::byte>> to_say_;

@@ -96,6 +96,20 @@ TEST_F(ArmTest, TellsTheSourceWhenTheDriverIsShutDown) {
     EXPECT_EQ(source->ends(), 1);
 }
 
+TEST_F(ArmTest, TakesTheTokenAwayWhenItIsShutDown) {
+    openReady();
+    auto source = moving();
+    device_ = {};
+    const auto noToken = [&] {
+        const auto input = fake_.lastInput();
+        return input.size() == 57 &&
+               std::all_of(input.begin() + 1, input.begin() + 5,
+                           [](std::byte byte) { return byte == std::byte{0}; });
+    };
+    EXPECT_TRUE(fake_.await(noToken));
+    EXPECT_TRUE(fake_.await([&] { return fake_.paused(); }));
+}
+
 TEST_F(ArmTest, CountsTheCyclesThatDidNotCome) {
     openReady();
     const auto before = arm().state();

@@ -36,7 +36,9 @@ public:
     Result<ControllerState> next(SteadyTime deadline);
     /// Errors: connection_lost, timeout. Does not allocate if there is none.
     Result<void> write(const rtde::Setpoint& setpoint, SteadyTime deadline);
-    const rtde::ControllerVersion& version() const noexcept { return version_; }
+    /// Takes the token away from a script that still runs and pauses the data packages; whatever
+    /// fails then is over anyway.
+    void end(SteadyTime deadline);
 
 private:
     RtdeSession(link::TcpLink link, std::int32_t register_base);
@@ -56,7 +58,6 @@ private:
     std::size_t to_consume_ = 0;
     rtde::OutputRecipe outputs_;
     std::uint8_t input_recipe_ = 0;
-    rtde::ControllerVersion version_;
 };
 
 }  // namespace metier::ur_driver
