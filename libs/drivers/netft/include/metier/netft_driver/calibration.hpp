@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "metier/base/error.hpp"
+
+namespace metier::netft_driver {
+
+/// What one count stands for.
+struct Calibration {
+    double force_per_count = 0.0;   ///< [N]
+    double torque_per_count = 0.0;  ///< [Nm]
+};
+
+/// Units by text, for pages that do not tell them; empty: not known.
+struct UnitTexts {
+    std::string force{};
+    std::string torque{};
+};
+
+/// A force unit in N, a torque unit in Nm: "lbf" gives 4.448. Upper and lower case, blanks and
+/// hyphens do not matter.
+/// Errors: invalid_argument for an unknown one, naming those that are known.
+Result<double> forceUnit(std::string_view text);
+Result<double> torqueUnit(std::string_view text);
+
+/// Reads the page netftapi2.xml, or the older netftcalapi.xml.
+/// \param fallback the units, if the page does not tell them
+/// Errors: invalid_argument if it is no such page, counts are missing or not positive, or a unit is
+///         unknown or missing: nothing is guessed.
+Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fallback);
+
+/// \param counts_per_force [1/N], counts_per_torque [1/Nm], as the settings give them
+Calibration calibrationFrom(double counts_per_force, double counts_per_torque) noexcept;
+
+}  // namespace metier::netft_driver

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "metier/device/force_torque_sensor.hpp"
+#include "metier/netft_driver/calibration.hpp"
+#include "metier/netft_driver/rdt.hpp"
+
+namespace metier::netft_driver {
+
+/// What the datagrams of one stream tell: measurements, and what is missing between them.
+///
+/// Taking a datagram that is one does not allocate. Threading: one thread.
+class RecordStream {
+public:
+    explicit RecordStream(const Calibration& calibration) : calibration_(calibration) {}
+
+    /// Takes a datagram of one or more records. \return its newest measurement; nothing if it has
+    /// no record that is newer than those before. Its health is normal or fault.
+    std::optional<device::WrenchSample> take(std::span<const std::byte> datagram, SteadyTime now);
+
+    /// Of the newest record.
+    std::uint32_t status() const noexcept { return status_; }
+    /// Records that were sent and did not come.
+    std::uint64_t lost() const noexcept { return lost_; }
+    /// Records that came twice or too late.
+    std::uint64_t late() const noexcept { return late_; }
+    /// Datagrams that are no records.
+    std::uint64_t rejected() const noexcept { return rejected_; }
+
+private:
+    /// Whether the record is newer than those before; counts what it tells of them.
+    bool isNew(const RdtRecord& record);
+    device::WrenchSample toSample(const RdtRecord& record, SteadyTime now) const noexcept;
+
+    Calibration calibration_;
+    std::optional<RdtRecord> last_;
+    std::uint64_t sensor_sequence_ = 0;  // as the sensor's, without its overflow
+    std::uint32_t status_ = 0;
+    std::uint64_t lost_ = 0;
+    std::uint64_t late_ = 0;
+    std::uint64_t rejected_ = 0;
+};
+
+}  // namespace metier::netft_driver

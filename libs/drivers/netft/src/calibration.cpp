@@ -1,0 +1,147 @@
+#include "metier/netft_driver/calibration.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cctype>
+#include <charconv>
+#include <pugixml.hpp>
+#include <span>
+#include <vector>
+
+namespace metier::netft_driver {
+namespace {
+
+struct Unit {
+    std::string_view name;  // in lower case, without hyphens
+    double si;
+};
+
+constexpr double kPoundForce = 4.4482216152605;
+constexpr double kInch = 0.0254;
+constexpr double kFoot = 0.3048;
+constexpr double kLargestCounts = 1e12;
+constexpr std::string_view kBlanks = " \t\r\n";
+
+constexpr std::array kForceUnits{Unit{"n", 1.0}, Unit{"kn", 1e3}, Unit{"lbf", kPoundForce},
+                                 Unit{"klbf", 1e3 * kPoundForce}};
+constexpr std::array kTorqueUnits{
+    Unit{"nm", 1.0},
+    Unit{"nmm", 1e-3},
+    Unit{"knm", 1e3},
+    Unit{"lbfin", kPoundForce* kInch},
+    Unit{"lbfft", kPoundForce* kFoot},
+};
+
+std::string plain(std::string_view text) {
+    std::string result;
+    for (const char letter : text) {
+        if (std::isalnum(static_cast<unsigned char>(letter)) != 0) {
+            result += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+        }
+    }
+    return result;
+}
+
+Result<double> unitIn(std::span<const Unit> units, std::string_view text, std::string_view what) {
+    const auto wanted = plain(text);
+    std::vector<std::string_view> known;
+    for (const auto& unit : units) {
+        if (unit.name == wanted) {
+            return unit.si;
+        }
+        known.push_back(unit.name);
+    }
+    constexpr std::size_t kLongestShown = 32;
+    return fail(Errc::invalid_argument,
+                fmt::format("unknown {} unit '{}'; known are {}", what,
+                            text.substr(0, kLongestShown), fmt::join(known, ", ")));
+}
+
+/// The first of the elements that is there and not empty, anywhere on the page.
+std::string textOf(const pugi::xml_document& page, std::span<const char* const> names) {
+    for (const auto* name : names) {
+        const auto node = page.find_node(
+            [&](const pugi::xml_node& n) { return n.name() == std::string_view(name); });
+        const std::string_view text = node.text().get();
+        const auto begin = text.find_first_not_of(kBlanks);
+        if (begin != std::string_view::npos) {
+            return std::string(text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1));
+        }
+    }
+    return {};
+}
+
+/// Where each value is on the newer and on the older page.
+constexpr std::array kForceCounts{"cfgcpf", "calcpf"};
+constexpr std::array kTorqueCounts{"cfgcpt", "calcpt"};
+constexpr std::array kForceUnit{"scfgfu", "scalfu"};
+constexpr std::array kTorqueUnit{"scfgtu", "scaltu"};
+
+Result<double> countsOf(const pugi::xml_document& page, std::span<const char* const> names) {
+    const auto text = textOf(page, names);
+    double counts = 0.0;
+    const auto* const text_end = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), text_end, counts);
+    if (error == std::errc() && end == text_end && counts > 0.0 && counts <= kLargestCounts) {
+        return counts;
+    }
+    return fail(Errc::invalid_argument,
+                fmt::format("calibration: {} is '{}', expected counts per unit", names.front(),
+                            text.substr(0, 32)));
+}
+
+Result<double> unitOf(const std::string& told, const std::string& fallback,
+                      Result<double> (*parse)(std::string_view), std::string_view what) {
+    const auto& text = told.empty() ? fallback : told;
+    if (text.empty()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("calibration: no unit of {}; give it by the setting {}_unit, or "
+                                "give counts_per_force and counts_per_torque",
+                                what, what));
+    }
+    return parse(text);
+}
+
+}  // namespace
+
+Result<double> forceUnit(std::string_view text) {
+    return unitIn(kForceUnits, text, "force");
+}
+
+Result<double> torqueUnit(std::string_view text) {
+    return unitIn(kTorqueUnits, text, "torque");
+}
+
+Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fallback) {
+    pugi::xml_document document;
+    const auto parsed = document.load_buffer(page.data(), page.size());
+    if (!parsed) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("calibration: not XML: {}", parsed.description()));
+    }
+    const auto force_counts = countsOf(document, kForceCounts);
+    if (!force_counts) {
+        return fail(force_counts.error());
+    }
+    const auto torque_counts = countsOf(document, kTorqueCounts);
+    if (!torque_counts) {
+        return fail(torque_counts.error());
+    }
+    const auto force = unitOf(textOf(document, kForceUnit), fallback.force, forceUnit, "force");
+    if (!force) {
+        return fail(force.error());
+    }
+    const auto torque =
+        unitOf(textOf(document, kTorqueUnit), fallback.torque, torqueUnit, "torque");
+    if (!torque) {
+        return fail(torque.error());
+    }
+    return Calibration{*force / *force_counts, *torque / *torque_counts};
+}
+
+Calibration calibrationFrom(double counts_per_force, double counts_per_torque) noexcept {
+    return {1.0 / counts_per_force, 1.0 / counts_per_torque};
+}
+
+}  // namespace metier::netft_driver

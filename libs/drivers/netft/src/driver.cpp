@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "metier/netft_driver/netft_sensor.hpp"
+
+namespace metier::netft_driver {
+namespace {
+
+constexpr double kSilentPeriods = 5.0;
+// A computer without a real-time kernel delays a thread by as much now and then.
+constexpr double kShortestSilence = 0.02;
+
+std::uint16_t portOr(const configuration::Settings& settings, std::string_view name,
+                     std::uint16_t fallback) {
+    return static_cast<std::uint16_t>(settings.numberOr(name, fallback, 1, 65535));
+}
+
+/// Counts by setting: both, or none.
+std::optional<Calibration> givenCalibration(const configuration::Settings& settings) {
+    const bool force = settings.has("counts_per_force");
+    const bool torque = settings.has("counts_per_torque");
+    if (force != torque) {
+        settings.reject(force ? "counts_per_torque" : "counts_per_force",
+                        "missing; counts are given for both or for none");
+    }
+    if (!force || !torque) {
+        return std::nullopt;
+    }
+    return calibrationFrom(settings.numberOr("counts_per_force", 1.0, 1e-3, 1e12),
+                           settings.numberOr("counts_per_torque", 1.0, 1e-3, 1e12));
+}
+
+std::string unitText(const configuration::Settings& settings, std::string_view name,
+                     Result<double> (*parse)(std::string_view)) {
+    auto text = settings.textOr(name, "");
+    if (!text.empty()) {
+        if (const auto unit = parse(text); !unit) {
+            settings.reject(name, unit.error().message);
+        }
+    }
+    return text;
+}
+
+Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+    auto options = readOptions(request);
+    if (!options) {
+        return fail(std::move(options.error()));
+    }
+    auto sensor = std::make_shared<NetftSensor>(std::move(*options));
+    driver::OpenDevice device;
+    device.force_torque_sensor = sensor.get();
+    device.owner = std::move(sensor);
+    return device;
+}
+
+}  // namespace
+
+Result<NetftOptions> readOptions(const driver::OpenRequest& request) {
+    const auto& settings = request.settings;
+    NetftOptions options;
+    options.name = request.name;
+    options.host = request.address;
+    options.port = portOr(settings, "port", options.port);
+    options.http_port = portOr(settings, "http_port", options.http_port);
+    options.calibration = givenCalibration(settings);
+    options.units = {unitText(settings, "force_unit", forceUnit),
+                     unitText(settings, "torque_unit", torqueUnit)};
+    const double rate = settings.numberOr("rate", 1000.0, 1.0, 7000.0);
+    const double silence =
+        settings.numberOr("silence", std::max(kSilentPeriods / rate, kShortestSilence), 0.001, 5.0);
+    options.silence = std::chrono::milliseconds(std::llround(silence * 1e3));
+    return settings.finish().map([&] { return options; });
+}
+
+}  // namespace metier::netft_driver
+
+namespace metier::driver {
+
+Driver netftDriver();
+
+Driver netftDriver() {
+    return {.name = "netft",
+            .help = "ATI Net F/T force-torque sensors: RDT over UDP, calibration by HTTP",
+            .open = netft_driver::open};
+}
+
+}  // namespace metier::driver

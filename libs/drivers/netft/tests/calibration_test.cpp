@@ -1,0 +1,92 @@
+#include "metier/netft_driver/calibration.hpp"
+
+#include <gmock/gmock.h>
+
+namespace metier::netft_driver {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string newPage(const std::string& force_unit, const std::string& torque_unit) {
+    return "<?xml version=\"1.0\"?><netft><prodname>Ethernet Axia</prodname>"
+           "<cfgcpf>1000000</cfgcpf><cfgcpt>2000000</cfgcpt><scfgfu>" +
+           force_unit + "</scfgfu><scfgtu>" + torque_unit + "</scfgtu></netft>";
+}
+
+const UnitTexts kNoUnits{};
+
+TEST(Calibration, IsReadFromTheNewerPage) {
+    const auto read = parseCalibration(newPage("N", "Nm"), kNoUnits);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_DOUBLE_EQ(read->force_per_count, 1e-6);
+    EXPECT_DOUBLE_EQ(read->torque_per_count, 5e-7);
+}
+
+TEST(Calibration, IsConvertedToSi) {
+    const auto read = parseCalibration(newPage(" lbf\n", "lbf-in"), kNoUnits);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_NEAR(read->force_per_count, 4.4482216152605e-6, 1e-15);
+    EXPECT_NEAR(read->torque_per_count, 4.4482216152605 * 0.0254 / 2e6, 1e-18);
+}
+
+TEST(Calibration, KnowsUnitsHoweverTheyAreWritten) {
+    EXPECT_DOUBLE_EQ(*forceUnit("kN"), 1000.0);
+    EXPECT_NEAR(*forceUnit("Klbf"), 4448.2216152605, 1e-9);
+    EXPECT_DOUBLE_EQ(*torqueUnit("N-m"), 1.0);
+    EXPECT_DOUBLE_EQ(*torqueUnit("N·m"), 1.0);
+    EXPECT_DOUBLE_EQ(*torqueUnit("N-mm"), 1e-3);
+    EXPECT_DOUBLE_EQ(*torqueUnit("kN-m"), 1e3);
+    EXPECT_NEAR(*torqueUnit("lbf-ft"), 1.3558179483314, 1e-10);
+}
+
+TEST(Calibration, RefusesUnitsThatItDoesNotKnow) {
+    EXPECT_THAT(forceUnit("kg").error().message, HasSubstr("unknown force unit 'kg'"));
+    EXPECT_THAT(torqueUnit("N").error().message, HasSubstr("known are nm"));
+    EXPECT_FALSE(parseCalibration(newPage("kg", "Nm"), kNoUnits));
+    EXPECT_FALSE(parseCalibration(newPage("N", "kg-cm"), kNoUnits));
+    EXPECT_LT(forceUnit(std::string(5000, 'x')).error().message.size(), 200U);
+}
+
+TEST(Calibration, DoesNotGuessAUnit) {
+    const auto read = parseCalibration(newPage("", "Nm"), kNoUnits);
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error().message, HasSubstr("no unit of force"));
+}
+
+TEST(Calibration, IsReadFromTheOlderPageWithUnitsBySetting) {
+    const std::string page =
+        "<netftCalibration><calcpf>500</calcpf><calcpt>250</calcpt></netftCalibration>";
+    EXPECT_FALSE(parseCalibration(page, kNoUnits));
+    const auto read = parseCalibration(page, {"N", "Nm"});
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_DOUBLE_EQ(read->force_per_count, 0.002);
+    EXPECT_DOUBLE_EQ(read->torque_per_count, 0.004);
+}
+
+TEST(Calibration, BelievesThePageOverTheSetting) {
+    EXPECT_DOUBLE_EQ(parseCalibration(newPage("kN", "Nm"), {"N", "Nm"})->force_per_count, 1e-3);
+}
+
+TEST(Calibration, RefusesCountsThatAreNone) {
+    for (const std::string counts : {"", "0", "-1", "abc", "12x", "nan", "inf", "1e30"}) {
+        const auto page = "<a><cfgcpf>" + counts + "</cfgcpf><cfgcpt>1</cfgcpt></a>";
+        const auto read = parseCalibration(page, {"N", "Nm"});
+        ASSERT_FALSE(read) << counts;
+        EXPECT_THAT(read.error().message, HasSubstr("cfgcpf")) << counts;
+    }
+}
+
+TEST(Calibration, RefusesWhatIsNoXml) {
+    EXPECT_THAT(parseCalibration("<a><b>", kNoUnits).error().message, HasSubstr("not XML"));
+    EXPECT_FALSE(parseCalibration("", kNoUnits));
+    EXPECT_FALSE(parseCalibration("<html>404</html>", kNoUnits));
+}
+
+TEST(Calibration, CanBeGivenInSi) {
+    const auto given = calibrationFrom(1e6, 1e9);
+    EXPECT_DOUBLE_EQ(given.force_per_count, 1e-6);
+    EXPECT_DOUBLE_EQ(given.torque_per_count, 1e-9);
+}
+
+}  // namespace
+}  // namespace metier::netft_driver

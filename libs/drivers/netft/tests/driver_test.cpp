@@ -1,0 +1,62 @@
+#include <gmock/gmock.h>
+
+#include "metier/netft_driver/netft_sensor.hpp"
+
+namespace metier::driver {
+Driver netftDriver();
+}
+
+namespace metier::netft_driver {
+namespace {
+
+using ::testing::HasSubstr;
+
+driver::OpenRequest request(std::map<std::string, configuration::Settings::Value> values) {
+    return {.name = "wrist",
+            .address = "127.0.0.1",
+            .settings = configuration::Settings("cell.toml:3: sensor", std::move(values))};
+}
+
+TEST(NetftDriver, NeedsNoSettings) {
+    const auto options = readOptions(request({}));
+    ASSERT_TRUE(options);
+    EXPECT_EQ(options->port, 49152);
+    EXPECT_EQ(options->http_port, 80);
+    EXPECT_FALSE(options->calibration);
+    EXPECT_EQ(options->silence.count(), 20);
+}
+
+TEST(NetftDriver, WaitsFivePeriodsOfASlowSensor) {
+    EXPECT_EQ(readOptions(request({{"rate", 100.0}}))->silence.count(), 50);
+    EXPECT_EQ(readOptions(request({{"rate", 7000.0}}))->silence.count(), 20);
+    EXPECT_EQ(readOptions(request({{"silence", 0.1}}))->silence.count(), 100);
+}
+
+TEST(NetftDriver, TakesCountsInsteadOfTheSensorsPage) {
+    const auto options =
+        readOptions(request({{"counts_per_force", 1e6}, {"counts_per_torque", 1e9}}));
+    ASSERT_TRUE(options->calibration);
+    EXPECT_DOUBLE_EQ(options->calibration->torque_per_count, 1e-9);
+    EXPECT_THAT(readOptions(request({{"counts_per_force", 1e6}})).error().message,
+                HasSubstr("counts_per_torque: missing"));
+}
+
+TEST(NetftDriver, TellsEverySettingThatIsWrong) {
+    const auto device = driver::netftDriver().open(
+        request({{"rate", 9000.0}, {"force_unit", std::string("stone")}, {"prt", 1.0}}));
+    ASSERT_FALSE(device);
+    EXPECT_THAT(device.error().message, HasSubstr("rate: 9000 is not within 1 to 7000"));
+    EXPECT_THAT(device.error().message, HasSubstr("unknown force unit 'stone'"));
+    EXPECT_THAT(device.error().message, HasSubstr("prt: unknown"));
+}
+
+TEST(NetftDriver, OpensASensorThatIsNotThereYet) {
+    auto device = driver::netftDriver().open(request({{"http_port", 9.0}}));
+    ASSERT_TRUE(device);
+    ASSERT_NE(device->force_torque_sensor, nullptr);
+    EXPECT_EQ(device->force_torque_sensor->sample().health, device::SafetyState::disconnected);
+    EXPECT_EQ(device->force_torque_sensor->name(), "wrist");
+}
+
+}  // namespace
+}  // namespace metier::netft_driver

@@ -1,0 +1,215 @@
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "fake_sensor.hpp"
+#include "metier/netft_driver/netft_sensor.hpp"
+#include "web_page.hpp"
+
+namespace metier::netft_driver::testing {
+namespace {
+
+using namespace std::chrono_literals;
+using device::SafetyState;
+using ::testing::HasSubstr;
+
+class Sensor : public ::testing::Test {
+protected:
+    Sensor() {
+        options.name = "wrist";
+        options.host = "127.0.0.1";
+        options.port = fake.port();
+        options.calibration = calibrationFrom(1000, 1000);
+        options.silence = 300ms;  // a busy machine is no silent sensor
+    }
+
+    void open() { sensor = std::make_unique<NetftSensor>(options); }
+
+    /// Waits until `done`, which the sensor's own changes bring about.
+    template <typename Done>
+    bool eventually(Done done) {
+        std::mutex mutex;
+        std::condition_variable changed;
+        const auto watch = sensor->onSafetyChange([&](const auto&) { changed.notify_all(); });
+        std::unique_lock lock(mutex);
+        const auto deadline = std::chrono::steady_clock::now() + 10s;
+        while (!done() && std::chrono::steady_clock::now() < deadline) {
+            changed.wait_for(lock, 5ms);
+        }
+        return done();
+    }
+    bool reaches(SafetyState state) {
+        return eventually([&] { return sensor->safety().state == state; });
+    }
+
+    FakeSensor fake;
+    NetftOptions options;
+    std::unique_ptr<NetftSensor> sensor;
+};
+
+TEST_F(Sensor, MeasuresInSi) {
+    fake.setForce(-12'500);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
+    const auto sample = sensor->sample();
+    EXPECT_EQ(sample.health, SafetyState::normal);
+    EXPECT_DOUBLE_EQ(sample.force[2], -12.5);
+    EXPECT_TRUE(eventually([&] { return sensor->sample().sequence > sample.sequence + 5; }));
+}
+
+TEST_F(Sensor, AsksForRecordsUntilTheyCome) {
+    fake.ignoreStarts(3);
+    open();
+    EXPECT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
+    EXPECT_TRUE(fake.got(2, 4));
+}
+
+TEST_F(Sensor, GivesUpAfterTenRequestsAndBeginsAnew) {
+    fake.ignoreStarts(10);
+    open();
+    ASSERT_TRUE(eventually([&] {
+        return sensor->safety().text.find("no record after 10 requests") != std::string::npos;
+    })) << sensor->safety().text;
+    EXPECT_EQ(sensor->sample().health, SafetyState::disconnected);
+    EXPECT_TRUE(reaches(SafetyState::normal));
+}
+
+TEST_F(Sensor, TellsAnErrorAndItsEnd) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    fake.setStatus(0x80020000U);
+    ASSERT_TRUE(reaches(SafetyState::fault));
+    EXPECT_EQ(sensor->safety().text, "wrist: gauge saturation or A/D error (status 80020000)");
+    EXPECT_EQ(sensor->sample().health, SafetyState::fault);
+    EXPECT_EQ(sensor->tare().error().code, Errc::device_fault);
+    fake.setStatus(0x80010000U);
+    ASSERT_TRUE(reaches(SafetyState::normal)) << "a warning";
+}
+
+TEST_F(Sensor, BeginsInAFaultIfItHasOne) {
+    fake.setStatus(0x80000004U);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::fault));
+    EXPECT_THAT(sensor->safety().text, HasSubstr("temperature"));
+}
+
+TEST_F(Sensor, ThatFallsSilentIsLostAndFoundAgain) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    fake.silence(true);
+    ASSERT_TRUE(reaches(SafetyState::disconnected));
+    EXPECT_THAT(sensor->safety().text, HasSubstr("no record for 300 ms"));
+    EXPECT_THAT(sensor->safety().text, HasSubstr("wrist: 127.0.0.1:"));
+    EXPECT_EQ(sensor->sample().health, SafetyState::disconnected);
+    EXPECT_EQ(sensor->tare().error().code, Errc::connection_lost);
+    fake.silence(false);
+    EXPECT_TRUE(reaches(SafetyState::normal));
+}
+
+TEST_F(Sensor, CountsTheRecordsThatAreLost) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    const auto before = sensor->lostRecords();
+    fake.lose(3);
+    EXPECT_TRUE(eventually([&] { return sensor->lostRecords() >= before + 3; }));
+}
+
+TEST_F(Sensor, IsNotTroubledByWhatIsNoRecord) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    fake.sendNonsense();
+    const auto now = sensor->sample().sequence;
+    EXPECT_TRUE(eventually([&] { return sensor->sample().sequence > now + 5; }));
+    EXPECT_EQ(sensor->safety().state, SafetyState::normal);
+}
+
+TEST_F(Sensor, IsTared) {
+    fake.setForce(12'000);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    const auto tared = sensor->tare();
+    ASSERT_TRUE(tared) << tared.error().message;
+    EXPECT_NEAR(sensor->sample().force[2], 0.0, 1e-9);
+    EXPECT_TRUE(fake.got(0x42));
+}
+
+TEST_F(Sensor, TellsThatATareHadNoEffect) {
+    fake.setForce(12'000);
+    fake.setDeaf(true);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    const auto tared = sensor->tare();
+    ASSERT_FALSE(tared);
+    EXPECT_EQ(tared.error().code, Errc::timeout);
+    EXPECT_THAT(tared.error().message, HasSubstr("wrist: after 3 requests"));
+    EXPECT_TRUE(fake.got(0x42, 3));
+}
+
+TEST_F(Sensor, EndsItsStream) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    sensor.reset();
+    EXPECT_TRUE(fake.got(0));
+}
+
+std::string page(const std::string& unit) {
+    return ok("<netft><cfgcpf>1000</cfgcpf><cfgcpt>1000</cfgcpt><scfgfu>" + unit +
+              "</scfgfu><scfgtu>Nm</scfgtu></netft>");
+}
+
+TEST_F(Sensor, ReadsItsCalibrationFromItsPage) {
+    WebPage web({{"/netftapi2.xml", page("lbf")}});
+    options.calibration.reset();
+    options.http_port = web.port();
+    fake.setForce(1'000);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
+    EXPECT_NEAR(sensor->sample().force[2], 4.4482216152605, 1e-9);
+}
+
+TEST_F(Sensor, ReadsTheOlderPageIfThereIsNoNewer) {
+    WebPage web({{"/netftcalapi.xml", ok("<netftCalibration><calcpf>10</calcpf><calcpt>10"
+                                         "</calcpt></netftCalibration>")}});
+    options.calibration.reset();
+    options.units = {"N", "Nm"};
+    options.http_port = web.port();
+    fake.setForce(1'000);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
+    EXPECT_NEAR(sensor->sample().force[2], 100.0, 1e-9);
+}
+
+TEST_F(Sensor, DoesNotGuessItsCalibration) {
+    WebPage web({});
+    options.calibration.reset();
+    options.http_port = web.port();
+    open();
+    ASSERT_TRUE(eventually([&] {
+        return sensor->safety().text.find("HTTP status 404") != std::string::npos;
+    })) << sensor->safety().text;
+    EXPECT_EQ(sensor->sample().health, SafetyState::disconnected);
+    web.set("/netftapi2.xml", page("kg"));
+    ASSERT_TRUE(eventually([&] {
+        return sensor->safety().text.find("unknown force unit 'kg'") != std::string::npos;
+    })) << sensor->safety().text;
+    web.set("/netftapi2.xml", page("N"));
+    EXPECT_TRUE(reaches(SafetyState::normal));
+}
+
+TEST_F(Sensor, ReadsItsCalibrationAnewAfterALoss) {
+    WebPage web({{"/netftapi2.xml", page("N")}});
+    options.calibration.reset();
+    options.http_port = web.port();
+    fake.setForce(1'000);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    web.set("/netftapi2.xml", page("kN"));
+    fake.silence(true);
+    ASSERT_TRUE(reaches(SafetyState::disconnected));
+    fake.silence(false);
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    EXPECT_NEAR(sensor->sample().force[2], 1000.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace metier::netft_driver::testing
