@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "served_skills.hpp"
 
@@ -61,6 +62,20 @@ TEST_F(Publishing, ReportsEveryFieldOfAnotherType) {
     EXPECT_EQ(refused.error().code, Errc::type_mismatch);
     EXPECT_THAT(refused.error().message,
                 AllOf(HasSubstr("TargetJointPosition"), HasSubstr("SpeedOverride")));
+}
+
+TEST_F(Publishing, TheForceMovesTypeHasANodeForEachOfItsFields) {
+    const auto model = motion::RobotModel::load(METIER_MODELS_DIR "/iiwa7.toml").value();
+    skill::SkillDescription description{.name = "CartesianLinearForceMoveSkill",
+                                        .type = "CartesianLinearForceMoveSkillType"};
+    description.parameters = robot_skills::forceMoveFields(model).fields();
+    auto results = robot_skills::forceMoveResultFields().fields();
+    for (auto& result : results) {
+        result.place = skill::Place::final_result;
+    }
+    description.results = std::move(results);
+    const auto published = publish(description);
+    ASSERT_TRUE(published) << published.error().message;
 }
 
 TEST_F(Publishing, RefusesATypeThatIsNotThere) {

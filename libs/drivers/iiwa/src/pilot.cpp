@@ -20,6 +20,8 @@ namespace {
 
 // A commanded position is kept while the arm is this near [rad].
 constexpr double kHeld = 2e-3;
+// Most set-points that are left out after late cycles, so that a stream keeps its time.
+constexpr std::uint64_t kMostSkipped = 4;
 // A setting that was refused is tried again after this time [s].
 constexpr double kTryAgain = 1.0;
 
@@ -140,7 +142,7 @@ Command Pilot::command() noexcept {
     if (core_.stopRequested()) {
         servo_.stop();
     }
-    return servo_.command(*source, state_);
+    return servo_.command(*source, state_, 1 + std::exchange(skipped_, 0));
 }
 
 void Pilot::beginWhatIsAsked() noexcept {
@@ -149,6 +151,7 @@ void Pilot::beginWhatIsAsked() noexcept {
         planned_.begin({*motion, flange_from_tool_, options_.force_tolerance}, answer_, settings_);
     } else if (core_.active() != nullptr) {
         mode_ = Mode::servo;
+        skipped_ = 0;
         servo_.begin(state_.commanded_position, settings_);
     }
 }
@@ -206,6 +209,11 @@ void Pilot::takeChore(const Command& sent, const CabinetState& answer) noexcept 
     if (answer.executed) {
         settings_.taken(sent);
     }
+}
+
+void Pilot::missedCycles(std::uint64_t count) noexcept {
+    state_.missed_cycles += count;
+    skipped_ = static_cast<int>(std::min<std::uint64_t>(count, kMostSkipped));
 }
 
 void Pilot::takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept {
@@ -315,63 +323,6 @@ void Pilot::change(Condition condition, std::string text) {
     const bool stop = condition == Condition::not_ready;
     core_.setSafety({stop ? SafetyState::protective_stop : SafetyState::fault,
                      core_.info().name + ": " + std::move(text), false});
-}
-
-// ---- any thread --------------------------------------------------------------------------------
-
-Result<void> Pilot::attach(std::shared_ptr<device::SetPointSource> source) {
-    const std::lock_guard lock(admission_);
-    if (slot_.occupied()) {
-        return fail(Errc::resource_unavailable,
-                    core_.info().name + ": a motion of the cabinet's planner runs");
-    }
-    return core_.attach(std::move(source));
-}
-
-Result<void> Pilot::move(const device::PlannedMotion& motion, MotionSlot::Done done) {
-    const std::lock_guard lock(admission_);
-    const auto safety = core_.safety();
-    if (safety.state != SafetyState::normal) {
-        const bool lost = safety.state == SafetyState::disconnected;
-        return fail(lost ? Errc::connection_lost : Errc::device_fault,
-                    fmt::format("{} ({})", safety.text, device::toString(safety.state)));
-    }
-    if (auto possible = checkMotion(model_, motion); !possible) {
-        return possible;
-    }
-    if (core_.active() != nullptr || !slot_.post(motion, std::move(done))) {
-        return fail(Errc::resource_unavailable, core_.info().name + ": another motion runs");
-    }
-    return {};
-}
-
-Result<void> Pilot::resetFault() {
-    const auto safety = core_.safety();
-    if (safety.state == SafetyState::normal) {
-        return {};
-    }
-    if (safety.state == SafetyState::disconnected) {
-        return fail(Errc::connection_lost, safety.text);
-    }
-    if (!latched_.load()) {
-        return fail(Errc::device_fault, safety.text);
-    }
-    if (!core_.state().standstill) {
-        return fail(Errc::device_fault, core_.info().name + ": the arm still brakes");
-    }
-    core_.setSafety({SafetyState::normal, "", false});
-    latched_.store(false);  // from now on the cycle judges again
-    return {};
-}
-
-void Pilot::dispatch() {
-    core_.dispatch();
-    std::string lost;
-    {
-        const std::lock_guard lock(lost_mutex_);
-        lost = lost_text_;
-    }
-    slot_.dispatch(core_.info().name, lost);
 }
 
 }  // namespace metier::iiwa_driver

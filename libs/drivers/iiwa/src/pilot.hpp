@@ -40,8 +40,8 @@ public:
     Command command() noexcept;
     /// Takes the answer to it. \param now when it came
     void take(const Command& sent, const CabinetState& answer, SteadyTime now) noexcept;
-    /// One cycle or more were late.
-    void missedCycles(std::uint64_t count) noexcept { state_.missed_cycles += count; }
+    /// So many cycles went by without a command.
+    void missedCycles(std::uint64_t count) noexcept;
     /// The cabinet is still told what every one is told first.
     bool settlingIn() const noexcept { return mode_ == Mode::settling_in; }
     /// The next command should follow without waiting for the next cycle.
@@ -97,6 +97,7 @@ private:
     SteadyTime last_answer_{};
     double try_again_in_ = 0.0;  ///< to tell a setting that was refused [s]
     Condition condition_ = Condition::none;
+    int skipped_ = 0;     ///< set-points to leave out next
     bool holds_ = false;  ///< the commanded position is one that was reached
 
     std::atomic<bool> latched_{false};

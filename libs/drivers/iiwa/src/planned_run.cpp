@@ -82,6 +82,7 @@ void PlannedRun::begin(const Request& request, const CabinetState& now,
     *this = PlannedRun();
     start_ = now.position;
     error_before_ = now.last_error;
+    condition_new_ = !now.force_condition_met;
     const auto move = moveCommand(request);
     requireSettings(request, settings);
     list_.add(move);

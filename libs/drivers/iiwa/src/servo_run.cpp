@@ -61,21 +61,36 @@ void ServoRun::stop() noexcept {
     }
 }
 
-Command ServoRun::command(device::SetPointSource& source, const device::ArmState& state) noexcept {
-    if (phase_ == Phase::entering) {
-        return list_.front();
+Command ServoRun::command(device::SetPointSource& source, const device::ArmState& state,
+                          int cycles) noexcept {
+    switch (phase_) {
+        case Phase::entering:
+            return list_.front();
+        case Phase::following:
+            return follow(source, state, cycles);
+        case Phase::done:
+            return askState();
+        case Phase::faulty:
+        case Phase::stopping:
+            return cancelled_ ? askState() : cancel();
     }
-    if (phase_ == Phase::following) {
+    return askState();
+}
+
+/// Each set-point is judged against the one before, also those that are left out.
+Command ServoRun::follow(device::SetPointSource& source, const device::ArmState& state,
+                         int cycles) noexcept {
+    for (int i = 0; i < cycles; ++i) {
         auto set_point = commanded_;
         if (source.next(state, set_point) == device::SetPointSource::Next::done) {
             phase_ = Phase::done;
-            return askState();
+            return moveJoints(commanded_);
         }
-        if (accept(set_point)) {
-            return moveJoints(set_point);
+        if (!accept(set_point)) {
+            return cancel();
         }
     }
-    return cancelled_ || phase_ == Phase::done ? askState() : cancel();
+    return moveJoints(commanded_);
 }
 
 bool ServoRun::refuse(const ServoFault& fault) noexcept {

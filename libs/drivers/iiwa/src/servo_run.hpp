@@ -44,7 +44,9 @@ public:
     void stop() noexcept;
 
     /// What to send now; asks the source for a set-point when it is time for one.
-    Command command(device::SetPointSource& source, const device::ArmState& state) noexcept;
+    /// \param cycles since the last set-point, >= 1: so many are asked for, the last is sent
+    Command command(device::SetPointSource& source, const device::ArmState& state,
+                    int cycles) noexcept;
     /// Takes the answer to it. \param step since the answer before [s]
     Status take(const Command& sent, const CabinetState& answer, double step,
                 CabinetSettings& settings) noexcept;
@@ -58,6 +60,8 @@ public:
 private:
     enum class Phase : std::uint8_t { entering, following, done, faulty, stopping };
 
+    Command follow(device::SetPointSource& source, const device::ArmState& state,
+                   int cycles) noexcept;
     bool accept(const device::JointArray& set_point) noexcept;
     bool refuse(const ServoFault& fault) noexcept;
     Status enter(const Command& sent, const CabinetState& answer,

@@ -73,7 +73,9 @@ Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
         if (pilot.toTell()) {
             clients_.signal();
         }
-        if (!pilot.hurried()) {
+        if (pilot.hurried()) {
+            scheduled = now;
+        } else {
             awaitCycle(scheduled);
         }
     }
@@ -105,14 +107,14 @@ Result<CabinetState> Session::exchange(link::TcpLink& link, const Command& comma
     return *state;
 }
 
-/// Waits for the next cycle; one that is past is not made up for.
+/// Waits for the next cycle. Cycles that are past are counted; the others keep their times.
 void Session::awaitCycle(SteadyTime& scheduled) {
     scheduled += options_.cycle;
     const auto now = steady_clock::now();
     if (now > scheduled) {
-        const auto late = static_cast<std::uint64_t>((now - scheduled) / options_.cycle);
-        clients_.pilot.missedCycles(late);
-        scheduled = now;
+        const auto late = (now - scheduled) / options_.cycle;
+        clients_.pilot.missedCycles(static_cast<std::uint64_t>(late));
+        scheduled += late * options_.cycle;
         return;
     }
     std::this_thread::sleep_until(scheduled);

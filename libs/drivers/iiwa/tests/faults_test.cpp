@@ -206,11 +206,10 @@ TEST(IiwaFaults, AMotionThatStandsForEverIsGivenUp) {
 TEST(IiwaFaults, ACabinetThatRefusesItsFirstSettingsIsAFaultUntilItAcceptsThem) {
     const auto model = iiwa7();
     const auto arm = IiwaArm::create(ArmBench::quick(), model).value();
-    ScriptedCabinet cabinet(arm->port());
-    cabinet.change([](auto& b) { b.refused.insert(304); });
-    if (until([&] { return arm->state().safety == SafetyState::fault; }, 500ms)) {
-        EXPECT_THAT(arm->safety().text, HasSubstr("control mode (304)"));
-    }
+    ScriptedCabinet cabinet(arm->port(), {.behaviour = {.refused = {304}}});
+    ASSERT_TRUE(until([&] { return arm->state().safety == SafetyState::fault; }));
+    EXPECT_THAT(arm->safety().text, HasSubstr("control mode (304)"));
+    EXPECT_FALSE(arm->resetFault());
     cabinet.change([](auto& b) { b.refused.clear(); });
     EXPECT_TRUE(until([&] { return arm->state().safety == SafetyState::normal; }));
 }

@@ -235,8 +235,7 @@ TEST(PlannedMovesWithATool, AreSentForTheToolThatTheCabinetKnows) {
     options.tool = 3;
     const auto model = iiwa7();
     auto arm = IiwaArm::create(options, model).value();
-    ScriptedCabinet cabinet(arm->port());
-    cabinet.change([](auto& behaviour) { behaviour.tool_length = 0.2; });
+    ScriptedCabinet cabinet(arm->port(), {.behaviour = {.tool_length = 0.2}});
     ASSERT_TRUE(until([&] { return arm->state().safety == SafetyState::normal; }));
     EXPECT_EQ(cabinet.codes().back(), 400);
     const auto joints = ArmBench::toJoints(0.3).target_joints;

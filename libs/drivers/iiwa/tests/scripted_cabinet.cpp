@@ -42,12 +42,15 @@ ScriptedCabinet::ScriptedCabinet(std::uint16_t port, const Options& options)
     : options_(options),
       link_(link::TcpLink::connect("127.0.0.1", port, Clock::now() + std::chrono::seconds(5))
                 .value()),
+      behaviour_(options.behaviour),
       position_(JointVector::from(kHome).value()),
       target_(position_),
       velocity_(7) {
     thresholds_.fill(std::numeric_limits<double>::quiet_NaN());
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
+
+ScriptedCabinet::ScriptedCabinet(std::uint16_t port) : ScriptedCabinet(port, Options{}) {}
 
 ScriptedCabinet::~ScriptedCabinet() {
     thread_.request_stop();

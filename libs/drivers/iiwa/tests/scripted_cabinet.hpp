@@ -27,12 +27,6 @@ class ScriptedCabinet {
 public:
     using Numbers = std::array<double, 8>;
 
-    struct Options {
-        bool double_precision = false;
-        std::chrono::milliseconds delay{0};  ///< of each answer
-        double speed = 2.0;                  ///< of every axis [rad/s]
-    };
-
     /// How it behaves from now on. Changed by change().
     struct Behaviour {
         bool ready = true;
@@ -49,8 +43,15 @@ public:
         std::function<void(std::vector<std::byte>&)> tamper{};
     };
 
+    struct Options {
+        bool double_precision = false;
+        std::chrono::milliseconds delay{0};  ///< of each answer
+        double speed = 2.0;                  ///< of every axis [rad/s]
+        Behaviour behaviour{};               ///< at first
+    };
+
     ScriptedCabinet(std::uint16_t port, const Options& options);
-    explicit ScriptedCabinet(std::uint16_t port) : ScriptedCabinet(port, Options{}) {}
+    explicit ScriptedCabinet(std::uint16_t port);
     ~ScriptedCabinet();
     ScriptedCabinet(const ScriptedCabinet&) = delete;
     ScriptedCabinet& operator=(const ScriptedCabinet&) = delete;

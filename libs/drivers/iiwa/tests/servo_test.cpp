@@ -63,6 +63,18 @@ TEST_F(Servo, AStreamCanFollowAStreamAtOnce) {
     EXPECT_NEAR(bench.arm->state().commanded_position[0], 0.0, 3e-3);
 }
 
+TEST(ServoOfASlowCabinet, KeepsItsTimeByLeavingSetPointsOut) {
+    ArmBench bench({.delay = 10ms});  // two and a half cycles
+    ASSERT_TRUE(bench.ready());
+    const auto stream = turning(1e-3, 250);
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(bench.arm->attach(stream));
+    ASSERT_TRUE(until([&] { return stream->ends() == 1; }));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 1700ms) << "250 cycles of 4 ms: 1 s";
+    EXPECT_NEAR(bench.arm->state().commanded_position[0], 0.25, 1e-9);
+    EXPECT_GT(bench.arm->state().missed_cycles, 50U);
+}
+
 TEST_F(Servo, StopCancelsAndTellsAtStandstill) {
     const auto stream = turning(1e-3, 1'000'000);
     ASSERT_TRUE(bench.arm->attach(stream));
