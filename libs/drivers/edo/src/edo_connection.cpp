@@ -110,7 +110,12 @@ Result<void> EdoConnection::resetFault() {
     if (safety.state == SafetyState::disconnected) {
         return fail(Errc::connection_lost, safety.text);
     }
-    return session_.resetDesk().ask(options_.reset_wait);
+    auto outcome = session_.resetDesk().ask(options_.reset_wait);
+    if (!outcome && outcome.error().code == Errc::timeout) {
+        return fail(Errc::timeout, fmt::format("{}: the reset goes on, ask again ({})",
+                                               options_.name, core_.safety().text));
+    }
+    return outcome;
 }
 
 // ---- cycle thread ------------------------------------------------------------------------------

@@ -4,17 +4,30 @@
 
 namespace metier::edo_driver {
 
+namespace {
+
+constexpr auto kKept = std::chrono::seconds(5);
+
+SteadyTime now() {
+    return std::chrono::steady_clock::now();
+}
+
+}  // namespace
+
 Result<void> ResetDesk::ask(std::chrono::nanoseconds longest) {
     std::unique_lock lock(mutex_);
+    if (!under_way_ && now() < std::exchange(unread_until_, {})) {
+        return outcome_;
+    }
     if (!under_way_) {
         under_way_ = true;
         wanted_.store(true);
     }
     const auto before = answers_;
-    if (!answered_.wait_for(lock, longest, [&] { return answers_ != before; })) {
-        return fail(Errc::timeout, "the reset is still under way; ask again");
-    }
-    return outcome_;
+    ++waiting_;
+    const bool answered = answered_.wait_for(lock, longest, [&] { return answers_ != before; });
+    --waiting_;
+    return answered ? outcome_ : fail(Errc::timeout, "the reset goes on");
 }
 
 void ResetDesk::answer(Result<void> outcome) {
@@ -27,6 +40,7 @@ void ResetDesk::answer(Result<void> outcome) {
         under_way_ = false;
         ++answers_;
         outcome_ = std::move(outcome);
+        unread_until_ = waiting_ == 0 ? now() + kKept : SteadyTime{};
     }
     answered_.notify_all();
 }

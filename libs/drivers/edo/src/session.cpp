@@ -109,7 +109,8 @@ void Session::on(const JointStates& states, SteadyTime now, Wire& wire) {
         return;
     }
     if (!valid(states)) {
-        if (states.count != options_.layout.count()) {
+        // While somebody moves the arm it counts as silence, which ends that.
+        if (states.count != options_.layout.count() && core_.active() == nullptr) {
             safety_.onJointStates(states.count, now);
         }
         return;

@@ -162,14 +162,15 @@ void FakeEdo::moveJaws() {
 }
 
 int FakeEdo::algorithmState() const {
-    return control_taken ? (classic() ? 9 : 10) : (moving_ ? 2 : 5);
+    return control_taken ? (classic() ? switched_off_state : 10) : (moving_ ? 2 : 5);
 }
 
 void FakeEdo::tick() {
     ++ticks_;
     finishCommand();
     moveJaws();
-    const bool told = !faults.mute_algorithm && state != 0 && !(classic() && control_taken);
+    const bool switched_off = classic() && control_taken && !tells_switched_off;
+    const bool told = !faults.mute_algorithm && state != 0 && !switched_off;
     if (told) {
         publish("/algorithm_state", fmt::format(R"({{"data":{}}})", algorithmState()));
     }

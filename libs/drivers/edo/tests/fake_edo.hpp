@@ -60,6 +60,8 @@ public:
     std::uint32_t opcode = 0;
     bool uncalibrated = false;
     bool control_taken = false;
+    int switched_off_state = 9;       ///< of /algorithm_state, in older software
+    bool tells_switched_off = false;  ///< although older software does not
     int set_points = 0;
     int set_points_while_not_taken = 0;
     std::vector<std::string> received;  ///< everything but set-points

@@ -194,6 +194,37 @@ TEST_P(BothGenerations, ARobotThatRestartedIsStartedByAReset) {
     EXPECT_EQ(bench.robot.count("calib"), 0);
 }
 
+TEST_P(BothGenerations, AnotherClientThatTakesControlAwayIsNoticed) {
+    Bench bench(GetParam());
+    bench.start();
+    const auto source = bench.attach(kStep, 1000);
+    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
+    bench.robot.control_taken = false;
+    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }, 2000));
+    EXPECT_EQ(source->ends.front().first, EndCause::safety);
+    EXPECT_THAT(bench.text(), HasSubstr("control was taken away"));
+}
+
+TEST_P(BothGenerations, ARobotWithoutAlgorithmStateIsBelieved) {
+    Bench bench(GetParam());
+    bench.robot.faults.mute_algorithm = true;
+    bench.start();
+    const auto source = bench.attach(kStep, 10);
+    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }));
+    EXPECT_EQ(source->ends.front().first, EndCause::done) << bench.text();
+    EXPECT_TRUE(bench.runUntil([&] { return !bench.robot.control_taken; }, 2000));
+}
+
+TEST(Session, UnderstandsTheHoldStateOfVersion210) {
+    Bench bench("edo_2.1.0");
+    bench.robot.switched_off_state = 8;
+    bench.robot.tells_switched_off = true;
+    bench.start();
+    const auto source = bench.attach(kStep, 10);
+    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }));
+    EXPECT_EQ(source->ends.front().first, EndCause::done) << bench.text();
+}
+
 // ---- set-points ----
 
 TEST(Session, SendsOneSetPointPerCycleAlthoughJointStatesComeInBunches) {
@@ -294,6 +325,23 @@ TEST(Session, NoticesADroppedStartUpAndADroppedReset) {
     EXPECT_TRUE(bench.reset());
 }
 
+TEST(Session, WhoAsksAgainForAResetHearsItsEnd) {
+    Bench bench;
+    bench.start();
+    bench.robot.brake(1U << 6U);
+    bench.robot.faults.drop_reset = true;
+    bench.run(200);
+    auto& desk = bench.session.resetDesk();
+    EXPECT_EQ(desk.ask(std::chrono::seconds(0)).error().code, Errc::timeout);
+    EXPECT_EQ(desk.ask(std::chrono::seconds(0)).error().code, Errc::timeout);
+    bench.run(3000);
+    EXPECT_THAT(desk.ask(std::chrono::seconds(0)).error().message, HasSubstr("dropped the reset"));
+    EXPECT_EQ(desk.ask(std::chrono::seconds(0)).error().code, Errc::timeout) << "a new one";
+    EXPECT_EQ(bench.robot.count("/bridge_jnt_reset\",\"msg"), 1);
+    bench.cycle();
+    EXPECT_EQ(bench.robot.count("/bridge_jnt_reset\",\"msg"), 2);
+}
+
 TEST(Session, AnErrorOfTheRobotNeedsARestart) {
     Bench bench;
     bench.start();
@@ -373,6 +421,18 @@ TEST(Session, AnotherNumberOfJointsIsAFault) {
     bench.robot.joint_count = 6;
     bench.start();
     EXPECT_EQ(bench.safety(), SafetyState::fault);
+    EXPECT_THAT(bench.text(), HasSubstr("the robot has 6 joints"));
+}
+
+TEST(Session, JointsThatVanishEndAMotion) {
+    Bench bench;
+    bench.start();
+    const auto source = bench.attach(kStep, 1000);
+    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
+    bench.robot.joint_count = 6;
+    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }, 500));
+    EXPECT_EQ(source->ends.front().first, EndCause::disconnected);
+    bench.run(100);
     EXPECT_THAT(bench.text(), HasSubstr("the robot has 6 joints"));
 }
 

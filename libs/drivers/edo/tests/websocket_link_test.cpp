@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <deque>
+#include <future>
 #include <mutex>
 #include <thread>
 
@@ -93,6 +94,22 @@ TEST_F(WebSocketLinkTest, TellsThatTheServerIsGone) {
     EXPECT_EQ(received.error().code, Errc::connection_lost);
     EXPECT_THAT(received.error().message, HasSubstr("127.0.0.1:"));
     EXPECT_EQ(link.receive(in(10s)).error().code, Errc::connection_lost);
+}
+
+TEST(WebSocketLinkSend, GivesUpOnAPeerThatDoesNotRead) {
+    std::promise<void> end;
+    auto ended = end.get_future();
+    RosbridgeServer server([&](std::string_view) { ended.wait(); }, [] {}, 10s);
+    auto link = std::move(WebSocketLink::connect("127.0.0.1", server.port(), in(10s)).value());
+    const std::string text(1U << 19U, 'x');
+    Result<void> sent;
+    for (int i = 0; i < 1000 && sent; ++i) {
+        sent = link.send(text, in(50ms));
+    }
+    end.set_value();
+    ASSERT_FALSE(sent);
+    EXPECT_EQ(sent.error().code, Errc::timeout);
+    EXPECT_EQ(link.send("more", in(10s)).error().code, Errc::connection_lost);
 }
 
 TEST_F(WebSocketLinkTest, AShutDownLinkTellsIt) {
