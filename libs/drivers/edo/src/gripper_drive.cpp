@@ -200,8 +200,7 @@ GripperDrive::Ended GripperDrive::tickCancelling(const MachineState& machine, St
 
 Result<device::GripperOutcome> GripperDrive::judge() {
     const auto& gripper = options_.gripper;
-    const bool closing = task_.target < start_width_;
-    const bool held = closing && width_ - task_.target > gripper.grasp_shortfall &&
+    const bool held = width_ - task_.target > gripper.grasp_shortfall &&
                       std::abs(current_) >= gripper.grasp_current;
     if (task_.kind == GripperTask::Kind::grasp && !held) {
         return *failed(

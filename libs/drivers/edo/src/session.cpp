@@ -30,6 +30,15 @@ constexpr std::array<Topic, 4> kRead{Topic{"/machine_state", "edo_core_msgs/Mach
                                      {"/algorithm_state", "std_msgs/Int8"},
                                      {"/machine_movement_ack", "edo_core_msgs/MovementFeedback"}};
 
+void subscribe(Wire& wire) {
+    for (const auto& [topic, type] : kWritten) {
+        wire.send(advertiseText(topic, type));
+    }
+    for (const auto& [topic, type] : kRead) {
+        wire.send(subscribeText(topic, type));
+    }
+}
+
 }  // namespace
 
 Session::Session(const EdoOptions& options, device::ArmCore& core)
@@ -58,15 +67,6 @@ void Session::begin(const Generation& generation, SteadyTime now, Wire& wire) {
     safety_.linkFound(now);
     wire.send(advertiseText(generation.setPointTopic(), generation.setPointType()));
     subscribe(wire);
-}
-
-void Session::subscribe(Wire& wire) {
-    for (const auto& [topic, type] : kWritten) {
-        wire.send(advertiseText(topic, type));
-    }
-    for (const auto& [topic, type] : kRead) {
-        wire.send(subscribeText(topic, type));
-    }
 }
 
 void Session::linkDown(const std::string& why) {

@@ -50,7 +50,6 @@ private:
     void on(const ServiceResponse& response, SteadyTime now, Wire& wire);
     void on(const Status& status, SteadyTime now, Wire& wire);
 
-    void subscribe(Wire& wire);
     void begin(const Generation& generation, SteadyTime now, Wire& wire);
     void tickReset(SteadyTime now, Wire& wire);
     void startReset();
