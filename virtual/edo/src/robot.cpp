@@ -47,18 +47,22 @@ void Robot::send(const std::string& topic, const Json& message) {
 WorldReport Robot::step(const WorldEffect& effect) {
     ++cycles_;
     contact_left_ = std::max(0, contact_left_ - 1);
+    // A client that writes the node's topic fights with it: now one comes last, now the other.
+    if (std::exchange(client_set_points_, false) && nodeCommands() && cycles_ % 2 == 0) {
+        bus_.command(targets());
+    }
     bus_.step(partWidth(effect));
     const auto report = bus_.report();
+    node_.setContact(contact_left_ > 0 || effect.wrench.force.norm() > options_.collision_force);
+    // The state machine hears of the joints first and passes on what it heard.
+    machine_.step(report, node_.collision());
     if (report) {
         if (bus_.justCalibrated()) {
             ++calibrations_;
             node_.rebase(*report);
         }
-        node_.setContact(contact_left_ > 0 ||
-                         effect.wrench.force.norm() > options_.collision_force);
         node_.onJointState(*report);
     }
-    machine_.step(report, node_.collision());
     sayMode();
     node_.step();
     publishControl();
@@ -97,15 +101,15 @@ std::vector<double> Robot::targets() const {
     return {target.begin(), target.begin() + static_cast<std::ptrdiff_t>(node_.axes())};
 }
 
+bool Robot::nodeCommands() const {
+    return node_.publishes() && node_.mode() != AlgorithmMode::uninitialised;
+}
+
 void Robot::publishControl() {
-    // A client that writes the same topic fights with the node: now one wins, now the other.
-    const bool client_wins = std::exchange(client_set_points_, false) && cycles_ % 2 == 0;
-    if (!node_.publishes() || node_.mode() == AlgorithmMode::uninitialised) {
+    if (!nodeCommands()) {
         return;
     }
-    if (!client_wins) {
-        bus_.command(targets());
-    }
+    bus_.command(targets());
     if (!wants("/algo_jnt_ctrl")) {
         return;
     }

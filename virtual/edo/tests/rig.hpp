@@ -139,7 +139,9 @@ public:
         for (const auto& message : client.messages("/machine_movement_ack")) {
             found.emplace_back(message["type"].get<int>(), message["data"].get<int>());
         }
-        client.received.clear();
+        std::erase_if(client.received, [](const Json& message) {
+            return message.value("topic", "") == "/machine_movement_ack";
+        });
         return found;
     }
     bool inject(const std::string& name, const std::string& value = "") {

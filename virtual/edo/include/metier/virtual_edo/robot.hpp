@@ -54,6 +54,7 @@ public:
 private:
     void publishJointStates(const BusReport& report);
     void publishControl();
+    bool nodeCommands() const;
     void publishMachineState();
     void publishPose();
     void sayMode();
