@@ -271,8 +271,8 @@ nlohmann::ordered_json IiwaController::state() const {
         {"ready", cabinet_.ready()},
         {"emergency_stop", cabinet_.emergency_stop},
         {"moving", arm.moving()},
-        {"position", std::vector(arm.position().begin(), arm.position().end())},
-        {"velocity", std::vector(velocity.begin(), velocity.end())},
+        {"joint_position", std::vector(arm.position().begin(), arm.position().end())},
+        {"joint_velocity", std::vector(velocity.begin(), velocity.end())},
     };
     if (application_) {
         state["error"] = static_cast<int>(application_->error());
