@@ -46,111 +46,120 @@ struct Dashboard::Command {
     std::string_view name;
     On on = On::both;
     Effect effect = Effect::asks;
-    std::function<std::string(Dashboard&, std::string_view argument)> answer;
+    std::string (*answer)(Dashboard&, std::string_view argument);
 };
 
 Dashboard::Dashboard(Robot& robot, std::function<void(std::string)> log)
     : robot_(robot), log_(std::move(log)) {}
 
-const std::vector<Dashboard::Command>& Dashboard::commands() {
-    using D = Dashboard&;
-    using Text = std::string_view;
-    constexpr auto kBoth = Command::On::both;
-    constexpr auto kCb3 = Command::On::cb3;
-    constexpr auto kE = Command::On::e_series;
-    constexpr auto kAsks = Command::Effect::asks;
-    constexpr auto kChanges = Command::Effect::changes;
-    static const std::vector<Command> kAll{
-        {"running", kBoth, kAsks,
-         [](D d, Text) {
-             const auto state = d.robot_.programs().state();
-             const bool running = state == RuntimeState::playing || state == RuntimeState::resuming;
-             return fmt::format("Program running: {}", yesNo(running));
-         }},
-        {"robotmode", kBoth, kAsks,
-         [](D d, Text) { return "Robotmode: " + toText(d.robot_.modes().robotMode()); }},
-        {"safetymode", kBoth, kAsks,
-         [](D d, Text) { return "Safetymode: " + toText(d.robot_.modes().safetyMode()); }},
-        {"safetystatus", kE, kAsks,
-         [](D d, Text) { return "Safetystatus: " + toText(d.robot_.modes().safetyMode()); }},
-        {"programState", kBoth, kAsks, [](D d, Text) { return d.programState(); }},
-        {"PolyscopeVersion", kBoth, kAsks,
-         [](D d, Text) {
-             return fmt::format("URSoftware {} ({})", d.softwareVersion(),
-                                d.robot_.options().description.build_date.substr(0, 10));
-         }},
-        {"version", kE, kAsks, [](D d, Text) { return d.softwareVersion(); }},
-        {"power on", kBoth, kChanges,
-         [](D d, Text) {
-             return answerOr(d.robot_.powerOn(), "Powering on", "Failed to execute: power on");
-         }},
-        {"power off", kBoth, kChanges,
-         [](D d, Text) {
-             d.robot_.powerOff();
-             return std::string("Powering off");
-         }},
-        {"brake release", kBoth, kChanges,
-         [](D d, Text) {
-             return answerOr(d.robot_.releaseBrakes(), "Brake releasing",
-                             "Failed to execute: brake release");
-         }},
-        {"play", kBoth, kChanges, [](D d, Text) { return d.play(); }},
-        {"pause", kBoth, kChanges, [](D d, Text) { return d.pause(); }},
-        {"stop", kBoth, kChanges,
-         [](D d, Text) {
-             d.robot_.programs().stop();
-             return std::string("Stopped");
-         }},
-        {"load", kBoth, kChanges, [](D d, Text file) { return d.load(file); }},
-        {"get loaded program", kBoth, kAsks,
-         [](D d, Text) {
-             return d.robot_.programs().loaded()
-                        ? "Loaded program: " + d.robot_.programs().loadedName()
-                        : std::string("No program loaded");
-         }},
-        {"isProgramSaved", kBoth, kAsks, [](D d, Text) { return d.isProgramSaved(); }},
-        {"popup", kBoth, kAsks,
-         [](D d, Text text) {
-             d.robot_.showPopup(std::string(text));
-             return std::string("showing popup");
-         }},
-        {"close popup", kBoth, kAsks,
-         [](D d, Text) {
-             d.robot_.closePopup();
-             return std::string("closing popup");
-         }},
-        {"close safety popup", kBoth, kAsks,
-         [](D, Text) { return std::string("closing safety popup"); }},
-        {"unlock protective stop", kBoth, kChanges, [](D d, Text) { return d.unlock(); }},
-        {"restart safety", kBoth, kChanges,
-         [](D d, Text) {
-             d.robot_.restartSafety();
-             return std::string("Restarting safety");
-         }},
-        {"is in remote control", kE, kAsks,
-         [](D d, Text) { return std::string(yesNo(d.robot_.control() == Control::remote)); }},
-        {"get robot model", kBoth, kAsks, [](D d, Text) { return d.robot_.options().robot_model; }},
-        {"get serial number", kBoth, kAsks,
-         [](D d, Text) { return d.robot_.options().serial_number; }},
-        {"addToLog", kBoth, kAsks, [](D d, Text text) { return d.addToLog(text); }},
-        {"set operational mode", kE, kAsks,
-         [](D d, Text mode) { return d.setOperationalMode(mode); }},
-        {"get operational mode", kE, kAsks, [](D d, Text) { return d.operational_mode_; }},
-        {"clear operational mode", kE, kAsks,
-         [](D d, Text) {
-             return fmt::format(
-                 "No longer controlling the operational mode. Current operational mode: '{}'.",
-                 std::exchange(d.operational_mode_, "NONE"));
-         }},
-        {"setUserRole", kCb3, kAsks,
-         [](D d, Text role) {
-             d.user_role_ = role.substr(0, kMostEchoed);
-             return "Setting user role: " + d.user_role_;
-         }},
-        {"getUserRole", kCb3, kAsks, [](D d, Text) { return d.user_role_; }},
-    };
-    return kAll;
-}
+// Names, series and answers of everything that takes a line.
+const std::vector<Dashboard::Command> Dashboard::kCommands{
+    {"running", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         const auto state = d.robot_.programs().state();
+         const bool running = state == RuntimeState::playing || state == RuntimeState::resuming;
+         return fmt::format("Program running: {}", yesNo(running));
+     }},
+    {"robotmode", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return "Robotmode: " + toText(d.robot_.modes().robotMode());
+     }},
+    {"safetymode", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return "Safetymode: " + toText(d.robot_.modes().safetyMode());
+     }},
+    {"safetystatus", Command::On::e_series, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return "Safetystatus: " + toText(d.robot_.modes().safetyMode());
+     }},
+    {"programState", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.programState(); }},
+    {"PolyscopeVersion", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return fmt::format("URSoftware {} ({})", d.softwareVersion(),
+                            d.robot_.options().description.build_date.substr(0, 10));
+     }},
+    {"version", Command::On::e_series, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.softwareVersion(); }},
+    {"power on", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) {
+         return answerOr(d.robot_.powerOn(), "Powering on", "Failed to execute: power on");
+     }},
+    {"power off", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) {
+         d.robot_.powerOff();
+         return std::string("Powering off");
+     }},
+    {"brake release", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) {
+         return answerOr(d.robot_.releaseBrakes(), "Brake releasing",
+                         "Failed to execute: brake release");
+     }},
+    {"play", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) { return d.play(); }},
+    {"pause", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) { return d.pause(); }},
+    {"stop", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) {
+         d.robot_.programs().stop();
+         return std::string("Stopped");
+     }},
+    {"load", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view file) { return d.load(file); }},
+    {"get loaded program", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return d.robot_.programs().loaded() ? "Loaded program: " + d.robot_.programs().loadedName()
+                                             : std::string("No program loaded");
+     }},
+    {"isProgramSaved", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.isProgramSaved(); }},
+    {"popup", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view text) {
+         d.robot_.showPopup(std::string(text));
+         return std::string("showing popup");
+     }},
+    {"close popup", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         d.robot_.closePopup();
+         return std::string("closing popup");
+     }},
+    {"close safety popup", Command::On::both, Command::Effect::asks,
+     [](Dashboard&, std::string_view) { return std::string("closing safety popup"); }},
+    {"unlock protective stop", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) { return d.unlock(); }},
+    {"restart safety", Command::On::both, Command::Effect::changes,
+     [](Dashboard& d, std::string_view) {
+         d.robot_.restartSafety();
+         return std::string("Restarting safety");
+     }},
+    {"is in remote control", Command::On::e_series, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return std::string(yesNo(d.robot_.control() == Control::remote));
+     }},
+    {"get robot model", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.robot_.options().robot_model; }},
+    {"get serial number", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.robot_.options().serial_number; }},
+    {"addToLog", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view text) { return d.addToLog(text); }},
+    {"set operational mode", Command::On::e_series, Command::Effect::asks,
+     [](Dashboard& d, std::string_view mode) { return d.setOperationalMode(mode); }},
+    {"get operational mode", Command::On::e_series, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.operational_mode_; }},
+    {"clear operational mode", Command::On::e_series, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return fmt::format(
+             "No longer controlling the operational mode. Current operational mode: '{}'.",
+             std::exchange(d.operational_mode_, "NONE"));
+     }},
+    {"setUserRole", Command::On::cb3, Command::Effect::asks,
+     [](Dashboard& d, std::string_view role) {
+         d.user_role_ = role.substr(0, kMostEchoed);
+         return "Setting user role: " + d.user_role_;
+     }},
+    {"getUserRole", Command::On::cb3, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) { return d.user_role_; }},
+};
 
 Dashboard::Answer Dashboard::answer(std::string_view line) {
     const auto asked = trimmed(line);
@@ -162,7 +171,7 @@ Dashboard::Answer Dashboard::answer(std::string_view line) {
         return {"Shutting down", Answer::Then::disconnect};
     }
     const bool e_series = robot_.options().description.series == Series::e_series;
-    for (const auto& command : commands()) {
+    for (const auto& command : kCommands) {
         const bool named =
             asked.starts_with(command.name) &&
             (asked.size() == command.name.size() || asked[command.name.size()] == ' ');

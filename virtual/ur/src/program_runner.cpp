@@ -158,7 +158,7 @@ void ProgramRunner::step(bool standing) {
         default:
             break;
     }
-    stepPrograms(standing);
+    stepPrograms();
     advance(standing);
 }
 
@@ -173,7 +173,7 @@ void ProgramRunner::advance(bool standing) {
     }
 }
 
-void ProgramRunner::stepPrograms(bool standing) {
+void ProgramRunner::stepPrograms() {
     robot_.beginCycle();
     if (primary_ && runtime_ != RuntimeState::paused) {
         const auto wanted = robot_.watch();
@@ -192,7 +192,6 @@ void ProgramRunner::stepPrograms(bool standing) {
     }
     stepSecondary();
     robot_.endCycle();
-    (void)standing;
 }
 
 void ProgramRunner::stepPrimary() {

@@ -63,6 +63,15 @@ TEST(Robot, TimestampsLieOnAnExactGrid) {
     }
 }
 
+TEST(Robot, TheSeriesMayBeAnotherThanTheModels) {
+    const RobotOnTable e_series("ur5", {{"series", std::string("e")}});
+    EXPECT_EQ(e_series.robot.rate(), 500.0);
+    EXPECT_EQ(e_series.robot.options().description.version.major, 5U);
+    const RobotOnTable cb3("ur5e", {{"series", std::string("cb3")}});
+    EXPECT_EQ(cb3.robot.rate(), 125.0);
+    EXPECT_EQ(cb3.robot.options().description.version.major, 3U);
+}
+
 TEST(Robot, ToolPoseIsThatOfTheKinematics) {
     RobotOnTable table("ur5", {{"start", std::vector{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}}});
     // Stretched out; quaternion (0.7071, 0.7071, 0, 0) is a quarter turn about x.

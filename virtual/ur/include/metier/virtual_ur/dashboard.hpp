@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "metier/virtual_ur/robot.hpp"
 
@@ -28,7 +29,7 @@ public:
 
 private:
     struct Command;
-    static const std::vector<Command>& commands();
+    static const std::vector<Command> kCommands;
 
     std::string load(std::string_view file);
     std::string play();

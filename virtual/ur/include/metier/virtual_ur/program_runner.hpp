@@ -52,7 +52,7 @@ public:
 private:
     void start(urscript::Program program);
     void end();
-    void stepPrograms(bool standing);
+    void stepPrograms();
     void stepPrimary();
     void stepSecondary();
     void advance(bool standing);
