@@ -39,7 +39,7 @@ Result<Wsg50Options> readOptions(const driver::OpenRequest& request) {
     options.port = static_cast<std::uint16_t>(settings.numberOr("port", options.port, 1, 65535));
     options.speed = settings.numberOr("speed", options.speed, 0.005, 0.42);
     options.grasp_speed = settings.numberOr("grasp_speed", options.grasp_speed, 0.005, 0.42);
-    options.part_width = settings.numberOr("part_width", options.part_width, 0.0, 0.21);
+    options.part_width = optionalNumber(settings, "part_width", 0.0, 0.21);
     options.force = optionalNumber(settings, "force", 1.0, 120.0);
     options.open_width = optionalNumber(settings, "open_width", 0.0, 0.21);
     auto& conversation = options.conversation;

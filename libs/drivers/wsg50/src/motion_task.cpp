@@ -135,9 +135,20 @@ std::optional<MotionTask::Outcome> MotionTask::outcome(const Observation& seen, 
     }
     if (phase_ == Phase::settling && seen.renewedSince(mark_) &&
         (last_ != Status::success || asWanted(seen))) {
-        return judge(seen);
+        return graspsAnew(seen, now) ? std::nullopt : std::optional(judge(seen));
     }
     return now < deadline_ ? std::nullopt : late(seen, now);
+}
+
+/// The gripper takes a part for one only near the width that it was told.
+bool MotionTask::graspsAnew(const Observation& seen, SteadyTime now) {
+    if (!motion_.any_width || last_ != Status::blocked || seen.partHeld() || stopping_) {
+        return false;
+    }
+    motion_.any_width = false;
+    motion_.width = seen.width();
+    begin(now);
+    return true;
 }
 
 /// What is to be said when the time for the present phase is over.

@@ -26,7 +26,7 @@ Result<void> check(double value, const Bounds& bounds) {
 
 double ownWidth(MotionKind kind, const Wsg50Options& options, const Limits& limits) {
     return kind == MotionKind::release ? options.open_width.value_or(limits.stroke)
-                                       : options.part_width;
+                                       : options.part_width.value_or(0.0);
 }
 
 double ownForce(const Wsg50Options& options, const Known& known) {
@@ -49,6 +49,7 @@ Result<Motion> motionFor(MotionKind kind, const device::GripperRequest& request,
         .width = request.width.value_or(ownWidth(kind, options, limits)),
         .speed = request.speed.value_or(own_speed),
         .force = request.force.value_or(ownForce(options, known)),
+        .any_width = !request.width && !options.part_width,
     };
     return check(motion.width, {"width", "m", 0.0, limits.stroke})
         .and_then([&] {

@@ -130,6 +130,22 @@ TEST_F(Gripper, TellsThePartItHolds) {
     EXPECT_TRUE(ended());
 }
 
+TEST_F(Gripper, GraspsAPartOfAnyWidthUnlessItIsTold) {
+    connectReady();
+    ASSERT_TRUE(ask(kGraspIt));
+    ASSERT_TRUE(fake.got(0x25));
+    fake.send(reply(0x25, kBlocked));
+    ASSERT_TRUE(fake.got(0x25, 2));
+    fake.set({kReferenced, kHolding, 50, 40});
+    fake.send(reply(0x25, kSuccess));
+    EXPECT_TRUE(ended());
+    fake.set({});
+    ASSERT_TRUE(ask(kGraspIt, {.width = 0.03}));
+    ASSERT_TRUE(fake.got(0x25, 3));
+    fake.send(reply(0x25, kBlocked));
+    EXPECT_THAT(ended().error().message, HasSubstr("blocked at 50.0 mm"));
+}
+
 TEST_F(Gripper, TellsThatThereWasNoPart) {
     connectReady();
     ASSERT_TRUE(ask(kGraspIt));

@@ -105,6 +105,35 @@ TEST_F(MotionOf, GraspThatIsBlockedAndHoldsNothingFails) {
     EXPECT_THAT(talk.motionError(), HasSubstr("grasp blocked at 41.0 mm"));
 }
 
+TEST_F(MotionOf, GraspOfAnyWidthIsRepeatedAtTheWidthThatBlockedIt) {
+    underWay({MotionKind::grasp, 0.0, 0.05, 20.0, true}, 0x25);
+    talk.hear(reply(0x25, kBlocked));
+    talk.update(kReferenced, kIdle, 41);
+    EXPECT_THAT(talk.ends, IsEmpty());
+    EXPECT_EQ(talk.sent.back(), frame(0x25, f32(41) + f32(50)));
+    talk.hear(reply(0x25, kPending) + reply(0x25, kSuccess));
+    talk.update(kReferenced, kHolding, 41, 20);
+    ASSERT_EQ(talk.ends.size(), 1U);
+    EXPECT_TRUE(talk.ends[0]);
+}
+
+TEST_F(MotionOf, GraspOfAnyWidthIsRepeatedOnce) {
+    underWay({MotionKind::grasp, 0.0, 0.05, 20.0, true}, 0x25);
+    talk.hear(reply(0x25, kBlocked));
+    talk.update(kReferenced, kIdle, 41);
+    talk.hear(reply(0x25, kBlocked));
+    talk.update(kReferenced, kIdle, 41);
+    EXPECT_THAT(talk.motionError(), HasSubstr("grasp blocked at 41.0 mm"));
+}
+
+TEST_F(MotionOf, GraspOfAnyWidthIsNotRepeatedAfterAStop) {
+    underWay({MotionKind::grasp, 0.0, 0.05, 20.0, true}, 0x25);
+    talk.stop();
+    talk.hear(reply(0x25, kBlocked));
+    talk.update(kReferenced, kIdle, 41);
+    EXPECT_EQ(talk.motionCode(), Errc::cancelled);
+}
+
 TEST_F(MotionOf, ReleaseEndsWhenThePartIsFree) {
     underWay(kRelease, 0x26);
     EXPECT_EQ(talk.sent.back(), frame(0x26, f32(80) + f32(100)));

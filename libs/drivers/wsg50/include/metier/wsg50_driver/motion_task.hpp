@@ -26,12 +26,15 @@ struct Motion {
     double width = 0.0;  ///< [m]
     double speed = 0.0;  ///< [m/s]
     double force = 0.0;  ///< limit that is set before [N]
+    /// Of a grasp: the width of the part is not known; `width` is the least that it may be.
+    bool any_width = false;
 };
 
 /// One motion, from its first command to its outcome.
 ///
 /// The gripper acknowledges a motion as pending and tells its end in a second reply. Neither is
-/// trusted: the outcome is what the updates after the last reply show.
+/// trusted: the outcome is what the updates after the last reply show. A grasp of a part of unknown
+/// width that the part blocks is asked for again, with the width where it was blocked.
 ///
 /// Threading: one thread.
 class MotionTask {
@@ -65,6 +68,7 @@ private:
     void takeForceLimit(Status status, SteadyTime now);
     void settle(Status last, const Observation& seen, SteadyTime now);
     void refuse(std::string why);
+    bool graspsAnew(const Observation& seen, SteadyTime now);
     std::optional<Outcome> late(const Observation& seen, SteadyTime now);
     Outcome stopped() const;
     bool asWanted(const Observation& seen) const;

@@ -18,9 +18,10 @@ struct Wsg50Options {
     std::string host;
     std::uint16_t port = 1000;
     ConversationOptions conversation;
-    double speed = 0.1;             ///< of moves and releases that ask for none [m/s]
-    double grasp_speed = 0.05;      ///< of grasps that ask for none [m/s]
-    double part_width = 0.0;        ///< of grasps that ask for none [m]
+    double speed = 0.1;         ///< of moves and releases that ask for none [m/s]
+    double grasp_speed = 0.05;  ///< of grasps that ask for none [m/s]
+    /// Of grasps that ask for none [m]; not set: any.
+    std::optional<double> part_width{};
     std::optional<double> force{};  ///< limit of motions that ask for none [N]; not set: as found
     std::optional<double> open_width{};  ///< of releases that ask for none [m]; not set: the stroke
 };
