@@ -92,19 +92,19 @@ void slowDownFor(ScalarLimits& limits, const ScalarLimits& axis, double slope, d
 /// Walks along the path once: the arm gets everywhere, and no axis is too fast.
 Result<void> inspect(Path& path, const motion::RobotModel& model, const JointVector& start,
                      const MotionLimits& limits) {
-    constexpr double kStep = 1.0 / kSamples;
+    constexpr double step = 1.0 / kSamples;
     std::array<JointVector, 3> last{start, start, start};
     for (int sample = 0; sample <= kSamples; ++sample) {
-        const auto found = path.at(sample * kStep, last[0]);
+        const auto found = path.at(sample * step, last[0]);
         if (!found) {
             return fail(Errc::unreachable, fmt::format("the arm cannot get to {:.0f} % of the path",
-                                                       100.0 * sample * kStep));
+                                                       100.0 * sample * step));
         }
         last = {*found, last[0], last[1]};
         for (std::size_t axis = 0; sample > 0 && axis < start.size(); ++axis) {
-            const double slope = (last[0][axis] - last[1][axis]) / kStep;
-            const double before = (last[1][axis] - last[2][axis]) / kStep;
-            const double bend = sample > 1 ? (slope - before) / kStep : 0.0;
+            const double slope = (last[0][axis] - last[1][axis]) / step;
+            const double before = (last[1][axis] - last[2][axis]) / step;
+            const double bend = sample > 1 ? (slope - before) / step : 0.0;
             slowDownFor(path.limits, axisLimits(model, axis, limits), std::abs(slope),
                         std::abs(bend));
         }

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string_view>
 #include <utility>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/virtual_iiwa/impedance.hpp"
 
 namespace metier::virtual_iiwa {
 
@@ -17,7 +15,6 @@ using motion::JointVector;
 using Arguments = std::array<double, 7>;
 
 constexpr double kMillimetre = 1e-3;
-constexpr double kUnbounded = std::numeric_limits<double>::max();
 
 constexpr int kPtp = 21;
 constexpr int kLin = 22;
@@ -34,43 +31,6 @@ struct Choice {
 constexpr std::array kChoices{Choice{301, 11, 12}, Choice{302, 31, 32}, Choice{303, 21, 24},
                               Choice{304, 41, 44}, Choice{305, 51, 52}};
 
-/// So many arguments of an impedance command, from `first`, must be from `lower` to `upper`.
-struct ImpedanceRange {
-    int command;
-    std::size_t first;
-    std::size_t count;
-    double lower;
-    double upper;
-};
-constexpr std::array kImpedanceRanges{
-    ImpedanceRange{221, 0, 3, 0.0, 5000.0},
-    ImpedanceRange{221, 3, 3, 0.0, 300.0},
-    ImpedanceRange{221, 6, 1, 0.0, kUnbounded},
-    ImpedanceRange{222, 0, 6, 0.1, 1.0},
-    ImpedanceRange{222, 6, 1, 0.3, 1.0},
-    ImpedanceRange{223, 0, 6, -kUnbounded, kUnbounded},
-    ImpedanceRange{224, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{225, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{226, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{227, 0, 7, 0.0, kUnbounded},
-    ImpedanceRange{228, 0, 7, 0.0, 1.0},
-    ImpedanceRange{229, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{230, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{231, 0, 6, -kUnbounded, kUnbounded},
-    ImpedanceRange{232, 0, 6, -kUnbounded, kUnbounded},
-    ImpedanceRange{233, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{234, 0, 6, 0.0, kUnbounded},
-    ImpedanceRange{235, 0, 1, 0.0, kUnbounded},
-    ImpedanceRange{236, 0, 1, 0.0, kUnbounded},
-    ImpedanceRange{237, 0, 1, 0.0, kUnbounded},
-    ImpedanceRange{238, 0, 1, 0.0, kUnbounded},
-    ImpedanceRange{239, 0, 1, 0.0, 1.0},
-    ImpedanceRange{240, 0, 2, -kUnbounded, kUnbounded},
-    ImpedanceRange{241, 0, 2, -kUnbounded, kUnbounded},
-    ImpedanceRange{242, 0, 2, -kUnbounded, kUnbounded},
-    ImpedanceRange{243, 0, 2, -kUnbounded, kUnbounded},
-};
-
 /// False for NaN too.
 bool within(double value, double lower, double upper) {
     return value >= lower && value <= upper;
@@ -85,33 +45,7 @@ bool stopsFirst(int code) {
     return code == 101 || code == 211 || code == 212 || within(code, 301, 305) || code == 400;
 }
 
-/// The cabinet's A, B, C turn about z, y and x.
-Pose toPose(const std::array<double, 6>& xyzabc) {
-    return geometry::toPose({xyzabc[0] * kMillimetre, xyzabc[1] * kMillimetre,
-                             xyzabc[2] * kMillimetre, xyzabc[5], xyzabc[4], xyzabc[3]});
-}
-
-std::array<double, 6> toNumbers(const Pose& pose) {
-    const auto frame = geometry::toFrame(pose);
-    return {frame.x / kMillimetre,
-            frame.y / kMillimetre,
-            frame.z / kMillimetre,
-            frame.c,
-            frame.b,
-            frame.a};
-}
-
 }  // namespace
-
-JointVector Cabinet::externalTorque() const {
-    const auto jacobian = arm.model().kinematics().jacobian(arm.position());
-    const auto flange = arm.model().kinematics().forward(arm.position());
-    Eigen::Matrix<double, 6, 1> base_wrench;
-    base_wrench << flange.rotation * wrench.force, flange.rotation * wrench.torque;
-    JointVector torque = torque_noise;
-    torque.view() += jacobian.transpose() * base_wrench;
-    return torque;
-}
 
 // ---- commands ----------------------------------------------------------------------------------
 
@@ -335,12 +269,8 @@ bool RobotApplication::setMode(int code, double value) {
 }
 
 bool RobotApplication::setImpedance(int code, const Arguments& arguments) {
-    for (const auto& range : kImpedanceRanges) {
-        for (std::size_t i = 0; range.command == code && i < range.count; ++i) {
-            if (!within(arguments[range.first + i], range.lower, range.upper)) {
-                return refuse(ErrorCode::impedance);
-            }
-        }
+    if (!impedancePossible(code, arguments)) {
+        return refuse(ErrorCode::impedance);
     }
     impedance_[code] = arguments;
     return true;

@@ -2,9 +2,13 @@
 
 #include <bit>
 
+#include "metier/geometry/frame.hpp"
+
 namespace metier::virtual_iiwa {
 
 namespace {
+
+constexpr double kMillimetre = 1e-3;
 
 std::size_t numberSize(Precision precision) noexcept {
     return precision == Precision::single_precision ? 4 : 8;
@@ -52,6 +56,21 @@ std::vector<std::byte> encodeState(const StateNumbers& state, Precision precisio
         appendNumber(bytes, number, precision);
     }
     return bytes;
+}
+
+geometry::Pose toPose(const std::array<double, 6>& xyzabc) {
+    return geometry::toPose({xyzabc[0] * kMillimetre, xyzabc[1] * kMillimetre,
+                             xyzabc[2] * kMillimetre, xyzabc[5], xyzabc[4], xyzabc[3]});
+}
+
+std::array<double, 6> toNumbers(const geometry::Pose& pose) {
+    const auto frame = geometry::toFrame(pose);
+    return {frame.x / kMillimetre,
+            frame.y / kMillimetre,
+            frame.z / kMillimetre,
+            frame.c,
+            frame.b,
+            frame.a};
 }
 
 }  // namespace metier::virtual_iiwa

@@ -54,5 +54,15 @@ TEST(Wire, WritesThirtyEightNumbers) {
     EXPECT_EQ(Bytes(twice.begin(), twice.begin() + 8), bytes({0x3F, 0xF0, 0, 0, 0, 0, 0, 0}));
 }
 
+TEST(Wire, TurnsByAAboutZAndByCAboutX) {
+    const auto pose = toPose({100.0, 0.0, -50.0, 0.5, 0.0, 0.0});
+    EXPECT_EQ(pose.translation, Eigen::Vector3d(0.1, 0.0, -0.05));
+    EXPECT_NEAR(pose.rotation.z(), std::sin(0.25), 1e-12);
+    EXPECT_NEAR(toPose({0.0, 0.0, 0.0, 0.0, 0.0, 0.5}).rotation.x(), std::sin(0.25), 1e-12);
+    EXPECT_THAT(toNumbers(toPose({1.0, 2.0, 3.0, 0.1, 0.2, 0.3})),
+                ::testing::Pointwise(::testing::DoubleNear(1e-9),
+                                     std::array{1.0, 2.0, 3.0, 0.1, 0.2, 0.3}));
+}
+
 }  // namespace
 }  // namespace metier::virtual_iiwa

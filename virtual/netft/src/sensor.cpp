@@ -23,8 +23,8 @@ constexpr std::array kTorqueUnits{Unit{"Nm", 1.0},
                                   Unit{"lbf-ft", kPoundForce* kFoot}};
 
 std::int32_t toCounts(double value) {
-    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-    return static_cast<std::int32_t>(std::lround(std::clamp(value, -kMost, kMost)));
+    constexpr double most = std::numeric_limits<std::int32_t>::max();
+    return static_cast<std::int32_t>(std::lround(std::clamp(value, -most, most)));
 }
 
 }  // namespace

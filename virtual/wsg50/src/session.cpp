@@ -107,7 +107,9 @@ void Session::answer(Command command, std::span<const std::byte> payload) {
             disconnect_announced_ |= command == Command::disconnect;
             return reply(command, Status::success, payload);
         case 2:
-            return answerMotion(command, payload);
+            return command >= Command::stop && command <= Command::acknowledge
+                       ? answerStop(command, payload)
+                       : answerMotion(command, payload);
         case 3:
             return answerSetting(command, payload);
         case 6:
@@ -141,11 +143,17 @@ void Session::answerMotion(Command command, std::span<const std::byte> payload) 
             status = gripper_.grasp(width, in.f32() * kMillimetre);
             break;
         }
-        case Command::release: {
+        default: {
             const double width = in.f32() * kMillimetre;
             status = gripper_.release(width, in.f32() * kMillimetre);
-            break;
         }
+    }
+    reply(command, status, {});
+}
+
+void Session::answerStop(Command command, std::span<const std::byte> payload) {
+    auto status = Status::success;
+    switch (command) {
         case Command::stop:
             gripper_.stop();
             break;

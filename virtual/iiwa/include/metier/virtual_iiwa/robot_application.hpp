@@ -5,25 +5,10 @@
 #include <map>
 #include <optional>
 
-#include "metier/geometry/twist.hpp"
-#include "metier/virtual_iiwa/arm.hpp"
+#include "metier/virtual_iiwa/cabinet.hpp"
 #include "metier/virtual_iiwa/wire.hpp"
 
 namespace metier::virtual_iiwa {
-
-/// The cabinet that the robot application runs on.
-struct Cabinet {
-    Arm arm;
-    geometry::Wrench wrench{};         ///< from outside on the flange, in the flange frame
-    motion::JointVector torque_noise;  ///< of this cycle [Nm]
-    bool emergency_stop = false;
-    bool enabled = true;
-    bool limit_violated = false;
-
-    bool ready() const noexcept { return !emergency_stop && enabled && !limit_violated; }
-    /// What the outside does to the axes [Nm].
-    motion::JointVector externalTorque() const;
-};
 
 /// The robot application: what each command of the PC does.
 ///

@@ -51,6 +51,7 @@ private:
     void handle(const Frame& frame);
     void answer(Command command, std::span<const std::byte> payload);
     void answerMotion(Command command, std::span<const std::byte> payload);
+    void answerStop(Command command, std::span<const std::byte> payload);
     void answerSetting(Command command, std::span<const std::byte> payload);
     void answerQuery(Command command, std::span<const std::byte> payload);
     void answerUpdate(Command command, std::span<const std::byte> payload);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "metier/geometry/twist.hpp"
+#include "metier/virtual_iiwa/arm.hpp"
+
+namespace metier::virtual_iiwa {
+
+/// The cabinet that the robot application runs on.
+struct Cabinet {
+    Arm arm;
+    geometry::Wrench wrench{};         ///< from outside on the flange, in the flange frame
+    motion::JointVector torque_noise;  ///< of this cycle [Nm]
+    bool emergency_stop = false;
+    bool enabled = true;
+    bool limit_violated = false;
+
+    bool ready() const noexcept { return !emergency_stop && enabled && !limit_violated; }
+    /// What the outside does to the axes [Nm].
+    motion::JointVector externalTorque() const;
+};
+
+}  // namespace metier::virtual_iiwa

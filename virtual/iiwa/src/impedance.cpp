@@ -1,0 +1,63 @@
+#include "metier/virtual_iiwa/impedance.hpp"
+
+#include <cstddef>
+#include <limits>
+
+namespace metier::virtual_iiwa {
+
+namespace {
+
+constexpr double kUnbounded = std::numeric_limits<double>::max();
+
+/// So many arguments of an impedance command, from `first`, must be from `lower` to `upper`.
+struct ImpedanceRange {
+    int command;
+    std::size_t first;
+    std::size_t count;
+    double lower;
+    double upper;
+};
+constexpr std::array kImpedanceRanges{
+    ImpedanceRange{221, 0, 3, 0.0, 5000.0},
+    ImpedanceRange{221, 3, 3, 0.0, 300.0},
+    ImpedanceRange{221, 6, 1, 0.0, kUnbounded},
+    ImpedanceRange{222, 0, 6, 0.1, 1.0},
+    ImpedanceRange{222, 6, 1, 0.3, 1.0},
+    ImpedanceRange{223, 0, 6, -kUnbounded, kUnbounded},
+    ImpedanceRange{224, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{225, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{226, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{227, 0, 7, 0.0, kUnbounded},
+    ImpedanceRange{228, 0, 7, 0.0, 1.0},
+    ImpedanceRange{229, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{230, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{231, 0, 6, -kUnbounded, kUnbounded},
+    ImpedanceRange{232, 0, 6, -kUnbounded, kUnbounded},
+    ImpedanceRange{233, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{234, 0, 6, 0.0, kUnbounded},
+    ImpedanceRange{235, 0, 1, 0.0, kUnbounded},
+    ImpedanceRange{236, 0, 1, 0.0, kUnbounded},
+    ImpedanceRange{237, 0, 1, 0.0, kUnbounded},
+    ImpedanceRange{238, 0, 1, 0.0, kUnbounded},
+    ImpedanceRange{239, 0, 1, 0.0, 1.0},
+    ImpedanceRange{240, 0, 2, -kUnbounded, kUnbounded},
+    ImpedanceRange{241, 0, 2, -kUnbounded, kUnbounded},
+    ImpedanceRange{242, 0, 2, -kUnbounded, kUnbounded},
+    ImpedanceRange{243, 0, 2, -kUnbounded, kUnbounded},
+};
+
+}  // namespace
+
+bool impedancePossible(int code, const std::array<double, 7>& arguments) noexcept {
+    for (const auto& range : kImpedanceRanges) {
+        for (std::size_t i = 0; range.command == code && i < range.count; ++i) {
+            const double value = arguments[range.first + i];
+            if (!(value >= range.lower && value <= range.upper)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace metier::virtual_iiwa
