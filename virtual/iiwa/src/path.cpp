@@ -90,12 +90,12 @@ void slowDownFor(ScalarLimits& limits, const ScalarLimits& axis, double slope, d
 }
 
 /// Walks along the path once: the arm gets everywhere, and no axis is too fast.
-Result<void> inspect(Path& path, const motion::RobotModel& model, const JointVector& start,
-                     const MotionLimits& limits) {
+Planned inspected(std::unique_ptr<Path> path, const motion::RobotModel& model,
+                  const JointVector& start, const MotionLimits& limits) {
     constexpr double step = 1.0 / kSamples;
     std::array<JointVector, 3> last{start, start, start};
     for (int sample = 0; sample <= kSamples; ++sample) {
-        const auto found = path.at(sample * step, last[0]);
+        const auto found = path->at(sample * step, last[0]);
         if (!found) {
             return fail(Errc::unreachable, fmt::format("the arm cannot get to {:.0f} % of the path",
                                                        100.0 * sample * step));
@@ -105,19 +105,9 @@ Result<void> inspect(Path& path, const motion::RobotModel& model, const JointVec
             const double slope = (last[0][axis] - last[1][axis]) / step;
             const double before = (last[1][axis] - last[2][axis]) / step;
             const double bend = sample > 1 ? (slope - before) / step : 0.0;
-            slowDownFor(path.limits, axisLimits(model, axis, limits), std::abs(slope),
+            slowDownFor(path->limits, axisLimits(model, axis, limits), std::abs(slope),
                         std::abs(bend));
         }
-    }
-    return {};
-}
-
-Planned planPoses(const MovingFrame& frame, const JointVector& start, PoseFunction pose,
-                  const ScalarLimits& path_limits, const MotionLimits& limits) {
-    auto path = std::make_unique<PosePath>(frame, start, std::move(pose));
-    path->limits = path_limits;
-    if (auto inspected = inspect(*path, *frame.model, start, limits); !inspected) {
-        return fail(inspected.error());
     }
     return path;
 }
@@ -196,7 +186,9 @@ Planned planLinear(const MovingFrame& frame, const JointVector& start, const Pos
         return Pose{from.translation + parameter * (to.translation - from.translation),
                     geometry::slerp(from.rotation, to.rotation, parameter)};
     };
-    return planPoses(frame, start, pose, path_limits, limits);
+    auto path = std::make_unique<PosePath>(frame, start, pose);
+    path->limits = path_limits;
+    return inspected(std::move(path), *frame.model, start, limits);
 }
 
 Planned planCircle(const MovingFrame& frame, const JointVector& start, const CirclePoints& points,
@@ -225,7 +217,9 @@ Planned planCircle(const MovingFrame& frame, const JointVector& start, const Cir
         const Eigen::Vector3d spoke = Eigen::AngleAxisd(parameter * angle, axis) * -to_centre;
         return Pose{from.translation + to_centre + spoke, from.rotation};
     };
-    return planPoses(frame, start, pose, path_limits, limits);
+    auto path = std::make_unique<PosePath>(frame, start, pose);
+    path->limits = path_limits;
+    return inspected(std::move(path), *frame.model, start, limits);
 }
 
 }  // namespace metier::virtual_iiwa
