@@ -11,6 +11,7 @@ constexpr int kMove = 'M';
 constexpr int kCancel = 'C';
 constexpr int kJoint = 'J';  // as type of a motion and as kind of a point
 
+constexpr std::string_view kZeros = "[0.0,0.0,0.0,0.0,0.0,0.0,0.0]";
 constexpr std::string_view kFrame = R"({"x":0.0,"y":0.0,"z":0.0,"a":0.0,"e":0.0,"r":0.0})";
 
 std::string point(int kind, std::uint64_t mask, std::string_view values) {
@@ -116,7 +117,6 @@ void SetPointText::writeControlArray(const JointLayout& layout,
 
 void SetPointText::writeJointValue(const JointLayout& layout,
                                    const JointSetPoint& set_point) noexcept {
-    constexpr std::string_view kZeros = "[0.0,0.0,0.0,0.0,0.0,0.0,0.0]";
     append(R"("position":[)");
     for (std::size_t joint = 0; joint < kMaxJoints; ++joint) {
         const double value = joint < layout.count() ? set_point.position[joint] : 0.0;

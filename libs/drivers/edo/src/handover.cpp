@@ -54,9 +54,9 @@ void Handover::onResponse(const ServiceResponse& response, SteadyTime now) {
     }
     if (!response.ok || !response.result_code) {
         refusal_ = fmt::format("the service failed: {}", response.text);
-    } else if (*response.result_code != 0) {
+    } else if (*response.result_code != 0 && state_ == State::taking) {
         refusal_ = fmt::format("refused with result {}", *response.result_code);
-    } else {
+    } else {  // who has nothing to give back is refused too: a brake gave it back already
         granted_ = true;
         granted_at_ = now;
         deadline_ = now + kAgreeTime;
@@ -104,7 +104,7 @@ Result<void> Handover::tick(SteadyTime now) {
 }
 
 std::string Handover::disagreement() const {
-    return fmt::format("agreed to, but the algorithm state is {} ({} while control is taken)",
+    return fmt::format("answered, but the algorithm state is {} ({} while control is taken)",
                        algorithm_, generation_.taken_state);
 }
 

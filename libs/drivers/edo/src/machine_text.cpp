@@ -21,6 +21,10 @@ constexpr std::array<std::string_view, 10> kBits{"a joint does not answer",
                                                  "fence open",
                                                  "collision"};
 
+constexpr std::array<std::string_view, 9> kNames{
+    "INIT",  "NOT_CALIBRATED", "CALIBRATED",   "MOVE",     "JOG",
+    "ERROR", "BRAKED",         "BRAKES_CHECK", "MOVE_TEST"};
+
 constexpr std::uint32_t kNeedsAPerson = MachineState::no_ack | MachineState::joint_absent |
                                         MachineState::overcurrent | MachineState::position_error |
                                         MachineState::bus_error;
@@ -54,9 +58,6 @@ device::Safety byOpcode(const MachineState& machine) {
 }  // namespace
 
 std::string stateName(std::uint8_t state) {
-    constexpr std::array<std::string_view, 9> kNames{
-        "INIT",  "NOT_CALIBRATED", "CALIBRATED",   "MOVE",     "JOG",
-        "ERROR", "BRAKED",         "BRAKES_CHECK", "MOVE_TEST"};
     if (state == MachineState::command) {
         return "COMMAND";
     }

@@ -10,6 +10,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMillimetre = 1e-3;
 // A Halt brakes twice as hard as a motion is planned, and so does the driver.
 constexpr double kBrakeReserve = 2.0;
+// Degrees to either side.
+constexpr std::array<double, 6> kStroke{179, 99, 99, 179, 103.5, 179};
 
 Duration seconds(double value) {
     return std::chrono::round<Duration>(std::chrono::duration<double>(value));
@@ -17,7 +19,6 @@ Duration seconds(double value) {
 
 /// Without a model: the controller's own configuration (docs/protocols/edo.md#axes).
 motion::JointLimits defaultLimits(std::size_t axis) {
-    constexpr std::array<double, 6> kStroke{179, 99, 99, 179, 103.5, 179};
     const bool wrist = axis >= 3;
     return {-kStroke[axis] * kDegree, kStroke[axis] * kDegree, (wrist ? 33.59 : 22.79) * kDegree,
             (wrist ? 67.2 : 45.6) * kDegree, 0.0};

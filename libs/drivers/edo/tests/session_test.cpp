@@ -110,7 +110,7 @@ TEST_P(BothGenerations, TellsWhenControlIsGrantedButNotGiven) {
     const auto source = bench.attach(kStep, 100);
     ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }, 5000));
     EXPECT_EQ(source->asked, 0);
-    EXPECT_THAT(bench.text(), HasSubstr("agreed to, but the algorithm state is 5"));
+    EXPECT_THAT(bench.text(), HasSubstr("answered, but the algorithm state is 5"));
 }
 
 TEST_P(BothGenerations, TellsWhenTheServiceNeverAnswers) {
@@ -281,6 +281,21 @@ TEST(Session, TheRobotBrakesWhileItMoves) {
     ASSERT_TRUE(bench.reset()) << bench.text();
     EXPECT_FALSE(bench.robot.control_taken);
     EXPECT_EQ(bench.safety(), SafetyState::normal);
+}
+
+TEST_P(BothGenerations, ABrakeThatTakesControlBackIsNoFault) {
+    Bench bench(GetParam());
+    bench.start();
+    const auto source = bench.attach(kStep, 1000);
+    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
+    bench.robot.brake(1U << 9U);
+    bench.robot.control_taken = false;
+    bench.run(1500);
+    EXPECT_THAT(bench.text(), HasSubstr("edo: BRAKED (collision)"));
+    bench.robot.restart();
+    bench.robot.state = 2;
+    bench.run(500);
+    EXPECT_EQ(bench.safety(), SafetyState::normal) << bench.text();
 }
 
 TEST(Session, NamesAnEmergencyStop) {
