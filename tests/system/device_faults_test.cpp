@@ -1,12 +1,14 @@
 // Each arm on its maker's wire: it moves, and whatever happens to its controller or its cable ends
 // in a named state, within a stated time, with a way back.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "metier/base/queue.hpp"
 #include "metier_program.hpp"
 #include "running_cell.hpp"
 
@@ -25,6 +27,9 @@ struct ArmCase {
     const char* name;        ///< of its file in tests/system/devices
     double axis_1;           ///< of a long move [rad]
     const char* stop_fault;  ///< what its controller stops the arm for
+    /// What the arm does when the cable is cut. An iiwa's cabinet does not notice, and ends the
+    /// motion that it has accepted (docs/protocols/iiwa.md).
+    enum class Cut { stands, goes_on } cut = Cut::stands;
 };
 
 void PrintTo(const ArmCase& arm, std::ostream* out) {
@@ -38,6 +43,12 @@ std::filesystem::path deviceCell(const std::string& name) {
 
 class ArmOnItsWire : public ::testing::TestWithParam<ArmCase> {
 protected:
+    ArmOnItsWire() {
+        skill_.onTransition(
+            [this](const skill::TransitionEvent& event) { events_.tryPush(event); });
+    }
+    ~ArmOnItsWire() override { skill_.onTransition({}); }
+
     /// Starts a move of axis 1 that takes some seconds, and waits until the controller moves.
     void startLongMove() {
         auto target = home_;
@@ -60,11 +71,14 @@ protected:
 
     /// The end of the move, which must come in time.
     skill::TransitionEvent endWithin(std::chrono::milliseconds time) {
-        const auto before = std::chrono::steady_clock::now();
-        const auto ended = skill_.awaitEnd(inAMinute());
-        EXPECT_TRUE(ended) << ended.error().message;
-        EXPECT_LT(std::chrono::steady_clock::now() - before, time);
-        return ended ? *ended : skill::TransitionEvent{};
+        const auto deadline = std::chrono::steady_clock::now() + time;
+        while (const auto event = events_.popUntil(deadline)) {
+            if (event->to == State::halted || event->to == State::ready) {
+                return *event;
+            }
+        }
+        ADD_FAILURE() << "the move did not end in time";
+        return {};
     }
 
     /// The arm rests, short of the target.
@@ -89,6 +103,7 @@ protected:
         EXPECT_TRUE(moved) << moved.error().message;
     }
 
+    Queue<skill::TransitionEvent> events_{100};
     RunningCell cell_{deviceCell(GetParam().name)};
     std::unique_ptr<opcua::Client> client_ = connectTo(cell_.url("arm"));
     skill_client::SkillHandle skill_ = openSkill(*client_, "JointPtpMoveSkill");
@@ -135,7 +150,9 @@ TEST_P(ArmOnItsWire, IsHaltedByACutCableAndComesBack) {
     EXPECT_EQ(halted.to, State::halted);
     EXPECT_EQ(halted.reason, Reason::device_lost);
     EXPECT_THAT(halted.reason_text, HasSubstr("arm")) << "names the device";
-    expectAtRestOnTheWay();
+    if (GetParam().cut == ArmCase::Cut::stands) {
+        expectAtRestOnTheWay();
+    }
     EXPECT_FALSE(skill_.reset()) << "nobody is there to agree";
     cell_.inject("controller", "restore-link");
     expectResetAndMove();
@@ -181,37 +198,81 @@ TEST_P(ArmOnItsWire, IsHaltedByAStopOfItsControllerAndComesBack) {
     expectResetAndMove();
 }
 
-TEST_P(ArmOnItsWire, StandsSoonAfterItsServerIsKilled) {
-    startLongMove();
-    const auto pids = cell_.childPids();
-    ASSERT_EQ(kill(pids.back(), SIGKILL), 0);
-    expectAtRestOnTheWay();
+INSTANTIATE_TEST_SUITE_P(
+    Devices, ArmOnItsWire,
+    ::testing::Values(ArmCase{"ur5", 1.0, "protective-stop"},
+                      ArmCase{"iiwa", 1.0, "protective-stop", ArmCase::Cut::goes_on},
+                      ArmCase{"edo", 0.6, "brake"}, ArmCase{"edo_classic", 0.6, "brake"}),
+    [](const auto& arm) { return std::string(arm.param.name); });
+
+/// A virtual controller and a server that are not children of one `metier up`, which would end the
+/// one with the other.
+class ArmOfAServerThatDies : public ::testing::TestWithParam<ArmCase> {
+protected:
+    static std::string line(process::ChildProcess& process) {
+        return process.readLine(inAMinute()).value();
+    }
+    double position() const {
+        const auto state = runMetier({"virtual", "state", address_}).output;
+        return nlohmann::json::parse(state).at("joint_position").at(0).get<double>();
+    }
+
+    std::string file_ = deviceCell(GetParam().name).string();
+    std::string address_ =
+        "127.77." + std::to_string(getpid() / 250 % 250) + "." + std::to_string(1 + getpid() % 250);
+    process::ChildProcess controller_ =
+        process::ChildProcess::start(
+            metierCommand({"virtual", "run", file_, "controller", "--address", address_}))
+            .value();
+    std::string ready_ = line(controller_);
+    process::ChildProcess server_ =
+        process::ChildProcess::start(metierCommand({"serve", file_, "--server", "arm", "--port",
+                                                    "0", "--controller", address_}))
+            .value();
+    std::string url_ = line(server_).substr(std::string("ready ").size());
+};
+
+TEST_P(ArmOfAServerThatDies, StandsSoonAfter) {
+    const auto client = connectTo(url_);
+    auto skill = openSkill(*client, "JointPtpMoveSkill");
+    auto target = jointPosition(*client, skill);
+    const auto start = target.front();
+    target.front() += GetParam().axis_1;
+    ASSERT_TRUE(skill.set("TargetJointPosition", target));
+    ASSERT_TRUE(skill.set("SpeedOverride", 0.2));
+    ASSERT_TRUE(skill.start());
+    const auto deadline = inAMinute();
+    while (std::abs(position() - start) < 0.02) {
+        ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the arm does not move";
+    }
+    server_.signal(SIGKILL);
+    ASSERT_TRUE(server_.waitUntil(inAMinute()));
+    const auto killed = std::chrono::steady_clock::now();
+    auto now = position();
+    for (auto last = now + 1.0; std::abs((now = position()) - last) > 1e-6; last = now) {
+        ASSERT_LT(std::chrono::steady_clock::now() - killed, kNoticed) << "the arm still moves";
+    }
+    EXPECT_LT(std::abs(now - start), 0.95 * std::abs(GetParam().axis_1));
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, ArmOnItsWire,
-                         ::testing::Values(ArmCase{"ur5", 1.0, "protective-stop"},
-                                           ArmCase{"iiwa", 1.0, "protective-stop"},
-                                           ArmCase{"edo", 0.6, "brake"},
-                                           ArmCase{"edo_classic", 0.6, "brake"}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Devices, ArmOfAServerThatDies,
+                         ::testing::Values(ArmCase{"ur5", 1.0, ""}, ArmCase{"iiwa", 1.0, ""},
+                                           ArmCase{"edo", 0.6, ""}),
+                         [](const auto& arm) { return std::string(arm.param.name); });
 
 /// A gripper on its maker's wire.
 class GripperOnItsWire : public ::testing::Test {
 protected:
-    void SetUp() override { ASSERT_TRUE(reset()); }
+    void SetUp() override { resetAll(); }
 
-    bool reset() {
-        auto grasp = openSkill(*client_, "GraspGripperSkill");
-        if (*grasp.state() == State::ready) {
-            return true;
-        }
+    /// Makes both skills ready: Reset acknowledges the gripper's fault and homes it.
+    void resetAll() {
         const auto deadline = inAMinute();
-        while (std::chrono::steady_clock::now() < deadline) {
-            if (grasp.reset()) {
-                return true;
+        for (auto* skill : {&grasp_, &release_}) {
+            while (*skill->state() != State::ready && !skill->reset()) {
+                ASSERT_LT(std::chrono::steady_clock::now(), deadline) << skill->reasonText();
             }
         }
-        return false;
     }
 
     RunningCell cell_{deviceCell("wsg50")};
@@ -236,7 +297,7 @@ TEST_F(GripperOnItsWire, SaysThatThereIsNoPart) {
     ASSERT_FALSE(missed);
     EXPECT_THAT(missed.error().message, HasSubstr("no part"));
     EXPECT_EQ(*grasp_.state(), State::halted);
-    ASSERT_TRUE(reset());
+    resetAll();
     EXPECT_TRUE(release_.run({}, inAMinute()));
 }
 
@@ -244,8 +305,7 @@ TEST_F(GripperOnItsWire, IsHaltedByACutCableAndComesBack) {
     cell_.inject("controller", "cut-link");
     ASSERT_TRUE(grasp_.awaitState(State::halted, std::chrono::steady_clock::now() + kNoticed));
     cell_.inject("controller", "restore-link");
-    ASSERT_TRUE(reset());
-    ASSERT_TRUE(release_.reset() || *release_.state() == State::ready);
+    resetAll();
     EXPECT_TRUE(release_.run({}, inAMinute()));
 }
 

@@ -51,16 +51,11 @@ public:
     Result<void> offerSkills(const opcua::NodeId& folder, const std::vector<std::string>& wanted,
                              std::vector<std::unique_ptr<skill::Skill>> skills,
                              const std::shared_ptr<skill::Resource>& resource);
-    /// Halts every skill that is offered by now when the device is lost, at once if it is not
-    /// there. The device must outlive this.
+    /// Halts the skills that are offered by now when the device is lost or stops by itself, at once
+    /// if it is so already. The device must outlive this.
     template <typename Device>
     void haltOnLossOf(Device& device) {
         device_watch_.emplace(device, skills_->executor(), skills_->programs());
-        if (const auto now = device.safety(); now.state == device::SafetyState::disconnected) {
-            for (auto* program : skills_->programs()) {
-                program->deviceLost(now.text);
-            }
-        }
     }
     Result<void> start() { return server_->start(); }
 

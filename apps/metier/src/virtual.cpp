@@ -134,7 +134,7 @@ Result<nlohmann::ordered_json> ask(const ControlOptions& options,
         answer.append(buffer.data(), *count);
     }
     auto parsed = nlohmann::ordered_json::parse(answer, nullptr, false);
-    if (parsed.is_object() && parsed.contains("error")) {
+    if (parsed.is_object() && parsed.contains("error") && parsed.at("error").is_string()) {
         return fail(Errc::invalid_argument, parsed.at("error").get<std::string>());
     }
     return parsed;

@@ -1,15 +1,18 @@
 #include "metier/robot_skills/device_watch.hpp"
 
-#include <string>
 #include <utility>
 
 namespace metier::robot_skills {
 
 namespace {
 
-void tellLost(const std::vector<skill::Program*>& programs, const std::string& text) {
+void tell(const std::vector<skill::Program*>& programs, const device::Safety& safety) {
+    const bool lost = safety.state == device::SafetyState::disconnected;
     for (auto* program : programs) {
-        program->deviceLost(text);
+        // What runs learns of a stop from the motion that ends.
+        if (lost || program->state() == skill::State::ready) {
+            program->deviceLost(safety.text);
+        }
     }
 }
 
@@ -29,18 +32,21 @@ DeviceWatch::DeviceWatch(device::Gripper& gripper, std::shared_ptr<skill::Execut
 
 template <typename Device>
 void DeviceWatch::watch(Device& device, std::shared_ptr<skill::Executor> executor) {
-    registration_ =
-        device.onSafetyChange([executor = std::move(executor),
-                               watched = std::weak_ptr(programs_)](const device::Safety& safety) {
-            if (safety.state != device::SafetyState::disconnected) {
-                return;
+    const auto notice = [executor = std::move(executor),
+                         watched = std::weak_ptr(programs_)](const device::Safety& safety) {
+        if (safety.state == device::SafetyState::normal) {
+            return;
+        }
+        executor->post([watched, safety] {
+            if (const auto alive = watched.lock()) {
+                tell(*alive, safety);
             }
-            executor->post([watched, text = safety.text] {
-                if (const auto alive = watched.lock()) {
-                    tellLost(*alive, text);
-                }
-            });
         });
+    };
+    registration_ = device.onSafetyChange(notice);
+    if (const auto now = device.safety(); now.state != device::SafetyState::normal) {
+        tell(*programs_, now);
+    }
 }
 
 }  // namespace metier::robot_skills

@@ -27,12 +27,37 @@ TEST(DeviceWatch, HaltsEveryProgramWhenTheControllerIsGone) {
     EXPECT_TRUE(bench.program(kJointPtp).reset(bench.caller()));
 }
 
-TEST(DeviceWatch, LeavesProgramsReadyInAProtectiveStop) {
+TEST(DeviceWatch, HaltsWhatIsReadyInAProtectiveStopSoThatResetLeadsBack) {
     Bench bench;
     const DeviceWatch watch(bench.arm(), bench.sharedExecutor(), {&bench.program(kJointPtp)});
     bench.arm().protectiveStop("fence opened");
     bench.step();
+    EXPECT_EQ(bench.program(kJointPtp).state(), State::halted);
+    EXPECT_THAT(bench.program(kJointPtp).reasonText(), ::testing::HasSubstr("fence opened"));
+    bench.step();
+    EXPECT_TRUE(bench.program(kJointPtp).reset(bench.caller()));
     EXPECT_EQ(bench.program(kJointPtp).state(), State::ready);
+}
+
+TEST(DeviceWatch, LeavesAStopDuringAMotionToTheMotion) {
+    Bench bench;
+    const DeviceWatch watch(bench.arm(), bench.sharedExecutor(),
+                            {&bench.program(kJointPtp), &bench.program(kPositionStream)});
+    ASSERT_TRUE(bench.program(kPositionStream).start(bench.caller()));
+    bench.step();
+    bench.arm().protectiveStop("fence opened");
+    bench.step();
+    bench.step();
+    EXPECT_EQ(bench.program(kPositionStream).state(), State::halted);
+    EXPECT_EQ(bench.program(kPositionStream).subState(), SubState::halted_error);
+}
+
+TEST(DeviceWatch, HaltsAtOnceIfTheControllerIsInAStopAlready) {
+    Bench bench;
+    bench.arm().protectiveStop("fence opened");
+    bench.step();
+    const DeviceWatch watch(bench.arm(), bench.sharedExecutor(), {&bench.program(kJointPtp)});
+    EXPECT_EQ(bench.program(kJointPtp).state(), State::halted);
 }
 
 TEST(DeviceWatch, TellsNobodyOnceItIsGone) {

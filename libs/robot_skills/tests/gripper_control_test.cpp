@@ -155,7 +155,7 @@ TEST(GripperWatch, HaltsEveryProgramWhenTheGripperIsGone) {
     const DeviceWatch watch(bench.gripper, bench.executor,
                             {&bench.program(kGrasp), &bench.program(kMove)});
     bench.setSafety(kFault);
-    EXPECT_EQ(bench.program(kGrasp).state(), State::ready);
+    EXPECT_EQ(bench.program(kGrasp).state(), State::halted) << "Reset is the way back";
     bench.setSafety(kLost);
     for (const auto& name : {kGrasp, kMove}) {
         EXPECT_EQ(bench.program(name).subState(), SubState::halted_device_lost);

@@ -1,5 +1,6 @@
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -51,7 +52,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     robot.connect(
         [&](const std::string& topic, const Json& message) { bridge.publish(topic, message); },
         [&](std::string_view topic) { return bridge.hasSubscribers(topic); });
-    const auto client = bridge.addClient([](const std::string& text) { (void)Json::parse(text); });
+    const auto client = bridge.addClient([](const std::string& text) {
+        if (Json::parse(text, nullptr, false).is_discarded()) {
+            std::abort();
+        }
+    });
     bridge.receive(client, R"({"op":"subscribe","topic":"/usb_jnt_state"})");
     std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
     SteadyTime now{};

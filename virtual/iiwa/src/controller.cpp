@@ -275,7 +275,7 @@ nlohmann::ordered_json IiwaController::state() const {
         {"joint_velocity", std::vector(velocity.begin(), velocity.end())},
     };
     if (application_) {
-        state["error"] = static_cast<int>(application_->error());
+        state["error_code"] = static_cast<int>(application_->error());
         state["condition_fired"] = application_->conditionFired();
         state["servo"] = application_->servo();
         state["synchronous"] = application_->synchronous();

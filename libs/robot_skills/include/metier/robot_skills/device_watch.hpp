@@ -10,7 +10,9 @@
 
 namespace metier::robot_skills {
 
-/// Tells all Programs of an arm or a gripper when it is gone: each is Halted, also from Ready.
+/// Tells all Programs of an arm or a gripper when it is gone: each is Halted, also from Ready. When
+/// its controller is in a stop or a fault, those that are Ready are Halted, too: Reset is the way
+/// back. Both also at once, if it is so already.
 ///
 /// Threading: made and destroyed on the owner's thread.
 class DeviceWatch {
