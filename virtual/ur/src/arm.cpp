@@ -12,6 +12,11 @@ namespace metier::virtual_ur {
 
 namespace {
 
+// What rounding leaves of a standstill is one [rad/s].
+constexpr double kStandstill = 1e-9;
+// How far an injected violation is beyond a limit [rad].
+constexpr double kBeyond = 0.01;
+
 // From the maker's list of errors (believed): position close to joint limits, position deviates
 // from path, position in singularity.
 constexpr int kJointLimit = 150;
@@ -153,8 +158,6 @@ std::optional<ArmViolation> Arm::follow(double step) {
 void Arm::take(const Vector6& position) {
     for (std::size_t i = 0; i < kAxes; ++i) {
         const double velocity = (position[i] - target_.position[i]) / options_.cycle;
-        // What rounding leaves of a standstill is one.
-        constexpr double kStandstill = 1e-9;
         const double taken = std::abs(velocity) < kStandstill ? 0.0 : velocity;
         acceleration_[i] = (taken - target_.velocity[i]) / options_.cycle;
         target_.velocity[i] = taken;
@@ -164,7 +167,6 @@ void Arm::take(const Vector6& position) {
 
 ArmViolation Arm::beyondLimit(std::size_t axis) const {
     const double limit = options_.limits[axis].upper;
-    constexpr double kBeyond = 0.01;
     return toViolation(
         {virtual_robots::Violation::Quantity::position, axis, limit + kBeyond, limit});
 }

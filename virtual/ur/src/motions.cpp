@@ -10,6 +10,13 @@ namespace metier::virtual_ur {
 
 namespace {
 
+// Of the inverse Jacobian: keeps it finite in a singular place.
+constexpr double kDamping = 1e-6;
+// A servo that is so near is there: an exponential alone would never arrive [rad].
+constexpr double kArrived = 1e-9;
+// A shorter line is a turn on the spot [m].
+constexpr double kOnTheSpot = 1e-6;
+
 // A duration is over when less of it is left than this: sums of steps are not exact [s].
 constexpr double kRounding = 1e-6;
 
@@ -128,7 +135,6 @@ public:
         *twist_ = reached_ ? wanted_.twist : Twist(*twist_ + way * (change / way.norm()));
         left_ -= step;
         Vector6 velocity{};
-        constexpr double kDamping = 1e-6;
         const Eigen::Matrix<double, 6, 6> square =
             jacobian * jacobian.transpose() + kDamping * Eigen::Matrix<double, 6, 6>::Identity();
         Eigen::Map<Twist>(velocity.data()) = jacobian.transpose() * square.ldlt().solve(*twist_);
@@ -253,8 +259,6 @@ std::optional<Vector6> ServoMotion::next(const JointState& now, double step) {
     for (std::size_t i = 0; i < kAxes; ++i) {
         (*first_)[i] += share * (target_[i] - (*first_)[i]);
         result[i] = now.position[i] + share * ((*first_)[i] - now.position[i]);
-        // An exponential alone would never arrive.
-        constexpr double kArrived = 1e-9;
         if (std::abs(target_[i] - result[i]) < kArrived) {
             result[i] = target_[i];
         }
@@ -285,7 +289,7 @@ std::unique_ptr<Motion> moveL(const Vector6& start, const geometry::Pose& base_f
     MoveL::Line line{tool.arm.forward(toJointVector(start)) * tool.flange_from_tool,
                      base_from_target};
     line.length = geometry::distanceBetween(line.start, line.target);
-    if (constexpr double kOnTheSpot = 1e-6; line.length < kOnTheSpot) {
+    if (line.length < kOnTheSpot) {
         line.length = geometry::rotationAngleBetween(line.start.rotation, line.target.rotation);
     }
     return std::make_unique<MoveL>(line, speed, tool);

@@ -10,6 +10,8 @@ namespace metier::virtual_ur {
 
 namespace {
 
+constexpr std::string_view kName = "URControl";
+
 constexpr std::uint8_t kRobotState = 16;
 constexpr std::uint8_t kRobotMessage = 20;
 
@@ -215,7 +217,6 @@ Bytes robotStatePackage(const RobotState& state, const RobotDescription& robot) 
 }
 
 Bytes versionMessage(const RobotDescription& robot) {
-    constexpr std::string_view kName = "URControl";
     auto body = message(kNoTime, kFromController, 3);
     body.put(shortLength(kName))
         .text(kName)

@@ -17,6 +17,8 @@ using urscript::RunState;
 
 // A program comes to a pause, and out of it, in this time [s].
 constexpr double kPauseTime = 0.25;
+// Sums of shares are not exact.
+constexpr double kRounding = 1e-9;
 constexpr std::size_t kMostSecondary = 64;
 
 struct Place {
@@ -185,7 +187,7 @@ void ProgramRunner::stepPrograms() {
     }
     if (primary_ && share_ > 0.0 && runtime_ != RuntimeState::paused) {
         due_ += share_ * robot_state_.speed_slider;
-        if (constexpr double kRounding = 1e-9; due_ >= 1.0 - kRounding) {
+        if (due_ >= 1.0 - kRounding) {
             due_ = std::max(0.0, due_ - 1.0);
             stepPrimary();
         }

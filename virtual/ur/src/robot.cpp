@@ -12,6 +12,8 @@ namespace metier::virtual_ur {
 
 namespace {
 
+constexpr std::string_view kSpace = " \t\r\n";
+
 // Clients wait until a controller has run for 40 s before they trust it.
 constexpr double kFirstSecond = 64.0;
 
@@ -19,7 +21,6 @@ constexpr double kFirstSecond = 64.0;
 constexpr std::int32_t kReadOnlyInterface = 210;
 
 std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kSpace = " \t\r\n";
     const auto first = text.find_first_not_of(kSpace);
     if (first == std::string_view::npos) {
         return {};

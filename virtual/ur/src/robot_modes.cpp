@@ -6,6 +6,20 @@ namespace metier::virtual_ur {
 
 namespace {
 
+constexpr std::array kSafetyModes{"NORMAL",
+                                  "REDUCED",
+                                  "PROTECTIVE_STOP",
+                                  "RECOVERY",
+                                  "SAFEGUARD_STOP",
+                                  "SYSTEM_EMERGENCY_STOP",
+                                  "ROBOT_EMERGENCY_STOP",
+                                  "VIOLATION",
+                                  "FAULT"};
+
+constexpr std::array kRobotModes{"NO_CONTROLLER", "DISCONNECTED", "CONFIRM_SAFETY",
+                                 "BOOTING",       "POWER_OFF",    "POWER_ON",
+                                 "IDLE",          "BACKDRIVE",    "RUNNING"};
+
 constexpr std::uint32_t bit(unsigned number) {
     return 1U << number;
 }
@@ -146,23 +160,11 @@ JointMode RobotModes::jointMode() const {
 }
 
 std::string toText(RobotMode mode) {
-    constexpr std::array kNames{"NO_CONTROLLER", "DISCONNECTED", "CONFIRM_SAFETY",
-                                "BOOTING",       "POWER_OFF",    "POWER_ON",
-                                "IDLE",          "BACKDRIVE",    "RUNNING"};
-    return kNames.at(static_cast<std::size_t>(static_cast<int>(mode) + 1));
+    return kRobotModes.at(static_cast<std::size_t>(static_cast<int>(mode) + 1));
 }
 
 std::string toText(SafetyMode mode) {
-    constexpr std::array kNames{"NORMAL",
-                                "REDUCED",
-                                "PROTECTIVE_STOP",
-                                "RECOVERY",
-                                "SAFEGUARD_STOP",
-                                "SYSTEM_EMERGENCY_STOP",
-                                "ROBOT_EMERGENCY_STOP",
-                                "VIOLATION",
-                                "FAULT"};
-    return kNames.at(static_cast<std::size_t>(mode) - 1);
+    return kSafetyModes.at(static_cast<std::size_t>(mode) - 1);
 }
 
 }  // namespace metier::virtual_ur

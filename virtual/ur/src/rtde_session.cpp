@@ -9,6 +9,8 @@ namespace metier::virtual_ur {
 
 namespace {
 
+constexpr std::string_view kSource = "RTDE";  // of text messages
+
 constexpr std::size_t kHeader = 3;
 constexpr std::size_t kMostRecipes = 255;
 constexpr std::size_t kLongestList = 2048;
@@ -223,7 +225,6 @@ void RtdeSession::answer(char type, std::uint8_t value) {
 }
 
 void RtdeSession::sendText(std::uint8_t level, std::string_view text) {
-    constexpr std::string_view kSource = "RTDE";
     ByteWriter payload;
     if (protocol_ == 1) {
         payload.put(level).text(text);

@@ -11,6 +11,9 @@ namespace metier::virtual_ur {
 
 namespace {
 
+constexpr std::array<std::string_view, std::variant_size_v<RtdeValue>> kTypeNames{
+    "BOOL", "UINT8", "UINT32", "UINT64", "INT32", "DOUBLE", "VECTOR3D", "VECTOR6D", "VECTOR6INT32"};
+
 using Read = RtdeVariable::Read;
 using Write = RtdeVariable::Write;
 using State = RobotState;
@@ -215,10 +218,7 @@ std::optional<RtdeVariable> RtdeVariable::input(std::string_view name) {
 }
 
 std::string_view RtdeVariable::typeName() const {
-    constexpr std::array<std::string_view, std::variant_size_v<RtdeValue>> kNames{
-        "BOOL",   "UINT8",    "UINT32",   "UINT64",      "INT32",
-        "DOUBLE", "VECTOR3D", "VECTOR6D", "VECTOR6INT32"};
-    return kNames.at(type_.index());
+    return kTypeNames.at(type_.index());
 }
 
 std::size_t RtdeVariable::size() const {

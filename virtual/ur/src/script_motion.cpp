@@ -11,6 +11,9 @@ namespace metier::virtual_ur {
 
 namespace {
 
+// When a program ends or gives up a motion [rad/s2].
+constexpr double kProgramStop = 10.0;
+
 using urscript::Target;
 
 // Of the arm before a move begins [rad/s2].
@@ -178,7 +181,6 @@ void ScriptRobot::abandonMotion() {
 void ScriptRobot::endCycle() {
     if (abandoned_) {
         abandoned_ = false;
-        constexpr double kProgramStop = 10.0;  // [rad/s2]
         parts_.arm.begin(stopJ(kProgramStop));
     }
 }

@@ -10,6 +10,9 @@ namespace metier::virtual_ur {
 
 namespace {
 
+// A force on the tool beyond it is a contact [N].
+constexpr double kContact = 5.0;
+
 using urscript::AnalogPort;
 using urscript::DigitalPort;
 using urscript::Pose;
@@ -110,7 +113,6 @@ void ScriptRobot::beginCycle() {
     seen_.time = state.timestamp;
     seen_.steady = parts_.arm.standing();
 
-    constexpr double kContact = 5.0;  // [N]
     const auto& force = state.actual_tcp_force;
     if (std::hypot(force[0], force[1], force[2]) < kContact) {
         contact_since_ = 0;

@@ -32,6 +32,11 @@ using virtual_controller::TcpServer;
 constexpr std::size_t kMostUnread = 64'000;
 constexpr std::size_t kLongestLine = 4096;
 constexpr double kPrimaryRate = 10.0;  // [Hz]
+constexpr std::array kRuntimeStates{"stopping", "stopped", "playing",
+                                    "pausing",  "paused",  "resuming"};
+
+// Of the maker's list of errors (believed).
+constexpr int kCollision = 157;
 
 void stream(TcpServer& server, const Bytes& package) {
     server.forEach([&](TcpPeer& peer) {
@@ -266,7 +271,6 @@ Result<void> UrController::inject(const Injection& injection) {
     } else if (name == "release-emergency-stop") {
         robot_.releaseEmergencyStop();
     } else if (name == "protective-stop") {
-        constexpr int kCollision = 157;  // of the maker's list of errors (believed)
         robot_.protectiveStop({kCollision, "collision detected"});
     } else if (name == "limit") {
         std::size_t axis = 1;
@@ -294,11 +298,9 @@ nlohmann::ordered_json UrController::state() const {
     for (const auto& one : ports_) {
         ports[one.name] = one.server->port();
     }
-    constexpr std::array kRuntime{"stopping", "stopped", "playing",
-                                  "pausing",  "paused",  "resuming"};
     return {{"robot_mode", toText(state.robot_mode)},
             {"safety_mode", toText(state.safety_mode)},
-            {"runtime_state", kRuntime.at(static_cast<std::size_t>(state.runtime_state))},
+            {"runtime_state", kRuntimeStates.at(static_cast<std::size_t>(state.runtime_state))},
             {"remote_control", robot_.control() == Control::remote},
             {"joint_position", state.actual_q},
             {"tool_pose", state.actual_tcp_pose},
