@@ -1,7 +1,6 @@
 #include "metier/ur_driver/recovery.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <utility>
@@ -11,7 +10,6 @@
 namespace metier::ur_driver {
 
 using namespace std::chrono_literals;
-using device::SafetyState;
 
 namespace {
 
@@ -126,7 +124,7 @@ Result<void> Recovery::powerOn(const std::stop_token& stop) {
         if (auto on = client->command("power on", "Powering on", commandDeadline()); !on) {
             return refuse(on.error().message);
         }
-        const auto powered = await(
+        auto powered = await(
             [](const ControllerState& state) {
                 return state.robot_mode == RobotMode::idle ||
                        state.robot_mode == RobotMode::running;

@@ -125,7 +125,9 @@ bool SafetyReporter::latched() const {
 
 void SafetyReporter::report(const primary::Report& report, SteadyTime now) {
     using Level = primary::Report::Level;
-    if (report.kind == primary::Report::Kind::text || report.level < Level::warning) {
+    using Kind = primary::Report::Kind;
+    const bool only_the_mode = report.kind == Kind::safety && report.code == 0;
+    if (report.kind == Kind::text || report.level < Level::warning || only_the_mode) {
         return;
     }
     const std::lock_guard lock(mutex_);

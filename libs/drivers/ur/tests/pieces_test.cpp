@@ -263,6 +263,9 @@ TEST_F(ReporterTest, DoesNotAddWhatWasSaidLongBeforeOrDoesNotMatter) {
     error(153, primary::Report::Level::fault);
     now_ += 5s;
     error(154, primary::Report::Level::info);
+    reporter_.report(
+        {primary::Report::Kind::safety, primary::Report::Level::violation, 0, 0, "protective stop"},
+        now_);  // no more than the mode itself
     observe(SafetyMode::protective_stop);
     EXPECT_EQ(core_.safety().text, "arm: protective stop: clear its cause, then Reset");
 }

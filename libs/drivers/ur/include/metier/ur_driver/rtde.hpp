@@ -138,7 +138,8 @@ std::vector<std::string> setpointNames(std::int32_t register_base);
 ///         exist, invalid_argument; the text names it.
 Result<void> checkSetpointReply(const RecipeReply& reply, std::int32_t register_base);
 
-inline constexpr std::size_t kSetpointPackageSize = kHeaderSize + 1 + 2 * 4 + kAxes * 8;
+inline constexpr std::size_t kSetpointPackageSize =
+    kHeaderSize + 1 + 2 * sizeof(std::int32_t) + kAxes * sizeof(double);
 /// The package that writes it. Does not allocate.
 std::array<std::byte, kSetpointPackageSize> setpointPackage(std::uint8_t recipe_id,
                                                             const Setpoint& setpoint) noexcept;
