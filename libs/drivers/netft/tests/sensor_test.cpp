@@ -28,13 +28,18 @@ protected:
     /// Waits until `done`, which the sensor's own changes bring about.
     template <typename Done>
     bool eventually(Done done) {
-        std::mutex mutex;
-        std::condition_variable changed;
-        const auto watch = sensor->onSafetyChange([&](const auto&) { changed.notify_all(); });
-        std::unique_lock lock(mutex);
+        struct Bell {
+            std::mutex mutex;
+            std::condition_variable changed;
+        };
+        // Shared with a callback that may still run when the registration has ended.
+        const auto bell = std::make_shared<Bell>();
+        const auto watch =
+            sensor->onSafetyChange([bell](const auto&) { bell->changed.notify_all(); });
+        std::unique_lock lock(bell->mutex);
         const auto deadline = std::chrono::steady_clock::now() + 10s;
         while (!done() && std::chrono::steady_clock::now() < deadline) {
-            changed.wait_for(lock, 5ms);
+            bell->changed.wait_for(lock, 5ms);
         }
         return done();
     }

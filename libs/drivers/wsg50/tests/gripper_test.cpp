@@ -16,32 +16,35 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The next changes of a gripper's safety, waited for.
+/// The changes of a gripper's safety, waited for.
 class SafetyWatch {
 public:
     explicit SafetyWatch(Wsg50Gripper& gripper)
-        : gripper_(gripper), registration_(gripper.onSafetyChange([this](const auto&) {
-              const std::lock_guard lock(mutex_);
-              changed_.notify_all();
-          })) {}
+        : gripper_(gripper),
+          registration_(gripper.onSafetyChange(
+              [bell = bell_](const device::Safety&) { bell->changed.notify_all(); })) {}
 
     bool reaches(SafetyState state) {
-        std::unique_lock lock(mutex_);
-        // The callback comes after the state is set, so the state is looked at again now and then.
+        std::unique_lock lock(bell_->mutex);
         const auto deadline = std::chrono::steady_clock::now() + 10s;
         while (gripper_.safety().state != state) {
             if (std::chrono::steady_clock::now() > deadline) {
                 return false;
             }
-            changed_.wait_for(lock, 20ms);
+            bell_->changed.wait_for(lock, 20ms);  // at the latest, since it may have rung before
         }
         return true;
     }
 
 private:
+    struct Bell {
+        std::mutex mutex;
+        std::condition_variable changed;
+    };
+
     Wsg50Gripper& gripper_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
+    // Shared with a callback that may still run when the registration has ended.
+    std::shared_ptr<Bell> bell_ = std::make_shared<Bell>();
     device::Registration registration_;
 };
 
@@ -175,6 +178,7 @@ TEST_F(Gripper, CanBeAskedAgainFromTheEndOfAMotion) {
     auto answer = again.get_future();
     ASSERT_EQ(answer.wait_for(10s), std::future_status::ready);
     EXPECT_TRUE(answer.get());
+    watch.reset();
     gripper.reset();  // before what its callbacks use
 }
 
