@@ -1,3 +1,4 @@
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -13,7 +14,7 @@ namespace {
 
 motion::RobotModel makeModel() {
     motion::ChainDescription chain;
-    chain.cycle_time = 0.01;
+    chain.cycle_time = kCycleSeconds;
     chain.home = motion::JointVector(kArmAxes);
     chain.cartesian_limits = {.velocity = 0.25,
                               .acceleration = 0.12,
@@ -21,52 +22,139 @@ motion::RobotModel makeModel() {
                               .angular_velocity = 0.5,
                               .angular_acceleration = 0.3,
                               .angular_jerk = 6.0};
-    const double heights[kArmAxes] = {0.0, 0.337, 0.2105, 0.268, 0.0, 0.0};
+    constexpr std::array kHeights{0.0, 0.337, 0.2105, 0.268, 0.0, 0.0};
     for (std::size_t axis = 0; axis < kArmAxes; ++axis) {
         motion::JointDescription joint;
         joint.name = "J" + std::to_string(axis + 1);
-        joint.parent_from_joint.translation.z() = heights[axis];
+        joint.parent_from_joint.translation.z() = kHeights[axis];
         const bool is_about_y = axis == 1 || axis == 2 || axis == 4;
         joint.axis = is_about_y ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
         joint.limits = {
-            .lower = -1.7, .upper = 1.7, .velocity = 0.4, .acceleration = 0.8, .jerk = 8};
+            .lower = -1.7, .upper = 1.7, .velocity = 0.4, .acceleration = 0.8, .jerk = 8.0};
         chain.joints.push_back(joint);
     }
     chain.last_from_flange.translation.z() = 0.1745;
     return motion::RobotModel::fromChain(std::move(chain)).value();
 }
 
+/// Requests in which % stands for a number.
+constexpr std::array<std::string_view, 15> kRequests{
+    R"({"op":"publish","topic":"/bridge_init","msg":{"mode":0,"joints_mask":%}})",
+    R"({"op":"publish","topic":"/bridge_jnt_reset","msg":{"joints_mask":127}})",
+    R"({"op":"publish","topic":"/bridge_jnt_calib","msg":{"joints_mask":%}})",
+    R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":77,"move_type":74,"ovr":%,
+        "target":{"data_type":74,"joints_mask":127,"joints_data":[%,-%,%]}}})",
+    R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":77,"move_type":76,"ovr":100,
+        "delay":255,"target":{"data_type":80,"cartesian_data":{"x":%,"y":-%,"z":%,"e":%}}}})",
+    R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":77,"move_type":67,
+        "target":{"data_type":80,"cartesian_data":{"x":%,"z":%}},
+        "via":{"data_type":74,"joints_mask":63,"joints_data":[%,%]}}})",
+    R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":80}})",
+    R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":82}})",
+    R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":67}})",
+    R"({"op":"publish","topic":"/bridge_jog","msg":{"move_command":74,"move_type":74,
+        "target":{"data_type":74,"joints_mask":127,"joints_data":[1,-%]}}})",
+    R"({"op":"publish","topic":"/bridge_jog","msg":{"move_command":74,"move_type":76,
+        "target":{"data_type":80,"cartesian_data":{"x":%,"z":-%,"a":%}}}})",
+    R"({"op":"call_service","service":"/algo_control_switch_srv","args":[%]})",
+    R"({"op":"publish","topic":"/external_control","msg":{"position":[%,%,%,0,0,0,%]}})",
+    R"({"op":"publish","topic":"/algo_jnt_ctrl","msg":{"joints":[{"position":%},{},{}]}})",
+    R"({"op":"subscribe","topic":"/usb_jnt_state","throttle_rate":%,"fragment_size":%})",
+};
+
+/// Takes bytes off the front of the input; 0 when there are none left.
+class Input {
+public:
+    Input(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
+    bool isEmpty() const { return left_ == 0; }
+    std::uint8_t next() {
+        if (left_ == 0) {
+            return 0;
+        }
+        --left_;
+        return *data_++;
+    }
+    std::string line() {
+        std::string text;
+        while (!isEmpty()) {
+            const char character = static_cast<char>(next());
+            if (character == '\n') {
+                break;
+            }
+            text += character;
+        }
+        return text;
+    }
+
+private:
+    const std::uint8_t* data_;
+    std::size_t left_;
+};
+
+std::string requestFrom(Input& input) {
+    std::string request;
+    for (const char character : kRequests[input.next() % kRequests.size()]) {
+        if (character == '%') {
+            request += std::to_string(input.next());
+        } else {
+            request += character;
+        }
+    }
+    return request;
+}
+
+/// A robot that a client talks to.
+class Session {
+public:
+    Session(const Software& software, bool ready, const motion::RobotModel& model)
+        : types_(software),
+          robot_({.software = software, .axes = kMostAxes, .ready = ready}, model),
+          bridge_(types_, robot_.graph()),
+          client_(bridge_.addClient([](const std::string& text) {
+              if (!Json::accept(text)) {
+                  __builtin_trap();
+              }
+          })) {
+        robot_.connect([this](const std::string& topic,
+                              const Json& message) { bridge_.publish(topic, message); },
+                       [this](std::string_view topic) { return bridge_.hasSubscribers(topic); });
+        take(R"({"op":"subscribe","topic":"/cartesian_pose"})", 0);
+    }
+
+    void take(const std::string& request, unsigned cycles) {
+        bridge_.receive(client_, request);
+        for (unsigned cycle = 0; cycle < cycles; ++cycle) {
+            bridge_.setTime(now_ += kCycle);
+            robot_.step({});
+        }
+    }
+
+private:
+    MessageTypes types_;
+    Robot robot_;
+    Rosbridge bridge_;
+    Rosbridge::ClientId client_;
+    SteadyTime now_{};
+};
+
 }  // namespace
 
-/// The input is requests of a client, one a line, with some cycles after each. The first byte
-/// chooses the release and the state at the start.
+/// The first byte chooses the release, the state at the start, and whether the rest is requests as
+/// text, one a line, or choices among known requests with numbers.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const motion::RobotModel kModel = makeModel();
-    if (size == 0) {
-        return 0;
-    }
-    const auto software = Software::find((data[0] & 1U) != 0 ? "2.4.0" : "3.2.0").value();
-    const MessageTypes types(software);
-    Robot robot({.software = software, .axes = kMostAxes, .ready = (data[0] & 2U) != 0}, kModel);
-    Rosbridge bridge(types, robot.graph());
-    robot.connect(
-        [&](const std::string& topic, const Json& message) { bridge.publish(topic, message); },
-        [&](std::string_view topic) { return bridge.hasSubscribers(topic); });
-    const auto client = bridge.addClient([](const std::string& text) {
-        if (Json::parse(text, nullptr, false).is_discarded()) {
-            std::abort();
-        }
-    });
-    bridge.receive(client, R"({"op":"subscribe","topic":"/usb_jnt_state"})");
-    std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
-    SteadyTime now{};
-    while (!text.empty()) {
-        const auto end = text.find('\n');
-        bridge.receive(client, text.substr(0, end));
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-        for (int cycle = 0; cycle < 3; ++cycle) {
-            bridge.setTime(now += kCycle);
-            robot.step({});
+    Input input(data, size);
+    const unsigned choice = input.next();
+    Session session(Software::find((choice & 1U) != 0 ? "2.4.0" : "3.2.0").value(),
+                    (choice & 2U) != 0, kModel);
+    constexpr int kMostRequests = 5;  // a line may take a thousand inverse kinematics to plan
+    for (int request_count = 0; request_count < kMostRequests && !input.isEmpty();
+         ++request_count) {
+        if ((choice & 4U) != 0) {
+            session.take(input.line(), 1);
+        } else {
+            const auto request = requestFrom(input);
+            session.take(request, input.next() % 64U);
         }
     }
     return 0;
