@@ -192,8 +192,12 @@ void Pilot::note(const CabinetState& answer, SteadyTime now) noexcept {
     }
 }
 
-/// Without a stream the arm is commanded to stand where it was last sent, or else where it is.
+/// Without a stream the arm is commanded to stand where it was last sent, or else where it is. It
+/// may still be on its way there.
 void Pilot::hold(const device::JointArray& measured) noexcept {
+    if (holds_ && !state_.standstill) {
+        return;
+    }
     holds_ = holds_ && device::largestDifference(measured, state_.commanded_position) < kHeld;
     if (!holds_) {
         state_.commanded_position = measured;
