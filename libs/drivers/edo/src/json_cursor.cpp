@@ -100,20 +100,20 @@ void JsonCursor::digits() noexcept {
 std::string_view JsonCursor::number() noexcept {
     skipSpace();
     const auto all = rest_;
-    const auto takeHere = [this](std::string_view any) {
+    const auto take_here = [this](std::string_view any) {
         const bool found = !rest_.empty() && any.find(rest_.front()) != std::string_view::npos;
         rest_.remove_prefix(found ? 1 : 0);
         return found;
     };
-    takeHere("-");
-    if (!takeHere("0")) {
+    take_here("-");
+    if (!take_here("0")) {
         digits();
     }
-    if (takeHere(".")) {
+    if (take_here(".")) {
         digits();
     }
-    if (takeHere("eE")) {
-        takeHere("+-");
+    if (take_here("eE")) {
+        take_here("+-");
         digits();
     }
     return all.substr(0, all.size() - rest_.size());

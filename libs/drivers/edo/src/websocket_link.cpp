@@ -94,6 +94,7 @@ struct Ended {
 
     Direction* direction;
 
+    // NOLINTNEXTLINE(readability-identifier-naming): so Asio asks for it
     allocator_type get_allocator() const noexcept { return allocator_type(direction->memory); }
     template <typename... Ignored>
     void operator()(error_code error, const Ignored&...) const noexcept {
@@ -102,16 +103,16 @@ struct Ended {
     }
 };
 
+Ended begin(Direction& direction) {
+    direction.pending = true;
+    return Ended{&direction};
+}
+
 }  // namespace
 
 struct WebSocketLink::Impl {
     explicit Impl(std::string peer_name) : peer(std::move(peer_name)) {
         buffer.reserve(kUsualMessage);
-    }
-
-    Ended begin(Direction& direction) {
-        direction.pending = true;
-        return Ended{&direction};
     }
 
     /// Lets operations go on until that of `direction` ended.
@@ -186,7 +187,7 @@ Result<WebSocketLink> WebSocketLink::connect(const std::string& host, std::uint1
 
 Result<void> WebSocketLink::send(std::string_view text, SteadyTime deadline) {
     auto& impl = *impl_;
-    impl.stream.async_write(boost::asio::buffer(text.data(), text.size()), impl.begin(impl.writer));
+    impl.stream.async_write(boost::asio::buffer(text.data(), text.size()), begin(impl.writer));
     auto sent = impl.finish(impl.writer, deadline);
     if (!sent) {
         shutdown();  // the text is lost for whoever goes on
@@ -205,7 +206,7 @@ Result<std::string_view> WebSocketLink::receive(SteadyTime deadline) {
         if (impl.reader.error) {
             return fail(Errc::connection_lost, fmt::format("{}: {}", impl.peer, impl.lossText()));
         }
-        impl.stream.async_read(impl.buffer, impl.begin(impl.reader));
+        impl.stream.async_read(impl.buffer, begin(impl.reader));
     }
     if (auto received = impl.finish(impl.reader, deadline); !received) {
         return fail(received.error());

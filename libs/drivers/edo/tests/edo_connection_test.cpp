@@ -72,7 +72,7 @@ public:
 
     int asked() const { return asked_.load(); }
     /// Waits until the arm moves, at most 20 s.
-    bool moves() {
+    bool moves() const {
         const auto deadline = std::chrono::steady_clock::now() + 20s;
         while (asked() < 10 && std::chrono::steady_clock::now() < deadline) {
             std::this_thread::yield();
@@ -104,19 +104,23 @@ driver::OpenRequest requestFor(std::uint16_t port) {
 
 class EdoConnectionTest : public ::testing::TestWithParam<const char*> {
 protected:
-    driver::OpenDevice open() {
-        auto device = driver::edoDriver().open(requestFor(robot_.server().port())).value();
-        watch_ = device.arm->onSafetyChange([this](const device::Safety&) {
+    const driver::OpenDevice& open() {
+        device_ = driver::edoDriver().open(requestFor(robot_.server().port())).value();
+        watch_ = device_.arm->onSafetyChange([this](const device::Safety&) {
             const std::lock_guard lock(mutex_);
             changed_.notify_all();
         });
-        return device;
+        return device_;
+    }
+    void close() {
+        watch_ = {};
+        device_ = {};
     }
     bool waitFor(const device::Arm& arm, SafetyState state) {
         std::unique_lock lock(mutex_);
         return changed_.wait_for(lock, 20s, [&] { return arm.safety().state == state; });
     }
-    std::shared_ptr<Source> attach(device::Arm& arm, int cycles) {
+    static std::shared_ptr<Source> attach(device::Arm& arm, int cycles) {
         auto source = std::make_shared<Source>(cycles);
         const auto attached = arm.attach(source);
         EXPECT_TRUE(attached) << attached.error().message;
@@ -126,7 +130,8 @@ protected:
     Robot robot_{GetParam()};
     std::mutex mutex_;
     std::condition_variable changed_;
-    device::Registration watch_;
+    driver::OpenDevice device_;
+    device::Registration watch_;  // ends before its arm
 };
 INSTANTIATE_TEST_SUITE_P(Edo, EdoConnectionTest, ::testing::Values("edo_2.4.0", "edo_3.2.0"),
                          [](const auto& of) {
@@ -134,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(Edo, EdoConnectionTest, ::testing::Values("edo_2.4.0", 
                          });
 
 TEST_P(EdoConnectionTest, MovesTheArmAndThenTheJaws) {
-    const auto device = open();
+    const auto& device = open();
     ASSERT_TRUE(waitFor(*device.arm, SafetyState::normal)) << device.arm->safety().text;
     EXPECT_EQ(device.arm->info().axisCount(), 6U);
     EXPECT_EQ(device.arm->info().cycle, 10ms);
@@ -158,7 +163,7 @@ TEST_P(EdoConnectionTest, MovesTheArmAndThenTheJaws) {
 }
 
 TEST_P(EdoConnectionTest, ComesBackAfterALostLinkAndMovesNothing) {
-    const auto device = open();
+    const auto& device = open();
     ASSERT_TRUE(waitFor(*device.arm, SafetyState::normal));
     const auto source = attach(*device.arm, 100'000);
     ASSERT_TRUE(source->moves());
@@ -173,7 +178,7 @@ TEST_P(EdoConnectionTest, ComesBackAfterALostLinkAndMovesNothing) {
 }
 
 TEST_P(EdoConnectionTest, ResetFaultReleasesTheBrakes) {
-    const auto device = open();
+    const auto& device = open();
     ASSERT_TRUE(waitFor(*device.arm, SafetyState::normal));
     robot_.with([](auto& edo) { edo.brake(1U << 9U); });
     ASSERT_TRUE(waitFor(*device.arm, SafetyState::protective_stop));
@@ -190,11 +195,11 @@ TEST_P(EdoConnectionTest, ResetFaultReleasesTheBrakes) {
 }
 
 TEST_P(EdoConnectionTest, GivesControlBackWhenItEnds) {
-    auto device = open();
+    const auto& device = open();
     ASSERT_TRUE(waitFor(*device.arm, SafetyState::normal));
     const auto source = attach(*device.arm, 100'000);
     ASSERT_TRUE(source->moves());
-    device = {};
+    close();
     EXPECT_EQ(source->end(), EndCause::stopped);
     EXPECT_FALSE(robot_.with([](auto& edo) { return edo.control_taken; }));
 }

@@ -44,7 +44,7 @@ public:
     void tick();
     /// As after a power cycle.
     void restart();
-    void brake(std::uint32_t opcode);
+    void brake(std::uint32_t bits);
 
     bool classic() const;
 

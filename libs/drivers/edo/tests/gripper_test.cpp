@@ -8,7 +8,6 @@ namespace {
 
 using device::GripperOutcome;
 using device::GripperRequest;
-using device::SafetyState;
 using testing::Bench;
 using ::testing::HasSubstr;
 using Kind = GripperTask::Kind;
