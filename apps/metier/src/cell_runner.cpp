@@ -104,11 +104,17 @@ Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
     if (server.kind == ServerKind::move && robot != running_.end()) {
         command.insert(command.end(), {"--robot", robot->url});
     }
-    if (const auto* driver = driverOf(server)) {
-        const auto found = virtual_addresses_.find(driver->controller);
+    const auto give = [&](const configuration::DriverChoice& driver, const char* option) {
+        const auto found = virtual_addresses_.find(driver.controller);
         if (found != virtual_addresses_.end()) {
-            command.insert(command.end(), {"--controller", found->second});
+            command.insert(command.end(), {option, found->second});
         }
+    };
+    if (const auto* driver = driverOf(server)) {
+        give(*driver, "--controller");
+    }
+    if (server.arm.force_torque_sensor) {
+        give(*server.arm.force_torque_sensor, "--sensor");
     }
     auto url = startChild(server.name, command);
     if (!url) {

@@ -18,6 +18,8 @@ using device::SafetyState;
 
 // A controller that answers later than this finds its skills Halted.
 constexpr std::chrono::seconds kFirstAnswer{10};
+// One that powers on or homes by itself does so meanwhile.
+constexpr std::chrono::seconds kSettling{2};
 
 /// Whichever face a device has tells of its safety.
 template <typename Callback>
@@ -71,12 +73,17 @@ void awaitConnection(const driver::OpenDevice& device) {
         seen->state = safety.state;
         seen->changed.notify_one();
     });
-    if (safetyOf(device).state != SafetyState::disconnected) {
-        return;
+    const auto waitFor = [&](std::chrono::milliseconds longest, auto reached) {
+        std::unique_lock lock(seen->mutex);
+        return seen->changed.wait_for(lock, longest, [&] { return reached(seen->state); });
+    };
+    {
+        const auto now = safetyOf(device).state;
+        const std::lock_guard lock(seen->mutex);
+        seen->state = now;
     }
-    std::unique_lock lock(seen->mutex);
-    if (!seen->changed.wait_for(lock, kFirstAnswer,
-                                [&] { return seen->state != SafetyState::disconnected; })) {
+    if (!waitFor(kFirstAnswer, [](auto state) { return state != SafetyState::disconnected; }) ||
+        !waitFor(kSettling, [](auto state) { return state == SafetyState::normal; })) {
         spdlog::warn("{}", safetyOf(device).text);
     }
 }

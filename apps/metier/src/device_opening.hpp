@@ -16,8 +16,8 @@ namespace metier::app {
 Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
                                       const std::string& name, const motion::RobotModel* model);
 
-/// Waits until the controller of the device has answered; logs a warning if it does not within 10
-/// s.
+/// Waits until the device is ready: at most 10 s for its controller's answer, and 2 s more for its
+/// safety state to be normal. Logs why it is not.
 void awaitConnection(const driver::OpenDevice& device);
 
 }  // namespace metier::app

@@ -20,13 +20,14 @@ struct ServeOptions {
     std::optional<std::uint16_t> port;
     std::string robot;
     std::string controller;
+    std::string sensor;
 };
 
 /// A virtual controller of the same file is reached at its configured address.
-void resolveController(const configuration::CellConfig& cell, const ServeOptions& options,
+void resolveController(const configuration::CellConfig& cell, const std::string& other_address,
                        configuration::DriverChoice& driver) {
-    if (!options.controller.empty()) {
-        driver.controller = options.controller;
+    if (!other_address.empty()) {
+        driver.controller = other_address;
     } else if (const auto* controller = cell.findVirtual(driver.controller)) {
         driver.controller = controller->address;
     }
@@ -52,7 +53,10 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
         config.move.robot = options.robot;
     }
     for (auto* driver : {&config.arm.driver, &config.gripper.driver}) {
-        resolveController(cell, options, *driver);
+        resolveController(cell, options.controller, *driver);
+    }
+    if (config.arm.force_torque_sensor) {
+        resolveController(cell, options.sensor, *config.arm.force_torque_sensor);
     }
     return config;
 }
@@ -109,6 +113,8 @@ void addServe(CLI::App& app, Exit& exit) {
                         "Another opc.tcp:// address of the robot than the file's");
     command->add_option("--controller", options->controller,
                         "Another address of the device's controller than the file's");
+    command->add_option("--sensor", options->sensor,
+                        "Another address of the force-torque sensor than the file's");
     command->callback([options, &exit] { exit = runServe(*options); });
 }
 

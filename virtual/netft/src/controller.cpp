@@ -202,6 +202,7 @@ void NetFtController::handle(const UdpPort::Endpoint& from, const Request& reque
 
 void NetFtController::cycle() {
     ++cycles_;
+    world_.report({});  // asks for the newest effect
     geometry::Wrench load = world_.effect().wrench;
     load.force += extra_load_.force;
     load.torque += extra_load_.torque;

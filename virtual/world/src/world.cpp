@@ -10,6 +10,8 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s2]
 // Reports that come closer together than this give no new velocity [s].
 constexpr double kShortestStep = 5e-4;
+// Jaws that are open so much wider than a part let it go [m].
+constexpr double kSlack = 1e-3;
 
 /// Half of the extent of a box along a direction [m]; `direction` in the box's frame.
 double halfExtent(const Eigen::Vector3d& size, const Eigen::Vector3d& direction) {
@@ -78,8 +80,9 @@ std::optional<double> World::grip(const std::string& controller, const WorldRepo
         (flange ? *flange : mount.world_from_base) * mount.flange_from_jaws;
     for (auto& [name, part] : options_.parts) {
         if (part.held_by == controller) {
-            if (report.gripping) {
-                return widthBetween(world_from_jaws, part);
+            const double width = widthBetween(world_from_jaws, part);
+            if (*report.jaw_width < width + kSlack) {
+                return width;
             }
             release(part);
         }

@@ -76,6 +76,14 @@ TEST_F(Cell, LetsAReleasedPartComeToLieOnTheTable) {
     EXPECT_NEAR(cube().world_from_part.translation.z(), 0.015, 1e-12);
 }
 
+TEST_F(Cell, KeepsAPartBetweenJawsThatStandStillAroundIt) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    jaws(0.03, true);
+    moveArm(flangeOver(0.5, 0.0, 0.515));
+    EXPECT_TRUE(jaws(0.0302, false).part_width);
+    EXPECT_EQ(cube().held_by, "gripper");
+}
+
 TEST_F(Cell, DropsAPartThatIsThenGoneFromTheJaws) {
     moveArm(flangeOver(0.5, 0.0, 0.115));
     ASSERT_TRUE(jaws(0.03, true).part_width);

@@ -19,7 +19,8 @@ struct WorldEffect {
 struct WorldReport {
     std::optional<geometry::Pose> base_from_flange{};
     std::optional<double> jaw_width{};  ///< [m]
-    bool gripping = false;              ///< the jaws press on a part
+    /// The jaws press on a part. It is held from then on until they are wider than it.
+    bool gripping = false;
 };
 
 /// The cell around one virtual controller: arms, parts, a table, a wall.
@@ -29,7 +30,8 @@ class WorldLink {
 public:
     virtual ~WorldLink() = default;
 
-    /// Call once per cycle of the device, with its present state.
+    /// Call once per cycle of the device, with its present state, also if it has none: the world
+    /// answers with its effect.
     virtual void report(const WorldReport& report) = 0;
     /// The newest effect; a few milliseconds old.
     virtual const WorldEffect& effect() const = 0;

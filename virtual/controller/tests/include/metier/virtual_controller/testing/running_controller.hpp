@@ -18,11 +18,19 @@ namespace metier::virtual_controller::testing {
 /// A world that has what the test says.
 class ScriptedWorld final : public WorldLink {
 public:
-    void report(const WorldReport& report) override { last_report = report; }
-    const WorldEffect& effect() const override { return next_effect; }
+    /// As a world does, it answers reports: without one there is no effect.
+    void report(const WorldReport& report) override {
+        last_report = report;
+        answered_ = true;
+    }
+    const WorldEffect& effect() const override { return answered_ ? next_effect : none_; }
 
     WorldReport last_report;
     WorldEffect next_effect;
+
+private:
+    WorldEffect none_;
+    bool answered_ = false;
 };
 
 /// What a test starts a controller with.
