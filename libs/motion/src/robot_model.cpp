@@ -108,9 +108,8 @@ Result<RobotModel> RobotModel::fromChain(ChainDescription chain) {
 
 Result<RobotModel> RobotModel::withChain(ChainDescription chain) const {
     if (chain.joints.size() != axisCount()) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("a chain of {} axes for {}, which has {}", chain.joints.size(),
-                                name_, axisCount()));
+        return fail(Errc::invalid_argument, fmt::format("a chain of {} axes for {}, which has {}",
+                                                        chain.joints.size(), name_, axisCount()));
     }
     auto changed = fromChain(std::move(chain));
     if (changed) {

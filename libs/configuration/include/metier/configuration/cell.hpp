@@ -25,8 +25,8 @@ struct ArmServer {
     DriverChoice driver;
     /// Of its flange, for moves that end at a contact.
     std::optional<DriverChoice> force_torque_sensor;
-    /// Short name of the NodeSet that holds the robot's instances, such as `iiwa`; empty: the server
-    /// makes them.
+    /// Short name of the NodeSet that holds the robot's instances, such as `iiwa`; empty: the
+    /// server makes them.
     std::string nodeset;
     /// Skills that the server offers, such as `PositionStreamSkill`.
     std::vector<std::string> skills;
