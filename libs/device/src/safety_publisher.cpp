@@ -23,7 +23,6 @@ void SafetyPublisher::dispatch() {
     if (!changed_.exchange(false)) {
         return;
     }
-    std::vector<Callback> callbacks;
     Safety now;
     {
         const std::lock_guard lock(mutex_);
@@ -32,7 +31,11 @@ void SafetyPublisher::dispatch() {
         }
         now = known_;
         told_ = now.state;
-        for (const auto& [id, callback] : callbacks_) {
+    }
+    std::vector<Callback> callbacks;
+    {
+        const std::lock_guard lock(listeners_->mutex);
+        for (const auto& [id, callback] : listeners_->callbacks) {
             callbacks.push_back(callback);
         }
     }
@@ -42,12 +45,14 @@ void SafetyPublisher::dispatch() {
 }
 
 Registration SafetyPublisher::onChange(Callback callback) {
-    const std::lock_guard lock(mutex_);
-    const auto id = next_callback_++;
-    callbacks_.emplace_back(id, std::move(callback));
-    return Registration([this, id] {
-        const std::lock_guard inner(mutex_);
-        std::erase_if(callbacks_, [id](const auto& entry) { return entry.first == id; });
+    const std::lock_guard lock(listeners_->mutex);
+    const auto id = listeners_->next++;
+    listeners_->callbacks.emplace_back(id, std::move(callback));
+    return Registration([listeners = std::weak_ptr(listeners_), id] {
+        if (const auto alive = listeners.lock()) {
+            const std::lock_guard inner(alive->mutex);
+            std::erase_if(alive->callbacks, [id](const auto& entry) { return entry.first == id; });
+        }
     });
 }
 

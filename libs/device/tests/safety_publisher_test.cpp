@@ -44,6 +44,15 @@ TEST(SafetyPublisher, TellsNothingOfAStateThatCameAndWent) {
     EXPECT_THAT(heard.texts, ElementsAre());
 }
 
+TEST(SafetyPublisher, MayEndBeforeItsRegistrations) {
+    Registration registration;
+    {
+        SafetyPublisher publisher{{SafetyState::normal, "", false}};
+        registration = publisher.onChange([](const Safety&) {});
+    }
+    registration = {};
+}
+
 TEST(SafetyPublisher, TellsNobodyWhoseRegistrationEnded) {
     Heard heard;
     heard.registration = {};

@@ -60,6 +60,13 @@ TcpLink::TcpLink(std::unique_ptr<asio::io_context> context, tcp::socket socket, 
     sendAtOnce(socket_);
 }
 
+TcpLink& TcpLink::operator=(TcpLink&& other) noexcept {
+    socket_ = std::move(other.socket_);  // before the context of the one that was here ends
+    context_ = std::move(other.context_);
+    peer_ = std::move(other.peer_);
+    return *this;
+}
+
 Result<TcpLink> TcpLink::connect(const std::string& host, std::uint16_t port, SteadyTime deadline) {
     auto context = std::make_unique<asio::io_context>();
     const auto found = resolve(*context, host, port);
@@ -138,6 +145,12 @@ void TcpLink::shutdown() noexcept {
 
 TcpListener::TcpListener(std::unique_ptr<asio::io_context> context, tcp::acceptor acceptor)
     : context_(std::move(context)), acceptor_(std::move(acceptor)) {}
+
+TcpListener& TcpListener::operator=(TcpListener&& other) noexcept {
+    acceptor_ = std::move(other.acceptor_);  // before the context of the one that was here ends
+    context_ = std::move(other.context_);
+    return *this;
+}
 
 Result<TcpListener> TcpListener::listen(const std::string& address, std::uint16_t port) {
     const auto name = fmt::format("{}:{}", address, port);

@@ -16,6 +16,13 @@ using asio::ip::udp;
 UdpLink::UdpLink(std::unique_ptr<asio::io_context> context, udp::socket socket, std::string peer)
     : context_(std::move(context)), socket_(std::move(socket)), peer_(std::move(peer)) {}
 
+UdpLink& UdpLink::operator=(UdpLink&& other) noexcept {
+    socket_ = std::move(other.socket_);  // before the context of the one that was here ends
+    context_ = std::move(other.context_);
+    peer_ = std::move(other.peer_);
+    return *this;
+}
+
 Result<UdpLink> UdpLink::connect(const std::string& host, std::uint16_t port) {
     auto name = fmt::format("{}:{}", host, port);
     auto context = std::make_unique<asio::io_context>();

@@ -91,6 +91,17 @@ TEST(TcpLink, DoesNotAllocateWithoutAnError) {
     EXPECT_EQ(allocationCount(), before);
 }
 
+TEST(TcpLink, TakesThePlaceOfAnother) {
+    Pair first;
+    Pair second;
+    first.near = std::move(second.near);
+    first.listener = std::move(second.listener);
+    std::array<std::byte, 4> buffer{};
+    EXPECT_EQ(first.far.receive(buffer, in(5s)).error().code, Errc::connection_lost);
+    ASSERT_TRUE(second.far.send(bytesOf("here"), in(5s)));
+    EXPECT_TRUE(first.near.receiveAll(buffer, in(5s)));
+}
+
 TEST(TcpLink, CannotConnectWhereNobodyListens) {
     const auto port = TcpListener::listen("127.0.0.1", 0).value().port();
     const auto link = TcpLink::connect("127.0.0.1", port, in(5s));

@@ -173,9 +173,10 @@ Result<void> Thread::load(const Value& value, std::string_view name, ThreadConte
     if (value.isNone()) {
         return fail(Errc::invalid_state, fmt::format("variable '{}' has no value", name));
     }
-    stack_.push_back(value);
+    stack_.push_back(value);  // which may end `value`: a local variable stands on the stack, too
+    const auto& loaded = stack_.back();
     // Lists are shared, text is copied.
-    return value.get<std::string>() == nullptr ? Result<void>() : checkSize(value, context);
+    return loaded.get<std::string>() == nullptr ? Result<void>() : checkSize(loaded, context);
 }
 
 Result<void> Thread::binary(Op op, ThreadContext& context) {

@@ -211,7 +211,7 @@ TEST(OutputRecipe, LeavesOutWhatIsNotNeeded) {
     EXPECT_EQ(recipe.names().size(), 10U);
     EXPECT_EQ(recipe.take(allFound(recipe)), true);
     auto data = dataOf();
-    data.resize(data.size() - 48 - 8);  // no force, one speed
+    data.erase(data.end() - 48 - 8, data.end());  // no force, one speed
     ASSERT_TRUE(recipe.decode(data));
     EXPECT_DOUBLE_EQ(recipe.decode(data)->speed_scaling, 1.0);
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -28,17 +29,23 @@ public:
     bool toTell() const noexcept { return changed_.load(); }
     /// Tells the callbacks if the state is another than the one they know.
     void dispatch();
-    /// Calls `callback` from dispatch(). The registration must not outlive this.
+    /// Calls `callback` from dispatch(). The registration may outlive this.
     Registration onChange(Callback callback);
 
 private:
+    struct Listeners {
+        std::mutex mutex;
+        std::vector<std::pair<std::uint64_t, Callback>> callbacks;
+        std::uint64_t next = 1;
+    };
+
     std::atomic<SafetyState> state_;
     std::atomic<bool> changed_{false};
     mutable std::mutex mutex_;
     Safety known_;
     SafetyState told_;
-    std::vector<std::pair<std::uint64_t, Callback>> callbacks_;
-    std::uint64_t next_callback_ = 1;
+    // Shared with the registrations, which take themselves off it.
+    const std::shared_ptr<Listeners> listeners_ = std::make_shared<Listeners>();
 };
 
 }  // namespace metier::device

@@ -24,6 +24,11 @@ public:
     static Result<TcpLink> connect(const std::string& host, std::uint16_t port,
                                    SteadyTime deadline);
 
+    TcpLink(TcpLink&& other) noexcept = default;
+    /// Ends the connection that was here before.
+    TcpLink& operator=(TcpLink&& other) noexcept;
+    ~TcpLink() = default;
+
     /// Waits for at least one byte and takes what is there, at most the buffer.
     /// Errors: timeout at the deadline, connection_lost if the peer closed or broke the connection.
     Result<std::size_t> receive(std::span<std::byte> buffer, SteadyTime deadline);
@@ -58,6 +63,10 @@ public:
     /// \param port 0: a free one
     /// Errors: invalid_argument (not an address of this machine), already_exists (port taken).
     static Result<TcpListener> listen(const std::string& address, std::uint16_t port);
+
+    TcpListener(TcpListener&& other) noexcept = default;
+    TcpListener& operator=(TcpListener&& other) noexcept;
+    ~TcpListener() = default;
 
     std::uint16_t port() const;
     /// The next peer. Errors: timeout, cancelled after shutdown().

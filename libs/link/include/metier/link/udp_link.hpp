@@ -24,6 +24,10 @@ public:
     /// Errors: connection_lost if there is no such host.
     static Result<UdpLink> connect(const std::string& host, std::uint16_t port);
 
+    UdpLink(UdpLink&& other) noexcept = default;
+    UdpLink& operator=(UdpLink&& other) noexcept;
+    ~UdpLink() = default;
+
     /// Waits for a datagram and takes it; what the buffer has no room for is lost.
     /// Errors: timeout at the deadline, connection_lost if the peer's machine says that nobody
     ///         listens there.
