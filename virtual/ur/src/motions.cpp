@@ -32,6 +32,14 @@ double largest(const Vector6& values) {
 class Trapezoid {
 public:
     Trapezoid(double length, const PathSpeed& speed) : length_(length) {
+        if (speed.duration > 0.0) {
+            // A time counts alone: a client may leave the speeds zero.
+            duration_ = speed.duration;
+            ramp_ = duration_ / 3.0;
+            velocity_ = length_ / (duration_ - ramp_);
+            acceleration_ = velocity_ / ramp_;
+            return;
+        }
         velocity_ = std::max(speed.velocity, 1e-9);
         acceleration_ = std::max(speed.acceleration, 1e-9);
         ramp_ = velocity_ / acceleration_;
@@ -40,13 +48,10 @@ public:
             velocity_ = acceleration_ * ramp_;
         }
         duration_ = velocity_ > 0.0 ? ramp_ + length_ / velocity_ : 0.0;
-        if (speed.duration > 0.0 && duration_ > 0.0) {
-            rate_ = duration_ / speed.duration;
-        }
     }
     /// \param time [s] since the start
     double at(double time) const {
-        const double t = std::clamp(time * rate_, 0.0, duration_);
+        const double t = std::clamp(time, 0.0, duration_);
         const double left = duration_ - t;
         if (t < ramp_) {
             return 0.5 * acceleration_ * t * t;
@@ -54,7 +59,7 @@ public:
         return left < ramp_ ? length_ - 0.5 * acceleration_ * left * left
                             : velocity_ * (t - 0.5 * ramp_);
     }
-    bool over(double time) const { return time * rate_ >= duration_ - kRounding; }
+    bool over(double time) const { return time >= duration_ - kRounding; }
 
 private:
     double length_;
@@ -62,7 +67,6 @@ private:
     double acceleration_ = 0.0;
     double ramp_ = 0.0;
     double duration_ = 0.0;
-    double rate_ = 1.0;
 };
 
 /// Changes every axis' velocity towards a target so that all reach it at the same time.

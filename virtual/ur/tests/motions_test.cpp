@@ -73,6 +73,20 @@ TEST(Motions, AMoveWithATimeTakesThatTime) {
     EXPECT_NEAR(static_cast<double>(drive.cycles) * kStep, 2.0, 0.01);
 }
 
+TEST(Motions, AMoveWithATimeNeedsNoSpeeds) {
+    // What a client sends that gives a point by its time only: a = 0, v = 0, t = 1.
+    for (const auto& [velocity, acceleration] :
+         {std::pair{0.0, 0.0}, {0.0, 1.4}, {1.0, 0.0}, {0.01, 1.4}}) {
+        Drive drive{{kHome, {}}};
+        const auto motion = moveJ(kHome, shifted(kHome, 0.2), {velocity, acceleration, 1.0});
+        ASSERT_TRUE(drive.toEnd(*motion));
+        EXPECT_THAT(drive.now.position, Pointwise(DoubleNear(1e-9), shifted(kHome, 0.2)));
+        EXPECT_LE(drive.fastest, 2.0 * 0.2);
+        EXPECT_LE(drive.hardest, 6.0 * 0.2);
+        EXPECT_NEAR(static_cast<double>(drive.cycles) * kStep, 1.0, 0.01);
+    }
+}
+
 TEST(Motions, AMoveToWhereTheArmIsIsDoneAtOnce) {
     Drive drive{{kHome, {}}};
     ASSERT_TRUE(drive.toEnd(*moveJ(kHome, kHome, {1.0, 1.4, 0.0})));
