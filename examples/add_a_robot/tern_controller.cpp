@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <map>
 #include <numbers>
 #include <sstream>
 
 #include "metier/joint_simulator/guard.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_controller/peer_lines.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
 
 namespace metier::virtual_tern {
@@ -51,8 +51,11 @@ public:
         auto server = TcpServer::listen(
             request.context, request.address, port, request.faults,
             {.on_connected = {},
-             .on_data = [this](TcpPeer& peer, auto bytes) { take(peer, bytes); },
-             .on_closed = [this](TcpPeer& peer) { partial_lines_.erase(&peer); }});
+             .on_data =
+                 [this](TcpPeer& peer, auto bytes) {
+                     lines_.add(peer, bytes, [this](std::string_view line) { obey(line); });
+                 },
+             .on_closed = [this](TcpPeer& peer) { lines_.forget(peer); }});
         if (!server) {
             return fail(server.error());
         }
@@ -84,20 +87,8 @@ public:
     }
 
 private:
-    void take(TcpPeer& peer, std::span<const std::byte> bytes) {
-        auto& line = partial_lines_[&peer];
-        line.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        for (auto end = line.find('\n'); end != std::string::npos; end = line.find('\n')) {
-            obey(line.substr(0, end));
-            line.erase(0, end + 1);
-        }
-        if (line.size() > 1024) {
-            peer.reset();
-        }
-    }
-
-    void obey(const std::string& line) {
-        std::istringstream words(line);
+    void obey(std::string_view line) {
+        std::istringstream words{std::string(line)};
         std::string command;
         words >> command;
         if (command == "RESET" && guard_.standing()) {
@@ -149,7 +140,7 @@ private:
     bool running_ = true;
     bool braking_ = false;
     int silence_ = 0;  // [cycles]
-    std::map<const TcpPeer*, std::string> partial_lines_;
+    virtual_controller::PeerLines lines_;
     std::unique_ptr<TcpServer> server_;
     std::optional<virtual_controller::CycleTimer> timer_;
 };

@@ -14,8 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestLine = 4096;
-
 Result<std::uint32_t> wholeNumber(const Injection& injection, std::uint32_t limit) {
     std::uint32_t number = 0;
     const auto& text = injection.value;
@@ -76,8 +74,13 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
     auto control = TcpServer::listen(
         host->context_, options.address, options.control_port, host->no_faults_,
         {.on_connected = {},
-         .on_data = [self = host.get()](TcpPeer& peer, auto bytes) { self->answer(peer, bytes); },
-         .on_closed = [self = host.get()](TcpPeer& peer) { self->partial_lines_.erase(&peer); }});
+         .on_data =
+             [self = host.get()](TcpPeer& peer, auto bytes) {
+                 self->lines_.add(peer, bytes, [&](std::string_view line) {
+                     peer.send(self->controlAnswer(line).dump() + '\n');
+                 });
+             },
+         .on_closed = [self = host.get()](TcpPeer& peer) { self->lines_.forget(peer); }});
     if (!control) {
         return fail(control.error());
     }
@@ -86,18 +89,6 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
 }
 
 Host::~Host() = default;
-
-void Host::answer(TcpPeer& peer, std::span<const std::byte> bytes) {
-    auto& line = partial_lines_[&peer];
-    line.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    for (auto end = line.find('\n'); end != std::string::npos; end = line.find('\n')) {
-        peer.send(controlAnswer(std::string_view(line).substr(0, end)).dump() + '\n');
-        line.erase(0, end + 1);
-    }
-    if (line.size() > kLongestLine) {
-        peer.reset();
-    }
-}
 
 Json Host::controlAnswer(std::string_view line) {
     const auto request = Json::parse(line, nullptr, false);

@@ -3,12 +3,12 @@
 
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <utility>
 
 #include "metier/geometry/frame.hpp"
 #include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_controller/peer_lines.hpp"
 #include "metier/virtual_controller/remote_world.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
 #include "metier/virtual_controller/world_messages.hpp"
@@ -25,8 +25,6 @@ using virtual_controller::InjectionHelp;
 using virtual_controller::TcpPeer;
 using virtual_controller::TcpServer;
 
-constexpr std::size_t kLongestLine = 4096;
-
 class WorldServer final : public Controller {
 public:
     explicit WorldServer(WorldOptions options) : options_(options), world_(std::move(options)) {}
@@ -35,8 +33,11 @@ public:
         auto server = TcpServer::listen(
             request.context, request.address, port, request.faults,
             {.on_connected = {},
-             .on_data = [this](TcpPeer& peer, auto bytes) { take(peer, bytes); },
-             .on_closed = [this](TcpPeer& peer) { partial_lines_.erase(&peer); }});
+             .on_data =
+                 [this](TcpPeer& peer, auto bytes) {
+                     lines_.add(peer, bytes, [&](std::string_view line) { answer(peer, line); });
+                 },
+             .on_closed = [this](TcpPeer& peer) { lines_.forget(peer); }});
         if (!server) {
             return fail(server.error());
         }
@@ -78,17 +79,6 @@ public:
     }
 
 private:
-    void take(TcpPeer& peer, std::span<const std::byte> bytes) {
-        auto& line = partial_lines_[&peer];
-        line.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        for (auto end = line.find('\n'); end != std::string::npos; end = line.find('\n')) {
-            answer(peer, std::string_view(line).substr(0, end));
-            line.erase(0, end + 1);
-        }
-        if (line.size() > kLongestLine) {
-            peer.reset();
-        }
-    }
     void answer(TcpPeer& peer, std::string_view line) {
         if (const auto report = virtual_controller::reportOf(line)) {
             peer.send(virtual_controller::toLine(
@@ -113,7 +103,7 @@ private:
     WorldOptions options_;
     World world_;
     std::unique_ptr<TcpServer> server_;
-    std::map<const TcpPeer*, std::string> partial_lines_;
+    virtual_controller::PeerLines lines_;
 };
 
 Result<std::unique_ptr<Controller>> startWorld(const ControllerRequest& request) {

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <asio/io_context.hpp>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_controller/peer_lines.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
 
 namespace metier::virtual_controller {
@@ -47,7 +47,6 @@ public:
 
 private:
     Host() = default;
-    void answer(TcpPeer& peer, std::span<const std::byte> bytes);
     Result<void> inject(const Injection& injection);
     std::vector<InjectionHelp> injections() const;
 
@@ -57,7 +56,7 @@ private:
     std::unique_ptr<WorldLink> world_;
     std::unique_ptr<Controller> controller_;
     std::unique_ptr<TcpServer> control_;
-    std::map<const TcpPeer*, std::string> partial_lines_;
+    PeerLines lines_;
 };
 
 }  // namespace metier::virtual_controller

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "metier/virtual_controller/tcp_server.hpp"
+
+namespace metier::virtual_controller {
+
+/// Cuts what the peers of a port send into lines.
+///
+/// Threading: the thread of its server.
+class PeerLines {
+public:
+    /// \param longest line; a peer that sends a longer one is reset
+    explicit PeerLines(std::size_t longest = 4096) : longest_(longest) {}
+
+    /// Calls `take` for each line that is whole now, without its line feed.
+    void add(TcpPeer& peer, std::span<const std::byte> bytes,
+             const std::function<void(std::string_view)>& take);
+    void forget(const TcpPeer& peer) { parts_.erase(&peer); }
+
+private:
+    std::size_t longest_;
+    std::map<const TcpPeer*, std::string> parts_;  // what came since the last line feed
+};
+
+}  // namespace metier::virtual_controller
