@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "metier/ur_driver/back_off.hpp"
+#include "metier/link/back_off.hpp"
 
 namespace metier::ur_driver {
 
@@ -90,7 +90,7 @@ PrimaryMonitor::PrimaryMonitor(std::string host, std::uint16_t port, Handler han
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void PrimaryMonitor::run(const std::stop_token& stop) {
-    BackOff back_off;
+    link::BackOff back_off;
     while (!stop.stop_requested()) {
         auto session = PrimarySession::connect(host_, port_,
                                                std::chrono::steady_clock::now() + kConnectTimeout);

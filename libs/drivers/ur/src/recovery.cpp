@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "metier/ur_driver/back_off.hpp"
+#include "metier/link/back_off.hpp"
 
 namespace metier::ur_driver {
 
@@ -187,7 +187,7 @@ Result<void> Recovery::await(const std::function<bool(const ControllerState&)>& 
             return fail(Errc::timeout, fmt::format("{}: {} within {:.0f} s", peer_.name, what,
                                                    std::chrono::duration<double>(time).count()));
         }
-        waitFor(stop, kPoll);
+        link::waitFor(stop, kPoll);
     }
     return fail(Errc::cancelled, peer_.name + ": the driver was shut down");
 }

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <utility>
 
-#include "metier/ur_driver/back_off.hpp"
+#include "metier/link/back_off.hpp"
 #include "metier/ur_driver/described_model.hpp"
 
 namespace metier::ur_driver {
@@ -168,7 +168,7 @@ void UrArm::hear(const primary::Package& package) {
 // ---- cycle thread ------------------------------------------------------------------------------
 
 void UrArm::run(const std::stop_token& stop) {
-    BackOff back_off;
+    link::BackOff back_off;
     while (!stop.stop_requested()) {
         const RtdeRequest request{options_.host, options_.settings.rtde_port,
                                   options_.settings.frequency, options_.settings.register_base};

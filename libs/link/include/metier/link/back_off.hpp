@@ -5,6 +5,9 @@
 
 namespace metier::link {
 
+/// Waits, or returns at once when a stop is requested.
+void waitFor(const std::stop_token& stop, std::chrono::nanoseconds time);
+
 /// The pauses between attempts to connect: 0.2 s, doubled up to 2 s.
 ///
 /// Threading: one thread; the stop may be requested by any.
