@@ -118,6 +118,9 @@ private:
 
 using Twist = Eigen::Matrix<double, 6, 1>;
 
+// However hard a script asks the tool to accelerate, its joints do not do more [rad/s2]; believed.
+constexpr double kTwistRamp = 20.0;
+
 class SpeedL final : public Motion {
 public:
     struct Wanted {
@@ -142,7 +145,9 @@ public:
         const Eigen::Matrix<double, 6, 6> square =
             jacobian * jacobian.transpose() + kDamping * Eigen::Matrix<double, 6, 6>::Identity();
         Eigen::Map<Twist>(velocity.data()) = jacobian.transpose() * square.ldlt().solve(*twist_);
-        return moved(now.position, velocity, step);
+        present_ = approach(present_.value_or(now.velocity), velocity, kTwistRamp * step);
+        reached_ = reached_ && present_ == velocity;
+        return moved(now.position, *present_, step);
     }
     bool done() const override { return wanted_.duration > 0.0 ? left_ < kRounding : reached_; }
 
@@ -162,6 +167,7 @@ private:
     double left_;
     ToolKinematics tool_;
     std::optional<Twist> twist_;
+    std::optional<Vector6> present_;  // of the joints [rad/s]
     bool reached_ = false;
 };
 

@@ -151,6 +151,14 @@ TEST(Motions, AToolSpeedMovesTheToolThatWay) {
     EXPECT_NEAR(static_cast<double>(drive.cycles) * kStep, 0.5, 0.02);
 }
 
+TEST(Motions, ATwistThatIsAskedForAtOnceStaysWithinWhatTheJointsCanDo) {
+    const auto model = modelOf("ur5");
+    Drive drive{{kHome, {}}};
+    const auto motion = speedL({0.5, 0.0, 0.0, 0.0, 0.0, 0.0}, 40.0, 0.2, {model.kinematics(), {}});
+    ASSERT_TRUE(drive.toEnd(*motion));
+    EXPECT_LE(drive.hardest, 20.0 + 1e-6);
+}
+
 TEST(Motions, AStopBrakesAllAxesTogether) {
     Drive drive{{kHome, {1.0, -0.5, 0.0, 0.0, 0.0, 0.0}}};
     const auto motion = stopJ(2.0);
