@@ -212,7 +212,7 @@ namespace metier::virtual_controller {
 
 ControllerType wsg50Controller();
 ControllerType wsg50Controller() {
-    return {"wsg50", "Weiss WSG 50 gripper: GCL over TCP",
+    return {"wsg50", "Weiss WSG 50 gripper: binary commands over TCP",
             [](const ControllerRequest& request) -> Result<std::unique_ptr<Controller>> {
                 return virtual_wsg50::WsgController::start(request);
             }};

@@ -13,7 +13,7 @@ namespace metier::virtual_wsg50 {
 /// Over a frame with its checksum it is 0. Pure.
 std::uint16_t checksum(std::span<const std::byte> bytes) noexcept;
 
-/// One message of the gripper's command language (GCL), in either direction.
+/// One binary message of the gripper, in either direction.
 struct Frame {
     std::uint8_t id = 0;
     std::vector<std::byte> payload;

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// Numbers of the gripper's command language (GCL) of a Weiss WSG 50.
+/// Numbers of the binary commands of a Weiss WSG 50.
 namespace metier::virtual_wsg50 {
 
 enum class Command : std::uint8_t {
