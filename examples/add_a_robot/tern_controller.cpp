@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <deque>
 #include <numbers>
 #include <sstream>
 
@@ -26,6 +27,7 @@ using virtual_controller::TcpServer;
 
 constexpr auto kCycle = 10ms;
 constexpr int kLongestSilence = 50;  // [cycles]
+constexpr std::size_t kBuffer = 10;  // [set-points]
 constexpr double kRadian = 180.0 / std::numbers::pi;
 
 std::vector<virtual_robots::AxisLimits> limitsOf(const motion::RobotModel& model) {
@@ -80,6 +82,8 @@ public:
         guard_.reset(
             JointArray(std::span<const double>(model_.home().begin(), model_.home().end())));
         target_ = guard_.position();
+        waiting_.clear();
+        playing_ = false;
         running_ = true;
         if (server_) {
             server_->resetAll();
@@ -105,22 +109,37 @@ private:
                 angle /= kRadian;
             }
             target_ = target;
+            waiting_.push_back(target);
             braking_ = false;
             silence_ = 0;
         }
     }
 
-    void cycle() {
-        const bool moving = !guard_.standing();
-        if (moving && ++silence_ > kLongestSilence) {
-            running_ = false;
+    /// One set-point per cycle, some cycles late: a network delivers them in bunches.
+    void follow() {
+        playing_ = waiting_.size() >= kBuffer || (playing_ && !waiting_.empty()) ||
+                   (silence_ > static_cast<int>(kBuffer) && !waiting_.empty());
+        auto next = guard_.position();
+        if (playing_) {
+            next = waiting_.front();
+            waiting_.pop_front();
         }
+        if (guard_.accept(next)) {
+            running_ = false;  // it broke a limit, or the stream did
+            guard_.brake();
+        }
+    }
+
+    void cycle() {
+        ++silence_;
+        running_ = running_ && (guard_.standing() || silence_ <= kLongestSilence);
         if (braking_ || !running_) {
             target_ = guard_.brake();
+            waiting_.clear();
+            playing_ = false;
             braking_ = braking_ && !guard_.standing();
-        } else if (guard_.accept(target_)) {
-            running_ = false;  // what it was sent broke a limit
-            guard_.brake();
+        } else {
+            follow();
         }
         auto line = std::string(running_ ? "STATE RUN" : "STATE STOP");
         for (const double angle : guard_.position()) {
@@ -137,6 +156,8 @@ private:
     virtual_controller::WorldLink& world_;
     virtual_robots::Guard guard_;
     JointArray target_;
+    std::deque<JointArray> waiting_;
+    bool playing_ = false;
     bool running_ = true;
     bool braking_ = false;
     int silence_ = 0;  // [cycles]

@@ -53,7 +53,8 @@ void World::moveArm(const std::string& controller, const geometry::Pose& base_fr
     const auto& mount = mountOf(controller);
     const auto world_from_flange = mount.world_from_base * base_from_flange;
     const Eigen::Vector3d contact = world_from_flange * mount.contact_point;
-    auto [entry, first] = arms_.try_emplace(controller, Arm{world_from_flange, contact, {}, now});
+    auto [entry, first] = arms_.try_emplace(
+        controller, Arm{world_from_flange, contact, Eigen::Vector3d::Zero(), now});
     auto& arm = entry->second;
     const double elapsed = std::chrono::duration<double>(now - arm.stamp).count();
     if (!first && elapsed >= kShortestStep) {
