@@ -19,6 +19,7 @@
 #include "metier/device/arm_core.hpp"
 #include "metier/device/notifier.hpp"
 #include "metier/driver/driver.hpp"
+#include "metier/link/back_off.hpp"
 #include "metier/link/tcp_link.hpp"
 
 namespace metier::tern_driver {
@@ -149,13 +150,13 @@ public:
 private:
     void run(const std::stop_token& stop) {
         while (!stop.stop_requested()) {
-            const auto begin = std::chrono::steady_clock::now();
-            auto link = link::TcpLink::connect(address_, port_, begin + 1s);
+            auto link =
+                link::TcpLink::connect(address_, port_, std::chrono::steady_clock::now() + 1s);
             auto why = link ? converse(*link, stop) : link.error();
             core_.setSafety({SafetyState::disconnected, info().name + ": " + why.message});
             core_.end(EndCause::disconnected);
             notifier_.signal();
-            std::this_thread::sleep_until(begin + kPauseBeforeRetry);
+            link::waitFor(stop, kPauseBeforeRetry);
         }
     }
 
