@@ -61,6 +61,11 @@ std::filesystem::path simulatedCell() {
     return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "simulated.toml";
 }
 
+std::filesystem::path deviceCell(const std::string& name) {
+    return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "devices" /
+           (name + ".toml");
+}
+
 ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more)
     : process_(orThrow(process::ChildProcess::start(serveArguments(name, more)))) {
     const std::string ready = "ready ";
