@@ -15,10 +15,12 @@ namespace metier::opcua_skill {
 
 class SkillServer::State {
 public:
-    State(opcua::Server& server, const Clock& clock, SkillContext context)
+    State(opcua::Server& server, const Clock& clock, SkillContext context,
+          std::shared_ptr<skill::Executor> executor)
         : server_(server),
           clock_(clock),
-          executor_(std::make_shared<ServerExecutor>(server)),
+          server_executor_(std::make_shared<ServerExecutor>(server)),
+          executor_(executor ? std::move(executor) : server_executor_),
           context_(std::move(context)),
           factory_(server.nodes(), context_.ids) {
         server.onSessionClosed([this](const opcua::Session& session) { sessionClosed(session); });
@@ -26,7 +28,7 @@ public:
 
     ~State() {
         server_.stop();
-        executor_->close();
+        server_executor_->close();
     }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -105,7 +107,8 @@ private:
     opcua::Server& server_;
     const Clock& clock_;
     // Shared with the Executions, which may outlive the Programs.
-    std::shared_ptr<ServerExecutor> executor_;
+    std::shared_ptr<ServerExecutor> server_executor_;
+    std::shared_ptr<skill::Executor> executor_;
     SkillContext context_;
     SkillFactory factory_;
     std::vector<std::unique_ptr<SkillNode>> skills_;
@@ -113,8 +116,9 @@ private:
     std::vector<std::unique_ptr<ControlNode>> controls_;
 };
 
-Result<std::unique_ptr<SkillServer>> SkillServer::create(opcua::Server& server, const Clock& clock,
-                                                         std::shared_ptr<spdlog::logger> logger) {
+Result<std::unique_ptr<SkillServer>> SkillServer::create(
+    opcua::Server& server, const Clock& clock, std::shared_ptr<spdlog::logger> logger,
+    std::shared_ptr<skill::Executor> executor) {
     auto ids = ModelIds::of(server.nodes());
     if (!ids) {
         return fail(std::move(ids.error()));
@@ -128,8 +132,8 @@ Result<std::unique_ptr<SkillServer>> SkillServer::create(opcua::Server& server, 
                          std::move(*emitter),
                          {},
                          logger ? std::move(logger) : spdlog::default_logger()};
-    return std::unique_ptr<SkillServer>(
-        new SkillServer(std::make_unique<State>(server, clock, std::move(context))));
+    return std::unique_ptr<SkillServer>(new SkillServer(
+        std::make_unique<State>(server, clock, std::move(context), std::move(executor))));
 }
 
 SkillServer::SkillServer(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -94,6 +94,9 @@ Program::Program(ProgramOptions options, std::unique_ptr<Skill> skill,
     diagnostic_.create_session_id = options_.creator.session_id;
     diagnostic_.create_client_name = options_.creator.client_name;
     diagnostic_.invocation_creation_time = clock_.utcNow();
+    if (!options_.names) {
+        options_.names = std::make_shared<ExecutionNames>();
+    }
     if (options_.control) {
         options_.control->attach(*this);
     }
@@ -216,11 +219,14 @@ Result<std::string> Program::startWith(const Caller& caller, StartRequest reques
 
 Result<ExecutionRecord> Program::execution(std::string_view id) const {
     const auto* record = history_.find(id);
-    if (record == nullptr) {
-        return metier::fail(Errc::not_found,
-                            fmt::format("{}: no execution \"{}\" is known", description_.name, id));
+    if (record != nullptr) {
+        return *record;
     }
-    return *record;
+    const bool forgotten = options_.names->knows(description_.name, id);
+    return metier::fail(Errc::not_found,
+                        fmt::format("{}: {}", description_.name,
+                                    forgotten ? forgottenText(id)
+                                              : fmt::format("no execution \"{}\" is known", id)));
 }
 
 Result<void> Program::suspend(const Caller& caller) {

@@ -45,6 +45,9 @@ Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) 
                             fmt::format("ExecutionId: {} characters, at most {}",
                                         request.execution_id.size(), kLongestId));
     }
+    if (options_.names->knows(description_.name, request.execution_id)) {
+        return metier::fail(Errc::already_exists, forgottenText(request.execution_id));
+    }
     if (request.deadline && clock_.utcNow() > *request.deadline) {
         const auto late = clock_.utcNow() - *request.deadline;
         return metier::fail(
@@ -87,6 +90,11 @@ Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std:
     }
     if (!*body) {
         return metier::fail(Errc::internal, "the skill made no body");
+    }
+    if (!id.empty()) {
+        if (auto noted = options_.names->note(description_.name, id); !noted) {
+            return noted;
+        }
     }
     if (options_.resource) {
         options_.resource->acquire(description_.name);

@@ -35,10 +35,12 @@ public:
     /// \param server with the NodeSets device, robotics and metier; must outlive this
     /// \param clock  must outlive this
     /// \param logger shared with its other users, as spdlog does; null: spdlog's default logger
+    /// \param executor that runs on the server's thread, for a clock that is moved by hand; null:
+    ///                 one in real time
     /// Errors: not_found, naming what the server's NodeSets lack.
     static Result<std::unique_ptr<SkillServer>> create(
-        opcua::Server& server, const Clock& clock,
-        std::shared_ptr<spdlog::logger> logger = nullptr);
+        opcua::Server& server, const Clock& clock, std::shared_ptr<spdlog::logger> logger = nullptr,
+        std::shared_ptr<skill::Executor> executor = nullptr);
     /// Stops the server, since its nodes lead here; then the Programs.
     /// Not on the server's thread.
     ~SkillServer();

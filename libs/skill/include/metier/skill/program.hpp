@@ -13,6 +13,7 @@
 #include "metier/base/error.hpp"
 #include "metier/skill/caller.hpp"
 #include "metier/skill/control.hpp"
+#include "metier/skill/execution_names.hpp"
 #include "metier/skill/execution_record.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/parameter_set.hpp"
@@ -27,6 +28,9 @@ struct ProgramOptions {
     std::shared_ptr<Resource> resource{};
     /// Who may command; empty: everybody. Shared by the Programs of a controller.
     std::shared_ptr<Control> control{};
+    /// The names that executions have had; empty: the Program keeps its own, as long as it lives.
+    /// Shared by the Programs of a server.
+    std::shared_ptr<ExecutionNames> names{};
     /// How long a session may leave a written parameter set without Start.
     std::chrono::milliseconds configuration_timeout{10'000};
     /// How long a body may take to come to rest before the device's own stop is used.
@@ -86,7 +90,8 @@ public:
     /// written before is dropped.
     /// \return the execution's id. An id that the Program knows already starts nothing: that
     ///         execution, running or over, is the answer.
-    /// Errors: as start() and write(); locked (epoch); timeout (deadline).
+    /// Errors: as start() and write(); locked (epoch); timeout (deadline); already_exists (an
+    ///         execution of that id has begun, and its record is gone).
     Result<std::string> startWith(const Caller& caller, StartRequest request);
     /// What startWith() would say now, and how the motion would be. Nothing changes.
     CheckReport check(const Caller& caller, const ValueMap& parameters);

@@ -1,0 +1,137 @@
+#include "metier/skill/execution_names.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "program_bench.hpp"
+
+namespace metier::skill::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A file of the test's own, gone after it.
+class KeptNames : public ::testing::Test {
+protected:
+    KeptNames() { std::filesystem::remove_all(folder_); }
+    ~KeptNames() override { std::filesystem::remove_all(folder_); }
+    KeptNames(const KeptNames&) = delete;
+    KeptNames& operator=(const KeptNames&) = delete;
+
+    std::unique_ptr<ExecutionNames> open(std::size_t least = ExecutionNames::kLeast) const {
+        auto names = ExecutionNames::open(file_, least);
+        EXPECT_TRUE(names) << names.error().message;
+        return std::move(names.value());
+    }
+
+    const std::filesystem::path folder_ =
+        std::filesystem::path(::testing::TempDir()) /
+        (std::string("names_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    const std::filesystem::path file_ = folder_ / "of" / "server.executions";
+};
+
+TEST_F(KeptNames, OutliveTheServerThatNotedThem) {
+    ASSERT_TRUE(open()->note("Weld", "order 66"));
+    const auto names = open();
+    EXPECT_TRUE(names->knows("Weld", "order 66"));
+    EXPECT_FALSE(names->knows("Weld", "order 67"));
+    EXPECT_FALSE(names->knows("Grasp", "order 66")) << "each skill has names of its own";
+}
+
+TEST_F(KeptNames, MayHoldAnyCharacter) {
+    const std::string strange = std::string("a\nb\tc%0ad\\") + '\0' + "ß";
+    ASSERT_TRUE(open()->note("Weld", strange));
+    const auto names = open();
+    EXPECT_TRUE(names->knows("Weld", strange));
+    EXPECT_FALSE(names->knows("Weld", "b"));
+    EXPECT_FALSE(names->knows("Weld", "a"));
+}
+
+TEST_F(KeptNames, AreWrittenWholeAfterALineThatACrashHasCutOff) {
+    ASSERT_TRUE(open()->note("Weld", "whole"));
+    std::ofstream(file_, std::ios::app) << "Weld\tcut o";
+    ASSERT_TRUE(open()->note("Weld", "next"));
+    const auto names = open();
+    EXPECT_TRUE(names->knows("Weld", "whole"));
+    EXPECT_TRUE(names->knows("Weld", "next"));
+    EXPECT_FALSE(names->knows("Weld", "cut o")) << "its execution has not begun";
+}
+
+TEST_F(KeptNames, BelongToOneServer) {
+    const auto mine = open();
+    const auto second = ExecutionNames::open(file_);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::resource_unavailable);
+    EXPECT_THAT(second.error().message, HasSubstr(file_.string()));
+}
+
+TEST_F(KeptNames, ThatCannotBeWrittenAreAnError) {
+    const auto refused = ExecutionNames::open("/proc/none/of.executions");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
+}
+
+TEST_F(KeptNames, AreAtLeastTheLatestAndNotAll) {
+    constexpr int kLeast = 10;
+    auto names = open(kLeast);
+    for (int i = 1; i <= 35; ++i) {
+        ASSERT_TRUE(names->note("Weld", std::to_string(i)));
+        for (int earlier = std::max(1, i - kLeast + 1); earlier <= i; ++earlier) {
+            ASSERT_TRUE(names->knows("Weld", std::to_string(earlier))) << earlier << " of " << i;
+        }
+    }
+    EXPECT_FALSE(names->knows("Weld", "1"));
+    names.reset();
+    names = open(kLeast);
+    EXPECT_TRUE(names->knows("Weld", "35"));
+    EXPECT_TRUE(names->knows("Weld", "26"));
+    EXPECT_FALSE(names->knows("Weld", "1"));
+}
+
+/// Starts and finishes an execution.
+void finishOne(ProgramBench& bench, const std::string& id) {
+    ASSERT_TRUE(bench.program->startWith(kAlice, {.execution_id = id}));
+    bench.script->execution.finish();
+    bench.run();
+}
+
+TEST(NamedExecution, NeverStartsAgainOnceItsRecordIsForgotten) {
+    ProgramBench bench;
+    finishOne(bench, "first");
+    for (std::size_t i = 0; i < ExecutionHistory::kMost; ++i) {
+        finishOne(bench, {});
+    }
+    bench.forget();
+    const auto again = bench.program->startWith(kAlice, {.execution_id = "first"});
+    ASSERT_FALSE(again);
+    EXPECT_EQ(again.error().code, Errc::already_exists);
+    EXPECT_THAT(again.error().message, HasSubstr("\"first\" has begun once"));
+    EXPECT_THAT(bench.program->execution("first").error().message, HasSubstr("has begun once"));
+    EXPECT_TRUE(bench.observer.transitions().empty());
+}
+
+TEST_F(KeptNames, NeverStartAgainInAServerThatIsStartedAgain) {
+    {
+        ProgramBench bench({.names = open()});
+        ASSERT_TRUE(bench.program->startWith(kAlice, {.execution_id = "first"}));
+    }
+    ProgramBench bench({.names = open()});
+    const auto again = bench.program->startWith(kAlice, {.execution_id = "first"});
+    ASSERT_FALSE(again);
+    EXPECT_EQ(again.error().code, Errc::already_exists);
+    EXPECT_TRUE(bench.observer.transitions().empty());
+    EXPECT_TRUE(bench.program->startWith(kAlice, {.execution_id = "second"}));
+}
+
+TEST_F(KeptNames, OfARefusedStartMayBeUsedAgain) {
+    ProgramBench bench({.names = open()});
+    EXPECT_FALSE(bench.program->startWith(
+        kAlice, {.execution_id = "first", .parameters = {{"Speed", 99.0}}}));
+    EXPECT_TRUE(bench.program->startWith(kAlice, {.execution_id = "first"}));
+}
+
+}  // namespace
+}  // namespace metier::skill::testing
