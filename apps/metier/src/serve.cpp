@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -21,7 +23,36 @@ struct ServeOptions {
     std::string robot;
     std::string controller;
     std::string sensor;
+    std::string state;
 };
+
+/// Of this user; empty if nobody says where that is.
+std::filesystem::path userStateFolder() {
+    const auto variable = [](const char* name) {
+        const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): one thread yet
+        return std::filesystem::path(value == nullptr ? "" : value);
+    };
+    if (const auto state = variable("XDG_STATE_HOME"); !state.empty()) {
+        return state / "metier";
+    }
+    const auto home = variable("HOME");
+    return home.empty() ? home : home / ".local" / "state" / "metier";
+}
+
+/// A server on any free port is another one each time, and keeps nothing unless it is told where.
+std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t port) {
+    if (!options.state.empty()) {
+        return options.state;
+    }
+    const auto folder = port == 0 ? std::filesystem::path() : userStateFolder();
+    std::error_code error;
+    if (!folder.empty() && !std::filesystem::create_directories(folder, error) && error) {
+        spdlog::warn("{}: {}; after a restart a repeated StartWith may start again",
+                     folder.string(), error.message());
+        return {};
+    }
+    return folder;
+}
 
 /// A virtual controller of the same file is reached at its configured address.
 void resolveController(const configuration::CellConfig& cell, const std::string& other_address,
@@ -49,6 +80,7 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
     }
     auto config = *server;
     config.port = options.port.value_or(config.port);
+    config.state_folder = stateFolder(options, config.port);
     if (!options.robot.empty()) {
         config.move.robot = options.robot;
     }
@@ -115,6 +147,9 @@ void addServe(CLI::App& app, Exit& exit) {
                         "Another address of the device's controller than the file's");
     command->add_option("--sensor", options->sensor,
                         "Another address of the force-torque sensor than the file's");
+    command->add_option("--state", options->state,
+                        "Folder for what outlives the server: the names of executions. Else that "
+                        "of the user, and none with --port 0");
     command->callback([options, &exit] { exit = runServe(*options); });
 }
 

@@ -81,7 +81,26 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
     }
     host->skills_ = std::move(*skills);
     host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
+    if (auto kept = host->keepNames(config); !kept) {
+        return fail(kept.error());
+    }
     return host;
+}
+
+/// A server is the same one after a restart if it has the same name, address and port.
+Result<void> SkillHost::keepNames(const configuration::ServerConfig& config) {
+    if (config.state_folder.empty()) {
+        names_ = std::make_shared<skill::ExecutionNames>();
+        return {};
+    }
+    auto names = skill::ExecutionNames::open(
+        config.state_folder /
+        fmt::format("{}-{}-{}.executions", config.name, config.address, config.port));
+    if (!names) {
+        return fail(names.error());
+    }
+    names_ = std::move(*names);
+    return {};
 }
 
 SkillHost::SkillHost(std::unique_ptr<opcua::Server> server) : server_(std::move(server)) {}
@@ -119,7 +138,8 @@ Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
         const auto node = std::find_if(nodes->begin(), nodes->end(), [&](const auto& reference) {
             return reference.browse_name.name == name;
         });
-        const skill::ProgramOptions options{.resource = resource, .control = control_};
+        const skill::ProgramOptions options{
+            .resource = resource, .control = control_, .names = names_};
         const auto offered = node == nodes->end()
                                  ? skills_->publish(folder, std::move(*found), options)
                                  : skills_->bind(node->target, std::move(*found), options);

@@ -61,11 +61,13 @@ public:
 
 private:
     explicit SkillHost(std::unique_ptr<opcua::Server> server);
+    Result<void> keepNames(const configuration::ServerConfig& config);
 
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
-    std::shared_ptr<skill::Control> control_;  // shared with the Programs
+    std::shared_ptr<skill::Control> control_;       // shared with the Programs
+    std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs
     std::optional<robot_skills::DeviceWatch> device_watch_;
 };
 

@@ -60,6 +60,9 @@ struct ServerConfig {
     std::string address;
     /// Sends notifications of events at once instead of at the publishing interval.
     bool publish_at_once = true;
+    /// Where the server keeps what outlives it; empty: nothing does. Not of the file: whoever
+    /// starts the server says it.
+    std::filesystem::path state_folder;
     ArmServer arm;          ///< for ServerKind::arm
     GripperServer gripper;  ///< for ServerKind::gripper
     MoveComponent move;     ///< for ServerKind::move
