@@ -189,21 +189,25 @@ struct Attempt {
 
 class Racer {
 public:
-    Racer(std::unique_ptr<opcua::Client> client, std::uint32_t seed, std::int64_t number)
-        : client_(std::move(client)), random_(seed), number_(number) {}
+    Racer(std::unique_ptr<opcua::Client> client, std::uint32_t seed)
+        : client_(std::move(client)), random_(seed) {}
 
-    /// \param most clients of a race, so that no two numbers are the same
-    void race(const Track& track, std::uint64_t round, std::size_t most) {
+    /// \param own     number that no other client uses, nor this one in another round
+    /// \param meeting called once, after the first write if there is one
+    template <typename Meeting>
+    void race(const Track& track, std::int64_t own, Meeting meeting) {
         attempt_ = {};
-        const auto own = static_cast<std::int64_t>(round * most) + number_ + 1;
         attempt_.role = chooseRole(track);
         if (attempt_.role == Role::starts_with) {
             attempt_.given.fill(own);
+            meeting();
             take(client_->call(track.object, track.start_with, startWithInputs(own)));
             return;
         }
-        if (attempt_.role != Role::only_starts) {
-            write(track, own);
+        if (attempt_.role == Role::only_starts) {
+            meeting();
+        } else {
+            write(track, own, meeting);
         }
         take(client_->call(track.object, track.start));
     }
@@ -219,10 +223,12 @@ private:
     }
 
     /// In any order; a client that was refused goes on, as a careless one does.
-    void write(const Track& track, std::int64_t own) {
+    template <typename Meeting>
+    void write(const Track& track, std::int64_t own, Meeting meeting) {
         std::array<std::size_t, kValues> order{0, 1, 2};
         std::shuffle(order.begin(), order.end(), random_);
         const std::size_t left_out = 1 + random_() % (kValues - 1);
+        bool met = false;
         for (const auto which : order) {
             if (attempt_.role == Role::writes_some && which == left_out) {
                 continue;
@@ -230,6 +236,9 @@ private:
             attempt_.given.at(which) = own;
             const auto written = client_->write(track.values.at(which), valueOf(which, own));
             check(written ? opcua::status::kGood : written.error().status);
+            if (!std::exchange(met, true)) {
+                meeting();
+            }
         }
     }
 
@@ -259,7 +268,6 @@ private:
 
     std::unique_ptr<opcua::Client> client_;
     std::mt19937 random_;
-    std::int64_t number_;
     Attempt attempt_;
 };
 
@@ -270,8 +278,7 @@ public:
         for (std::size_t i = 0; i < options.clients; ++i) {
             racers_.push_back(
                 std::make_unique<Racer>(connectAs(bench_.url(), fmt::format("racer {}", i + 1)),
-                                        options.seed * 1'000 + static_cast<std::uint32_t>(i),
-                                        static_cast<std::int64_t>(i)));
+                                        options.seed * 1'000 + static_cast<std::uint32_t>(i)));
         }
     }
 
@@ -287,12 +294,18 @@ private:
     template <typename Raced>
     void runRounds(Raced& raced, std::uint64_t rounds, RaceCount& count) {
         std::barrier<> gate(static_cast<std::ptrdiff_t>(racers_.size()) + 1);
+        std::barrier<> meeting(static_cast<std::ptrdiff_t>(racers_.size()));
         std::vector<std::jthread> threads;
-        for (const auto& racer : racers_) {
-            threads.emplace_back([&, racer = racer.get()] {
+        for (std::size_t i = 0; i < racers_.size(); ++i) {
+            threads.emplace_back([&, i] {
                 for (std::uint64_t round = 0; round < rounds; ++round) {
+                    const auto own = static_cast<std::int64_t>(round * racers_.size() + i + 1);
                     gate.arrive_and_wait();
-                    racer->race(raced.track(), round, racers_.size());
+                    racers_[i]->race(raced.track(), own, [&, meet = round % 2 == 1] {
+                        if (meet) {
+                            meeting.arrive_and_wait();
+                        }
+                    });
                     gate.arrive_and_wait();
                 }
             });

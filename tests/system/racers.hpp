@@ -34,7 +34,8 @@ struct RaceReport {
 
 /// In each round every client writes values of its own, in an order of its own, and calls Start;
 /// or leaves some out, brings all along with StartWith, or calls Start having written nothing. All
-/// at the same time, over connections of their own. The skill echoes what it was started with.
+/// at the same time, over connections of their own; in every other round nobody goes on before all
+/// have written once. The skill echoes what it was started with.
 /// Threads: any; waits. Errors: what the server or a connection refused before the race.
 Result<RaceReport> runRace(const RaceOptions& options);
 

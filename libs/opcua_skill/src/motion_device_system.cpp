@@ -26,6 +26,7 @@ constexpr std::uint32_t kControls = 4002;
 constexpr std::uint32_t kSkillMotionDeviceType = 15857;
 constexpr std::uint32_t kISkillControllerType = 15396;
 constexpr std::uint32_t kIControlLeaseType = 20056;
+constexpr std::uint32_t kLockingServicesType = 6388;
 constexpr std::int32_t kArticulatedRobot = 1;
 constexpr std::int32_t kRotary = 1;
 
@@ -211,6 +212,14 @@ private:
         steps_.reference(made.controller, opcua::ids::kHasInterface,
                          NodeId(index_.metier, kIControlLeaseType));
         addLease(made.controller);
+        steps_.check([&]() -> Result<void> {
+            return nodes()
+                .addObject(objectSpec(made.controller, {index_.di, "Lock"},
+                                      NodeId(index_.di, kLockingServicesType),
+                                      "Used to lock the controller."),
+                           opcua::MethodNodes::own)
+                .map([](const NodeId& /*lock*/) {});
+        });
         made.skills =
             steps_.object(objectSpec(made.controller, {index_.device, "Skills"},
                                      opcua::ids::kBaseObjectType, "The skills of the controller."));

@@ -1,0 +1,65 @@
+// As many random steps as the command line says, or those of a file:
+// `metier_histories [STEPS] [SEED]`, `metier_histories --replay FILE`.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "runner.hpp"
+
+namespace metier::system_tests {
+namespace {
+
+constexpr std::size_t kLength = 100;
+
+int replay(const char* file) {
+    std::ifstream stream(file);
+    const auto history = historyFrom(std::string(std::istreambuf_iterator<char>(stream), {}));
+    if (!history) {
+        fmt::print(stderr, "{}: {}\n", file, history.error().message);
+        return EXIT_FAILURE;
+    }
+    World world;
+    const auto divergence = findDivergence(world, *history);
+    fmt::print("{}", divergence ? divergence->text : "server and model agree\n");
+    return divergence ? EXIT_FAILURE : EXIT_SUCCESS;
+}
+
+int walk(std::uint64_t steps, std::uint64_t seed) {
+    const auto begin = std::chrono::steady_clock::now();
+    World world;
+    RandomSteps random(seed);
+    std::uint64_t taken = 0;
+    std::uint64_t histories = 0;
+    for (; taken < steps; taken += kLength, ++histories) {
+        const auto history = random.history(kLength);
+        if (findDivergence(world, history)) {
+            fmt::print("history {} of seed {}: {}", histories, seed, explain(world, history));
+            return EXIT_FAILURE;
+        }
+    }
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    fmt::print("{} steps in {} histories of seed {}, in {:.0f} s: server and model agree\n", taken,
+               histories, seed, time.count());
+    return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace metier::system_tests
+
+int main(int argc, char** argv) {
+    using namespace metier::system_tests;
+    try {
+        if (argc == 3 && std::string(argv[1]) == "--replay") {
+            return replay(argv[2]);
+        }
+        return walk(argc > 1 ? std::stoull(argv[1]) : 1'000'000,
+                    argc > 2 ? std::stoull(argv[2]) : 1);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "histories: {}\n", error.what());
+        return EXIT_FAILURE;
+    }
+}
