@@ -85,6 +85,7 @@ Streamer::Streamer(device::ArmCore& core, const StreamOptions& options, std::int
                                              options.cycle))),
       patience_(cyclesIn(options.patience, options.cycle)),
       start_timeout_(cyclesIn(options.start_timeout, options.cycle)),
+      pace_(options.cycle),
       token_(first_token) {
     state_.position = device::JointArray(kAxes);
     state_.velocity = state_.position;
@@ -217,7 +218,7 @@ void Streamer::follow(const ControllerState& now, Output& out) noexcept {
         return;
     }
     state_.commanded_position = device::JointArray(std::span<const double>(setpoint_.position));
-    if (core_.active() != nullptr) {
+    if (core_.active() != nullptr && pace_.due(state_.stamp)) {
         ask(out);
     }
     remember(setpoint_.position);

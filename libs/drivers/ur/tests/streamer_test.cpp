@@ -38,9 +38,10 @@ protected:
         core_.dispatch();
     }
 
-    Streamer::Output cycle() {
+    Streamer::Output cycle(std::chrono::nanoseconds since_the_last = 8ms) {
         now_.timestamp += 0.008;
-        out_ = streamer_.cycle(now_, SteadyTime(std::chrono::nanoseconds(1)));
+        stamp_ += since_the_last;
+        out_ = streamer_.cycle(now_, stamp_);
         if (out_.fault.kind != Kind::none) {
             core_.setSafety({SafetyState::protective_stop, toText(out_.fault)});
         }
@@ -86,6 +87,7 @@ protected:
     device::ArmCore core_{{"arm", {"1", "2", "3", "4", "5", "6"}, 8ms}};
     Streamer streamer_{core_, options(), 41};
     ControllerState now_;
+    SteadyTime stamp_{1s};
     Streamer::Output out_;
     bool starts_ = true;
     bool takes_ = true;
@@ -100,6 +102,29 @@ TEST_F(StreamerTest, WritesNothingWhileNobodyMovesTheArm) {
     }
     EXPECT_EQ(core_.state().commanded_position[5], 0.6);
     EXPECT_EQ(core_.state().cycle, 10U);
+}
+
+TEST_F(StreamerTest, AsksForAFewSetPointsOnlyWhenLatePackagesComeTogether) {
+    auto source = moving();
+    const auto before = source->asked();
+    cycle(100ms);
+    for (int i = 0; i < 11; ++i) {
+        cycle(100us);
+    }
+    EXPECT_LE(source->asked(), before + 5) << "the arm would jump";
+    EXPECT_GE(source->asked(), before + 3) << "a link may be three cycles late";
+    const auto after = source->asked();
+    cycles(100);
+    EXPECT_EQ(source->asked(), after + 100) << "and one in each cycle from then on";
+}
+
+TEST(SetPointPace, LetsAControllerWithAQuickClockNeverWait) {
+    SetPointPace pace(8ms);
+    SteadyTime now{1s};
+    for (int i = 0; i < 100'000; ++i) {
+        now += 7999us;
+        ASSERT_TRUE(pace.due(now)) << "cycle " << i;
+    }
 }
 
 TEST_F(StreamerTest, WritesWhereTheArmIsBeforeTheScriptStarts) {

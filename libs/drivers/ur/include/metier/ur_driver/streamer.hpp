@@ -10,6 +10,7 @@
 #include "metier/device/arm_core.hpp"
 #include "metier/ur_driver/controller_state.hpp"
 #include "metier/ur_driver/rtde.hpp"
+#include "metier/ur_driver/set_point_pace.hpp"
 
 namespace metier::ur_driver {
 
@@ -109,6 +110,7 @@ private:
     const std::size_t window_;  // cycles in which target_q may lag behind
     const std::uint32_t patience_;
     const std::uint32_t start_timeout_;
+    SetPointPace pace_;
 
     Phase phase_ = Phase::idle;
     device::ArmState state_;
