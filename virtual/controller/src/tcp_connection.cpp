@@ -87,12 +87,7 @@ void TcpConnection::send(std::span<const std::byte> bytes) {
     const auto delay = std::chrono::milliseconds(faults.delay_ms.load());
     outgoing_.push_back({std::chrono::steady_clock::now() + delay, {bytes.begin(), bytes.end()}});
     queued_ += bytes.size();
-    auto left = faults.garble.load();
-    if (left > 0) {
-        faults.garble.compare_exchange_strong(left, left - 1);
-        auto& garbled = outgoing_.back().bytes;
-        garbled[garbled.size() / 2] ^= std::byte{0x55};
-    }
+    faults.spoil(outgoing_.back().bytes);
     write();
 }
 

@@ -75,11 +75,7 @@ void UdpPort::send(const Endpoint& to, std::vector<std::byte> datagram) {
     if (faults_.cut.load() || datagram.empty() || waiting_.size() >= kMostWaiting) {
         return;
     }
-    auto left = faults_.garble.load();
-    if (left > 0) {
-        faults_.garble.compare_exchange_strong(left, left - 1);
-        datagram[datagram.size() / 2] ^= std::byte{0x55};
-    }
+    faults_.spoil(datagram);
     const auto delay = faults_.delay_ms.load();
     if (delay == 0 && waiting_.empty()) {
         sendNow(to, datagram);
