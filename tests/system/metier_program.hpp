@@ -36,7 +36,7 @@ Finished runMetier(const std::vector<std::string>& arguments, Errors errors = Er
 std::filesystem::path demoCell();
 /// A cell file with the arms of the demo, simulated without controllers and wires.
 std::filesystem::path simulatedCell();
-/// The cell file of one device on its maker's wire: its server and its virtual controller.
+/// A cell file of tests/system/devices: one device, or few, on virtual controllers.
 std::filesystem::path deviceCell(const std::string& name);
 
 /// One server of the simulated cell in a process of its own.

@@ -4,10 +4,12 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 
+#include "metier/link/tcp_link.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {
@@ -20,6 +22,22 @@ process::ChildProcess startUp(const std::filesystem::path& file,
     return process::ChildProcess::start(metierCommand({"up", file.string(), "--free-ports",
                                                        "--endpoints", endpoints.string()}))
         .value();
+}
+
+/// One line for one line, without a process for each.
+nlohmann::json askControlPort(const std::string& address, const nlohmann::json& request) {
+    constexpr std::uint16_t kControlPort = 7400;
+    const auto deadline = inAMinute();
+    auto link = link::TcpLink::connect(address, kControlPort, deadline).value();
+    const auto line = request.dump() + "\n";
+    std::string answer;
+    const auto sent = link.send(std::as_bytes(std::span(line)), deadline);
+    while (sent && !answer.ends_with('\n')) {
+        std::array<char, 4096> buffer{};
+        const auto count = link.receive(std::as_writable_bytes(std::span(buffer)), deadline);
+        answer.append(buffer.data(), count.value());
+    }
+    return nlohmann::json::parse(answer);
 }
 
 }  // namespace
@@ -41,20 +59,19 @@ RunningCell::RunningCell(const std::filesystem::path& file)
     }
 }
 
-void RunningCell::inject(const std::string& controller, const std::string& fault,
-                         const std::string& value) const {
-    std::vector<std::string> command{"virtual", "inject", virtualAddress(controller), fault};
-    if (!value.empty()) {
-        command.push_back(value);
+UtcTime RunningCell::inject(const std::string& controller, const std::string& fault,
+                            const std::string& value) const {
+    const auto now = std::chrono::system_clock::now();
+    const auto answer =
+        askControlPort(virtualAddress(controller), {{"inject", fault}, {"value", value}});
+    if (answer.contains("error")) {
+        throw std::runtime_error(answer.at("error").get<std::string>());
     }
-    const auto injected = runMetier(command);
-    if (injected.status != 0) {
-        throw std::runtime_error(injected.output);
-    }
+    return now;
 }
 
-std::string RunningCell::state(const std::string& controller) const {
-    return runMetier({"virtual", "state", virtualAddress(controller)}).output;
+nlohmann::json RunningCell::state(const std::string& controller) const {
+    return askControlPort(virtualAddress(controller), {{"state", true}});
 }
 
 std::vector<pid_t> RunningCell::childPids() const {

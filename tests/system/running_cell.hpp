@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "metier/base/clock.hpp"
 #include "metier/process/child_process.hpp"
 
 namespace metier::system_tests {
@@ -27,11 +29,12 @@ public:
     std::size_t size() const { return urls_.size() + virtual_addresses_.size(); }
     process::ChildProcess& process() { return process_; }
 
-    /// `metier virtual inject`. Throws if it is refused.
-    void inject(const std::string& controller, const std::string& fault,
-                const std::string& value = "") const;
-    /// What `metier virtual state` prints.
-    std::string state(const std::string& controller) const;
+    /// Does as `metier virtual inject`. Throws if it is refused.
+    /// \return a time shortly before
+    UtcTime inject(const std::string& controller, const std::string& fault,
+                   const std::string& value = "") const;
+    /// What `metier virtual state` shows.
+    nlohmann::json state(const std::string& controller) const;
 
     /// Handles of the processes, readable once they have ended; the caller closes them.
     std::vector<pollfd> children() const;

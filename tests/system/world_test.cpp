@@ -15,11 +15,6 @@ using skill::Frame;
 using skill::Value;
 using ::testing::HasSubstr;
 
-std::filesystem::path deviceCell(const std::string& name) {
-    return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "devices" /
-           (name + ".toml");
-}
-
 /// A move by some metres along the axes of the base.
 skill::ValueMap by(double x, double y, double z) {
     return {{"TargetPosition", Frame{x, y, z, 0, 0, 0}}, {"Relative", 1}};
@@ -27,9 +22,7 @@ skill::ValueMap by(double x, double y, double z) {
 
 class CellWithAWorld : public ::testing::Test {
 protected:
-    nlohmann::json cube() const {
-        return nlohmann::json::parse(cell_.state("world")).at("parts").at("cube");
-    }
+    nlohmann::json cube() const { return cell_.state("world").at("parts").at("cube"); }
     double height() const { return cube().at("pose").at(2).get<double>(); }
     opcua::Answer<skill::ValueMap> grasp() {
         return openSkill(*gripper_, "GraspGripperSkill").run({{"Force", 40.0}}, inAMinute());
