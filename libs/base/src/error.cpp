@@ -28,6 +28,8 @@ std::string_view toString(Errc code) noexcept {
             return "timeout";
         case Errc::connection_lost:
             return "connection_lost";
+        case Errc::execution_lost:
+            return "execution_lost";
         case Errc::device_fault:
             return "device_fault";
         case Errc::limit_violated:

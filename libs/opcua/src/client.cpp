@@ -14,19 +14,29 @@ namespace metier::opcua {
 namespace {
 
 constexpr std::chrono::seconds kLongestCallback{5};
+// The client's thread ends a call at its deadline, and knows whether it was sent.
+constexpr std::chrono::milliseconds kLongestTurn{100};
 const NodeId kNamespaceArray{0, 2255U};
 
 tl::unexpected<Failure> timedOut(Deadline deadline) {
     auto failure = failed(status::kBadTimeout, "the call");
-    failure.value().message += fmt::format(", no answer within {} ms", deadline.allowed.count());
+    failure.value().message += fmt::format(
+        ", no answer within {} ms; unknown whether it was "
+        "carried out",
+        deadline.allowed.count());
+    failure.value().delivery = Failure::Delivery::unknown;
     return failure;
+}
+
+tl::unexpected<Failure> waitInCallback() {
+    return failed(status::kBadInvalidState, "a call that waits, from a callback of its client");
 }
 
 /// Waits for what `start` begins: it gets a Done<T> and says whether the request was taken.
 template <typename T, typename Start>
 Answer<T> waitFor(const ClientCore& core, Deadline deadline, const Start& start) {
     if (core.onOwnThread()) {
-        return failed(status::kBadInvalidState, "a call that waits, from a callback of its client");
+        return waitInCallback();
     }
     // Shared with the request, which may outlive this wait.
     auto outcome = std::make_shared<std::promise<Answer<T>>>();
@@ -36,7 +46,7 @@ Answer<T> waitFor(const ClientCore& core, Deadline deadline, const Start& start)
     if (!started) {
         return tl::unexpected(started.error());
     }
-    if (answer.wait_until(deadline.at) != std::future_status::ready) {
+    if (answer.wait_until(deadline.at + kLongestTurn) != std::future_status::ready) {
         return timedOut(deadline);
     }
     return answer.get();
@@ -50,6 +60,20 @@ Answer<> asAnswer(const Answer<std::vector<StatusCode>>& written, const NodeId& 
                                     : Answer<>();
 }
 
+Answer<> checkReconnect(const ReconnectOptions& options) {
+    if (options.shortest_pause <= std::chrono::milliseconds::zero() ||
+        options.longest_pause < options.shortest_pause) {
+        return failed(status::kBadInvalidArgument,
+                      fmt::format("pauses of {} ms to {} ms between attempts to reconnect",
+                                  options.shortest_pause.count(), options.longest_pause.count()));
+    }
+    if (!(options.jitter >= 0.0 && options.jitter <= 1.0)) {
+        return failed(status::kBadInvalidArgument,
+                      fmt::format("a jitter of {}, must be 0 to 1", options.jitter));
+    }
+    return {};
+}
+
 Answer<> checkOptions(const std::string& url, const ClientOptions& options) {
     const auto shortest = std::min({options.connect_timeout, options.session_timeout,
                                     options.call_timeout, options.publishing_interval});
@@ -60,7 +84,7 @@ Answer<> checkOptions(const std::string& url, const ClientOptions& options) {
     if (!url.starts_with("opc.tcp://")) {
         return failed(status::kBadInvalidArgument, fmt::format("no opc.tcp:// URL: {}", url));
     }
-    return {};
+    return options.reconnect ? checkReconnect(*options.reconnect) : Answer<>();
 }
 
 }  // namespace
@@ -92,6 +116,35 @@ Answer<> Client::close() {
 
 Client::State Client::state() const noexcept {
     return core_->state();
+}
+
+std::optional<Failure> Client::whyLost() const {
+    return core_->whyLost();
+}
+
+std::uint64_t Client::boot() const noexcept {
+    return core_->boot();
+}
+
+Answer<> Client::awaitConnected(SteadyTime deadline) {
+    if (core_->onOwnThread()) {
+        return waitInCallback();
+    }
+    const bool changed = core_->awaitChange(deadline);
+    if (state() == State::connected) {
+        return {};
+    }
+    auto why = failed(changed ? status::kBadConnectionClosed : status::kBadTimeout,
+                      "waiting for the connection");
+    why.value().delivery = Failure::Delivery::not_sent;
+    if (const auto cause = whyLost()) {
+        why.value().message += "; lost: " + cause->message;
+    }
+    return why;
+}
+
+void Client::onConnectionChange(std::function<void(const ConnectionChange&)> callback) {
+    core_->onConnectionChange(std::move(callback));
 }
 
 void Client::onConnectionLost(std::function<void(const Failure&)> callback) {

@@ -22,7 +22,7 @@ void ClientCalls::drop(Call& call) {
 
 void ClientCalls::refuse(Call& call, StatusCode status) {
     if (call.finish) {
-        end(call, status, nullptr);
+        end(call, {status, nullptr, false});
     }
     calls_.erase(call.self);
 }
@@ -33,20 +33,20 @@ void ClientCalls::onResponse(UA_Client* /*client*/, void* call, UA_UInt32 /*requ
     auto& calls = *answered.calls;
     if (answered.finish) {
         const auto* header = static_cast<UA_ResponseHeader*>(response);  // every response's first
-        calls.end(answered, StatusCode(header->serviceResult), response);
+        end(answered, {StatusCode(header->serviceResult), response});
     }
     calls.calls_.erase(answered.self);
 }
 
 void ClientCalls::expire(SteadyTime now) {
     while (!due_.empty() && due_.begin()->first <= now) {
-        end(*due_.begin()->second, status::kBadTimeout, nullptr);
+        end(*due_.begin()->second, {status::kBadTimeout});
     }
 }
 
 void ClientCalls::failAll(StatusCode status) {
     while (!due_.empty()) {
-        end(*due_.begin()->second, status, nullptr);
+        end(*due_.begin()->second, {status});
     }
 }
 
@@ -54,13 +54,13 @@ std::optional<SteadyTime> ClientCalls::nextDeadline() const {
     return due_.empty() ? std::nullopt : std::optional(due_.begin()->first);
 }
 
-void ClientCalls::end(Call& call, StatusCode status, void* response) {
-    due_.erase(call.due);
+void ClientCalls::end(Call& call, const Ending& ending) {
+    call.calls->due_.erase(call.due);
     const auto finish = std::exchange(call.finish, nullptr);
     try {
-        finish(status, response);
+        finish(ending);
     } catch (const std::exception&) {  // memory ran out over the response
-        finish(status::kBadOutOfMemory, nullptr);
+        finish({status::kBadOutOfMemory});
     }
 }
 

@@ -32,8 +32,14 @@ struct Deadline {
 /// Threading: the client's thread.
 class ClientCalls {
 public:
-    /// Hears the service result, and the response unless the result is Bad; called once.
-    using Finish = std::function<void(StatusCode, void* response)>;
+    /// How a call ended.
+    struct Ending {
+        StatusCode status;         ///< the service result, or why there is none
+        void* response = nullptr;  ///< none: no answer came
+        bool sent = true;          ///< false: the request never left
+    };
+    /// Hears how the call ended; called once.
+    using Finish = std::function<void(const Ending&)>;
     struct Call {
         ClientCalls* calls = nullptr;
         Finish finish;  // empty: ended
@@ -62,7 +68,7 @@ public:
     std::size_t size() const noexcept { return calls_.size(); }
 
 private:
-    void end(Call& call, StatusCode status, void* response);
+    static void end(Call& call, const Ending& ending);
 
     std::list<Call> calls_;
     std::multimap<SteadyTime, Call*> due_;  // of those not ended

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kNoSecurity = "http://opcfoundation.org/UA/SecurityPolicy#None";
 constexpr int kChecksPerSessionTimeout = 3;
+constexpr std::chrono::milliseconds kLongestSilence{2'000};
 
 void setUser(const UserName& user, UA_ClientConfig& config) {
     auto* token = UA_UserNameIdentityToken_new();
@@ -29,7 +30,8 @@ void setUser(const UserName& user, UA_ClientConfig& config) {
 void setTimes(const ClientOptions& options, UA_ClientConfig& config) {
     const auto check = options.session_timeout / kChecksPerSessionTimeout;
     config.requestedSessionTimeout = static_cast<UA_UInt32>(options.session_timeout.count());
-    config.connectivityCheckInterval = static_cast<UA_UInt32>(check.count());
+    config.connectivityCheckInterval =
+        static_cast<UA_UInt32>(std::min(check, kLongestSilence).count());
     config.timeout = static_cast<UA_UInt32>(std::min(options.connect_timeout, check).count());
 }
 

@@ -23,11 +23,26 @@ ClientCore& coreOf(UA_Client* client) {
 }
 
 /// What the stack reports when a connection breaks differs by the moment; all mean the same.
-Failure lostFailure(std::string_view doing, StatusCode status) {
+Failure lostFailure(std::string_view doing, StatusCode status,
+                    Failure::Delivery delivery = Failure::Delivery::not_sent) {
     return {{Errc::connection_lost,
              fmt::format("{}: the connection is lost ({})", doing, status.name())},
             status,
-            {}};
+            {},
+            delivery};
+}
+
+/// Whether the server said so; if not, nobody knows what it did.
+bool isAnswer(const ClientCalls::Ending& ending) {
+    return ending.response != nullptr && errcFrom(ending.status) != Errc::connection_lost;
+}
+
+Failure::Delivery deliveryOf(const ClientCalls::Ending& ending) {
+    using Delivery = Failure::Delivery;
+    if (!ending.sent) {
+        return Delivery::not_sent;
+    }
+    return isAnswer(ending) ? Delivery::answered : Delivery::unknown;
 }
 
 EventLoopOptions loopOptions(const ClientOptions& options, const UA_Logger* logger) {
@@ -43,7 +58,11 @@ ClientCore::ClientCore(ClientOptions options, ClientPurpose purpose)
     : options_(std::move(options)),
       purpose_(purpose),
       loop_(loopOptions(options_, complaints_.logger())),
-      subscriptions_(*this) {}
+      subscriptions_(*this) {
+    if (options_.reconnect && purpose_ == ClientPurpose::session) {
+        schedule_.emplace(*options_.reconnect);
+    }
+}
 
 ClientCore::~ClientCore() {
     close();
@@ -68,7 +87,7 @@ void ClientCore::close() {
         const std::lock_guard lock(gate_);
         if (!closed_) {
             closed_ = true;
-            state_ = Client::State::closed;
+            setState(Client::State::closed);
             loop_.post([this] { ending_ = true; });
         }
     }
@@ -92,16 +111,45 @@ Answer<> ClientCore::post(std::function<void()> work) {
 }
 
 Answer<> ClientCore::request(std::function<void()> work) {
-    if (state_ == Client::State::lost) {
+    const auto connection = connection_.load();  // before the state, which is older then
+    const auto state = state_.load();
+    if (state == Client::State::lost || state == Client::State::reconnecting) {
         return tl::unexpected(lostFailure("nothing was sent", status::kBadNotConnected));
     }
-    return post(std::move(work));
+    return post([this, connection, work = std::move(work)] { runRequest(connection, work); });
+}
+
+void ClientCore::runRequest(std::uint64_t connection, const std::function<void()>& work) {
+    request_of_ = connection;
+    work();
+    request_of_.reset();
+}
+
+std::optional<Failure> ClientCore::whyLost() const {
+    const std::lock_guard lock(state_mutex_);
+    return why_lost_;
+}
+
+bool ClientCore::awaitChange(SteadyTime deadline) const {
+    std::unique_lock lock(state_mutex_);
+    return state_changed_.wait_until(lock, deadline,
+                                     [this] { return state_ != Client::State::reconnecting; });
+}
+
+void ClientCore::setState(Client::State state) {
+    {
+        const std::lock_guard lock(state_mutex_);
+        if (state_ != Client::State::closed) {  // which stays
+            state_ = state;
+        }
+    }
+    state_changed_.notify_all();
 }
 
 void ClientCore::onConnectionLost(std::function<void(const Failure&)> callback) {
     const auto posted = post([this, callback = std::move(callback)]() mutable {
-        if (lost_) {
-            later([this, callback = std::move(callback)] { callback(*lost_); });
+        if (phase_ == Phase::over) {
+            later([callback = std::move(callback), why = *outage_] { callback(why); });
         } else {
             on_lost_ = std::move(callback);
         }
@@ -109,9 +157,24 @@ void ClientCore::onConnectionLost(std::function<void(const Failure&)> callback) 
     static_cast<void>(posted);  // closed: nobody is to be told any more
 }
 
+void ClientCore::onConnectionChange(std::function<void(const ConnectionChange&)> callback) {
+    const auto posted = post(
+        [this, callback = std::move(callback)]() mutable { on_change_ = std::move(callback); });
+    static_cast<void>(posted);  // closed: nobody is to be told any more
+}
+
+void ClientCore::tell(ConnectionChange change) {
+    change.time = std::chrono::time_point_cast<UtcTime::duration>(std::chrono::system_clock::now());
+    later([this, change = std::move(change)] {
+        if (on_change_ && !ending_) {
+            on_change_(change);
+        }
+    });
+}
+
 void ClientCore::run() {
     own_thread_ = std::this_thread::get_id();
-    begin();
+    connectNow();
     while (!ending_) {
         iterate(kLongestIdle);
     }
@@ -119,16 +182,23 @@ void ClientCore::run() {
     own_thread_ = std::thread::id();  // another thread may get this one's
 }
 
-void ClientCore::begin() {
-    auto* loop = loop_.handle();
-    loop->start(loop);
-    auto config = makeClientConfig(options_, purpose_, {loop, complaints_.logger()});
-    config.clientContext = this;
-    config.stateCallback = &onState;
-    config.inactivityCallback = &onInactivity;
-    client_.reset(UA_Client_newWithConfig(&config));
+/// Lets the stack connect, with the client that it has or a new one.
+void ClientCore::connectNow() {
+    if (!client_) {
+        auto* loop = loop_.handle();
+        loop->start(loop);  // a client of the stack stops it when it ends
+        auto config = makeClientConfig(options_, purpose_, {loop, complaints_.logger()});
+        config.clientContext = this;
+        config.stateCallback = &onState;
+        config.inactivityCallback = &onInactivity;
+        client_.reset(UA_Client_newWithConfig(&config));
+    }
+    UA_Client_getConfig(client_.get())->noReconnect = false;
+    channel_ = UA_SECURECHANNELSTATE_CLOSED;
+    attempts_ = 0;
+    identifying_ = false;
     connecting_ = &calls_.add(steady_clock::now() + options_.connect_timeout,
-                              [this](StatusCode status, void*) { refuse(status); });
+                              [this](const ClientCalls::Ending& ending) { refuse(ending.status); });
     const StatusCode status(purpose_ == ClientPurpose::session
                                 ? UA_Client_connectAsync(client_.get(), url_.c_str())
                                 : UA_Client_connectSecureChannelAsync(client_.get(), url_.c_str()));
@@ -139,13 +209,19 @@ void ClientCore::begin() {
 
 void ClientCore::iterate(milliseconds longest) {
     const auto now = steady_clock::now();
-    const auto next = calls_.nextDeadline().value_or(SteadyTime::max());
+    const auto next = nextDue();
     const auto wait = next < now + longest ? std::chrono::ceil<milliseconds>(next - now) : longest;
     if (!loop_.runOnce(std::max(wait, milliseconds::zero()))) {
         lose(status::kBadInternalError);
     }
     calls_.expire(steady_clock::now());
+    attemptIfDue();
     sayEverything();
+}
+
+SteadyTime ClientCore::nextDue() const {
+    const auto call = calls_.nextDeadline().value_or(SteadyTime::max());
+    return phase_ == Phase::waiting && !ending_ ? std::min(call, schedule_->next()) : call;
 }
 
 void ClientCore::sayEverything() {
@@ -159,6 +235,8 @@ void ClientCore::sayEverything() {
 
 void ClientCore::end() {
     connecting_ = nullptr;
+    phase_ = Phase::over;
+    outage_ = lostFailure("the client is closed", status::kBadConnectionClosed);
     calls_.failAll(status::kBadConnectionClosed);
     subscriptions_.end(status::kBadConnectionClosed);
     sayEverything();
@@ -181,14 +259,17 @@ void ClientCore::sendMessage(const Message& message, SteadyTime deadline,
                              ClientCalls::Finish finish) {
     const auto now = steady_clock::now();
     if (ending_) {
-        return finish(status::kBadConnectionClosed, nullptr);
+        return finish({status::kBadConnectionClosed, nullptr, false});
+    }
+    if (request_of_ && (*request_of_ != connection_ || phase_ != Phase::open)) {
+        return finish({status::kBadNotConnected, nullptr, false});
     }
     if (deadline <= now) {
-        return finish(status::kBadTimeout, nullptr);
+        return finish({status::kBadTimeout, nullptr, false});
     }
     const bool publish = deadline == SteadyTime::max();
     if (!publish && calls_.size() >= kMostUnanswered) {
-        return finish(status::kBadResourceUnavailable, nullptr);
+        return finish({status::kBadResourceUnavailable, nullptr, false});
     }
     auto& header = *static_cast<UA_RequestHeader*>(message.request);
     const auto kept = publish ? 10 * kLateAnswers
@@ -203,31 +284,42 @@ void ClientCore::sendMessage(const Message& message, SteadyTime deadline,
     }
 }
 
-Failure ClientCore::failure(const Task& task, StatusCode status) const {
-    if (lost_) {
-        return lostFailure(task.doing, lost_->status);
-    }
-    Failure failure{errorFrom(status, task.doing), status, {}};
-    if (failure.code == Errc::connection_lost) {
-        return lostFailure(task.doing, status);
-    }
+Failure ClientCore::failure(const Task& task, const ClientCalls::Ending& ending) const {
+    const auto status = ending.status;
+    const bool lost = !isAnswer(ending) && (outage_ || errcFrom(status) == Errc::connection_lost);
+    auto failure = lost ? lostFailure(task.doing, outage_ ? outage_->status : status)
+                        : Failure{errorFrom(status, task.doing), status, {}};
+    failure.delivery = deliveryOf(ending);
     if (failure.code == Errc::timeout) {
         failure.message += fmt::format(", no answer within {} ms", task.deadline.allowed.count());
     } else if (status == status::kBadResourceUnavailable && calls_.size() >= kMostUnanswered) {
         failure.message += fmt::format(", {} requests are unanswered", calls_.size());
     }
+    if (task.effect == Effect::commands && failure.delivery == Failure::Delivery::unknown) {
+        failure.message += "; unknown whether it was carried out";
+    }
     return failure;
 }
 
 void ClientCore::settle(Answer<> outcome) {
-    if (connecting_ != nullptr) {
-        calls_.drop(*std::exchange(connecting_, nullptr));
+    if (connecting_ == nullptr) {
+        return;
+    }
+    calls_.drop(*std::exchange(connecting_, nullptr));
+    if (phase_ == Phase::connecting) {
+        phase_ = outcome ? Phase::open : Phase::over;
+        if (!outcome) {
+            outage_ = outcome.error();
+        }
         connected_.set_value(std::move(outcome));
+    } else {
+        attempted(outcome);
     }
 }
 
 void ClientCore::refuse(StatusCode status) {
-    Failure failure{errorFrom(status, "connecting to " + url_), status, {}};
+    Failure failure{
+        errorFrom(status, "connecting to " + url_), status, {}, Failure::Delivery::not_sent};
     if (!complaints_.last().empty()) {
         failure.message += fmt::format(" ({})", complaints_.last());
     }
@@ -235,17 +327,33 @@ void ClientCore::refuse(StatusCode status) {
 }
 
 void ClientCore::lose(StatusCode status) {
-    if (lost_ || connecting_ != nullptr || ending_) {
+    if (ending_ || (phase_ != Phase::open && phase_ != Phase::restoring)) {
         return;
     }
-    lost_ = lostFailure(url_, status);
-    auto connected = Client::State::connected;
-    state_.compare_exchange_strong(connected, Client::State::lost);  // closed stays closed
-    calls_.failAll(status);
-    subscriptions_.end(status);
-    if (on_lost_) {
-        later([this, callback = std::exchange(on_lost_, nullptr)] { callback(*lost_); });
+    if (reconnects()) {
+        interrupt(status);
+    } else {
+        phase_ = Phase::over;
+        outage_ = lostFailure(url_, status);
+        calls_.failAll(status);
+        loseForGood(*outage_);
     }
+    loop_.post([this] { loop_.dropOpened(); });
+}
+
+void ClientCore::loseForGood(const Failure& why) {
+    phase_ = Phase::over;
+    outage_ = why;
+    {
+        const std::lock_guard lock(state_mutex_);
+        why_lost_ = why;
+    }
+    setState(Client::State::lost);
+    subscriptions_.end(why.status);
+    if (on_lost_) {
+        later([callback = std::exchange(on_lost_, nullptr), why] { callback(why); });
+    }
+    tell({.kind = ConnectionChange::Kind::given_up, .why = why});
 }
 
 void ClientCore::stateChanged(UA_SecureChannelState channel, UA_SessionState session,
@@ -271,7 +379,7 @@ void ClientCore::connectingChanged(UA_SecureChannelState channel, UA_SessionStat
         refuse(status::kBadConnectionClosed);
     } else if (session == UA_SESSIONSTATE_ACTIVATED) {
         UA_Client_getConfig(client_.get())->noReconnect = true;
-        settle({});
+        identify();
     } else if (changed && channel == UA_SECURECHANNELSTATE_OPEN && when_open_) {
         later(when_open_);
     }
@@ -285,7 +393,6 @@ void ClientCore::onState(UA_Client* client, UA_SecureChannelState channel, UA_Se
 void ClientCore::onInactivity(UA_Client* client) {
     auto& core = coreOf(client);
     core.lose(status::kBadTimeout);
-    static_cast<void>(core.post([client] { UA_Client_disconnectSecureChannelAsync(client); }));
 }
 
 }  // namespace metier::opcua

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
 #include <future>
 #include <memory>
@@ -12,6 +13,7 @@
 
 #include "client_calls.hpp"
 #include "client_config.hpp"
+#include "client_reconnection.hpp"
 #include "client_services.hpp"
 #include "client_subscriptions.hpp"
 #include "event_loop.hpp"
@@ -19,10 +21,14 @@
 
 namespace metier::opcua {
 
+/// What a request does to the server.
+enum class Effect { asks, commands };
+
 /// What is being done, for messages, and until when.
 struct Task {
     std::string doing;
     Deadline deadline;
+    Effect effect = Effect::asks;
 };
 
 /// Frees a client of the stack; runs its event loop, so never in one of its callbacks.
@@ -34,6 +40,10 @@ struct DeleteClient {
 ///
 /// The stack's callbacks never call out: what users are told is queued with later() and said
 /// between two iterations of the loop, when the stack is not at work and none of its locks is held.
+///
+/// With a connection it is `open`. Without one it is `waiting` for the next attempt, then
+/// `attempting` until the session is there and the server known, then `restoring` what was
+/// subscribed; any failure leads back to `waiting`, and `over` is the end.
 class ClientCore {
 public:
     ClientCore(ClientOptions options, ClientPurpose purpose);
@@ -53,14 +63,20 @@ public:
     /// Ends connection and thread, and waits for that. Not on the own thread.
     void close();
     Client::State state() const noexcept { return state_; }
+    std::uint64_t boot() const noexcept { return boot_; }
+    std::optional<Failure> whyLost() const;
+    /// Waits while it is reconnecting; false at the deadline.
+    bool awaitChange(SteadyTime deadline) const;
     bool onOwnThread() const noexcept { return own_thread_ == std::this_thread::get_id(); }
     const ClientOptions& options() const noexcept { return options_; }
     Deadline deadline(Timeout timeout) const;
     /// Runs work on the own thread, which it wakes. Errors: connection_lost (after close()).
     Answer<> post(std::function<void()> work);
-    /// As post(), also refused once the connection is lost.
+    /// As post(), for work that sends. Refused without a connection; what is posted to one
+    /// connection is not sent by the next.
     Answer<> request(std::function<void()> work);
     void onConnectionLost(std::function<void(const Failure&)> callback);
+    void onConnectionChange(std::function<void(const ConnectionChange&)> callback);
 
     // The own thread.
 
@@ -73,8 +89,10 @@ public:
     /// Ends connect(), unless it has ended.
     void settle(Answer<> outcome);
     ClientSubscriptions& subscriptions() noexcept { return subscriptions_; }
+    bool reconnects() const noexcept { return schedule_.has_value(); }
 
 private:
+    enum class Phase { connecting, open, waiting, attempting, restoring, over };
     struct Message {
         void* request;
         const UA_DataType* request_type;
@@ -82,15 +100,32 @@ private:
     };
 
     void run();
-    void begin();
+    void connectNow();
     void iterate(std::chrono::milliseconds longest);
+    SteadyTime nextDue() const;
+    void runRequest(std::uint64_t connection, const std::function<void()>& work);
     void sayEverything();
     void end();
     UA_SecureChannelState channelState() const;
     void sendMessage(const Message& message, SteadyTime deadline, ClientCalls::Finish finish);
-    Failure failure(const Task& task, StatusCode status) const;
+    Failure failure(const Task& task, const ClientCalls::Ending& ending) const;
     void refuse(StatusCode status);
     void lose(StatusCode status);
+    void loseForGood(const Failure& why);
+    void setState(Client::State state);
+    void tell(ConnectionChange change);
+
+    // client_core_reconnect.cpp
+    void interrupt(StatusCode status);
+    void attemptIfDue();
+    bool hasSession() const;
+    void attempted(const Answer<>& outcome);
+    void identify();
+    void identified(const Answer<UA_ReadResponse*>& answer);
+    void restore();
+    void restored();
+    void waitAgain(const Failure& why);
+
     void stateChanged(UA_SecureChannelState channel, UA_SessionState session, StatusCode status);
     void connectingChanged(UA_SecureChannelState channel, UA_SessionState session,
                            StatusCode status);
@@ -101,6 +136,11 @@ private:
     const ClientOptions options_;
     const ClientPurpose purpose_;
     std::atomic<Client::State> state_ = Client::State::connected;
+    std::atomic<std::uint64_t> boot_ = 1;
+    std::atomic<std::uint64_t> connection_ = 1;  // of requests; one more with each connection
+    mutable std::mutex state_mutex_;
+    mutable std::condition_variable state_changed_;
+    std::optional<Failure> why_lost_;  // under state_mutex_
     std::atomic<std::thread::id> own_thread_;
     std::promise<Answer<>> connected_;
     std::mutex gate_;  // orders post() and close()
@@ -120,8 +160,16 @@ private:
     std::string url_;
     std::function<void()> when_open_;
     bool ending_ = false;
-    std::optional<Failure> lost_;
+    Phase phase_ = Phase::connecting;
+    std::optional<ReconnectSchedule> schedule_;
+    ServerIdentity server_;
+    ServerIdentity found_;                     // by the attempt under way
+    bool identifying_ = false;                 // what it finds
+    bool session_kept_ = false;                // by the attempt under way
+    std::optional<Failure> outage_;            // while there is no connection
+    std::optional<std::uint64_t> request_of_;  // connection of the request that is being sent
     std::function<void(const Failure&)> on_lost_;
+    std::function<void(const ConnectionChange&)> on_change_;
 
     std::jthread thread_;
 };
@@ -133,11 +181,11 @@ void ClientCore::send(Request& request, Task task, OnResponse<Request> done) {
     const auto deadline = task.deadline.at;
     sendMessage(
         message, deadline,
-        [this, task = std::move(task), done = std::move(done)](StatusCode result, void* response) {
-            if (result.isBad()) {
-                done(tl::unexpected(failure(task, result)));
+        [this, task = std::move(task), done = std::move(done)](const ClientCalls::Ending& ending) {
+            if (ending.status.isBad()) {
+                done(tl::unexpected(failure(task, ending)));
             } else {
-                done(static_cast<typename Types::Response*>(response));
+                done(static_cast<typename Types::Response*>(ending.response));
             }
         });
 }

@@ -71,6 +71,24 @@ std::vector<UA_RelativePathElement> elementsOf(const RelativePath& path) {
     return elements;
 }
 
+/// NodeIds of another run of the server may name something else by now.
+Answer<> checkBoot(const ClientCore& core, std::uint64_t boot, const std::string& doing) {
+    if (boot == 0 || boot == core.boot()) {
+        return {};
+    }
+    return tl::unexpected(
+        Failure{{Errc::invalid_state,
+                 doing + ": not sent, the server was started again since its node was looked up"},
+                status::kBadInvalidState,
+                {},
+                Failure::Delivery::not_sent});
+}
+
+template <typename T>
+void refuse(ClientCore& core, const Done<T>& done, const Failure& failure) {
+    core.later([done, failure] { done(tl::unexpected(failure)); });
+}
+
 template <typename Native, typename Items>
 std::vector<Native> nativesOf(const Items& items) {
     std::vector<Native> natives;
@@ -113,6 +131,11 @@ void sendRead(ClientCore& core, const std::vector<ReadItem>& items, Task task,
 
 void sendWrite(ClientCore& core, const std::vector<WriteItem>& items, Task task,
                Done<std::vector<StatusCode>> done) {
+    for (const auto& item : items) {
+        if (const auto current = checkBoot(core, item.boot, task.doing); !current) {
+            return refuse(core, done, current.error());
+        }
+    }
     auto natives = nativesOf<UA_WriteValue>(items);
     UA_WriteRequest request{};
     request.nodesToWriteSize = natives.size();
@@ -159,6 +182,9 @@ Answer<CallResult> callResultFrom(const std::string& doing, UA_CallResponse& res
 }
 
 void sendCall(ClientCore& core, const MethodCall& call, Task task, Done<CallResult> done) {
+    if (const auto current = checkBoot(core, call.boot, task.doing); !current) {
+        return refuse(core, done, current.error());
+    }
     std::vector<UA_Variant> inputs;
     inputs.reserve(call.inputs.size());
     for (const auto& input : call.inputs) {
@@ -241,13 +267,15 @@ Answer<> startWrite(ClientCore& core, std::vector<WriteItem> items, Deadline dea
                     Done<std::vector<StatusCode>> done) {
     return core.request([&core, items = std::move(items), deadline, done = std::move(done)] {
         const auto first = items.empty() ? NodeId() : items.front().node;
-        sendWrite(core, items, {doingToAll("writing", items.size(), first), deadline}, done);
+        sendWrite(core, items,
+                  {doingToAll("writing", items.size(), first), deadline, Effect::commands}, done);
     });
 }
 
 Answer<> startCall(ClientCore& core, MethodCall call, Deadline deadline, Done<CallResult> done) {
     return core.request([&core, call = std::move(call), deadline, done = std::move(done)] {
-        sendCall(core, call, {"calling " + call.method.toString(), deadline}, done);
+        sendCall(core, call, {"calling " + call.method.toString(), deadline, Effect::commands},
+                 done);
     });
 }
 

@@ -144,16 +144,24 @@ void ClientSubscriptions::remove(std::uint32_t handle) {
     if (item->server_id != 0) {
         deleteItem(item->server_id);
     }
+    if (item->renewing) {
+        oneRenewed();
+    }
 }
 
 void ClientSubscriptions::end(StatusCode status) {
     subscription_id_ = 0;
     unacknowledged_.clear();
     for (const auto& [handle, item] : items_) {
-        item->server_id = 0;
-        if (item->added || std::exchange(item->ended, true)) {
-            continue;
+        if (!item->added) {
+            endItem(handle, *item, status);
         }
+    }
+}
+
+void ClientSubscriptions::endItem(std::uint32_t handle, Item& item, StatusCode status) {
+    item.server_id = 0;
+    if (!std::exchange(item.ended, true)) {
         tell(handle, EventNotice{EventNotice::Kind::ended, {}, status});
         tell(handle, DataValue{{}, status, {}, {}});
     }
@@ -182,11 +190,13 @@ void ClientSubscriptions::subscriptionCreated(
         refill();
     }
     for (const auto& [handle, item] : items_) {
-        if (!item->added) {
+        if (!item->added && !item->renewing) {
             continue;
         }
         if (answer) {
             createItem(handle, *item);
+        } else if (item->renewing) {
+            renewed(handle, *item, tl::unexpected(answer.error()));
         } else {
             settle(*item, tl::unexpected(answer.error()));
         }
@@ -208,28 +218,31 @@ void ClientSubscriptions::itemCreated(std::uint32_t handle,
                                       const Answer<UA_CreateMonitoredItemsResponse*>& answer) {
     const auto found = items_.find(handle);
     const auto item = found == items_.end() ? nullptr : found->second;
-    if (!answer) {
-        if (item) {
-            settle(*item, tl::unexpected(answer.error()));
+    const auto* result = answer && (*answer)->resultsSize == 1 ? &(*answer)->results[0] : nullptr;
+    if (!item) {  // nobody wants it any more
+        if (result != nullptr && !StatusCode(result->statusCode).isBad()) {
+            deleteItem(result->monitoredItemId);
         }
         return;
     }
-    if ((*answer)->resultsSize != 1) {
-        if (item) {
-            settle(*item, failed(status::kBadUnexpectedError, doingTo(item->request)));
-        }
-        return;
+    Answer<> outcome = answer ? failed(status::kBadUnexpectedError, doingTo(item->request))
+                              : Answer<>(tl::unexpected(answer.error()));
+    if (result != nullptr) {
+        item->server_id = result->monitoredItemId;  // 0 if it was refused
+        outcome = createdAs(item->request, *result);
     }
-    const auto& result = (*answer)->results[0];
-    if (item) {
-        item->server_id = result.monitoredItemId;  // 0 if it was refused
-        settle(*item, createdAs(item->request, result));
-    } else if (!StatusCode(result.statusCode).isBad()) {
-        deleteItem(result.monitoredItemId);  // nobody wants it any more
+    if (item->renewing) {
+        renewed(handle, *item, outcome);
+    } else {
+        settle(*item, std::move(outcome));
     }
 }
 
 void ClientSubscriptions::deleteItem(std::uint32_t server_id) {
+    if (resting_) {
+        unwanted_.push_back(server_id);
+        return;
+    }
     UA_DeleteMonitoredItemsRequest request{};
     request.subscriptionId = subscription_id_;
     request.monitoredItemIdsSize = 1;
@@ -244,7 +257,7 @@ void ClientSubscriptions::settle(Item& item, Answer<> outcome) {
 }
 
 void ClientSubscriptions::refill() {
-    while (subscription_id_ != 0 && outstanding_ < wanted_) {
+    while (!resting_ && subscription_id_ != 0 && outstanding_ < wanted_) {
         publish();
     }
 }
@@ -274,11 +287,14 @@ void ClientSubscriptions::published(const Answer<UA_PublishResponse*>& answer) {
 }
 
 void ClientSubscriptions::publishFailed(const Failure& failure) {
+    if (core_.reconnects() && (resting_ || failure.code == Errc::connection_lost)) {
+        return;  // the loss of the connection is told, or will be
+    }
     if (failure.status == status::kBadTimeout) {  // the server let it run out unused
         return refill();
     }
     if (outstanding_ == 0 || failure.status == kNoSubscription) {
-        return subscription_id_ == 0 ? void() : end(failure.status);
+        return subscription_id_ == 0 ? void() : lostByServer(failure.status);
     }
     wanted_ = outstanding_;  // the server takes no more of them
 }
@@ -318,7 +334,7 @@ void ClientSubscriptions::takeNotification(const UA_ExtensionObject& notificatio
     } else if (const auto* ended = decodedAs<UA_StatusChangeNotification>(
                    notification, UA_TYPES_STATUSCHANGENOTIFICATION)) {
         if (StatusCode(ended->status).isBad()) {
-            end(StatusCode(ended->status));
+            lostByServer(StatusCode(ended->status));
         }
     }
 }

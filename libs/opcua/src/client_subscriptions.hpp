@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client_calls.hpp"
+#include "client_reconnection.hpp"
 #include "client_services.hpp"
 #include "metier/opcua/client.hpp"
 
@@ -37,10 +38,18 @@ using ItemRequest = std::variant<EventItem, DataItem>;
 ///
 /// Several PublishRequests are kept with the server, so that it can publish at any time.
 ///
+/// While the connection is lost they rest: interrupt(), then resume(). A session that was kept has
+/// its Subscription still, with what was to be told meanwhile; for another, all is made anew.
+///
 /// Threading: the client's thread, but for newHandle().
 class ClientSubscriptions {
 public:
     using Added = std::function<void(Answer<>)>;
+    /// What the connection is like that came back.
+    struct Return {
+        bool session_kept = false;
+        NamespaceMove move{};
+    };
 
     explicit ClientSubscriptions(ClientCore& core) : core_(core) {}
 
@@ -52,6 +61,11 @@ public:
     void remove(std::uint32_t handle);
     /// Tells all items that nothing will come any more, each once.
     void end(StatusCode status);
+    /// The connection is lost; all items are told.
+    void interrupt(StatusCode status);
+    /// Goes on over a new connection. `resumed` runs once, when all items are told that they go on
+    /// or, each with its reason, that they have ended; not if it is interrupted before.
+    void resume(const Return& how, std::function<void()> resumed);
 
 private:
     struct Item {
@@ -60,6 +74,7 @@ private:
         Added added;                  // empty: was told
         std::uint32_t server_id = 0;  // 0: the server does not know it (any more)
         bool ended = false;
+        bool renewing = false;  // is being made again
     };
     // Shared by the map and a callback that runs, which may remove its own item.
     using SharedItem = std::shared_ptr<Item>;
@@ -70,6 +85,16 @@ private:
     void itemCreated(std::uint32_t handle, const Answer<UA_CreateMonitoredItemsResponse*>& answer);
     void deleteItem(std::uint32_t server_id);
     void settle(Item& item, Answer<> outcome);
+    void endItem(std::uint32_t handle, Item& item, StatusCode status);
+
+    // client_subscriptions_renewal.cpp
+    void goOn();
+    void renew(const NamespaceMove& move);
+    void renewed(std::uint32_t handle, Item& item, const Answer<>& outcome);
+    void oneRenewed();
+    void finishResuming();
+    void lostByServer(StatusCode status);
+    void tellInterrupted(StatusCode status);
 
     void refill();
     void publish();
@@ -91,6 +116,11 @@ private:
     std::uint32_t outstanding_ = 0;
     std::uint32_t wanted_ = 10;
     std::vector<std::uint32_t> unacknowledged_;
+    std::vector<std::uint32_t> unwanted_;  // items of the server's to be deleted after a resume()
+    bool resting_ = false;                 // nothing is sent
+    bool interrupted_ = false;             // as the items were told
+    std::size_t renewing_ = 0;             // items that are being made again
+    std::function<void()> resumed_;        // not empty: resume() is under way
 };
 
 }  // namespace metier::opcua

@@ -122,13 +122,13 @@ std::string urlOf(std::uint16_t port) {
     return "opc.tcp://127.0.0.1:" + std::to_string(port);
 }
 
-UA_Server* makeServer(AsioEventLoop& loop) {
+UA_Server* makeServer(AsioEventLoop& loop, const BareServerOptions& options) {
     UA_ServerConfig config{};
     config.logging = &silence();
     config.eventLoop = loop.handle();
-    check(UA_ServerConfig_setMinimal(&config, 0, nullptr));
+    check(UA_ServerConfig_setMinimal(&config, options.port, nullptr));
     UA_UsernamePasswordLogin login{viewOf(std::string_view("user1")),
-                                   viewOf(std::string_view("password"))};
+                                   viewOf(std::string_view(options.password))};
     check(UA_AccessControl_default(&config, true, nullptr, 1, &login));
     config.allowNonePolicyPassword = true;
     return UA_Server_newWithConfig(&config);
@@ -136,10 +136,11 @@ UA_Server* makeServer(AsioEventLoop& loop) {
 
 }  // namespace
 
-BareServer::BareServer() : server_(makeServer(loop_)) {
-    addNodes();
+BareServer::BareServer(const BareServerOptions& options) : server_(makeServer(loop_, options)) {
+    addNodes(options);
     check(UA_Server_run_startup(server_));
-    url_ = urlOf(loop_.listening().front().port);
+    port_ = loop_.listening().front().port;
+    url_ = urlOf(port_);
     thread_ = std::jthread([this](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
             UA_Server_run_iterate(server_, true);
@@ -190,7 +191,7 @@ void BareServer::limitQueues(std::uint32_t length) {
     });
 }
 
-void BareServer::addNodes() {
+void BareServer::addNodes(const BareServerOptions& options) {
     constexpr UA_Byte kRead = UA_ACCESSLEVELMASK_READ;
     constexpr UA_Byte kReadWrite = kRead | UA_ACCESSLEVELMASK_WRITE;
     const Place objects{ids::kObjectsFolder, ids::kOrganizes};
@@ -201,9 +202,14 @@ void BareServer::addNodes() {
     addMethod(server_, kRefuse, &refuse, {UA_TYPES[UA_TYPES_DOUBLE], 0, 0});
     addMethod(server_, kRaise, &raise, {UA_TYPES[UA_TYPES_UINT32], 1, 0});
     addObject(server_, kMany, 0);
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < options.many; ++i) {
         addVariable(server_, {kMany, ids::kHasComponent}, {1, std::to_string(i)}, kRead);
     }
+    for (int i = 0; i < options.namespaces_before; ++i) {
+        UA_Server_addNamespace(server_, ("urn:metier:test:" + std::to_string(i)).c_str());
+    }
+    addVariable(server_, objects, {UA_Server_addNamespace(server_, kMovingUri), kMoving},
+                kReadWrite);
 }
 
 MuteListener::MuteListener() : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {

@@ -15,19 +15,29 @@
 
 namespace metier::opcua::testing {
 
+struct BareServerOptions {
+    std::uint16_t port = 0;  ///< 0: a free one
+    std::string password = "password";
+    int many = 50;              ///< variables in `Many`
+    int namespaces_before = 0;  ///< namespaces of no use before that of `Moving`
+};
+
 /// A server of the stack alone, for tests of the client, with these nodes in namespace 1:
 /// `Number` (Double, 1.5), `ReadOnly` (Double), `Holder` (object, an event notifier) with the
 /// methods `Add` (Double, Double -> Double), `Refuse` (BadInvalidState), `Raise` (UInt32: that many
-/// events with the messages 1, 2, ...) and `Many` (folder of 50 variables `0`, `1`, ...).
+/// events with the messages 1, 2, ...) and `Many` (folder of variables `0`, `1`, ...); and
+/// `Moving` (Double, 1.5) in namespace kMovingUri. `user1` may log in with the password, and
+/// anybody.
 class BareServer {
 public:
-    BareServer();
+    explicit BareServer(const BareServerOptions& options = {});
     /// Stops it: all connections are closed.
     ~BareServer();
     BareServer(const BareServer&) = delete;
     BareServer& operator=(const BareServer&) = delete;
 
     std::string url() const { return url_; }
+    std::uint16_t port() const { return port_; }
     /// From here on it answers nothing and its connections stay open, until resume().
     void pause();
     void resume();
@@ -37,11 +47,12 @@ public:
     void limitQueues(std::uint32_t length);
 
 private:
-    void addNodes();
+    void addNodes(const BareServerOptions& options);
 
     AsioEventLoop loop_;
     UA_Server* server_;
     std::string url_;
+    std::uint16_t port_ = 0;
     std::mutex mutex_;
     std::condition_variable resumed_;
     bool paused_ = false;
@@ -68,6 +79,8 @@ inline const NodeId kAdd{1, "Add"};
 inline const NodeId kRefuse{1, "Refuse"};
 inline const NodeId kRaise{1, "Raise"};
 inline const NodeId kMany{1, "Many"};
+inline constexpr const char* kMovingUri = "urn:metier:test:moving";
+inline constexpr const char* kMoving = "Moving";
 
 /// A client connected to the server; fails the test if it cannot.
 std::unique_ptr<Client> connected(const std::string& url, ClientOptions options = {});

@@ -15,8 +15,9 @@ constexpr SteadyTime kStart{1h};
 class ClientCallsTest : public ::testing::Test {
 protected:
     ClientCalls::Call& addCall(SteadyTime deadline) {
-        return calls.add(deadline, [this](StatusCode status, void* /*response*/) {
-            outcomes.push_back(status);
+        return calls.add(deadline, [this](const ClientCalls::Ending& ending) {
+            outcomes.push_back(ending.status);
+            sent = ending.sent;
         });
     }
     void answer(ClientCalls::Call& call, UA_StatusCode result) {
@@ -27,6 +28,7 @@ protected:
 
     ClientCalls calls;
     std::vector<StatusCode> outcomes;
+    bool sent = true;  // of the last
 };
 
 TEST_F(ClientCallsTest, HandsTheServiceResultOverOnce) {
@@ -64,13 +66,14 @@ TEST_F(ClientCallsTest, EndsAllCallsWithOneStatus) {
 
 TEST_F(ClientCallsTest, ForgetsWhatTheStackDidNotTake) {
     calls.refuse(addCall(kStart + 1s), status::kBadNotConnected);
+    EXPECT_FALSE(sent);
     calls.drop(addCall(kStart + 1s));
     EXPECT_EQ(calls.size(), 0U);
     EXPECT_EQ(outcomes, std::vector{status::kBadNotConnected});
 }
 
 TEST_F(ClientCallsTest, MayBeAddedToWhileACallEnds) {
-    calls.add(kStart, [this](StatusCode /*status*/, void* /*response*/) { addCall(kStart + 1s); });
+    calls.add(kStart, [this](const ClientCalls::Ending& /*ending*/) { addCall(kStart + 1s); });
     calls.expire(kStart);
     EXPECT_EQ(calls.nextDeadline(), kStart + 1s);
 }

@@ -35,6 +35,11 @@ void AsioEventLoop::flushPublishing(std::span<const ConnectionId> connections) {
     loop_->flushPublishing(connections);
 }
 
+void AsioEventLoop::dropOpened() {
+    const auto held = loop_->lock();
+    loop_->tcp().dropOpened();
+}
+
 EventLoopStatistics AsioEventLoop::statistics() const {
     const auto held = loop_->lock();
     return loop_->statistics();

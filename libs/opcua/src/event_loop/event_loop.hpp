@@ -105,6 +105,10 @@ public:
     /// So add no repeated server callback inside a method or read callback.
     void flushPublishing(std::span<const ConnectionId> connections);
 
+    /// Closes the connections that were opened from here. What their peers have not taken yet is
+    /// dropped, also by the kernel: nothing of it arrives when a cut network comes back.
+    void dropOpened();
+
     EventLoopStatistics statistics() const;
     /// Where the loop listens, with the real port if 0 was asked for.
     std::vector<ListenAddress> listening() const;

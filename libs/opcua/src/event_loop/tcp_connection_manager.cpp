@@ -77,6 +77,15 @@ UA_StatusCode TcpConnectionManager::close(ConnectionId id) {
     return UA_STATUSCODE_GOOD;
 }
 
+void TcpConnectionManager::dropOpened() {
+    for (auto& [id, connection] : connections_) {
+        if (connection->origin() == Origin::opened && !connection->closing()) {
+            connection->forget();
+            closeLater(*connection);
+        }
+    }
+}
+
 void TcpConnectionManager::start() {
     handle_.eventSource.state = UA_EVENTSOURCESTATE_STARTED;
 }

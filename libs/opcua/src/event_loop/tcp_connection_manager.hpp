@@ -28,6 +28,9 @@ public:
     /// Takes `buffer` over in every case.
     UA_StatusCode send(ConnectionId id, UA_ByteString* buffer);
     UA_StatusCode close(ConnectionId id);
+    /// Closes the connections that were opened from here, and what their peers have not taken yet
+    /// is never delivered.
+    void dropOpened();
 
     void start();
     /// Closes everything; stopped() once the last application was told.

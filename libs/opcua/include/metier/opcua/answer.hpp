@@ -18,6 +18,13 @@ struct Failure : Error {
     StatusCode status = status::kBadUnexpectedError;
     /// What the peer had to say to each input argument of a Method it refused; often empty.
     std::vector<StatusCode> input_results;
+    /// What is known of the request.
+    enum class Delivery {
+        answered,  ///< the peer refused it, or there was none
+        not_sent,  ///< it never left this process: nothing happened, and nothing will
+        unknown,   ///< it was sent and nothing came back: the peer may have carried it out
+    };
+    Delivery delivery = Delivery::answered;
 };
 
 /// What a peer answered, or why it did not.

@@ -11,6 +11,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/opcua/answer.hpp"
+#include "metier/opcua/connection.hpp"
 #include "metier/opcua/node_id.hpp"
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/types.hpp"
@@ -37,6 +38,8 @@ struct ClientOptions {
     std::chrono::milliseconds session_timeout{30'000};
     std::chrono::milliseconds call_timeout{5'000};  ///< of every call that names none of its own
     std::chrono::milliseconds publishing_interval{100};
+    /// What to do when the connection breaks; none: it is lost for good, make a new Client.
+    std::optional<ReconnectOptions> reconnect{};
 };
 
 /// How long one call may take; none: ClientOptions::call_timeout.
@@ -70,12 +73,16 @@ struct WriteItem {
     NodeId node;
     Value value;
     std::optional<UtcTime> source_time{};  ///< none: not sent, the server takes its own
+    std::uint64_t boot = 0;                ///< as MethodCall::boot
 };
 
 struct MethodCall {
     NodeId object;
     NodeId method;
     std::vector<Value> inputs{};
+    /// Client::boot() when the NodeIds were looked up: refused if the server was started again
+    /// since, as they may name something else now. 0: sent in any case.
+    std::uint64_t boot = 0;
 };
 
 /// What a Method answered that was not refused.
@@ -129,6 +136,11 @@ struct EventNotice {
         event,     ///< `fields` holds a value per field asked for, Null where the event has none
         overflow,  ///< events were lost: the server's queue, or a message, went missing
         ended,     ///< nothing will come any more: `status` says why
+        /// The connection is lost, `status` says why; `resumed` or `ended` follows.
+        interrupted,
+        /// Events come again. Those meanwhile come now if the server kept them for this session;
+        /// if not, `overflow` comes before.
+        resumed,
     };
 
     Kind kind = Kind::event;
@@ -166,12 +178,19 @@ private:
 
 /// One session with one OPC UA server, over a connection without security (SecurityPolicy None).
 ///
-/// Every call has a deadline, and a broken connection ends all calls at once. There is no
-/// reconnection: make a new Client. Nothing is ever sent twice, nor after its deadline.
+/// Every call has a deadline, and a broken connection ends all calls at once. Nothing is ever sent
+/// twice, nor after its deadline, nor kept for later: without a connection a call fails at once.
 ///
-/// Errors of every call, besides those of the server: timeout (BadTimeout; what was sent may
-/// still be carried out), connection_lost (also after close()), invalid_state (a waiting call from
-/// a callback of this client), resource_unavailable (2000 requests are unanswered).
+/// With ClientOptions::reconnect it connects again by itself: to the same session where the server
+/// still has it, else to a new one. Subscriptions are taken up again or made anew, with the
+/// namespace indices that hold then; other NodeIds are the caller's to look up again when boot()
+/// has changed. A connection is also given up when the server is silent: an idle one is asked
+/// every 2 s, or every third of the session time-out if that is less.
+///
+/// Errors of every call, besides those of the server: timeout (BadTimeout), connection_lost (also
+/// after close()), invalid_state (a waiting call from a callback of this client),
+/// resource_unavailable (2000 requests are unanswered). Failure::delivery tells whether the request
+/// left: after `unknown` a command may have been carried out, so ask before it is given again.
 ///
 /// Threading: any thread may call anything but the destructor, and many may at once. Waiting calls
 /// block theirs. One thread of its own serves the connection and runs all callbacks, which must
@@ -193,11 +212,28 @@ public:
     /// Errors: invalid_state (from a callback).
     Answer<> close();
 
-    enum class State { connected, lost, closed };
+    enum class State {
+        connected,
+        reconnecting,
+        lost,  ///< for good: whyLost()
+        closed,
+    };
     State state() const noexcept;
+    /// Why there is no connection, or was none the last time; none: there always was one.
+    std::optional<Failure> whyLost() const;
+    /// Which run of the server this client is connected to: 1 for the first, one more whenever the
+    /// server was started again. NodeIds hold for one of them.
+    std::uint64_t boot() const noexcept;
+    /// Waits until it is connected.
+    /// Errors: timeout at the deadline; connection_lost (given up, closed); invalid_state.
+    Answer<> awaitConnected(SteadyTime deadline);
 
-    /// What is to happen once when the connection is lost; at once if it was already. Not called
-    /// after close(). A later callback replaces an earlier one.
+    /// What is to hear of each change of the connection, on the client's thread, which may not
+    /// wait there. Not called after close(). A later callback replaces an earlier one.
+    void onConnectionChange(std::function<void(const ConnectionChange&)> callback);
+
+    /// What is to happen once when the connection is lost for good; at once if it was already. Not
+    /// called after close(). A later callback replaces an earlier one.
     void onConnectionLost(std::function<void(const Failure&)> callback);
 
     /// Errors: the attribute's own StatusCode where Bad, such as not_found (BadNodeIdUnknown).
@@ -251,8 +287,8 @@ public:
                                          std::function<void(const EventNotice&)> callback,
                                          Timeout timeout = {});
     /// Hears of a Variable's changes, its value now first. A lost value shows in the Overflow bit
-    /// of a StatusCode; the last notice, when connection or Subscription end, is an empty Value
-    /// with a Bad one. The callback may run before this returns.
+    /// of a StatusCode. An empty Value with a Bad one comes when connection or Subscription end; it
+    /// is the last notice unless the client reconnects. The callback may run before this returns.
     Answer<Subscription> subscribeData(NodeId variable, DataFilter filter,
                                        std::function<void(const DataValue&)> callback,
                                        Timeout timeout = {});

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "metier/base/clock.hpp"
+
+namespace metier::testing {
+
+/// A network in miniature: passes on what comes for a port of this machine, until it is told to
+/// misbehave.
+///
+/// Threading: any thread; one of its own does the work.
+class TcpRelay {
+public:
+    /// \param target port on loopback that is relayed to; it need not listen yet
+    explicit TcpRelay(std::uint16_t target);
+    ~TcpRelay();
+    TcpRelay(const TcpRelay&) = delete;
+    TcpRelay& operator=(const TcpRelay&) = delete;
+
+    std::uint16_t port() const { return port_; }
+    std::string url() const { return "opc.tcp://127.0.0.1:" + std::to_string(port_); }
+
+    /// From here on all is passed on. Connections that have lost bytes are closed.
+    void pass();
+    /// All connections are closed, and new ones at once.
+    void cut();
+    /// Connections stay open and new ones open, but every byte is swallowed.
+    void stall();
+
+    enum class Moment {
+        before,  ///< it does not get there
+        after,   ///< it gets there, and its answer is lost
+    };
+    /// cut() as soon as a client sends a message with these bytes in it.
+    void cutAt(std::string bytes, Moment moment);
+    /// Waits until cutAt() has cut; false at the deadline.
+    bool awaitCut(SteadyTime deadline);
+
+private:
+    enum class Mode { pass, cut, stall };
+    struct Wire {
+        int client = -1;
+        int server = -1;
+        bool damaged = false;
+    };
+
+    void run();
+    void set(Mode mode);
+    void accept();
+    bool move(Wire& wire, int from);
+    bool mustCut(const std::string& bytes) const;
+    static void close(const Wire& wire);
+    void closeAll();
+
+    const std::uint16_t target_;
+    int listener_ = -1;
+    int wake_ = -1;
+    std::uint16_t port_ = 0;
+    std::mutex mutex_;
+    std::condition_variable cut_;
+    Mode mode_ = Mode::pass;
+    bool stopping_ = false;
+    std::string trigger_;  // empty: none
+    Moment moment_ = Moment::before;
+    bool triggered_ = false;
+    std::map<int, Wire> wires_;  // by the client's socket
+    std::jthread thread_;
+};
+
+}  // namespace metier::testing
