@@ -113,6 +113,5 @@ TEST_P(ArmOnItsWire, IsHaltedByAStopOfItsControllerAndComesBack) {
 INSTANTIATE_TEST_SUITE_P(Devices, ArmOnItsWire, ::testing::ValuesIn(allArms()),
                          [](const auto& arm) { return std::string(arm.param.name); });
 
-
 }  // namespace
 }  // namespace metier::system_tests
