@@ -82,14 +82,18 @@ std::string textFrom(const UA_String& text) {
 
 UtcTime timeFrom(UA_DateTime time) noexcept {
     using std::chrono::duration_cast;
-    const Ticks since_epoch(time - UA_DATETIME_UNIX_EPOCH);
-    if (since_epoch <= duration_cast<Ticks>(UtcTime::min().time_since_epoch())) {
+    // Compared before the epoch is taken away: a message may hold any 64 bits.
+    constexpr auto kEarliest =
+        duration_cast<Ticks>(UtcTime::min().time_since_epoch()).count() + UA_DATETIME_UNIX_EPOCH;
+    constexpr auto kLatest =
+        duration_cast<Ticks>(UtcTime::max().time_since_epoch()).count() + UA_DATETIME_UNIX_EPOCH;
+    if (time <= kEarliest) {
         return UtcTime::min();
     }
-    if (since_epoch >= duration_cast<Ticks>(UtcTime::max().time_since_epoch())) {
+    if (time >= kLatest) {
         return UtcTime::max();
     }
-    return UtcTime(duration_cast<UtcTime::duration>(since_epoch));
+    return UtcTime(duration_cast<UtcTime::duration>(Ticks(time - UA_DATETIME_UNIX_EPOCH)));
 }
 
 UA_DateTime nativeTime(UtcTime time) noexcept {

@@ -205,6 +205,14 @@ TEST(Value, KeepsTheEndsOfTime) {
     EXPECT_EQ(*Value::of(UtcTime{}).as<UtcTime>(), UtcTime{});
 }
 
+// A message may hold any 64 bits as a time.
+TEST(Value, ReadsATimeBeforeAllOthersAsTheEarliest) {
+    for (const auto ticks : {std::numeric_limits<UA_DateTime>::min(), UA_DateTime{-1}}) {
+        EXPECT_EQ(timeFrom(ticks), UtcTime::min()) << ticks;
+    }
+    EXPECT_EQ(timeFrom(std::numeric_limits<UA_DateTime>::max()), UtcTime::max());
+}
+
 TEST(Matrix, KeepsItsRows) {
     const std::vector<std::vector<double>> rows{{1, 2, 3}, {4, 5, 6}};
     const auto value = Value::ofRows(rows);
