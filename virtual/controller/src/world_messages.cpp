@@ -47,7 +47,7 @@ std::optional<geometry::Pose> poseOf(const Json& object, const char* key) {
         return std::nullopt;
     }
     const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
-    if (rotation.norm() < 0.5) {
+    if (!(rotation.norm() >= 0.5 && std::isfinite(rotation.norm()))) {
         return std::nullopt;
     }
     return geometry::Pose{{v[0], v[1], v[2]}, rotation.normalized()};

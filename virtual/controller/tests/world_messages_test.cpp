@@ -37,5 +37,10 @@ TEST(WorldMessages, AreRefusedIfTheyAreNone) {
     EXPECT_FALSE(reportOf(R"({"name":"a","jaws":"wide"})")->report.jaw_width);
 }
 
+TEST(WorldMessages, RefuseARotationTooLongToBeANumber) {
+    EXPECT_FALSE(
+        reportOf(R"({"name":"a","flange":[0,0,0,1e200,1e200,0,0]})")->report.base_from_flange);
+}
+
 }  // namespace
 }  // namespace metier::virtual_controller
