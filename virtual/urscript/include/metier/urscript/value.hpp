@@ -31,7 +31,7 @@ public:
     explicit List(std::vector<Value> elements);
 
     const std::vector<Value>& elements() const;
-    std::size_t size() const { return elements_ ? elements().size() : 0; }
+    std::size_t size() const;
     /// Values in it and in the lists in it.
     std::size_t weight() const { return weight_; }
     /// Lists within lists: 1 for a list of numbers, at least.
@@ -83,5 +83,9 @@ public:
 private:
     Data data_;
 };
+
+inline std::size_t List::size() const {
+    return elements_ ? elements_->size() : 0;
+}
 
 }  // namespace metier::urscript
