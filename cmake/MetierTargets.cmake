@@ -61,24 +61,35 @@ endfunction()
 
 option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)
 
-# metier_add_fuzz_target(<name> SOURCES ... LIBRARIES ...): defines LLVMFuzzerTestOneInput.
-# With METIER_FUZZ a libFuzzer program; else a test that gives it some thousand random inputs.
+# metier_add_fuzz_target(<name> SOURCES ... LIBRARIES ... [SEEDS files] [LONGEST bytes])
+# Defines LLVMFuzzerTestOneInput. SEEDS are inputs to begin with, LONGEST is that of an input (512).
+# With METIER_FUZZ a libFuzzer program for scripts/fuzz; else a test that gives it some thousand
+# random inputs.
 function(metier_add_fuzz_target name)
     if(NOT METIER_TESTS)
         return()
     endif()
-    cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+    cmake_parse_arguments(arg "" "LONGEST" "SOURCES;LIBRARIES;SEEDS" ${ARGN})
+    if(NOT arg_LONGEST)
+        set(arg_LONGEST 512)
+    endif()
+    list(TRANSFORM arg_SEEDS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} metier::warnings)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/fuzz)
+    target_compile_definitions(${name} PRIVATE METIER_MODELS_DIR="${PROJECT_SOURCE_DIR}/models")
     if(NOT TARGET fuzzers)
         add_custom_target(fuzzers)
     endif()
     add_dependencies(fuzzers ${name})
     if(METIER_FUZZ)
         target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+        list(JOIN arg_SEEDS "' '" seeds)
+        file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/fuzz_targets/${name}
+            CONTENT "program='$<TARGET_FILE:${name}>'\nlongest=${arg_LONGEST}\nseeds=('${seeds}')\n")
     else()
         target_sources(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/fuzz/random_inputs.cpp)
-        add_test(NAME Fuzz.${name} COMMAND ${name})
+        add_test(NAME Fuzz.${name} COMMAND ${name} ${arg_SEEDS})
         set_tests_properties(Fuzz.${name} PROPERTIES TIMEOUT 120 LABELS fuzz)
     endif()
 endfunction()

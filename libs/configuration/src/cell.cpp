@@ -164,12 +164,10 @@ const VirtualController* CellConfig::world() const {
     return found == virtual_controllers.end() ? nullptr : &*found;
 }
 
-Result<CellConfig> loadCell(const std::filesystem::path& file) {
-    auto toml = TomlFile::load(file);
-    if (!toml) {
-        return fail(toml.error());
-    }
-    const auto root = toml->root();
+namespace {
+
+Result<CellConfig> readCell(const TomlFile& toml, const std::filesystem::path& file) {
+    const auto root = toml.root();
     CellConfig cell;
     cell.file = std::filesystem::absolute(file);
     cell.name = root.text("name");
@@ -186,10 +184,22 @@ Result<CellConfig> loadCell(const std::filesystem::path& file) {
     }
     checkReferences(cell, tables);
     checkVirtual(cell, virtual_tables);
-    if (auto checked = toml->finish(); !checked) {
+    if (auto checked = toml.finish(); !checked) {
         return fail(checked.error());
     }
     return cell;
+}
+
+}  // namespace
+
+Result<CellConfig> loadCell(const std::filesystem::path& file) {
+    const auto toml = TomlFile::load(file);
+    return toml ? readCell(*toml, file) : fail(toml.error());
+}
+
+Result<CellConfig> parseCell(std::string_view text, const std::filesystem::path& file) {
+    const auto toml = TomlFile::parse(text, file.string());
+    return toml ? readCell(*toml, file) : fail(toml.error());
 }
 
 }  // namespace metier::configuration

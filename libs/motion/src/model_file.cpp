@@ -229,16 +229,22 @@ ModelFile readModel(const TomlTable& root) {
 
 Result<RobotModel> RobotModel::load(const std::filesystem::path& path) {
     const auto toml = TomlFile::load(path);
-    if (!toml) {
-        return fail(toml.error());
-    }
-    ModelFile file = readModel(toml->root());
-    if (const auto finished = toml->finish(); !finished) {
+    return toml ? read(*toml, path.string()) : fail(toml.error());
+}
+
+Result<RobotModel> RobotModel::parse(std::string_view text, const std::string& name) {
+    const auto toml = TomlFile::parse(text, name);
+    return toml ? read(*toml, name) : fail(toml.error());
+}
+
+Result<RobotModel> RobotModel::read(const TomlFile& toml, const std::string& file_name) {
+    ModelFile file = readModel(toml.root());
+    if (const auto finished = toml.finish(); !finished) {
         return fail(finished.error());
     }
     auto model = fromChain(std::move(file.chain));
     if (!model) {
-        return fail(model.error().code, path.string() + ": " + model.error().message);
+        return fail(model.error().code, file_name + ": " + model.error().message);
     }
     model->name_ = std::move(file.name);
     model->maker_ = std::move(file.maker);

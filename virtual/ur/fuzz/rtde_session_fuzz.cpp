@@ -5,8 +5,9 @@
 
 #include "../tests/fake_peer.hpp"
 #include "metier/virtual_ur/rtde_session.hpp"
+#include "reads.hpp"
 
-// Bytes as they come on port 30004, in two reads, with a cycle after each; and the same bytes as
+// Bytes as they come on port 30004, in any reads, with a cycle after each; and the same bytes as
 // the payload of each package type, in both versions.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace metier::virtual_ur;
@@ -22,11 +23,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto bytes = std::as_bytes(std::span(data, size));
     {
         RtdeSession session(shared, peer);
-        if (session.receive(bytes.first(size / 2))) {
+        bool open = true;
+        metier::fuzz::inReads(bytes, [&](auto read) {
+            open = open && session.receive(read);
             session.cycle(state);
-            (void)session.receive(bytes.subspan(size / 2));
-            session.cycle(state);
-        }
+        });
         RtdeSession framed(shared, peer);
         for (const char* types = "OIUSOVvPMUIS"; *types != 0; ++types) {
             ByteWriter package;

@@ -1,4 +1,5 @@
 // The input decides what a program consists of, so that every input is a program that runs.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -145,16 +146,22 @@ private:
 
 }  // namespace
 
+/// The first byte says how much of the rest a peer sends on each socket that the program opens.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace metier::urscript;
     constexpr int kCycles = 20;
-    const auto program = Program::parse(Writer({data, size}).program() + "d = 1\n");
-    const auto defined = Program::parse(Writer({data, size}).program());
+    const std::size_t sent = size == 0 ? 0 : std::min<std::size_t>(data[0] % 32, size - 1);
+    const std::string received(reinterpret_cast<const char*>(data) + (size == 0 ? 0 : 1), sent);
+    const std::span decisions(data + sent, size - sent);
+    const auto text = Writer(decisions).program();
+    const auto program = Program::parse(text + "d = 1\n");
+    const auto defined = Program::parse(text);
     if (program || (!defined && defined.error().message.find("'d'") == std::string::npos)) {
         std::abort();  // the first has text behind its end; the second is a program
     }
     if (defined) {
         FakeRobot robot;
+        robot.socket.first_received = received;
         RunLimits limits;
         limits.instructions_per_cycle = 2000;
         Interpreter interpreter(*defined, robot, limits);

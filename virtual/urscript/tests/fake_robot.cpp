@@ -37,7 +37,7 @@ Result<typename Map::mapped_type> pin(const Map& pins, Port port, int index) {
 }  // namespace
 
 void FakeSockets::open(const std::string& name, const std::string& host, int port) {
-    all[name] = Socket{first_state, host, port, {}, {}};
+    all[name] = Socket{first_state, host, port, {}, first_received};
 }
 
 SocketState FakeSockets::state(const std::string& name) const {

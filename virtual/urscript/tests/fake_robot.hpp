@@ -31,6 +31,8 @@ public:
 
     /// The state that a socket has as soon as it is opened.
     SocketState first_state = SocketState::open;
+    /// What its peer has sent by then.
+    std::string first_received;
     std::map<std::string, Socket> all;
 };
 

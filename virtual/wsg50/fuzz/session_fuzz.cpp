@@ -4,6 +4,7 @@
 #include <span>
 
 #include "metier/virtual_wsg50/session.hpp"
+#include "reads.hpp"
 
 // Bytes as they come over the wire, with time passing between the reads; and the same bytes as the
 // payload of a sound frame, so that the commands behind the checksum are reached.
@@ -20,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
     });
     open = &session;
-    session.receive(bytes);
+    metier::fuzz::inReads(bytes, [&](auto read) { session.receive(read); });
     for (std::size_t at = 0; at < size; at += 11) {
         const auto part = bytes.subspan(at, std::min<std::size_t>(11, size - at));
         session.receive(encode(std::to_integer<std::uint8_t>(part[0]), part.subspan(1)));

@@ -51,13 +51,16 @@ void check(std::string_view text) {
 
 }  // namespace
 
+/// A text, or a character that none begins with and changes of a message that is right.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string text(reinterpret_cast<const char*>(data), size);
-    check(text);
-    static_cast<void>(generationOf(text));
-    // The same bytes as changes of a message that is right.
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    if (size == 0 || data[0] < 0x80) {
+        check(text);
+        static_cast<void>(generationOf(text));
+        return 0;
+    }
     std::string changed(kMessage);
-    for (std::size_t i = 0; i + 1 < size && i < 8; i += 2) {
+    for (std::size_t i = 1; i + 1 < size && i < 9; i += 2) {
         changed[data[i] % changed.size()] = static_cast<char>(data[i + 1] % 0x60 + 0x20);
     }
     check(changed);

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "metier/ur_driver/primary.hpp"
+#include "reads.hpp"
 
 using namespace metier::ur_driver;
 
@@ -13,12 +14,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         (void)package->report->toText();
     }
     StreamBuffer buffer(std::max<std::size_t>(2 * size, 16));
-    std::copy(bytes.begin(), bytes.end(), buffer.space().begin());
-    buffer.filled(size);
-    for (auto length = primary::firstPackageSize(buffer); length && *length;
-         length = primary::firstPackageSize(buffer)) {
-        (void)primary::parse(buffer.received().first(**length));
-        buffer.consume(**length);
-    }
+    metier::fuzz::inReads(bytes, [&](auto read) {
+        std::copy(read.begin(), read.end(), buffer.space().begin());
+        buffer.filled(read.size());
+        for (auto length = primary::firstPackageSize(buffer); length && *length;
+             length = primary::firstPackageSize(buffer)) {
+            (void)primary::parse(buffer.received().first(**length));
+            buffer.consume(**length);
+        }
+    });
     return 0;
 }

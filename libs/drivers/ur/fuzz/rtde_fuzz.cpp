@@ -4,6 +4,7 @@
 #include <span>
 
 #include "metier/ur_driver/rtde.hpp"
+#include "reads.hpp"
 
 using namespace metier::ur_driver;
 
@@ -26,20 +27,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto bytes = std::as_bytes(std::span(data, size));
     parseAll(bytes);
     StreamBuffer buffer(256);
-    for (std::size_t at = 0; at < bytes.size();) {
-        const auto space = buffer.space();
-        const auto count = std::min(space.size(), bytes.size() - at);
-        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, space.begin());
+    metier::fuzz::inReads(bytes, [&](auto read) {
+        const auto space = buffer.space();  // a full buffer takes no more, as in a session
+        const auto count = std::min(space.size(), read.size());
+        std::copy_n(read.begin(), count, space.begin());
         buffer.filled(count);
-        at += count;
         for (auto package = rtde::firstPackage(buffer); package && *package;
              package = rtde::firstPackage(buffer)) {
             parseAll((*package)->payload);
             buffer.consume(rtde::kHeaderSize + (*package)->payload.size());
         }
-        if (count == 0) {
-            return 0;
-        }
-    }
+    });
     return 0;
 }

@@ -9,6 +9,7 @@
 
 #include "metier/wsg50_driver/conversation.hpp"
 #include "metier/wsg50_driver/crc.hpp"
+#include "reads.hpp"
 
 namespace {
 
@@ -32,12 +33,11 @@ void give(std::span<const std::byte> bytes) {
     SteadyTime now;
     Conversation conversation({.acknowledge = true, .home = true}, now, listener);
     FrameReader reader;
-    while (!bytes.empty()) {
+    metier::fuzz::inReads(bytes, [&](auto read) {
         const auto space = reader.space();
-        const auto count = std::min({space.size(), bytes.size(), std::size_t{37}});
-        std::copy_n(bytes.begin(), count, space.begin());
+        const auto count = std::min(space.size(), read.size());
+        std::copy_n(read.begin(), count, space.begin());
         reader.received(count);
-        bytes = bytes.subspan(count);
         while (const auto frame = reader.next()) {
             static_cast<void>(conversation.take(*frame, now));
         }
@@ -49,12 +49,13 @@ void give(std::span<const std::byte> bytes) {
         if (conversation.started()) {
             conversation.reset(now);
         }
-    }
+    });
 }
 
-/// Cuts the input into payloads of a length and an id that it tells itself.
+/// Cuts the input into payloads of a length and an id that it tells itself. Its first byte stays.
 std::vector<std::byte> framed(std::span<const std::byte> input) {
-    std::vector<std::byte> frames;
+    std::vector<std::byte> frames(input.begin(), input.begin() + (input.empty() ? 0 : 1));
+    input = input.subspan(frames.size());
     while (input.size() >= 2) {
         const auto length = std::min(std::to_integer<std::size_t>(input[1]) % 40, input.size() - 2);
         std::vector<std::byte> frame(3, std::byte{0xAA});

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "metier/base/error.hpp"
@@ -96,5 +97,7 @@ struct CellConfig {
 /// Reads and checks a cell file. Relative paths in it are relative to the file.
 /// Errors: not_found, invalid_argument with a line "file:line: key: why" for all that is wrong.
 Result<CellConfig> loadCell(const std::filesystem::path& file);
+/// The same from text; `file` says where relative paths in it begin. Errors: invalid_argument.
+Result<CellConfig> parseCell(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace metier::configuration

@@ -11,6 +11,10 @@
 #include "metier/motion/chain.hpp"
 #include "metier/motion/kinematics.hpp"
 
+namespace metier::configuration {
+class TomlFile;
+}
+
 namespace metier::motion {
 
 /// A cylinder with round ends around a link, for self-collision.
@@ -39,6 +43,8 @@ public:
     /// Reads a file of models/ (models/README.md).
     /// Errors: not_found; invalid_argument with file:line, key and what is wrong.
     static Result<RobotModel> load(const std::filesystem::path& path);
+    /// The same from text; `name` stands for the file in messages.
+    static Result<RobotModel> parse(std::string_view text, const std::string& name);
 
     /// A robot known from its chain alone, as a client reads it from a server.
     /// Errors: invalid_argument (number of axes, axis not a unit vector, limits, home).
@@ -70,6 +76,8 @@ public:
 
 private:
     explicit RobotModel(ChainDescription chain);
+    static Result<RobotModel> read(const configuration::TomlFile& toml,
+                                   const std::string& file_name);
 
     std::string name_;
     std::string maker_;
