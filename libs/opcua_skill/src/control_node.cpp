@@ -47,7 +47,23 @@ opcua::MethodHandler withEpoch(Work work) {
 
 }  // namespace
 
+ControlNode::ControlNode(std::shared_ptr<skill::Control> control,
+                         std::shared_ptr<spdlog::logger> log)
+    : control_(std::move(control)), log_(std::move(log)) {
+    control_->attach(*this);
+}
+
+ControlNode::~ControlNode() {
+    control_->detach(*this);
+}
+
+void ControlNode::onControlLost(std::string_view /*session*/, skill::OwnerLossAction /*action*/,
+                                const std::string& text) {
+    log_->warn("control of {} is lost: {}", controller_.toString(), text);
+}
+
 Result<void> ControlNode::bind(AddressSpace& nodes, const NodeId& controller) {
+    controller_ = controller;
     if (auto bound = bindLease(nodes, controller); !bound) {
         return bound;
     }

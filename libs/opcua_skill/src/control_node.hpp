@@ -1,6 +1,9 @@
 #pragma once
 
+#include <spdlog/logger.h>
+
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,12 +13,16 @@
 namespace metier::opcua_skill {
 
 /// Serves a Control at the nodes of one controller: the lease of IControlLeaseType, and the Lock of
-/// the DI model.
+/// the DI model. Logs each loss of control.
 ///
 /// Threading: the server's thread.
-class ControlNode final : public opcua::VariableHandler {
+class ControlNode final : public opcua::VariableHandler, private skill::Control::Listener {
 public:
-    explicit ControlNode(std::shared_ptr<skill::Control> control) : control_(std::move(control)) {}
+    /// \param log shared with its other users, as spdlog does
+    ControlNode(std::shared_ptr<skill::Control> control, std::shared_ptr<spdlog::logger> log);
+    ~ControlNode() override;
+    ControlNode(const ControlNode&) = delete;
+    ControlNode& operator=(const ControlNode&) = delete;
 
     /// Makes the nodes below the controller call and read the Control. Once.
     /// Errors: not_found, if the controller lacks the lease; a Lock may be missing.
@@ -38,6 +45,8 @@ private:
     };
     using Values = std::vector<opcua::Value>;
 
+    void onControlLost(std::string_view session, skill::OwnerLossAction action,
+                       const std::string& text) override;
     Result<void> bindLease(opcua::AddressSpace& nodes, const opcua::NodeId& controller);
     Result<void> bindLock(opcua::AddressSpace& nodes, const opcua::NodeId& lock);
     Result<void> show(opcua::AddressSpace& nodes, const opcua::NodeId& variable, Item item);
@@ -45,6 +54,8 @@ private:
 
     // Shared with the Programs of the controller.
     std::shared_ptr<skill::Control> control_;
+    std::shared_ptr<spdlog::logger> log_;  // with its other users, as spdlog does
+    opcua::NodeId controller_;
     std::vector<std::unique_ptr<opcua::VariableSlot>> slots_;
 };
 

@@ -66,7 +66,7 @@ public:
 
     Result<void> serveControl(const opcua::NodeId& controller,
                               std::shared_ptr<skill::Control> control) {
-        controls_.push_back(std::make_unique<ControlNode>(std::move(control)));
+        controls_.push_back(std::make_unique<ControlNode>(std::move(control), context_.log));
         return controls_.back()->bind(server_.nodes(), controller);
     }
 

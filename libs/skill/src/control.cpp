@@ -43,8 +43,8 @@ void Control::detach(Listener& listener) {
 
 Result<std::uint64_t> Control::acquire(const Caller& caller, milliseconds lease,
                                        OwnerLossAction action) {
-    if (auto allowed = checkCommand(caller); !allowed) {
-        return fail(std::move(allowed.error()));
+    if (auto free = checkFree(caller); !free) {
+        return fail(std::move(free.error()));
     }
     const auto wanted = lease == milliseconds(0) ? kDefaultLease : lease;
     if (wanted < kShortestLease || wanted > kLongestLease) {
@@ -52,6 +52,7 @@ Result<std::uint64_t> Control::acquire(const Caller& caller, milliseconds lease,
                     fmt::format("LeaseMs: {} ms is outside {} to {} ms", wanted.count(),
                                 kShortestLease.count(), kLongestLease.count()));
     }
+    stale_sessions_.erase(caller.session_id);
     leased_ = true;
     leaser_ = caller;
     epoch_ = newEpoch();
@@ -96,6 +97,7 @@ void Control::leaseDue() {
         armLease();
         return;
     }
+    stale_sessions_.insert(leaser_.session_id);
     lose(fmt::format("no heartbeat of {} for {} ms", nameOf(leaser_),
                      std::chrono::duration_cast<milliseconds>(lease_).count()));
 }
@@ -116,9 +118,10 @@ void Control::endLease() {
 }
 
 Result<void> Control::lock(const Caller& caller) {
-    if (auto allowed = checkCommand(caller); !allowed) {
-        return allowed;
+    if (auto free = checkFree(caller); !free) {
+        return free;
     }
+    stale_sessions_.erase(caller.session_id);
     locked_ = true;
     locker_ = caller;
     lock_end_ = clock_.now() + kLockTime;
@@ -167,6 +170,16 @@ void Control::endLock() {
 }
 
 Result<void> Control::checkCommand(const Caller& caller) const {
+    if (stale_sessions_.contains(caller.session_id)) {
+        return fail(Errc::locked,
+                    fmt::format("the lease of {} has run out: it commands again once it has taken "
+                                "control anew",
+                                nameOf(caller)));
+    }
+    return checkFree(caller);
+}
+
+Result<void> Control::checkFree(const Caller& caller) const {
     if (leased_ && leaser_.session_id != caller.session_id) {
         return refusedTo("has control of", leaser_);
     }
@@ -186,6 +199,9 @@ void Control::sessionClosed(std::string_view session_id) {
     }
     if (leasedBy(session_id)) {
         lose(fmt::format("the session of {} has ended", nameOf(leaser_)));
+    }
+    if (const auto stale = stale_sessions_.find(session_id); stale != stale_sessions_.end()) {
+        stale_sessions_.erase(stale);
     }
 }
 

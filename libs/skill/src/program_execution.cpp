@@ -371,10 +371,10 @@ void Program::actOnOwnerLoss(OwnerLossAction action, std::string text) {
             break;
         }
     }
+    owner_session_.clear();  // also if it goes on: the end of the session is no second loss
     if (action == OwnerLossAction::keep_going) {
         return;
     }
-    owner_session_.clear();
     if (state_ == State::suspended || halting_) {
         return;
     }

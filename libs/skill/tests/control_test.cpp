@@ -64,6 +64,24 @@ TEST_F(Controlled, LosesItWhenTheLeaseRunsOutWithoutAHeartbeat) {
     EXPECT_TRUE(control.acquire(kBob, 0ms, OwnerLossAction::halt));
 }
 
+TEST_F(Controlled, ASessionWhoseLeaseRanOutCommandsNothingUntilItTakesControlAnew) {
+    ASSERT_TRUE(control.acquire(kAlice, 500ms, OwnerLossAction::halt));
+    executor->advance(500ms);
+    const auto refused = control.checkCommand(kAlice);
+    ASSERT_FALSE(refused) << "a command without an epoch that is late, or of a commander that woke";
+    EXPECT_EQ(refused.error().code, Errc::locked);
+    EXPECT_THAT(refused.error().message, HasSubstr("has run out"));
+    EXPECT_FALSE(control.checkEpoch(kAlice, 0));
+    EXPECT_TRUE(control.checkCommand(kBob));
+    ASSERT_TRUE(control.acquire(kAlice, 500ms, OwnerLossAction::halt));
+    EXPECT_TRUE(control.checkCommand(kAlice));
+    executor->advance(500ms);
+    ASSERT_TRUE(control.lock(kAlice));
+    EXPECT_TRUE(control.checkCommand(kAlice)) << "the lock is control, too";
+    control.sessionClosed("alice");
+    EXPECT_TRUE(control.checkCommand(kAlice));
+}
+
 TEST_F(Controlled, LosesItWithTheSession) {
     ASSERT_TRUE(control.acquire(kAlice, 0ms, OwnerLossAction::skill_default));
     control.sessionClosed("bob");

@@ -176,8 +176,36 @@ TEST_F(Owned, TheStartDecidesBeforeTheLeaseAndTheLeaseBeforeTheSkill) {
         }
         ASSERT_TRUE(program.state() == State::halted || program.halt(kBob));
         rest();
-        ASSERT_TRUE(program.reset(kAlice));
+        ASSERT_TRUE(program.reset(kBob));
     }
+}
+
+TEST_F(Owned, GoesOnIfItsLeaseSaysSoAlsoWhenTheSessionOfItsOwnerEnds) {
+    ASSERT_TRUE(control->acquire(kAlice, 500ms, OwnerLossAction::keep_going));
+    ASSERT_TRUE(program.startWith(kAlice, {}));
+    executor->advance(500ms);
+    program.sessionClosed("alice");
+    EXPECT_EQ(program.subState(), SubState::executing);
+    script->execution.finish();
+    executor->run();
+    EXPECT_EQ(program.state(), State::ready);
+    EXPECT_EQ(program.reason(), Reason::finished);
+}
+
+TEST_F(Owned, RefusesACommanderWhoseLeaseRanOutAlsoWithoutAnEpoch) {
+    ASSERT_TRUE(control->acquire(kAlice, 500ms, OwnerLossAction::suspend));
+    ASSERT_TRUE(program.startWith(kAlice, {}));
+    executor->advance(500ms);
+    rest();
+    ASSERT_EQ(program.state(), State::suspended);
+    const auto resumed = program.resume(kAlice);
+    ASSERT_FALSE(resumed) << "it may have been on its way since before the loss";
+    EXPECT_EQ(resumed.error().code, Errc::locked);
+    EXPECT_FALSE(program.executable(Method::resume, kAlice));
+    EXPECT_FALSE(program.reset(kAlice));
+    EXPECT_TRUE(program.halt(kAlice)) << "Halt is everybody's";
+    ASSERT_TRUE(control->acquire(kAlice, 500ms, OwnerLossAction::suspend));
+    EXPECT_TRUE(program.reset(kAlice));
 }
 
 TEST_F(Owned, TheEndOfItsSessionIsTheLossOfTheOwner) {

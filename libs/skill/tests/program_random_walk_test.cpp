@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -99,7 +100,10 @@ private:
         }
     }
 
-    bool mayCommand(const std::string& session) const { return !leased_ || leased_ == session; }
+    bool isFree(const std::string& session) const { return !leased_ || leased_ == session; }
+    bool mayCommand(const std::string& session) const {
+        return isFree(session) && !stale_.contains(session);
+    }
     bool startWith(const Step& step) {
         if (!start(step.session)) {
             return false;
@@ -108,9 +112,10 @@ private:
         return true;
     }
     bool acquire(const Step& step) {
-        if (!mayCommand(step.session)) {
+        if (!isFree(step.session)) {
             return false;
         }
+        stale_.erase(step.session);
         leased_ = step.session;
         lease_left_ = kLease;
         lease_action_ = step.on_owner_loss;
@@ -131,10 +136,10 @@ private:
         if (action == OwnerLossAction::skill_default) {
             action = OwnerLossAction::halt;
         }
+        owner_.clear();
         if (action == OwnerLossAction::keep_going) {
             return;
         }
-        owner_.clear();
         if (state != State::running || halting_) {
             return;
         }
@@ -254,6 +259,7 @@ private:
         if (owner_ == session) {
             loseOwner(OwnerLossAction::skill_default);
         }
+        stale_.erase(session);
     }
     bool isExecuting() const { return state == State::running || state == State::suspended; }
     void atRest() {
@@ -284,6 +290,7 @@ private:
         if (leased_ && lease_left_ <= time) {
             const auto until = lease_left_;
             pass(until);
+            stale_.insert(*leased_);
             loseLease();
             pass(time - until);
         } else {
@@ -316,6 +323,7 @@ private:
     std::string owner_;
     OwnerLossAction on_owner_loss_ = OwnerLossAction::skill_default;
     std::optional<std::string> leased_;
+    std::set<std::string> stale_;
     std::chrono::milliseconds lease_left_{0};
     OwnerLossAction lease_action_ = OwnerLossAction::skill_default;
 };

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -62,6 +64,9 @@ Failure refused(opcua::Client& client, const LeaseNodes& nodes, Failure failure)
 }  // namespace
 
 /// Beats until it is lost or ended.
+///
+/// No heartbeat waits for the answer to another one: while TCP repeats a lost packet, the next
+/// heartbeats are under way already, and their acknowledgements tell TCP of the loss at once.
 class ControlHandle::Heart {
 public:
     Heart(opcua::Client& client, LeaseNodes nodes, std::uint64_t epoch,
@@ -69,7 +74,8 @@ public:
         : client_(client),
           nodes_(std::move(nodes)),
           epoch_(epoch),
-          interval_(options.lease / kBeatsPerLease),
+          lease_(options.lease),
+          answers_(std::make_shared<Answers>()),
           thread_([this](const std::stop_token& stop) { beat(stop); }) {}
 
     ~Heart() {
@@ -84,47 +90,78 @@ public:
     Heart& operator=(const Heart&) = delete;
 
     std::uint64_t epoch() const noexcept { return epoch_; }
-    bool held() const {
-        const std::lock_guard lock(mutex_);
-        return !lost_;
-    }
+    bool held() const { return !answers_->refusal(); }
     void onLost(std::function<void(const Failure&)> callback) {
         {
             const std::lock_guard lock(mutex_);
-            if (!lost_) {
+            if (!told_) {
                 on_lost_ = std::move(callback);
                 return;
             }
         }
-        callback(*lost_);  // written once
+        callback(*told_);  // written once
     }
 
 private:
+    /// What the server said to the heartbeats; answers may come after the end of the Heart.
+    class Answers {
+    public:
+        void take(const Answer<opcua::CallResult>& answer) {
+            if (answer || answer.error().code == Errc::timeout) {
+                return;
+            }
+            const std::lock_guard lock(mutex_);
+            if (!refusal_) {
+                refusal_ = answer.error();
+                refused_.notify_all();
+            }
+        }
+        std::optional<Failure> refusal() const {
+            const std::lock_guard lock(mutex_);
+            return refusal_;
+        }
+        /// Waits for a refusal, the deadline or the end.
+        void wait(const std::stop_token& stop, SteadyTime deadline) {
+            std::unique_lock lock(mutex_);
+            refused_.wait_until(lock, stop, deadline, [this] { return refusal_.has_value(); });
+        }
+
+    private:
+        mutable std::mutex mutex_;
+        std::condition_variable_any refused_;
+        std::optional<Failure> refusal_;
+    };
+
     void beat(const std::stop_token& stop) {
         auto next = std::chrono::steady_clock::now();
         while (!stop.stop_requested()) {
-            next += interval_;
-            {
-                std::unique_lock lock(mutex_);
-                ended_.wait_until(lock, stop, next, [] { return false; });
-            }
-            if (stop.stop_requested()) {
+            if (const auto refusal = answers_->refusal()) {
+                tell(*refusal);
                 return;
             }
-            const auto beaten =
-                client_.call({nodes_.controller, nodes_.heartbeat, {Value::of(epoch_)}},
-                             interval_ * kBeatsPerLease);
-            if (!beaten && beaten.error().code != Errc::timeout) {
-                lose(beaten.error());
-                return;
+            if (const auto now = std::chrono::steady_clock::now(); now >= next) {
+                send();
+                next = std::max(next + lease_ / kBeatsPerLease, now);
             }
+            answers_->wait(stop, next);
         }
     }
-    void lose(const Failure& failure) {
+    void send() {
+        const auto sent = client_.callAsync(
+            {nodes_.controller, nodes_.heartbeat, {Value::of(epoch_)}},
+            [answers = answers_](const Answer<opcua::CallResult>& answer) {
+                answers->take(answer);
+            },
+            lease_);
+        if (!sent) {
+            answers_->take(tl::unexpected(sent.error()));
+        }
+    }
+    void tell(const Failure& failure) {
         std::function<void(const Failure&)> callback;
         {
             const std::lock_guard lock(mutex_);
-            lost_ = failure;
+            told_ = failure;
             callback = std::exchange(on_lost_, nullptr);
         }
         if (callback) {
@@ -135,10 +172,10 @@ private:
     opcua::Client& client_;
     const LeaseNodes nodes_;
     const std::uint64_t epoch_;
-    const std::chrono::milliseconds interval_;
+    const std::chrono::milliseconds lease_;
+    const std::shared_ptr<Answers> answers_;  // with the calls that have no answer yet
     mutable std::mutex mutex_;
-    std::condition_variable_any ended_;
-    std::optional<Failure> lost_;
+    std::optional<Failure> told_;
     std::function<void(const Failure&)> on_lost_;
     std::jthread thread_;  // last: it uses everything above
 };

@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +22,9 @@ namespace metier::skill {
 /// A client holds control by a lease, which ends unless heartbeats renew it, or by a lock, which
 /// only keeps others out. One session holds either or both; while it does, others are refused
 /// everything but Halt. A lease is the dead-man: when it runs out, or its session ends, the
-/// listeners are told and do what each execution asks for.
+/// listeners are told and do what each execution asks for. A session whose lease ran out is refused
+/// everything but Halt until it takes a lease or the lock anew: what it sent before it knew, or
+/// what the network delivers late, moves nothing.
 ///
 /// Threading: the owner's thread, which all its Programs share.
 class Control {
@@ -74,7 +78,7 @@ public:
     Result<void> breakLock();
 
     /// Whether the caller may command.
-    /// Errors: locked, with the name of the holder.
+    /// Errors: locked, with the name of the holder, or because the caller's own lease ran out.
     Result<void> checkCommand(const Caller& caller) const;
     /// Whether the caller may command and holds this epoch; 0: it need not hold one.
     /// Errors: locked.
@@ -99,6 +103,8 @@ public:
     std::chrono::nanoseconds lockRemaining() const noexcept;
 
 private:
+    /// Whether nobody but the caller holds control.
+    Result<void> checkFree(const Caller& caller) const;
     Result<void> checkHolds(const Caller& caller, std::uint64_t epoch) const;
     void armLease();
     void leaseDue();
@@ -119,6 +125,7 @@ private:
     std::chrono::nanoseconds lease_{0};
     SteadyTime lease_end_;
     Timer lease_timer_;
+    std::set<std::string, std::less<>> stale_sessions_;  // their lease ran out, they live
 
     bool locked_ = false;
     Caller locker_;

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/queue.hpp"
+#include "metier/process/child_process.hpp"
+
+namespace metier::system_tests {
+
+/// A process of `metier` whose log is read along: when it took the control of somebody for lost.
+///
+/// Threading: a thread of its own reads the output.
+class OwnedServer {
+public:
+    /// \param arguments of `metier`, such as serve CELL --server NAME
+    /// Errors: throws unless it is ready within a minute.
+    explicit OwnedServer(const std::vector<std::string>& arguments);
+
+    const std::string& url() const noexcept { return url_; }
+    /// When the server commanded the stop, by its own clock, to the millisecond below; nothing at
+    /// the deadline. Losses from before forgetLosses() are left out.
+    std::optional<UtcTime> awaitLoss(SteadyTime deadline) { return losses_.popUntil(deadline); }
+    void forgetLosses();
+
+private:
+    void read(const std::stop_token& stop);
+
+    process::ChildProcess process_;
+    std::string url_;
+    Queue<UtcTime> losses_{100};
+    std::jthread reader_;  // last: it uses everything above
+};
+
+}  // namespace metier::system_tests
