@@ -91,7 +91,7 @@ public:
             start({"serve", cell, "--server", "ur5"});
             serve = {"serve", cell, "--server", "ur5-move"};
         }
-        row_.emplace(serve, "JointPtpMoveSkill", &cable);
+        row_.emplace(serve, "JointPtpMoveSkill", &cable, Bounds::strict);
     }
     DeathRow& row() { return *row_; }
 

@@ -64,7 +64,7 @@ public:
     }
 
     std::uint64_t epoch() const { return epoch_; }
-    void fallSilent() { thread_ = {}; }
+    void fallSilent() { silent_ = true; }
     opcua::Answer<opcua::CallResult> beatOnce() {
         return client_.call(controller_, heartbeat_, {Value::of(epoch_)});
     }
@@ -74,6 +74,9 @@ private:
         for (auto next = std::chrono::steady_clock::now(); !stop.stop_requested();
              next += interval_) {
             std::this_thread::sleep_until(next);
+            if (silent_) {
+                return;
+            }
             const auto sent = std::chrono::system_clock::now();
             const auto called = client_.callAsync({controller_, heartbeat_, {Value::of(epoch_)}},
                                                   [sent](const auto& answer) {
@@ -92,6 +95,7 @@ private:
     const std::chrono::milliseconds interval_;
     NodeId heartbeat_;
     std::uint64_t epoch_ = 0;
+    std::atomic<bool> silent_ = false;
     std::jthread thread_;
 };
 
@@ -141,7 +145,6 @@ public:
                     lease_.fallSilent();
                     break;
                 case kCloseSession:
-                    lease_.fallSilent();
                     static_cast<void>(client_.close());
                     break;
                 case kCommandAgain:

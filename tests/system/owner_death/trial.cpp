@@ -17,10 +17,12 @@ using skill::State;
 using skill::TransitionEvent;
 
 constexpr double kDistance = 0.6;     // of axis 1 [rad]
-constexpr double kSpeed = 0.2;        // of the arm's own
+constexpr double kSpeed = 0.2;        // part of the arm's own
 constexpr double kStandstill = 1e-4;  // [rad]
+constexpr double kAtTarget = 1e-3;    // [rad]
 constexpr auto kLogResolution = 1ms;  // times of the log are cut off to it
 constexpr auto kTolerance = 100ms;    // after the end of the lease
+constexpr int kLatePerStop = 4;       // threads on the way from a heartbeat to a stop
 constexpr auto kLongEnough = 20s;     // for what has no bound of its own
 
 SteadyTime in(std::chrono::nanoseconds time) {
@@ -120,9 +122,11 @@ std::string toString(const Trial& trial) {
                        trial.lease.count());
 }
 
-DeathRow::DeathRow(const std::vector<std::string>& serve, const std::string& skill, Cable* cable)
+DeathRow::DeathRow(const std::vector<std::string>& serve, const std::string& skill, Cable* cable,
+                   Bounds bounds)
     : server_(serve),
       cable_(cable),
+      bounds_(bounds),
       watcher_(connectTo(server_.url())),
       skill_(openSkill(*watcher_, skill)),
       home_(jointPosition(*watcher_, skill_)) {
@@ -228,6 +232,7 @@ void DeathRow::strike(const Trial& trial, process::ChildProcess& commander) {
 Outcome DeathRow::run(const Trial& trial) {
     Seen seen;
     server_.forgetLosses();
+    meter_.worst();
     auto commander = startCommander(trial);
     readUntil(commander, "there", seen);
     strike(trial, commander);
@@ -251,14 +256,16 @@ Outcome DeathRow::run(const Trial& trial) {
     if (stop) {
         outcome.after_lease_ms =
             milliseconds(*stop + kLogResolution - seen.last_beat.value() - trial.lease);
-        judgeTimes(trial, outcome, *stop);
+        outcome.load = meter_.worst();
+        judgeTimes(trial, outcome);
     }
     makeReady();
     return outcome;
 }
 
-void DeathRow::judgeTimes(const Trial& trial, Outcome& outcome, UtcTime /*stop*/) {
-    const auto bound = milliseconds(kTolerance);
+void DeathRow::judgeTimes(const Trial& trial, Outcome& outcome) const {
+    const auto wider = bounds_ == Bounds::strict ? 0ns : kLatePerStop * outcome.load;
+    const auto bound = milliseconds(kTolerance + wider);
     const auto lease = losesByItsSession(trial.fault) ? 0.0 : milliseconds(trial.lease);
     if (outcome.after_lease_ms > bound) {
         add(outcome.defect, fmt::format("stop {:.1f} ms after the end of the lease, at most {}",
@@ -301,8 +308,11 @@ void DeathRow::judgeTransition(const Trial& trial, Outcome& outcome, UtcTime sto
         return;
     }
     outcome.standstill_ms = milliseconds(event->time - stop);
+    // Before the loss, or while it braked for Suspended: then there is nothing to resume.
     const bool finished_before =
-        event->reason == Reason::finished && event->time <= stop + kLogResolution;
+        event->reason == Reason::finished &&
+        (event->time <= stop + kLogResolution || trial.policy == OwnerLossAction::suspend) &&
+        atTarget();
     const auto expected = expectedOf(trial, stop, event->time);
     if (!finished_before && (event->to != expected->state || event->reason != expected->reason)) {
         add(outcome.defect, fmt::format("{} because of {} ({}) instead of {} because of {}",
@@ -310,6 +320,11 @@ void DeathRow::judgeTransition(const Trial& trial, Outcome& outcome, UtcTime sto
                                         event->reason_text, skill::toString(expected->state),
                                         skill::toString(expected->reason)));
     }
+}
+
+bool DeathRow::atTarget() {
+    const auto& target = std::get<std::vector<double>>(move_.at("TargetJointPosition"));
+    return std::abs(jointPosition(*watcher_, skill_).front() - target.front()) < kAtTarget;
 }
 
 /// Nothing that a commander does whose time is over may change anything.

@@ -10,6 +10,7 @@
 #include "../metier_program.hpp"
 #include "cable.hpp"
 #include "commander.hpp"
+#include "load_meter.hpp"
 #include "metier/base/queue.hpp"
 #include "owned_server.hpp"
 
@@ -56,10 +57,14 @@ struct Outcome {
     /// [ms]. The heartbeat counts from when it was sent, so this is at most too large.
     double after_lease_ms = 0;
     double after_fault_ms = 0;            ///< from the fault to the stop [ms]
+    std::chrono::nanoseconds load{};      ///< how late threads woke up meanwhile
     std::optional<double> standstill_ms;  ///< from the stop to the transition, if one followed [ms]
     int refused = 0;                      ///< commands of a stale commander, all of those it tried
     std::string defect;                   ///< what was not as it has to be; empty: nothing
 };
+
+/// Whether the bounds of time hold as they are, or are widened by how late threads wake up.
+enum class Bounds { strict, by_load };
 
 /// One arm, whose commanders die one after the other.
 ///
@@ -68,7 +73,8 @@ class DeathRow {
 public:
     /// \param serve arguments of `metier` for the server
     /// \param cable on which the commanders are; null: on this machine. Must outlive this.
-    DeathRow(const std::vector<std::string>& serve, const std::string& skill, Cable* cable);
+    DeathRow(const std::vector<std::string>& serve, const std::string& skill, Cable* cable,
+             Bounds bounds = Bounds::by_load);
     ~DeathRow();
     DeathRow(const DeathRow&) = delete;
     DeathRow& operator=(const DeathRow&) = delete;
@@ -87,16 +93,19 @@ private:
     process::ChildProcess startCommander(const Trial& trial);
     std::string readUntil(process::ChildProcess& commander, const std::string& word, Seen& seen);
     void strike(const Trial& trial, process::ChildProcess& commander);
-    void judgeTimes(const Trial& trial, Outcome& outcome, UtcTime stop);
+    void judgeTimes(const Trial& trial, Outcome& outcome) const;
     void judgeEnd(const Trial& trial, Outcome& outcome, UtcTime stop);
     void judgeTransition(const Trial& trial, Outcome& outcome, UtcTime stop);
     void judgeStale(const Trial& trial, process::ChildProcess& commander, Seen& seen,
                     Outcome& outcome);
+    bool atTarget();
     std::string movedWithin(std::chrono::milliseconds time);
     void makeReady();
 
     OwnedServer server_;
     Cable* cable_;
+    Bounds bounds_;
+    LoadMeter meter_;
     Queue<skill::TransitionEvent> transitions_{1000};
     std::unique_ptr<opcua::Client> watcher_;
     skill_client::SkillHandle skill_;

@@ -1,0 +1,79 @@
+// The owner's death in short: each fault once, in some states. In bulk: metier_owner_soak.
+#include <gmock/gmock.h>
+
+#include "owner_death/trial.hpp"
+
+namespace metier::system_tests {
+namespace {
+
+using namespace std::chrono_literals;
+using enum skill::OwnerLossAction;
+
+/// The simulated iiwa, whose commanders are on this machine: no root is needed.
+class OwnersDeath : public ::testing::Test {
+protected:
+    void expectMastered(const std::vector<Trial>& trials) {
+        for (const auto& trial : trials) {
+            const auto outcome = row_.run(trial);
+            EXPECT_EQ(outcome.defect, "") << toString(trial);
+        }
+    }
+
+    DeathRow row_{{"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"},
+                  "JointPtpMoveSkill",
+                  nullptr};
+};
+
+// Halted, Suspended or Ready, OwnerLost, the stop within the lease and 100 ms.
+TEST_F(OwnersDeath, StopsARunningArmWithinTheLeaseAsItsStartSays) {
+    expectMastered({{Fault::killed, AtFault::running, halt, 300ms, 2},
+                    {Fault::killed, AtFault::running, suspend, 300ms, 8},
+                    {Fault::stopped, AtFault::running, halt, 300ms, 12},
+                    {Fault::stopped, AtFault::running, keep_going, 300ms, 6},
+                    {Fault::silent, AtFault::running, suspend, 300ms, 16}});
+}
+
+// At once: no lease has to run out. Continue goes on, the session's end is no second loss.
+TEST_F(OwnersDeath, StopsARunningArmAtOnceWhenTheSessionIsClosed) {
+    expectMastered({{Fault::closed, AtFault::running, halt, 300ms, 10},
+                    {Fault::closed, AtFault::running, suspend, 300ms, 4},
+                    {Fault::closed, AtFault::running, keep_going, 300ms, 10}});
+}
+
+// Ready and Suspended stay as they are; braking ends as it was meant to, or Halted, OwnerLost.
+TEST_F(OwnersDeath, LeavesAnArmAtRestWhereItIs) {
+    expectMastered({{Fault::killed, AtFault::ready, halt, 300ms},
+                    {Fault::killed, AtFault::suspended, halt, 300ms},
+                    {Fault::stopped, AtFault::suspending, suspend, 300ms},
+                    {Fault::closed, AtFault::suspending, halt, 300ms},
+                    {Fault::closed, AtFault::halting, halt, 300ms}});
+}
+
+// It wakes up after its lease and tries every command, with its epoch and without.
+TEST_F(OwnersDeath, RefusesEverythingToACommanderWhoseTimeIsOver) {
+    expectMastered({{Fault::stale, AtFault::running, halt, 300ms, 10},
+                    {Fault::stale, AtFault::running, suspend, 300ms, 10},
+                    {Fault::stale, AtFault::ready, halt, 300ms},
+                    {Fault::silent, AtFault::suspended, halt, 300ms}});
+}
+
+// The same over a cable between two network namespaces, which can be unplugged.
+TEST(OwnersDeathOnTheNetwork, StopsAnArmThatTheNetworkCutsOff) {
+    if (const auto obstacle = Cable::obstacle(); !obstacle.empty()) {
+        GTEST_SKIP() << "NOT TESTED: link down, packets dropped, half-open connection: "
+                     << obstacle;
+    }
+    Cable cable;
+    DeathRow row({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"},
+                 "JointPtpMoveSkill", &cable);
+    const std::vector<Trial> trials{{Fault::link_down, AtFault::running, halt, 300ms, 5},
+                                    {Fault::dropped, AtFault::running, suspend, 300ms, 10},
+                                    {Fault::one_way, AtFault::running, halt, 300ms, 15},
+                                    {Fault::half_open, AtFault::running, halt, 300ms, 10}};
+    for (const auto& trial : trials) {
+        EXPECT_EQ(row.run(trial).defect, "") << toString(trial);
+    }
+}
+
+}  // namespace
+}  // namespace metier::system_tests
