@@ -61,17 +61,21 @@ endfunction()
 
 option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)
 
-# metier_add_fuzz_target(<name> SOURCES ... LIBRARIES ... [SEEDS files] [LONGEST bytes])
+# metier_add_fuzz_target(<name> SOURCES ... LIBRARIES ... [SEEDS files] [LONGEST bytes] [ONE_IN n])
 # Defines LLVMFuzzerTestOneInput. SEEDS are inputs to begin with, LONGEST is that of an input (512).
+# ONE_IN: it moves a robot besides parsing, and gets one of n inputs that others get.
 # With METIER_FUZZ a libFuzzer program for scripts/fuzz; else a test that gives it some thousand
 # random inputs.
 function(metier_add_fuzz_target name)
     if(NOT METIER_TESTS)
         return()
     endif()
-    cmake_parse_arguments(arg "" "LONGEST" "SOURCES;LIBRARIES;SEEDS" ${ARGN})
+    cmake_parse_arguments(arg "" "LONGEST;ONE_IN" "SOURCES;LIBRARIES;SEEDS" ${ARGN})
     if(NOT arg_LONGEST)
         set(arg_LONGEST 512)
+    endif()
+    if(NOT arg_ONE_IN)
+        set(arg_ONE_IN 1)
     endif()
     list(TRANSFORM arg_SEEDS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
     add_executable(${name} ${arg_SOURCES})
@@ -86,7 +90,8 @@ function(metier_add_fuzz_target name)
         target_link_options(${name} PRIVATE -fsanitize=fuzzer)
         list(JOIN arg_SEEDS "' '" seeds)
         file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/fuzz_targets/${name}
-            CONTENT "program='$<TARGET_FILE:${name}>'\nlongest=${arg_LONGEST}\nseeds=('${seeds}')\n")
+            CONTENT "program='$<TARGET_FILE:${name}>'\nlongest=${arg_LONGEST}\none_in=${arg_ONE_IN}
+seeds=('${seeds}')\n")
     else()
         target_sources(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/fuzz/random_inputs.cpp)
         add_test(NAME Fuzz.${name} COMMAND ${name} ${arg_SEEDS})
