@@ -194,9 +194,16 @@ Result<void> Program::takeResult(ValueMap& result) {
 void Program::onFail(Reason reason, std::string text) {
     inTurn([this, cause = Cause{faultReason(reason), std::move(text)}]() mutable {
         if (body_) {
+            cause.text += whyHalting();
             halted(std::move(cause));
         }
     });
+}
+
+/// What a Halt that is under way was for, to be put behind another text; empty if there is none.
+std::string Program::whyHalting() const {
+    return halting_ && !halting_->text.empty() ? fmt::format(" ({})", halting_->text)
+                                               : std::string();
 }
 
 /// Lets go of body and device; the execution's handles go nowhere from here on.
@@ -300,9 +307,7 @@ void Program::restDeadlinePassed() {
     const auto reason = halting_ ? faultReason(halting_->reason) : Reason::error;
     auto text = fmt::format("not at rest within {} ms, the device's own stop was used",
                             options_.rest_deadline.count());
-    if (halting_ && !halting_->text.empty()) {
-        text += fmt::format(" ({})", halting_->text);
-    }
+    text += whyHalting();
     forceHalted({reason, std::move(text)});
 }
 
@@ -396,6 +401,14 @@ void Program::deviceLost(std::string text) {
             reason_text_ = std::move(cause.text);
             setSubState(SubState::halted_device_lost);
             notify([this](ProgramObserver& observer) { observer.onReason(reason_, reason_text_); });
+        }
+    });
+}
+
+void Program::deviceStopped(std::string text) {
+    inTurn([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
+        if (state_ == State::running && !halting_) {
+            brake(std::move(cause));
         }
     });
 }

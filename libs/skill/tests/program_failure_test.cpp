@@ -124,6 +124,37 @@ TEST(DeviceLost, WhileReadyEndsTheConfiguration) {
     EXPECT_TRUE(bench.program->start(kBob));
 }
 
+TEST(DeviceStopped, HaltsWhatRunsOnceItRests) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.program->deviceStopped("nobody watched");
+    EXPECT_EQ(bench.program->subState(), SubState::stopping);
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), SubState::halted_error);
+    EXPECT_EQ(bench.program->reasonText(), "nobody watched");
+    EXPECT_THAT(bench.script->calls, ElementsAre("halt", "destroyed"));
+}
+
+TEST(DeviceStopped, IsTheCauseOfAFailureThatFollows) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.program->deviceStopped("nobody watched");
+    bench.script->execution.fail(Reason::error, "stopped from outside");
+    bench.run();
+    EXPECT_EQ(bench.program->reasonText(), "stopped from outside (nobody watched)");
+}
+
+TEST(DeviceStopped, MattersOnlyWhileSomethingMoves) {
+    for (const auto state : {State::halted, State::ready, State::suspended}) {
+        ProgramBench bench;
+        bench.enter(state);
+        bench.program->deviceStopped("nobody watched");
+        EXPECT_EQ(bench.program->state(), state);
+        EXPECT_THAT(bench.observer.log, IsEmpty());
+    }
+}
+
 TEST(OwnerLost, MattersOnlyWhileSomethingMoves) {
     for (const auto state : {State::halted, State::ready, State::suspended}) {
         ProgramBench bench;

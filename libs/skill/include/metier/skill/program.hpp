@@ -120,6 +120,8 @@ public:
     void ownerLost(std::string text, OwnerLossAction action = OwnerLossAction::skill_default);
     /// The device is gone: Halted at once, from every state.
     void deviceLost(std::string text);
+    /// Somebody else has told the device to stop: what runs is Halted for an error once it rests.
+    void deviceStopped(std::string text);
 
     const SkillDescription& description() const { return description_; }
     State state() const noexcept { return state_; }
@@ -192,6 +194,7 @@ private:
     void forceHalted(Cause cause);
     void halted(Cause cause);
     void giveUpSuspended();
+    std::string whyHalting() const;
     void end(TransitionNumber transition, Cause cause);
     void endExecution();
 

@@ -1,0 +1,176 @@
+#include "metier/device/watchdog.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <vector>
+
+namespace metier::device {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::chrono::nanoseconds kLimit = 250ms;
+
+/// A watched thread, played by the test, that has ticked once. The watchdog's own thread looks,
+/// too, whenever it likes: how often devices are told to stop is not counted, all else is.
+class WatchedThread : public ::testing::Test {
+protected:
+    WatchedThread() { clock_.advance(1s); }
+
+    Watchdog::Actions actions() {
+        return {.stop = [this] { ++stops_; },
+                .post =
+                    [this](std::function<void()> work) {
+                        const std::lock_guard lock(mutex_);
+                        posted_.push_back(std::move(work));
+                    },
+                .tell = [this](std::chrono::nanoseconds stalled) { told_.push_back(stalled); },
+                .noticed = [this](std::chrono::nanoseconds) { ++noticed_; }};
+    }
+
+    /// What the watched thread finds in its queue once it works again.
+    void runPosted() {
+        std::vector<std::function<void()>> work;
+        {
+            const std::lock_guard lock(mutex_);
+            work.swap(posted_);
+        }
+        for (const auto& each : work) {
+            each();
+        }
+    }
+
+    ManualClock clock_;
+    std::atomic<int> stops_ = 0;
+    std::atomic<int> noticed_ = 0;
+    std::vector<std::chrono::nanoseconds> told_;
+    std::mutex mutex_;
+    std::vector<std::function<void()>> posted_;
+    Watchdog watchdog_{actions(), kLimit, clock_};
+};
+
+TEST_F(WatchedThread, IsNotWatchedBeforeItsFirstTick) {
+    clock_.advance(1h);
+    watchdog_.look();
+    watchdog_.tick();
+    EXPECT_EQ(stops_, 0);
+    EXPECT_EQ(noticed_, 0);
+}
+
+TEST_F(WatchedThread, IsLeftAloneWhileItTicksInTime) {
+    for (int i = 0; i < 100; ++i) {
+        watchdog_.tick();
+        clock_.advance(kLimit);
+        watchdog_.look();
+    }
+    watchdog_.tick();
+    runPosted();
+    EXPECT_EQ(stops_, 0);
+    EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(WatchedThread, ThatStallsHasItsDevicesStopped) {
+    watchdog_.tick();
+    clock_.advance(kLimit + 1ns);
+    watchdog_.look();
+    EXPECT_GE(stops_, 1);
+    EXPECT_EQ(noticed_, 1);
+    EXPECT_TRUE(told_.empty()) << "nobody is there to be told";
+}
+
+TEST_F(WatchedThread, IsLookedAtRightWhenItsLimitIsOver) {
+    watchdog_.tick();
+    clock_.advance(100ms);
+    const auto pause = watchdog_.look();
+    EXPECT_GT(pause, 150ms);
+    EXPECT_LT(pause, 151ms);
+}
+
+TEST_F(WatchedThread, HasItsDevicesStoppedAgainAsLongAsItStalls) {
+    watchdog_.tick();
+    clock_.advance(kLimit + 1ns);
+    watchdog_.look();
+    const int before = stops_;
+    clock_.advance(1s);
+    EXPECT_LE(watchdog_.look(), Watchdog::tickPeriod(kLimit));
+    EXPECT_GT(stops_, before) << "what began to move in the last moment is stopped, too";
+    EXPECT_EQ(noticed_, 1);
+}
+
+TEST_F(WatchedThread, IsToldOnceForHowLongItDidNotWork) {
+    watchdog_.tick();
+    clock_.advance(kLimit + 1ns);
+    watchdog_.look();
+    clock_.advance(1s);
+    watchdog_.look();
+    runPosted();
+    watchdog_.tick();
+    runPosted();
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_EQ(told_[0], kLimit + 1s + 1ns);
+    EXPECT_EQ(noticed_, 1);
+}
+
+TEST_F(WatchedThread, ThatTicksFirstAfterTheWholeProcessWasStoppedIsToldToo) {
+    watchdog_.tick();
+    clock_.advance(5s);
+    watchdog_.tick();
+    watchdog_.look();
+    runPosted();
+    EXPECT_GE(stops_, 1);
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_EQ(told_[0], 5s);
+    EXPECT_EQ(noticed_, 1);
+}
+
+TEST_F(WatchedThread, IsToldOfEachStall) {
+    for (int i = 0; i < 3; ++i) {
+        watchdog_.tick();
+        clock_.advance(1s);
+        watchdog_.look();
+        runPosted();
+    }
+    EXPECT_EQ(told_.size(), 3U);
+}
+
+TEST_F(WatchedThread, IsNotWatchedAnyLongerAfterTheEnd) {
+    watchdog_.tick();
+    watchdog_.end();
+    clock_.advance(1s);
+    watchdog_.tick();
+    EXPECT_EQ(stops_, 0);
+    EXPECT_TRUE(told_.empty());
+}
+
+TEST(Watchdog, LooksByItself) {
+    const SystemClock clock;
+    std::promise<void> stopped;
+    std::promise<std::function<void()>> posted;
+    std::promise<std::chrono::nanoseconds> told;
+    std::atomic<bool> first = true;
+    Watchdog watchdog(
+        {.stop =
+             [&] {
+                 if (first.exchange(false)) {
+                     stopped.set_value();
+                 }
+             },
+         .post = [&](std::function<void()> work) { posted.set_value(std::move(work)); },
+         .tell = [&](std::chrono::nanoseconds stalled) { told.set_value(stalled); },
+         .noticed = [](std::chrono::nanoseconds) {}},
+        20ms, clock);
+    watchdog.tick();
+    ASSERT_EQ(stopped.get_future().wait_for(60s), std::future_status::ready);
+    auto work = posted.get_future();
+    ASSERT_EQ(work.wait_for(60s), std::future_status::ready);
+    work.get()();
+    EXPECT_GT(told.get_future().get(), 20ms);
+}
+
+}  // namespace
+}  // namespace metier::device
