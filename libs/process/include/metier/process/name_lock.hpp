@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "metier/base/error.hpp"
+
+namespace metier::process {
+
+/// A name that one process of this machine has at a time, whatever user or folder it runs in.
+///
+/// The kernel frees it with its process, also after kill -9; there is no file that could be left
+/// over. Processes in different network namespaces do not see each other's names, as they do not
+/// see each other's ports: it is an abstract Unix socket.
+///
+/// Threading: any thread, one at a time.
+class NameLock {
+public:
+    /// \param name at most some hundred characters; what differs only beyond is told apart, too
+    /// \param what is locked, for the error
+    /// Errors: already_exists, with `what` and the pid of the process that has it, this one
+    ///         included; resource_unavailable.
+    static Result<NameLock> take(const std::string& name, const std::string& what);
+
+    NameLock(NameLock&& other) noexcept;
+    NameLock& operator=(NameLock&& other) noexcept;
+    /// Frees the name.
+    ~NameLock();
+
+private:
+    explicit NameLock(int socket) : socket_(socket) {}
+
+    int socket_;
+};
+
+}  // namespace metier::process

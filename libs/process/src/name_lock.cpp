@@ -1,0 +1,107 @@
+#include "metier/process/name_lock.hpp"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+namespace metier::process {
+
+namespace {
+
+constexpr std::size_t kReadable = 80;
+// Each process that was refused takes one place, since nobody accepts; beyond, the error does not
+// tell who has the name.
+constexpr int kQueue = 4096;
+
+struct Address {
+    sockaddr_un socket{};
+    socklen_t size = 0;
+
+    const sockaddr* get() const noexcept {
+        return reinterpret_cast<const sockaddr*>(&socket);  // NOLINT(*-reinterpret-cast): POSIX
+    }
+};
+
+/// FNV-1a, since std::hash may differ from one build to the next.
+std::uint64_t hashOf(const std::string& text) {
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    for (const unsigned char byte : text) {
+        hash = (hash ^ byte) * 0x100000001b3U;
+    }
+    return hash;
+}
+
+Address addressOf(const std::string& name) {
+    const auto text =
+        name.size() <= kReadable
+            ? "metier:" + name
+            : fmt::format("metier:{}~{:016x}", name.substr(0, kReadable), hashOf(name));
+    Address address;
+    address.socket.sun_family = AF_UNIX;
+    std::copy(text.begin(), text.end(), &address.socket.sun_path[1]);  // [0] is 0: abstract
+    address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+    return address;
+}
+
+int newSocket() {
+    return socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+}
+
+/// Of the process that listens there, without its help; 0 if it does not tell.
+pid_t holderOf(const Address& address) {
+    const int asking = newSocket();
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    const bool told = asking >= 0 && connect(asking, address.get(), address.size) == 0 &&
+                      getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+    if (asking >= 0) {
+        close(asking);
+    }
+    return told ? peer.pid : 0;
+}
+
+Error heldError(const Address& address, const std::string& what) {
+    const auto holder = holderOf(address);
+    return {Errc::already_exists, holder > 0
+                                      ? fmt::format("{} is in use by process {}", what, holder)
+                                      : fmt::format("{} is in use by another process", what)};
+}
+
+}  // namespace
+
+Result<NameLock> NameLock::take(const std::string& name, const std::string& what) {
+    const auto address = addressOf(name);
+    NameLock lock(newSocket());
+    if (lock.socket_ >= 0 && bind(lock.socket_, address.get(), address.size) == 0 &&
+        listen(lock.socket_, kQueue) == 0) {
+        return lock;
+    }
+    if (errno == EADDRINUSE) {
+        return fail(heldError(address, what));
+    }
+    return fail(Errc::resource_unavailable,
+                fmt::format("{}: no lock: {}", what, std::strerror(errno)));
+}
+
+NameLock::NameLock(NameLock&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
+
+NameLock& NameLock::operator=(NameLock&& other) noexcept {
+    std::swap(socket_, other.socket_);
+    return *this;
+}
+
+NameLock::~NameLock() {
+    if (socket_ >= 0) {
+        close(socket_);
+    }
+}
+
+}  // namespace metier::process
