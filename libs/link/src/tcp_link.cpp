@@ -138,6 +138,10 @@ Result<void> TcpLink::send(std::span<const std::byte> bytes, SteadyTime deadline
     return {};
 }
 
+int TcpLink::descriptor() {
+    return socket_.native_handle();
+}
+
 void TcpLink::shutdown() noexcept {
     // Not through Asio, whose socket is not for two threads at once.
     ::shutdown(socket_.native_handle(), SHUT_RDWR);

@@ -40,6 +40,8 @@ public:
 
     /// Ends both directions: a receive() that waits returns connection_lost. Idempotent.
     void shutdown() noexcept;
+    /// The socket's file descriptor, which stays this link's.
+    int descriptor();
     /// "10.0.0.5:30004".
     const std::string& peer() const noexcept { return peer_; }
 
