@@ -31,12 +31,32 @@ KinematicsData twoAxes() {
 
 class Publishing : public ServedSkills {
 protected:
+    SystemClock clock_;
     Result<skill::Program*> publish(skill::SkillDescription description) {
         return skills().publish(
             system().skills,
             std::make_unique<skill::LambdaSkill>(std::move(description), skill::SkillFunctions{}));
     }
 };
+
+TEST_F(Publishing, AControllerThatIsMadeHasALockThatKeepsOthersOut) {
+    const auto control = std::make_shared<skill::Control>(skills().executor(), clock_);
+    ASSERT_TRUE(skills().serveControl(system().controller, control));
+    auto& nodes = server().nodes();
+    const auto di = nodes.namespaceIndex("http://opcfoundation.org/UA/DI/").value();
+    const auto lock = nodes.find(system().controller, {di, "Lock"}).value();
+    const auto init = nodes.find(lock, {di, "InitLock"}).value();
+    const auto locked = nodes.find(lock, {di, "Locked"}).value();
+    serve();
+    const auto alice = connect("alice");
+    const auto bob = connect("bob");
+    const auto taken = alice->call(lock, init, {opcua::Value::of("a test")});
+    ASSERT_TRUE(taken) << taken.error().message;
+    EXPECT_EQ(taken->outputs.at(0).as<std::int32_t>(), 0);
+    EXPECT_EQ(bob->read(locked).value().as<bool>(), true);
+    const auto refused = bob->call(lock, init, {opcua::Value::of("a test")});
+    EXPECT_EQ(refused.value().outputs.at(0).as<std::int32_t>(), -1);
+}
 
 TEST_F(Publishing, ReportsEveryFieldThatTheTypeLacks) {
     auto description = jointMoveDescription();
