@@ -275,7 +275,7 @@ Result<std::vector<std::vector<double>>> Value::asRows() const {
     if (!holds<double>(*variant.type) || variant.arrayDimensionsSize != kMatrixRank ||
         std::size_t{variant.arrayDimensions[0]} * variant.arrayDimensions[1] !=
             variant.arrayLength) {
-        return fail(Errc::type_mismatch, typeName() + " where a Double matrix is expected");
+        return fail(Errc::type_mismatch, "Double matrix expected, " + typeName() + " given");
     }
     const std::size_t width = variant.arrayDimensions[1];
     const auto* flat = static_cast<const double*>(variant.data);
@@ -294,7 +294,7 @@ Result<T> Value::as() const {
     T result{};
     if (!extract(ValueAccess::native(*this), result)) {
         return fail(Errc::type_mismatch,
-                    fmt::format("{} where {} is expected", typeName(), requestedName(T{})));
+                    fmt::format("{} expected, {} given", requestedName(T{}), typeName()));
     }
     return result;
 }

@@ -141,9 +141,9 @@ TEST(Value, NamesBothTypesWhenTheyDiffer) {
     const auto wrong = Value::of(std::vector<float>(6, 0.0F)).as<double>();
     ASSERT_FALSE(wrong);
     EXPECT_EQ(wrong.error().code, Errc::type_mismatch);
-    EXPECT_EQ(wrong.error().message, "Float[6] where Double is expected");
+    EXPECT_EQ(wrong.error().message, "Double expected, Float[6] given");
     EXPECT_EQ(Value::of(true).as<std::vector<double>>().error().message,
-              "Boolean where Double[] is expected");
+              "Double[] expected, Boolean given");
 }
 
 TEST(Value, DoesNotConvertNumbers) {
