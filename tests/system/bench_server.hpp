@@ -79,9 +79,9 @@ auto orThrow(Answer answer) {
 
 template <typename Work>
 void BenchServer::onServer(Work work) {
-    constexpr std::chrono::seconds kPatience{60};
-    orThrow(server_->call(std::move(work), kPatience));
-    orThrow(server_->call([] {}, kPatience));
+    constexpr std::chrono::seconds patience{60};
+    orThrow(server_->call(std::move(work), patience));
+    orThrow(server_->call([] {}, patience));
 }
 
 /// A client of that name; throws if it cannot connect.

@@ -258,10 +258,10 @@ private:
     }
 
     void check(opcua::StatusCode status) {
-        constexpr std::array kAllowed{opcua::status::kGood, opcua::status::kBadLocked,
-                                      opcua::status::kBadInvalidState,
-                                      opcua::status::kBadInvalidArgument};
-        if (std::find(kAllowed.begin(), kAllowed.end(), status) == kAllowed.end()) {
+        constexpr std::array allowed{opcua::status::kGood, opcua::status::kBadLocked,
+                                     opcua::status::kBadInvalidState,
+                                     opcua::status::kBadInvalidArgument};
+        if (std::find(allowed.begin(), allowed.end(), status) == allowed.end()) {
             attempt_.defect = "unexpected answer " + status.name();
         }
     }

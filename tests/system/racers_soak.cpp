@@ -10,18 +10,18 @@
 
 int main(int argc, char** argv) {
     using metier::system_tests::RaceOptions;
-    constexpr std::size_t kFewest = 2;
-    constexpr std::size_t kMost = 8;
-    constexpr std::uint64_t kBaselineOneIn = 20;
+    constexpr std::size_t fewest = 2;
+    constexpr std::size_t most = 8;
+    constexpr std::uint64_t baseline_one_in = 20;
     const std::uint64_t rounds = argc > 1 ? std::stoull(argv[1]) : 100'000;
     const auto seed = argc > 2 ? static_cast<std::uint32_t>(std::stoul(argv[2])) : 1;
     std::uint64_t left = rounds;
     bool clean = true;
-    for (std::size_t clients = kFewest; clients <= kMost; ++clients) {
-        const auto share = left / (kMost + 1 - clients);
+    for (std::size_t clients = fewest; clients <= most; ++clients) {
+        const auto share = left / (most + 1 - clients);
         left -= share;
         const auto report = metier::system_tests::runRace(
-            RaceOptions{share, share / kBaselineOneIn, clients, seed});
+            RaceOptions{share, share / baseline_one_in, clients, seed});
         if (!report) {
             fmt::print(stderr, "racers: {}\n", report.error().message);
             return EXIT_FAILURE;

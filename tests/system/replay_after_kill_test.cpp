@@ -41,9 +41,9 @@ protected:
 };
 
 TEST_F(KilledServer, TakesNoCommandOfItsLifeBefore) {
-    constexpr int kLives = 3;
+    constexpr int lives = 3;
     skill::StartRequest before;
-    for (int life = 0; life < kLives; ++life) {
+    for (int life = 0; life < lives; ++life) {
         auto server = start();
         const auto client = connectTo(server.url());
         auto skill = openSkill(*client, "JointPtpMoveSkill");

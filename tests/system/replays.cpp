@@ -162,9 +162,9 @@ private:
         record(boot, [&] { expectGood(boot.startWith(boot.relayed(), {})); });
         expectGood(boot.write(boot.relayed()));
         record(boot, [&] { expectGood(boot.start(boot.relayed())); });
-        constexpr std::uint64_t kStarts = 4;
-        meant_ += kStarts;
-        report_.starts += kStarts;
+        constexpr std::uint64_t starts = 4;
+        meant_ += starts;
+        report_.starts += starts;
         checkNothingElse(boot, "a start that was meant");
     }
 
@@ -180,13 +180,13 @@ private:
 
     void round(Boot& boot) {
         using Attempt = void (Replays::*)(Boot&);
-        constexpr std::array<Attempt, 8> kAttempts{
+        constexpr std::array<Attempt, 8> attempts{
             &Replays::sameName,       &Replays::staleEpoch,
             &Replays::staleHeartbeat, &Replays::passedDeadline,
             &Replays::sameBytes,      &Replays::sameConnection,
             &Replays::epochOfAnother, &Replays::startOfAnotherSession};
         ++report_.rounds;
-        (this->*kAttempts.at(random_() % kAttempts.size()))(boot);
+        (this->*attempts.at(random_() % attempts.size()))(boot);
     }
 
     void sameName(Boot& boot) {

@@ -75,17 +75,17 @@ TEST_F(KeptNames, ThatCannotBeWrittenAreAnError) {
 }
 
 TEST_F(KeptNames, AreAtLeastTheLatestAndNotAll) {
-    constexpr int kLeast = 10;
-    auto names = open(kLeast);
+    constexpr int least = 10;
+    auto names = open(least);
     for (int i = 1; i <= 35; ++i) {
         ASSERT_TRUE(names->note("Weld", std::to_string(i)));
-        for (int earlier = std::max(1, i - kLeast + 1); earlier <= i; ++earlier) {
+        for (int earlier = std::max(1, i - least + 1); earlier <= i; ++earlier) {
             ASSERT_TRUE(names->knows("Weld", std::to_string(earlier))) << earlier << " of " << i;
         }
     }
     EXPECT_FALSE(names->knows("Weld", "1"));
     names.reset();
-    names = open(kLeast);
+    names = open(least);
     EXPECT_TRUE(names->knows("Weld", "35"));
     EXPECT_TRUE(names->knows("Weld", "26"));
     EXPECT_FALSE(names->knows("Weld", "1"));

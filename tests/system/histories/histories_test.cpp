@@ -40,13 +40,13 @@ private:
 };
 
 TEST(Histories, OfThreeClientsFollowTheModel) {
-    constexpr std::size_t kHistories = 200;
-    constexpr std::size_t kLength = 50;
+    constexpr std::size_t histories = 200;
+    constexpr std::size_t length = 50;
     World world;
     RandomSteps steps(20260701);
     std::set<std::string> witnessed;
-    for (std::size_t i = 0; i < kHistories; ++i) {
-        const auto history = steps.history(kLength);
+    for (std::size_t i = 0; i < histories; ++i) {
+        const auto history = steps.history(length);
         ASSERT_FALSE(findDivergence(world, history, [&](const auto& results) {
             return std::make_unique<Witness>(results, witnessed);
         })) << explain(world, history);

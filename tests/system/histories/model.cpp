@@ -96,11 +96,11 @@ std::vector<std::string> Model::seen() {
             lines.push_back(fmt::format("{} {}", skillName(i), event));
         }
     }
-    const auto nameOf = [](const std::optional<Session>& session) {
+    const auto name_of = [](const std::optional<Session>& session) {
         return session ? clientName(*session % kClients) : "";
     };
-    lines.push_back(fmt::format("control of \"{}\", locked {}", nameOf(leased_ ? leased_ : locked_),
-                                locked_.has_value()));
+    lines.push_back(fmt::format("control of \"{}\", locked {}",
+                                name_of(leased_ ? leased_ : locked_), locked_.has_value()));
     return lines;
 }
 

@@ -107,11 +107,11 @@ private:
     std::string lock(const Step& step);
 
     void happen(SkillModel& skill, const Step& step);
-    void atRest(SkillModel& skill);
-    void finish(SkillModel& skill);
+    static void atRest(SkillModel& skill);
+    static void finish(SkillModel& skill);
     void closeSession(std::size_t client);
     void loseLease();
-    void loseOwner(SkillModel& skill, skill::OwnerLossAction of_lease);
+    void loseOwner(SkillModel& skill, skill::OwnerLossAction of_lease) const;
     void wait(std::int64_t time);
     std::optional<std::int64_t> nextDue() const;
     void fallDue();

@@ -166,7 +166,7 @@ void Model::loseLease() {
     }
 }
 
-void Model::loseOwner(SkillModel& skill, OwnerLossAction of_lease) {
+void Model::loseOwner(SkillModel& skill, OwnerLossAction of_lease) const {
     auto action = skill.on_owner_loss;
     if (action == OwnerLossAction::skill_default) {
         action = of_lease;

@@ -46,21 +46,22 @@ std::uint32_t take(std::uint32_t& value, std::uint32_t choices) {
 }  // namespace
 
 StartChoice::StartChoice(std::uint32_t value) {
-    constexpr std::uint32_t kNames = 16;
-    constexpr std::uint32_t kUnnamed = 4;
-    const auto chosen_name = take(value, kNames);
-    name = chosen_name < kUnnamed ? 0 : chosen_name;
+    constexpr std::uint32_t names = 16;
+    constexpr std::uint32_t unnamed = 4;
+    const auto chosen_name = take(value, names);
+    name = chosen_name < unnamed ? 0 : chosen_name;
     const auto chosen_epoch = take(value, 4);
     epoch = chosen_epoch < 2 ? Epoch::none : chosen_epoch == 2 ? Epoch::own : Epoch::others;
     const auto chosen_deadline = take(value, 4);
     deadline = chosen_deadline < 2    ? Deadline::none
                : chosen_deadline == 2 ? Deadline::to_come
                                       : Deadline::passed;
-    on_owner_loss = take(value, 4);
-    constexpr std::uint32_t kSpeeds = 8;
-    const auto chosen_speed = take(value, kSpeeds);
-    with_target = chosen_speed != kSpeeds - 1;
-    speed = chosen_speed == kSpeeds - 2 ? 1.5 : 0.125 * chosen_speed;
+    const auto chosen_action = take(value, 4);
+    on_owner_loss = chosen_action;
+    constexpr std::uint32_t speeds = 8;
+    const auto chosen_speed = take(value, speeds);
+    with_target = chosen_speed != speeds - 1;
+    speed = chosen_speed == speeds - 2 ? 1.5 : 0.125 * chosen_speed;
 }
 
 std::string_view clientName(std::size_t client) {
@@ -116,10 +117,10 @@ History RandomSteps::history(std::size_t length) {
 }
 
 Step RandomSteps::next() {
-    static const auto kSum =
+    static const auto sum_of_weights =
         std::accumulate(kRows.begin(), kRows.end(), 0U,
                         [](std::uint32_t sum, const ActRow& row) { return sum + row.weight; });
-    auto place = below(kSum);
+    auto place = below(sum_of_weights);
     std::size_t act = 0;
     while (place >= kRows.at(act).weight) {
         place -= kRows.at(act).weight;
