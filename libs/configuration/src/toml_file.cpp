@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::string_view kText = "a text";
 constexpr std::string_view kNumber = "a finite number";
-constexpr std::string_view kWholeNumber = "a whole number";
 
 }  // namespace
 
@@ -193,12 +192,16 @@ std::int64_t TomlTable::integerOr(std::string_view key, std::int64_t fallback, s
     if (node == nullptr) {
         return fallback;
     }
-    const auto value = impl_->valueOf<std::int64_t>(node, key, kWholeNumber);
-    if (node->is_integer() && (value < low || value > high)) {
-        reject(key, fmt::format("{} is not within {} to {}", value, low, high));
+    const auto value = node->value_exact<std::int64_t>();
+    if (!value) {
+        reject(key, "is not a whole number");
         return fallback;
     }
-    return value;
+    if (*value < low || *value > high) {
+        reject(key, fmt::format("{} is not within {} to {}", *value, low, high));
+        return fallback;
+    }
+    return *value;
 }
 
 bool TomlTable::flagOr(std::string_view key, bool fallback) const {

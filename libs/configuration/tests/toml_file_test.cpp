@@ -34,6 +34,16 @@ x = 1
     EXPECT_TRUE(file.finish());
 }
 
+TEST(TomlFile, TakesNoFractionForAWholeNumber) {
+    for (const auto* number : {"70000.0", "48e40", "nan"}) {
+        const auto file = parsed(std::string("port = ") + number + "\n");
+        EXPECT_EQ(file.root().integerOr("port", 7, 0, 65535), 7) << number;
+        const auto finished = file.finish();
+        ASSERT_FALSE(finished) << number;
+        EXPECT_THAT(finished.error().message, HasSubstr("a.toml:1: port: is not a whole number"));
+    }
+}
+
 TEST(TomlFile, NamesFileLineAndColumnOfASyntaxError) {
     const auto file = TomlFile::parse("name = \n", "a.toml");
     ASSERT_FALSE(file);
