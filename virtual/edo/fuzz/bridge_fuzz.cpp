@@ -1,5 +1,5 @@
-// The rosbridge protocol alone, without a robot that moves: each line of the input is a message of a
-// client, as text or, behind a '!', a known request with what stands there in its place.
+// The rosbridge protocol alone, without a robot that moves: each line of the input is a message of
+// a client, as text or, behind a '!', a known request with what stands there in its place.
 #include <algorithm>
 #include <array>
 #include <cstddef>
