@@ -38,7 +38,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             command.code = knownCode(data[at + 1]);
         }
         application.execute(command);
-        for (int cycle = 0; cycle < 20; ++cycle) {
+        const int cycles = data[at + 2] % 8 == 0 ? 20 : 1;
+        for (int cycle = 0; cycle < cycles; ++cycle) {
             application.step(cabinet.arm.step());
         }
     }
