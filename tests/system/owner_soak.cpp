@@ -56,7 +56,7 @@ struct Row {
     void add(const Outcome& outcome) {
         after_lease.push_back(outcome.after_lease_ms);
         after_fault.push_back(outcome.after_fault_ms);
-        if (outcome.standstill_ms && *outcome.standstill_ms >= 0) {
+        if (outcome.standstill_ms) {
             standstill.push_back(*outcome.standstill_ms);
         }
         refused += outcome.refused;
@@ -129,7 +129,7 @@ int runTrials(std::chrono::milliseconds lease, int stride, const std::string& ki
         row.print(toString(fault));
     }
     all.print("all");
-    fmt::print("from stop to the transition: {} ms; {} of {} as they have to be\n",
+    fmt::print("from the stop to OwnerLost: {} ms; {} of {} as they have to be\n",
                quantilesOf(all.standstill), all.after_lease.size() - all.defects,
                all.after_lease.size());
     return all.defects == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -127,6 +127,10 @@ std::string Model::command(SkillModel& skill, const Step& step) {
 }
 
 bool Model::mayCommand(Session session) const {
+    return !stale_.contains(session) && isFree(session);
+}
+
+bool Model::isFree(Session session) const {
     return (!leased_ || leased_ == session) && (!locked_ || locked_ == session);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -122,6 +123,7 @@ private:
     static void stop(SkillModel& skill, std::int64_t now);
     static void endConfiguration(SkillModel& skill);
     bool mayCommand(Session session) const;
+    bool isFree(Session session) const;
     bool isBusy() const;
 
     std::int64_t now_ = 0;
@@ -133,6 +135,7 @@ private:
     std::uint64_t leases_ = 0;
     std::int64_t leased_until_ = 0;
     skill::OwnerLossAction lease_action_ = skill::OwnerLossAction::skill_default;
+    std::set<Session> stale_;  ///< sessions whose lease ran out
     std::optional<Session> locked_;
     std::int64_t locked_until_ = 0;
 };

@@ -44,9 +44,10 @@ std::string Model::control(const Step& step) {
 }
 
 std::string Model::acquire(std::size_t client, std::uint32_t action) {
-    if (!mayCommand(sessions_.at(client))) {
+    if (!isFree(sessions_.at(client))) {
         return kLocked;
     }
+    stale_.erase(sessions_.at(client));
     leased_ = sessions_.at(client);
     lease_ = ++leases_;
     epochs_.at(client) = lease_;
@@ -63,9 +64,10 @@ std::string Model::lock(const Step& step) {
     const auto session = sessions_.at(step.client);
     switch (step.act) {
         case Act::init_lock:
-            if (!mayCommand(session)) {
+            if (!isFree(session)) {
                 return kLockRefused;
             }
+            stale_.erase(session);
             locked_ = session;
             locked_until_ = now_ + Times::kLock;
             return kLockDone;
@@ -174,10 +176,10 @@ void Model::loseOwner(SkillModel& skill, OwnerLossAction of_lease) const {
     if (action == OwnerLossAction::skill_default) {
         action = skill.isFirst ? OwnerLossAction::halt : OwnerLossAction::keep_going;
     }
+    skill.owner.reset();
     if (action == OwnerLossAction::keep_going) {
         return;
     }
-    skill.owner.reset();
     if (skill.state == State::suspended || skill.halting) {
         return;
     }
@@ -217,6 +219,7 @@ std::optional<std::int64_t> Model::nextDue() const {
 
 void Model::fallDue() {
     if (leased_ && leased_until_ <= now_) {
+        stale_.insert(*leased_);
         loseLease();
     }
     if (locked_ && locked_until_ <= now_) {

@@ -220,6 +220,15 @@ std::array<std::string, kSkills> World::beginAnew() {
             }
         }
     });
+    for (std::size_t client = 0; client < kClients; ++client) {
+        // A session whose lease ran out commands again once it has had the lock.
+        for (const auto act : {Act::init_lock, Act::exit_lock}) {
+            Step step;
+            step.client = client;
+            step.act = act;
+            control(step);
+        }
+    }
     seen();
     epochs_.fill(0);
     const std::lock_guard lock(mutex_);

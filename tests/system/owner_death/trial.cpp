@@ -82,46 +82,6 @@ std::optional<Expected> expectedOf(const Trial& trial, UtcTime stop, UtcTime nex
 
 }  // namespace
 
-std::string_view toString(Fault fault) {
-    switch (fault) {
-        case Fault::killed:
-            return "kill -9";
-        case Fault::stopped:
-            return "SIGSTOP";
-        case Fault::link_down:
-            return "link down";
-        case Fault::dropped:
-            return "packets dropped";
-        case Fault::one_way:
-            return "dropped one way";
-        case Fault::half_open:
-            return "half-open connection";
-        case Fault::closed:
-            return "session closed";
-        case Fault::silent:
-            return "no more heartbeats";
-        case Fault::stale:
-            return "stale commander wakes";
-    }
-    return "?";
-}
-
-std::string_view toString(AtFault state) {
-    constexpr std::array kNames{"Ready", "Running", "Suspended", "Suspending", "Halting"};
-    return kNames.at(static_cast<std::size_t>(state));
-}
-
-bool needsCable(Fault fault) {
-    return fault == Fault::link_down || fault == Fault::dropped || fault == Fault::one_way ||
-           fault == Fault::half_open;
-}
-
-std::string toString(const Trial& trial) {
-    return fmt::format("{} while {} at {}/{}, {}, lease {} ms", toString(trial.fault),
-                       toString(trial.at), trial.point, kPoints, toString(trial.policy),
-                       trial.lease.count());
-}
-
 DeathRow::DeathRow(const std::vector<std::string>& serve, const std::string& skill, Cable* cable,
                    Bounds bounds)
     : server_(serve),
@@ -307,7 +267,9 @@ void DeathRow::judgeTransition(const Trial& trial, Outcome& outcome, UtcTime sto
         add(outcome.defect, "no transition followed");
         return;
     }
-    outcome.standstill_ms = milliseconds(event->time - stop);
+    if (event->reason == Reason::owner_lost) {
+        outcome.standstill_ms = milliseconds(event->time - stop);
+    }
     // Before the loss, or while it braked for Suspended: then there is nothing to resume.
     const bool finished_before =
         event->reason == Reason::finished &&

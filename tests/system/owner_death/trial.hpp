@@ -58,7 +58,7 @@ struct Outcome {
     double after_lease_ms = 0;
     double after_fault_ms = 0;            ///< from the fault to the stop [ms]
     std::chrono::nanoseconds load{};      ///< how late threads woke up meanwhile
-    std::optional<double> standstill_ms;  ///< from the stop to the transition, if one followed [ms]
+    std::optional<double> standstill_ms;  ///< from the stop to a transition for OwnerLost [ms]
     int refused = 0;                      ///< commands of a stale commander, all of those it tried
     std::string defect;                   ///< what was not as it has to be; empty: nothing
 };
