@@ -76,6 +76,19 @@ double stopPosition(const ScalarState& state, const ScalarLimits& limits, double
     return Profile::brake(atInstant(state, cycle), limits).end();
 }
 
+/// The farthest in `direction` (1 or -1) that a motion may end that brakes at once. While it brakes
+/// already, the jerk that ends the braking acts a part of a cycle sooner than atInstant() says.
+double farthestStop(const ScalarState& state, double direction, const ScalarLimits& limits,
+                    double cycle) noexcept {
+    const double braking = std::max(0.0, -direction * state.acceleration);
+    const double jerk = direction * std::min(limits.jerk, braking / cycle);
+    ScalarState later = atInstant(state, cycle);
+    later.acceleration += jerk * cycle;
+    later.velocity += jerk * cycle * cycle / 3;
+    const double end = Profile::brake(later, limits).end();
+    return direction * std::max(direction * end, direction * stopPosition(state, limits, cycle));
+}
+
 struct JerkRange {
     double low;
     double high;
@@ -110,15 +123,32 @@ JerkRange beforePositionLimits(const ScalarState& now, const JointLimits& limits
                                double cycle) noexcept {
     const ScalarLimits used = shareOf(limits, kShare);
     range.high = findJerk(range, [&](double jerk) {
-        return stopPosition(step(now, jerk, cycle), used, cycle) - limits.upper;
+        return farthestStop(step(now, jerk, cycle), 1, used, cycle) - limits.upper;
     });
     range.low = -findJerk({-range.high, -range.low}, [&](double jerk) {
-        return limits.lower - stopPosition(step(now, -jerk, cycle), used, cycle);
+        return limits.lower - farthestStop(step(now, -jerk, cycle), -1, used, cycle);
     });
     return range;
 }
 
+/// What the limits allow, but for rounding.
+JerkRange exactRange(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
+    return beforePositionLimits(now, limits,
+                                allowedJerk(now, shareOf(limits, 1 + kRounding), cycle), cycle);
+}
+
 }  // namespace
+
+ScalarState stepTo(double position, const ScalarState& now, const JointLimits& limits,
+                   double cycle) noexcept {
+    const JerkRange range = exactRange(now, limits, cycle);
+    const double jerk = jerkTo(position, now, cycle);
+    ScalarState next = step(now, std::clamp(jerk, range.low, range.high), cycle);
+    if (jerk >= range.low && jerk <= range.high) {
+        next.position = position;
+    }
+    return next;
+}
 
 Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
     return Profile::brake(atInstant(now, cycle), shareOf(limits, kShare));
@@ -132,10 +162,9 @@ ScalarState followTarget(const ScalarState& now, const TargetStates& targets,
     const ScalarState error{now.position - targets.before.position,
                             now.velocity - targets.before.velocity,
                             now.acceleration - targets.before.acceleration};
-    const JerkRange exact = beforePositionLimits(
-        now, limits, allowedJerk(now, shareOf(limits, 1 + kRounding), cycle), cycle);
+    const JerkRange exact = exactRange(now, limits, cycle);
     for (const double decay : kDecays) {
-        if (!fades(error, decay, kFadingJerk * used.jerk, cycle)) {
+        if (decay > targets.slowest_decay || !fades(error, decay, kFadingJerk * used.jerk, cycle)) {
             continue;
         }
         const double position = target.position + decayed(error, decay, cycle);

@@ -12,6 +12,9 @@ Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double c
 struct TargetStates {
     ScalarState before;
     ScalarState now;
+    /// An error that could fade with a slower root only is steered away instead: with a noisy
+    /// target a slow root makes much of small errors of velocity and acceleration.
+    double slowest_decay = 0.95;
 };
 
 /// One cycle of an axis that follows a moving target and breaks no limit.
@@ -25,5 +28,9 @@ struct TargetStates {
 /// \param cycle   [s]
 ScalarState followTarget(const ScalarState& now, const TargetStates& target,
                          const JointLimits& limits, double cycle) noexcept;
+
+/// One cycle towards `position` [rad], as near as the limits allow; exactly there if they do.
+ScalarState stepTo(double position, const ScalarState& now, const JointLimits& limits,
+                   double cycle) noexcept;
 
 }  // namespace metier::motion

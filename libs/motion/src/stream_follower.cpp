@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "axis_follower.hpp"
 
@@ -11,6 +12,17 @@ namespace {
 
 /// Times that differ by less are the same [s].
 constexpr double kTimeRounding = 1e-9;
+/// Without delay: how fast the time that is played goes to that of the newest set-points: share of
+/// the difference and most in a cycle, in cycles; and from how many cycles on it goes at once.
+constexpr double kPull = 0.02;
+constexpr double kMostPull = 0.005;
+constexpr double kMostAhead = 0.75;
+/// Without delay: the slowest root with which errors fade.
+constexpr double kSlowestDecay = 0.5;
+/// Without delay: a correction of a target by this share of a cycle's way is one of time.
+constexpr double kLeap = 0.5;
+/// Knots from which the stream has a velocity: that from the start to the first says nothing.
+constexpr std::size_t kStartAndTwo = 3;
 
 ScalarState axisOf(const SetPoint& point, std::size_t axis) noexcept {
     return {point.position[axis], point.velocity[axis], point.acceleration[axis]};
@@ -49,13 +61,21 @@ Result<StreamFollower> StreamFollower::create(const RobotModel& model, const Str
         return fail(Errc::invalid_argument,
                     fmt::format("start is not {} finite joint values", model.axisCount()));
     }
-    if (options.cycle.count() <= 0 || options.playout_delay_cycles < 1 ||
-        options.stale_cycles < 1 || !(options.jump_factor > 0) || !(options.jerk_factor > 0)) {
+    if (options.cycle.count() <= 0 || options.stale_cycles < 1 || !(options.jump_factor > 0) ||
+        !(options.jerk_factor > 0)) {
         return fail(Errc::invalid_argument,
-                    fmt::format("stream options: cycle {} s, playout delay {} cycles, stale after "
-                                "{} cycles, jump factor {}, jerk factor {}: one is not over 0",
-                                options.cycle.count(), options.playout_delay_cycles,
-                                options.stale_cycles, options.jump_factor, options.jerk_factor));
+                    fmt::format("stream options: cycle {} s, stale after {} cycles, jump factor {},"
+                                " jerk factor {}: one is not over 0",
+                                options.cycle.count(), options.stale_cycles, options.jump_factor,
+                                options.jerk_factor));
+    }
+    if (options.playout_delay_cycles < 0 || options.extrapolated_cycles < 0 ||
+        !(options.standing_speed >= 0)) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("stream options: playout delay {} cycles, extrapolated {} cycles, "
+                                "standing speed {} rad/s: one is below 0",
+                                options.playout_delay_cycles, options.extrapolated_cycles,
+                                options.standing_speed));
     }
     return StreamFollower(model, options, start);
 }
@@ -91,8 +111,9 @@ std::optional<StreamRefusal> StreamFollower::check(const JointVector& position,
         return StreamRefusal{Reason::not_later, 0, time, knot(0).time};
     }
     const JointVector& before = first ? now_.position : knot(0).position;
-    const double between =
-        first ? options_.cycle.count() * options_.playout_delay_cycles : time - knot(0).time;
+    const double between = first
+                               ? options_.cycle.count() * std::max(1, options_.playout_delay_cycles)
+                               : time - knot(0).time;
     for (std::size_t i = 0; i < axes; ++i) {
         if (!std::isfinite(position[i])) {
             return StreamRefusal{Reason::not_finite, i, position[i], 0};
@@ -122,18 +143,75 @@ std::optional<StreamRefusal> StreamFollower::accept(const JointVector& position,
     if (auto refusal = check(position, time)) {
         return refusal;
     }
-    const double cycle = options_.cycle.count();
-    const double earliest = now.count() - cycle * (options_.playout_delay_cycles - 1) - time;
     if (knot_count_ == 0) {
         offset_ = now.count() - time;
-        store(now_.position, time - cycle * options_.playout_delay_cycles);
-    } else if (offset_ < earliest) {
-        offset_ = earliest;  // later than it should be played: play the rest as much later
+        const int cycles = std::max(1, options_.playout_delay_cycles);
+        store(now_.position, time - options_.cycle.count() * cycles);
+        played_ = time - options_.cycle.count();
+        targets_.fill(now_.position);
+    } else if (!withoutDelay()) {
+        waitFor(time, now.count());
     }
     store(position, time);
+    fresh_ = true;
     state_ = State::following;
     ++accepted_;
     return std::nullopt;
+}
+
+/// A set-point that is later than it should be played: the rest is played as much later.
+void StreamFollower::waitFor(double time, double now) noexcept {
+    const double earliest =
+        now - options_.cycle.count() * (options_.playout_delay_cycles - 1) - time;
+    offset_ = std::max(offset_, earliest);
+}
+
+double StreamFollower::longestBridge() const noexcept {
+    return withoutDelay() ? options_.extrapolated_cycles * options_.cycle.count() : 0.0;
+}
+
+bool StreamFollower::standing() const noexcept {
+    if (knot_count_ < kStartAndTwo) {
+        return true;
+    }
+    for (std::size_t i = 0; i < now_.position.size(); ++i) {
+        if (std::abs(slope(0, i)) > options_.standing_speed) {
+            return false;
+        }
+    }
+    return true;
+}
+
+JointVector StreamFollower::bridged(double time) const noexcept {
+    JointVector position = knot(0).position;
+    const double ahead = time - knot(0).time;
+    if (ahead > longestBridge() + kTimeRounding || knot_count_ < kStartAndTwo) {
+        return position;
+    }
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        const double there = position[i] + goingOn(i, ahead);
+        position[i] = std::clamp(there, limits_[i].lower, limits_[i].upper);
+    }
+    return position;
+}
+
+double StreamFollower::goingOn(std::size_t axis, double ahead) const noexcept {
+    const double last = slope(0, axis);
+    if (knot_count_ < kStartAndTwo + 1) {
+        return last * ahead;
+    }
+    const double step = knot(0).time - knot(1).time;
+    const double step_before = knot(1).time - knot(2).time;
+    const double before = (knot(1).position[axis] - knot(2).position[axis]) / step_before;
+    const double acceleration = std::clamp(2 * (last - before) / (step + step_before),
+                                           -limits_[axis].acceleration, limits_[axis].acceleration);
+    const double velocity = last + acceleration * step / 2;
+    if (velocity * last <= 0) {
+        return 0.0;
+    }
+    const double time =
+        velocity * acceleration < 0 ? std::min(ahead, -velocity / acceleration) : ahead;
+    return (velocity + acceleration * time / 2) * time;
 }
 
 double StreamFollower::slope(std::size_t age, std::size_t axis) const noexcept {
@@ -145,7 +223,7 @@ double StreamFollower::slope(std::size_t age, std::size_t axis) const noexcept {
 
 JointVector StreamFollower::play(double time) const noexcept {
     if (time >= knot(0).time || knot_count_ < 2) {
-        return knot(0).position;
+        return bridged(time);
     }
     std::size_t age = 1;
     while (age + 1 < knot_count_ && knot(age).time > time) {
@@ -165,41 +243,59 @@ JointVector StreamFollower::play(double time) const noexcept {
     return position;
 }
 
+TargetStates StreamFollower::statesOf(const Targets& targets, std::size_t axis) const noexcept {
+    const double cycle = options_.cycle.count();
+    const auto velocity = [&](std::size_t age) {
+        return (targets[age][axis] - targets[age + 1][axis]) / cycle;
+    };
+    const auto state = [&](std::size_t age) {
+        return ScalarState{targets[age][axis], velocity(age),
+                           (velocity(age) - velocity(age + 1)) / cycle};
+    };
+    const double acceleration_change = velocity(0) - 2 * velocity(1) + velocity(2);
+    if (!withoutDelay()) {
+        return {state(1), state(0)};
+    }
+    if (std::abs(acceleration_change) <= (1 + kTimeRounding) * limits_[axis].jerk * cycle * cycle) {
+        return {state(1), state(0), kSlowestDecay};
+    }
+    const double mean = (velocity(0) + velocity(1) + velocity(2)) / 3;
+    const double now = targets[0][axis];
+    return {{now - mean * cycle, mean, 0}, {now, mean, 0}, kSlowestDecay};
+}
+
 void StreamFollower::follow(const Targets& targets) noexcept {
     const double cycle = options_.cycle.count();
     for (std::size_t i = 0; i < now_.position.size(); ++i) {
-        const auto velocity = [&](std::size_t age) {
-            return (targets[age][i] - targets[age + 1][i]) / cycle;
-        };
-        const auto state = [&](std::size_t age) {
-            return ScalarState{targets[age][i], velocity(age),
-                               (velocity(age) - velocity(age + 1)) / cycle};
-        };
-        const ScalarState next =
-            followTarget(axisOf(now_, i), {state(1), state(0)}, limits_[i], cycle);
-        now_.position[i] = next.position;
-        now_.velocity[i] = next.velocity;
-        now_.acceleration[i] = next.acceleration;
+        take(i, followTarget(axisOf(now_, i), statesOf(targets, i), limits_[i], cycle));
     }
+}
+
+void StreamFollower::take(std::size_t axis, const ScalarState& next) noexcept {
+    const JointLimits& limits = limits_[axis];
+    now_.position[axis] = std::clamp(next.position, limits.lower, limits.upper);  // of rounding
+    now_.velocity[axis] = next.velocity;
+    now_.acceleration[axis] = next.acceleration;
 }
 
 void StreamFollower::startBraking() noexcept {
     const double cycle = options_.cycle.count();
     for (std::size_t i = 0; i < now_.position.size(); ++i) {
-        brakes_[i] = brakeProfile(axisOf(now_, i), limits_[i], cycle);
+        brakes_[i] = {brakeProfile(axisOf(now_, i), limits_[i], cycle), 0};
     }
-    brake_cycles_ = 0;
 }
 
 void StreamFollower::brake() noexcept {
     const double cycle = options_.cycle.count();
-    ++brake_cycles_;
     for (std::size_t i = 0; i < now_.position.size(); ++i) {
-        const double position = brakes_[i].at(brake_cycles_ * cycle).position;
-        const double velocity = (position - now_.position[i]) / cycle;
-        now_.acceleration[i] = (velocity - now_.velocity[i]) / cycle;
-        now_.velocity[i] = velocity;
-        now_.position[i] = position;
+        auto& brake = brakes_[i];
+        ++brake.cycles;
+        const double position = brake.profile.at(brake.cycles * cycle).position;
+        const ScalarState next = stepTo(position, axisOf(now_, i), limits_[i], cycle);
+        take(i, next);
+        if (next.position != position) {  // the finite differences do not allow it
+            brake = {brakeProfile(next, limits_[i], cycle), 0};
+        }
     }
 }
 
@@ -211,7 +307,9 @@ void StreamFollower::stop() noexcept {
 }
 
 SetPoint StreamFollower::next(Seconds now) noexcept {
-    if (state_ == State::following) {
+    if (state_ == State::following && withoutDelay()) {
+        playNewest();
+    } else if (state_ == State::following) {
         playAt(now.count());
     } else if (state_ != State::waiting) {
         brake();
@@ -230,7 +328,11 @@ void StreamFollower::playAt(double now) noexcept {
         follow({play(time), play(time - cycle), play(time - 2 * cycle), play(time - 3 * cycle)});
         return;
     }
-    // Nothing to play: brake at once, go on if the stream comes back in time.
+    brakeForSilence();
+}
+
+/// Nothing to play: brakes at once, goes on if the stream comes back in time.
+void StreamFollower::brakeForSilence() noexcept {
     if (silent_cycles_ == 0) {
         startBraking();
     }
@@ -238,6 +340,44 @@ void StreamFollower::playAt(double now) noexcept {
     ++silent_cycles_;
     state_ = silent_cycles_ >= options_.stale_cycles ? State::stopping : state_;
     brake();
+}
+
+void StreamFollower::playNewest() noexcept {
+    const double cycle = options_.cycle.count();
+    double time = played_ + cycle;
+    if (std::exchange(fresh_, false)) {
+        const double ahead = knot(0).time - time;
+        const bool lost = ahead > kMostAhead * cycle || -ahead > longestBridge() + cycle;
+        played_ += lost ? ahead : 0.0;
+        time += lost ? ahead : std::clamp(kPull * ahead, -kMostPull * cycle, kMostPull * cycle);
+    }
+    correctTargets();
+    played_ = time;
+    std::copy_backward(targets_.begin(), targets_.end() - 1, targets_.end());
+    targets_[0] = play(time);
+    if (time <= knot(0).time + longestBridge() + kTimeRounding || standing()) {
+        silent_cycles_ = 0;
+        follow(targets_);
+        return;
+    }
+    brakeForSilence();
+}
+
+/// What the last cycle played is known better now, or was of another time. Where that is as much as
+/// a good part of a cycle's way, the targets were elsewhere but went the same way; else it is
+/// noise.
+void StreamFollower::correctTargets() noexcept {
+    const double cycle = options_.cycle.count();
+    const JointVector known = play(played_);
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        const double off = known[i] - targets_[0][i];
+        const double way = std::abs(targets_[0][i] - targets_[3][i]) / 3;
+        if (std::abs(off) > kLeap * way + limits_[i].jerk * cycle * cycle * cycle) {
+            for (JointVector& target : targets_) {
+                target[i] += off;
+            }
+        }
+    }
 }
 
 bool StreamFollower::atRest() const noexcept {

@@ -210,7 +210,7 @@ TEST_F(StreamFollowerTest, SmoothsIrregularArrival) {
 
 TEST_F(StreamFollowerTest, RefusesOptionsThatMakeNoSense) {
     EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0)}, model_.home()));
-    EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01), 0}, model_.home()));
+    EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01), -1}, model_.home()));
     EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01)}, JointVector(7)));
 }
 

@@ -21,6 +21,7 @@ using skill::Value;
 namespace {
 
 constexpr std::string_view kTarget = "TargetJointPosition";
+constexpr double kLongestPlayOutDelay = 0.5;  // [s]
 
 Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double>& position) {
     for (std::size_t axis = 0; axis < position.size(); ++axis) {
@@ -111,7 +112,7 @@ protected:
         }
         auto source = StreamSource::create(
             model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position),
-                     options_.longest_silence});
+                     options_.longest_silence, given.play_out_delay});
         if (!source) {
             return fail(std::move(source.error()));
         }
@@ -120,12 +121,18 @@ protected:
         }
         return std::make_unique<StreamBody>(
             arm_,
-            StreamBody::Stream{std::move(*source), StreamTimes(clock_, arm_.info().cycle),
+            StreamBody::Stream{std::move(*source),
+                               StreamTimes(clock_, arm_.info().cycle, arrivalsFor(given)),
                                given.target_joint_position},
             toolDistance());
     }
 
 private:
+    static StreamTimes::Arrivals arrivalsFor(const PositionStreamParameters& given) noexcept {
+        return given.play_out_delay == 0.0 ? StreamTimes::Arrivals::rhythm
+                                           : StreamTimes::Arrivals::each;
+    }
+
     static Result<void> checkBegins(const StreamSource& source,
                                     const PositionStreamParameters& given) {
         if (!given.target_joint_position) {
@@ -163,6 +170,13 @@ skill::FieldList<PositionStreamParameters> positionStreamFields(const RobotModel
                      .extra_check = [&model](const Value& value) {
                          return checkWithinLimits(model, std::get<std::vector<double>>(value));
                      }});
+    fields.add(&PositionStreamParameters::play_out_delay,
+               Field{.name = "PlayOutDelay",
+                     .description = "From the time a set-point is meant for until the arm is sent "
+                                    "it; not set: 20 ms, at least three cycles; 0: at once",
+                     .unit = skill::kSecond,
+                     .range = skill::Range{0.0, kLongestPlayOutDelay},
+                     .place = skill::Place::options});
     return fields;
 }
 

@@ -25,25 +25,18 @@ constexpr int kLostAfterCycles = 6;
 constexpr double kFinishedAfter = 0.5;
 // How long a stream may take to begin [s].
 constexpr double kLongestWait = 10.0;
-// The delay of the play-out: what the network may be late [s], and at least so many cycles.
-constexpr double kPlayOutDelay = 0.02;
-constexpr int kPlayOutCycles = 3;
+// What the network may be late: the delay of the play-out unless it is told, and the time that a
+// stream without delay goes on at its last velocity [s]; at least so many cycles.
+constexpr double kLate = 0.02;
+constexpr int kLateCycles = 3;
 
-int playOutCycles(double cycle) noexcept {
-    return std::max(kPlayOutCycles, static_cast<int>(std::ceil(kPlayOutDelay / cycle)));
+int cyclesIn(double time, double cycle) noexcept {
+    constexpr double rounding = 1e-6;
+    return static_cast<int>(std::ceil(time / cycle - rounding));
 }
 
 // Room for following a stream that was planned with the axes' full jerk.
 constexpr double kJerkFactor = 4.0;
-
-motion::StreamOptions followerOptions(double cycle) {
-    motion::StreamOptions options;
-    options.cycle = motion::Seconds(cycle);
-    options.playout_delay_cycles = playOutCycles(cycle);
-    options.jerk_factor = kJerkFactor;
-    options.stale_cycles = std::numeric_limits<int>::max();  // silence is judged here
-    return options;
-}
 
 double fastestAxis(const StreamedPosition& from, const StreamedPosition& to) noexcept {
     const double time = (to.intended_time - from.intended_time).count();
@@ -52,9 +45,22 @@ double fastestAxis(const StreamedPosition& from, const StreamedPosition& to) noe
 
 }  // namespace
 
+motion::StreamOptions StreamSource::followerOptions(const Setup& setup) noexcept {
+    const int late = std::max(kLateCycles, cyclesIn(kLate, setup.cycle));
+    motion::StreamOptions options;
+    options.cycle = motion::Seconds(setup.cycle);
+    options.playout_delay_cycles =
+        setup.play_out_delay ? cyclesIn(*setup.play_out_delay, setup.cycle) : late;
+    options.extrapolated_cycles = late;
+    options.standing_speed = kStanding;
+    options.jerk_factor = kJerkFactor;
+    options.stale_cycles = std::numeric_limits<int>::max();  // silence is judged here
+    return options;
+}
+
 Result<std::shared_ptr<StreamSource>> StreamSource::create(const motion::RobotModel& model,
                                                            const Setup& setup) {
-    auto follower = StreamFollower::create(model, followerOptions(setup.cycle), setup.start);
+    auto follower = StreamFollower::create(model, followerOptions(setup), setup.start);
     if (!follower) {
         return fail(std::move(follower.error()));
     }
@@ -63,7 +69,11 @@ Result<std::shared_ptr<StreamSource>> StreamSource::create(const motion::RobotMo
 
 StreamSource::StreamSource(const motion::RobotModel& model, const Setup& setup,
                            const StreamFollower& follower)
-    : model_(model), setup_(setup), follower_(follower), commanded_(toArray(setup.start)) {}
+    : model_(model),
+      setup_(setup),
+      play_out_cycles_(followerOptions(setup).playout_delay_cycles),
+      follower_(follower),
+      commanded_(toArray(setup.start)) {}
 
 Result<void> StreamSource::checkFirst(const motion::JointVector& position) const {
     auto trial = follower_;
@@ -75,7 +85,7 @@ Result<void> StreamSource::checkFirst(const motion::JointVector& position) const
 
 void StreamSource::goOnFrom(const device::JointArray& from) {
     before_rest_ = results();
-    auto follower = StreamFollower::create(model_, followerOptions(setup_.cycle), toVector(from));
+    auto follower = StreamFollower::create(model_, followerOptions(setup_), toVector(from));
     if (follower) {
         follower_ = *follower;
     }
@@ -113,10 +123,21 @@ device::SetPointSource::Next StreamSource::next(const device::ArmState& state,
 
 void StreamSource::takeSetPoints() noexcept {
     silence_ += setup_.cycle;
+    if (!last_) {
+        dropAllButNewest();
+    }
     while (const auto set_point = queue_.tryPop()) {
         if (end_ == End::none) {
             take(*set_point);
         }
+    }
+}
+
+/// While the arm is made ready to follow, set-points wait. A stream that began with the oldest of
+/// them would stay that late.
+void StreamSource::dropAllButNewest() noexcept {
+    for (auto waiting = queue_.size(); waiting > 1; --waiting) {
+        static_cast<void>(queue_.tryPop());
     }
 }
 
@@ -158,8 +179,12 @@ void StreamSource::watchSilence() noexcept {
 
 /// Repeats the last set-point of a standing stream, so that the arm gets there however far it is
 /// behind. As late as can be without delaying what follows: a newer set-point may be on its way.
+/// Without delay the follower holds it by itself.
 void StreamSource::hold() noexcept {
-    const double delay = (playOutCycles(setup_.cycle) - 1) * setup_.cycle;
+    if (play_out_cycles_ == 0) {
+        return;
+    }
+    const double delay = (play_out_cycles_ - 1) * setup_.cycle;
     const auto time = last_->intended_time + motion::Seconds(silence_ - delay);
     const motion::Seconds now(static_cast<double>(cycles_) * setup_.cycle);
     static_cast<void>(follower_.accept(last_->position, time, now));  // refused when it brakes

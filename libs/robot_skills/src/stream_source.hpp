@@ -17,6 +17,7 @@ public:
         double cycle = 0.0;         ///< of the arm [s]
         motion::JointVector start;  ///< where the arm is commanded to stand [rad]
         double longest_silence = PositionStreamOptions{}.longest_silence;  ///< [s]
+        std::optional<double> play_out_delay{};  ///< [s], PositionStreamParameters
     };
 
     /// \param model must outlive the source
@@ -44,16 +45,19 @@ private:
     void tellDone(const skill::Execution& tell) override;
 
     void takeSetPoints() noexcept;
+    void dropAllButNewest() noexcept;
     void take(const StreamedPosition& set_point) noexcept;
     void watchSilence() noexcept;
     /// Silence of a moving stream that ends it [s].
     double longestSilence() const noexcept;
+    static motion::StreamOptions followerOptions(const Setup& setup) noexcept;
     void hold() noexcept;
     void endBecause(End end) noexcept;
     PositionStreamResults results() const noexcept;
 
     const motion::RobotModel& model_;
     const Setup setup_;
+    const int play_out_cycles_;
     motion::StreamFollower follower_;
     StreamQueue queue_;
     Settling settling_;

@@ -39,9 +39,12 @@ TEST(MoveCycle, DoesNotAllocateOnPtpAndHalt) {
     EXPECT_EQ(bench.program(kJointPtp).state(), State::halted);
 }
 
-TEST(StreamCycle, DoesNotAllocate) {
+class StreamCycle : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Delays, StreamCycle, ::testing::Values(0.0, 0.024));
+
+TEST_P(StreamCycle, DoesNotAllocate) {
     Bench bench;
-    ASSERT_TRUE(bench.start(kPositionStream, {}));
+    ASSERT_TRUE(bench.start(kPositionStream, {{"PlayOutDelay", GetParam()}}));
     const auto joints = bench.commanded();
     for (int i = 0; i < 100; ++i) {
         std::vector<double> target(joints.begin(), joints.end());

@@ -64,6 +64,23 @@ TEST_F(Stream, FollowsItsClientAFewCyclesLater) {
     EXPECT_EQ(bench.arm().state().safety, device::SafetyState::normal);
 }
 
+TEST_F(Stream, IsNoLaterForSetPointsThatWaitedUntilTheArmWasReady) {
+    for (; sent < 100; ++sent) {  // a slow part, in which the arm is not asked for set-points
+        auto joints = home;
+        joints[0] += 1e-5 * sent;
+        ASSERT_TRUE(write(joints));
+        bench.executor().advance(kCycle);
+    }
+    for (; sent < 400; ++sent) {
+        auto joints = home;
+        joints[0] += 1e-5 * sent;
+        ASSERT_TRUE(write(joints));
+        bench.step();
+        ASSERT_EQ(program.state(), State::running) << program.reasonText();
+    }
+    EXPECT_NEAR(bench.commanded()[0] - home[0], 1e-5 * (sent - 1 - 3), 1e-5);
+}
+
 TEST_F(Stream, HoldsStillUntilTheFirstSetPoint) {
     const auto before = bench.commanded();
     bench.steps(100);
@@ -278,10 +295,12 @@ TEST(StreamTimes, GiveTheSendersTimeSinceTheFirst) {
 
 TEST(StreamQueue, HoldsSoManyAndNoMore) {
     StreamQueue queue;
+    EXPECT_EQ(queue.size(), 0U);
     for (std::size_t i = 0; i < StreamQueue::kCapacity; ++i) {
         ASSERT_TRUE(queue.tryPush({{static_cast<double>(i)}, {}}));
     }
     EXPECT_FALSE(queue.tryPush({}));
+    EXPECT_EQ(queue.size(), StreamQueue::kCapacity);
     EXPECT_EQ(queue.tryPop()->position[0], 0.0);
     EXPECT_TRUE(queue.tryPush({}));
 }

@@ -15,6 +15,9 @@ namespace metier::robot_skills {
 
 struct PositionStreamParameters {
     std::optional<std::vector<double>> target_joint_position{};  ///< [rad]; live
+    /// From the time a set-point is meant for until the arm is sent it [s], rounded up to cycles.
+    /// Not set: 20 ms, but at least three cycles. 0: every cycle takes the newest set-point.
+    std::optional<double> play_out_delay{};
 };
 
 struct PositionStreamOptions {
@@ -37,7 +40,9 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 /// Makes a skill that follows the joint positions that its client writes while it runs.
 ///
 /// The arm plays the stream a few cycles after the times it was meant for (motion::StreamFollower),
-/// within the limits of its axes. It ends
+/// within the limits of its axes. With PlayOutDelay 0 it is sent the newest set-point at once;
+/// while set-points are late it goes on as before for 20 ms, but at least three
+/// cycles, and brakes then. A stream ends
 /// - by Halt or Suspend: brakes. The number of set-points is the IntermediateResult. After Resume
 ///   the stream begins anew where the arm stands;
 /// - by silence while the stream stands, that is its last two set-points differ by less than

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "metier/base/clock.hpp"
@@ -47,6 +48,11 @@ public:
         return position;
     }
 
+    /// How many wait. Reader only.
+    std::size_t size() const noexcept {
+        return written_.load(std::memory_order_acquire) - read_.load(std::memory_order_relaxed);
+    }
+
 private:
     std::array<StreamedPosition, kCapacity> slots_{};
     std::atomic<std::size_t> written_{0};
@@ -56,14 +62,22 @@ private:
 /// When streamed set-points are meant for: by the sender's clock where it tells, else by arrival.
 ///
 /// Set-points without a time that arrive together are spread by half a cycle of the arm, so that a
-/// client that sends one per cycle is followed although the network bunches them.
+/// client that sends one per cycle is followed although the network bunches them. Where nothing
+/// evens them out later, the rhythm of their arrivals is taken instead of each arrival.
 /// Threading: the owner's thread.
 class StreamTimes {
 public:
+    enum class Arrivals : std::uint8_t { each, rhythm };
+
     /// \param clock must outlive this
     /// \param cycle of the arm
-    StreamTimes(const Clock& clock, std::chrono::nanoseconds cycle)
-        : clock_(clock), least_step_(cycle / 2) {}
+    StreamTimes(const Clock& clock, std::chrono::nanoseconds cycle,
+                Arrivals arrivals = Arrivals::each)
+        : clock_(clock),
+          cycle_(cycle),
+          least_step_(cycle / 2),
+          arrivals_(arrivals),
+          interval_(cycle) {}
 
     /// A new stream begins with the next set-point.
     void restart() noexcept;
@@ -72,11 +86,18 @@ public:
     motion::Seconds next(std::optional<UtcTime> meant_for) noexcept;
 
 private:
+    /// When the set-point would be expected, a little corrected by when it came.
+    std::chrono::nanoseconds inRhythm(std::chrono::nanoseconds arrival) noexcept;
+
     const Clock& clock_;
+    const std::chrono::nanoseconds cycle_;
     const std::chrono::nanoseconds least_step_;
+    const Arrivals arrivals_;
+    std::chrono::nanoseconds interval_;  ///< between two set-points, if in rhythm
     std::chrono::nanoseconds last_{};
     std::optional<UtcTime> sender_start_;
     std::optional<SteadyTime> arrival_start_;
+    std::chrono::nanoseconds last_arrival_{};
 };
 
 }  // namespace metier::robot_skills
