@@ -19,6 +19,8 @@ using namespace std::chrono_literals;
 constexpr auto kVersionTime = 3s;
 // Without any message for so long another connection is tried.
 constexpr auto kDeafTime = 3s;
+// No axis turns further, no jaws open wider: what says so is garbage [rad], [m].
+constexpr double kLargestPosition = 6.3;
 constexpr std::string_view kVersionCall = "metier-version";
 
 using Topic = std::pair<std::string_view, std::string_view>;
@@ -97,7 +99,7 @@ bool Session::valid(const JointStates& states) const noexcept {
         return false;
     }
     for (std::size_t joint = 0; joint < states.count; ++joint) {
-        if (!std::isfinite(states.joints[joint].position)) {
+        if (!(std::abs(states.joints[joint].position) <= kLargestPosition)) {
             return false;
         }
     }

@@ -402,6 +402,17 @@ TEST(Session, PositionsThatAreNullAreNoJointStates) {
     EXPECT_EQ(bench.safety(), SafetyState::disconnected);
 }
 
+TEST(Session, PositionsThatNoJointCanHaveAreNoJointStates) {
+    Bench bench;
+    bench.start();
+    const auto before = bench.core.state().position[1];
+    bench.robot.joints[1] = 1.2e3;  // [deg], of which a changed byte makes 1.203
+    bench.run(5);
+    EXPECT_EQ(bench.core.state().position[1], before);
+    bench.run(200);
+    EXPECT_EQ(bench.safety(), SafetyState::disconnected);
+}
+
 TEST(Session, ARobotThatSaysNothingIsLeft) {
     Bench bench;
     bench.connect();

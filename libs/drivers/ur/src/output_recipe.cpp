@@ -14,6 +14,9 @@ namespace metier::ur_driver::rtde {
 namespace {
 
 constexpr std::string_view kNotFound = "NOT_FOUND";
+// No arm is there or as fast, not even with a wrist that turns without end.
+constexpr double kLargestPosition = 1000.0;  // [rad]
+constexpr double kLargestVelocity = 100.0;   // [rad/s]
 
 std::size_t sizeOf(std::string_view type) noexcept {
     return type == "VECTOR6D" ? 48 : type == "DOUBLE" ? 8 : 4;
@@ -39,6 +42,17 @@ void read(ByteReader& reader, Word& value) noexcept {
     } else {
         value = reader.number<Word>();
     }
+}
+
+bool allWithin(const Joints& values, double limit) noexcept {
+    return std::all_of(values.begin(), values.end(),
+                       [limit](double v) { return std::abs(v) <= limit; });
+}
+
+bool isPossible(const ControllerState& state) noexcept {
+    return allWithin(state.target_q, kLargestPosition) &&
+           allWithin(state.actual_q, kLargestPosition) &&
+           allWithin(state.actual_qd, kLargestVelocity);
 }
 
 bool isFinite(const ControllerState& state) noexcept {
@@ -152,6 +166,10 @@ Result<ControllerState> OutputRecipe::decode(std::span<const std::byte> payload)
     }
     if (!isFinite(state)) {
         return fail(Errc::invalid_argument, "RTDE data with a value that is not finite");
+    }
+    if (!isPossible(state)) {
+        return fail(Errc::invalid_argument,
+                    "RTDE data with a position or velocity that no arm has");
     }
     return state;
 }

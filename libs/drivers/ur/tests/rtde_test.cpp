@@ -190,6 +190,11 @@ TEST(OutputRecipe, RefusesDataOfAnotherRecipeOrSizeOrThatIsNoNumber) {
     EXPECT_THAT(recipe.decode(dataOf(std::nan(""))).error().message, HasSubstr("not finite"));
 }
 
+TEST(OutputRecipe, RefusesJointsThatNoArmCanHave) {
+    EXPECT_THAT(agreed().decode(dataOf(1e50)).error().message, HasSubstr("no arm has"));
+    EXPECT_TRUE(agreed().decode(dataOf(-20.0)));
+}
+
 TEST(OutputRecipe, AsksForSafetyModeWhereSafetyStatusIsUnknown) {
     OutputRecipe recipe(24);
     auto reply = allFound(recipe, 0);
