@@ -241,6 +241,19 @@ void Robot::protectiveStop(const ArmViolation& cause) {
         now(), {cause.code, 0, ErrorCode::Level::violation, "Protective stop: " + cause.text}));
 }
 
+void Robot::safeguardStop() {
+    if (modes_->mayRun()) {
+        arm_.brake();
+        modes_->safeguardStop();
+        programs_->holdForSafety();
+    }
+}
+
+void Robot::violateSafety() {
+    stopEverything();
+    modes_->violation();
+}
+
 void Robot::exceedLimit(std::size_t axis) {
     protectiveStop(arm_.beyondLimit(axis));
 }

@@ -27,8 +27,10 @@ constexpr std::uint32_t bit(unsigned number) {
 // Bits of safety_status_bits.
 constexpr std::uint32_t kNormal = bit(0);
 constexpr std::uint32_t kProtective = bit(2);
+constexpr std::uint32_t kSafeguard = bit(4);
 constexpr std::uint32_t kRobotEmergency = bit(6);
 constexpr std::uint32_t kEmergency = bit(7);
+constexpr std::uint32_t kViolation = bit(8);
 constexpr std::uint32_t kStopped = bit(10);
 
 }  // namespace
@@ -58,6 +60,11 @@ void RobotModes::step(double seconds, bool standing) {
         release_brakes_ = false;
         enter(RobotMode::running);
     }
+}
+
+void RobotModes::enter(SafetyMode mode) {
+    safety_ = mode;
+    in_safety_ = 0.0;
 }
 
 Result<void> RobotModes::refuseUnlessSafe() const {
@@ -101,43 +108,59 @@ Result<void> RobotModes::unlock() {
                     "Cannot unlock protective stop until 5s after occurrence. "
                     "Always inspect cause of protective stop before unlocking");
     }
-    safety_ = SafetyMode::normal;
-    in_safety_ = 0.0;
+    enter(SafetyMode::normal);
     return {};
 }
 
 void RobotModes::restartSafety() {
     if (!emergencyStopped()) {
-        safety_ = SafetyMode::normal;
-        in_safety_ = 0.0;
+        enter(SafetyMode::normal);
     }
     powerOff();
 }
 
 void RobotModes::protectiveStop() {
-    if (safety_ == SafetyMode::normal && robot_ == RobotMode::running) {
-        safety_ = SafetyMode::protective_stop;
-        in_safety_ = 0.0;
+    if (mayRun()) {
+        enter(SafetyMode::protective_stop);
     }
 }
 
 void RobotModes::emergencyStop() {
-    safety_ = SafetyMode::robot_emergency_stop;
-    in_safety_ = 0.0;
+    enter(SafetyMode::robot_emergency_stop);
     powerOff();
 }
 
 void RobotModes::releaseEmergencyStop() {
     if (emergencyStopped()) {
-        safety_ = SafetyMode::normal;
-        in_safety_ = 0.0;
+        enter(SafetyMode::normal);
     }
+}
+
+void RobotModes::safeguardStop() {
+    if (mayRun()) {
+        enter(SafetyMode::safeguard_stop);
+    }
+}
+
+void RobotModes::closeSafeguard() {
+    if (safety_ == SafetyMode::safeguard_stop) {
+        enter(SafetyMode::normal);
+    }
+}
+
+void RobotModes::violation() {
+    enter(SafetyMode::violation);
+    powerOff();
 }
 
 std::uint32_t RobotModes::safetyStatusBits() const {
     switch (safety_) {
         case SafetyMode::protective_stop:
             return kProtective | kStopped;
+        case SafetyMode::safeguard_stop:
+            return kSafeguard | kStopped;
+        case SafetyMode::violation:
+            return kViolation | kStopped;
         case SafetyMode::robot_emergency_stop:
             return kRobotEmergency | kEmergency | kStopped;
         default:

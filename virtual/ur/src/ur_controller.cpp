@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
 
+#include "accidents.hpp"
 #include "metier/urscript/script_splitter.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
@@ -34,9 +34,6 @@ constexpr std::size_t kLongestLine = 4096;
 constexpr double kPrimaryRate = 10.0;  // [Hz]
 constexpr std::array kRuntimeStates{"stopping", "stopped", "playing",
                                     "pausing",  "paused",  "resuming"};
-
-// Of the maker's list of errors (believed).
-constexpr int kCollision = 157;
 
 void stream(TcpServer& server, const Bytes& package) {
     server.forEach([&](TcpPeer& peer) {
@@ -255,41 +252,21 @@ void UrController::cycle() {
 }
 
 std::vector<InjectionHelp> UrController::injections() const {
-    return {{"emergency-stop", "presses the emergency stop; the arm brakes and loses power"},
-            {"release-emergency-stop", "pulls it out again; the arm stays without power"},
-            {"protective-stop", "stops the arm as after a collision"},
-            {"limit", "axis 1 to 6 leaves its range; the arm is stopped"},
-            {"local-control", "someone switches an e-Series arm to local control"},
-            {"remote-control", "and back"},
-            {"program-stop", "someone stops the program at the panel"}};
+    std::vector<InjectionHelp> help;
+    for (const auto& accident : accidents()) {
+        help.push_back({accident.name, accident.help});
+    }
+    return help;
 }
 
 Result<void> UrController::inject(const Injection& injection) {
-    const auto& name = injection.name;
-    if (name == "emergency-stop") {
-        robot_.emergencyStop();
-    } else if (name == "release-emergency-stop") {
-        robot_.releaseEmergencyStop();
-    } else if (name == "protective-stop") {
-        robot_.protectiveStop({kCollision, "collision detected"});
-    } else if (name == "limit") {
-        std::size_t axis = 1;
-        const auto& text = injection.value;
-        const auto parsed = std::from_chars(text.data(), text.data() + text.size(), axis);
-        const bool whole = parsed.ptr == text.data() + text.size();
-        if ((!text.empty() && !whole) || axis < 1 || axis > kAxes) {
-            return fail(Errc::invalid_argument,
-                        fmt::format("limit: axis \"{}\" is not within 1 to 6", text));
+    for (const auto& accident : accidents()) {
+        if (injection.name == accident.name) {
+            return accident.happen(robot_, injection.value);
         }
-        robot_.exceedLimit(axis - 1);
-    } else if (name == "local-control" || name == "remote-control") {
-        robot_.setControl(name == "local-control" ? Control::local : Control::remote);
-    } else if (name == "program-stop") {
-        robot_.programs().stop();
-    } else {
-        return fail(Errc::not_found, fmt::format("a virtual UR has no injection \"{}\"", name));
     }
-    return {};
+    return fail(Errc::not_found,
+                fmt::format("a virtual UR has no injection \"{}\"", injection.name));
 }
 
 nlohmann::ordered_json UrController::state() const {

@@ -87,6 +87,37 @@ TEST(RobotModes, AnEmergencyStopTakesThePowerAndHasToBeReleasedFirst) {
     EXPECT_TRUE(modes.mayRun());
 }
 
+TEST(RobotModes, AnOpenSafeguardStopsUntilItIsClosed) {
+    RobotModes modes(kTimes, PowerAtStart::running);
+    modes.closeSafeguard();
+    EXPECT_TRUE(modes.mayRun());
+    modes.safeguardStop();
+    EXPECT_EQ(modes.safetyMode(), SafetyMode::safeguard_stop);
+    EXPECT_EQ(modes.safetyStatusBits(), 1U << 4U | 1U << 10U);
+    pass(modes, 10.0);
+    EXPECT_FALSE(modes.mayRun());
+    EXPECT_FALSE(modes.unlock());
+    EXPECT_EQ(modes.robotMode(), RobotMode::running) << "the power stays";
+    modes.closeSafeguard();
+    EXPECT_TRUE(modes.mayRun());
+}
+
+TEST(RobotModes, AViolationTakesThePowerUntilTheSafetySystemIsRestarted) {
+    RobotModes modes(kTimes, PowerAtStart::running);
+    modes.violation();
+    pass(modes, 0.1);
+    EXPECT_EQ(modes.safetyStatusBits(), 1U << 8U | 1U << 10U);
+    EXPECT_EQ(modes.robotMode(), RobotMode::power_off);
+    EXPECT_FALSE(modes.powerOn());
+    modes.closeSafeguard();
+    modes.releaseEmergencyStop();
+    EXPECT_EQ(modes.safetyMode(), SafetyMode::violation);
+    modes.restartSafety();
+    EXPECT_TRUE(modes.releaseBrakes());
+    pass(modes, 2.0);
+    EXPECT_TRUE(modes.mayRun());
+}
+
 TEST(RobotModes, ARestartOfTheSafetySystemEndsAProtectiveStopWithoutPower) {
     RobotModes modes(kTimes, PowerAtStart::running);
     modes.protectiveStop();

@@ -343,6 +343,25 @@ TEST(Robot, AJointBeyondItsLimitIsAViolation) {
     EXPECT_TRUE(table.wasTold(kError, "axis 3: position"));
 }
 
+TEST(Robot, AnOpenSafeguardPausesTheProgramAndAViolationEndsIt) {
+    RobotOnTable table;
+    table.robot.takeScript("def p():\n  sleep(100)\nend\n");
+    table.cycles(2);
+    table.robot.safeguardStop();
+    table.cycles(100);
+    EXPECT_EQ(table.robot.state().safety_mode, SafetyMode::safeguard_stop);
+    EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::paused);
+    table.robot.closeSafeguard();
+    ASSERT_TRUE(table.robot.play());
+    table.cycles(100);
+    EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::playing);
+    table.robot.violateSafety();
+    table.cycles(100);
+    EXPECT_EQ(table.robot.state().safety_mode, SafetyMode::violation);
+    EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::stopped);
+    EXPECT_EQ(table.robot.state().robot_mode, RobotMode::power_off);
+}
+
 TEST(Robot, AMoveToUnreachablePoseIsARuntimeException) {
     RobotOnTable table;
     table.robot.takeScript("def p():\n  movel(p[3, 0, 0, 0, 0, 0])\nend\n");

@@ -67,6 +67,11 @@ public:
     void emergencyStop();
     void releaseEmergencyStop();
     void protectiveStop(const ArmViolation& cause);
+    /// Someone opens or closes the safeguard: the program is paused.
+    void safeguardStop();
+    void closeSafeguard() { modes_->closeSafeguard(); }
+    /// The safety system finds something that must not be: power goes off.
+    void violateSafety();
     /// \param axis from 0
     void exceedLimit(std::size_t axis);
     void setControl(Control control) { control_mode_ = control; }

@@ -39,6 +39,10 @@ public:
     void protectiveStop();
     void emergencyStop();
     void releaseEmergencyStop();
+    void safeguardStop();
+    void closeSafeguard();
+    /// Until the safety system is restarted.
+    void violation();
 
     RobotMode robotMode() const { return robot_; }
     SafetyMode safetyMode() const { return safety_; }
@@ -51,6 +55,7 @@ public:
 
 private:
     Result<void> refuseUnlessSafe() const;
+    void enter(SafetyMode mode);
 
     const ModeTimes times_;
     RobotMode robot_;

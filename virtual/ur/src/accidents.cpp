@@ -1,0 +1,63 @@
+#include "accidents.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+
+namespace metier::virtual_ur {
+
+namespace {
+
+// Of the maker's list of errors (believed).
+constexpr int kCollision = 157;
+
+/// One that cannot be refused.
+template <auto Happen>
+Result<void> always(Robot& robot, const std::string& /*value*/) {
+    Happen(robot);
+    return {};
+}
+
+Result<void> exceedLimit(Robot& robot, const std::string& value) {
+    std::size_t axis = 1;
+    const auto parsed = std::from_chars(value.data(), value.data() + value.size(), axis);
+    const bool whole = parsed.ptr == value.data() + value.size();
+    if ((!value.empty() && !whole) || axis < 1 || axis > kAxes) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("limit: axis \"{}\" is not within 1 to 6", value));
+    }
+    robot.exceedLimit(axis - 1);
+    return {};
+}
+
+constexpr std::array kAccidents{
+    Accident{"emergency-stop", "presses the emergency stop; the arm brakes and loses power",
+             always<[](Robot& robot) { robot.emergencyStop(); }>},
+    Accident{"release-emergency-stop", "pulls it out again; the arm stays without power",
+             always<[](Robot& robot) { robot.releaseEmergencyStop(); }>},
+    Accident{"protective-stop", "stops the arm as after a collision", always<[](Robot& robot) {
+                 robot.protectiveStop({kCollision, "collision detected"});
+             }>},
+    Accident{"limit", "axis 1 to 6 leaves its range; the arm is stopped", exceedLimit},
+    Accident{"safeguard-stop", "someone opens the safeguard; the arm brakes, the program is paused",
+             always<[](Robot& robot) { robot.safeguardStop(); }>},
+    Accident{"close-safeguard", "and closes it again",
+             always<[](Robot& robot) { robot.closeSafeguard(); }>},
+    Accident{"violation", "the safety system finds a violation; the arm brakes and loses power",
+             always<[](Robot& robot) { robot.violateSafety(); }>},
+    Accident{"local-control", "someone switches an e-Series arm to local control",
+             always<[](Robot& robot) { robot.setControl(Control::local); }>},
+    Accident{"remote-control", "and back",
+             always<[](Robot& robot) { robot.setControl(Control::remote); }>},
+    Accident{"program-stop", "someone stops the program at the panel",
+             always<[](Robot& robot) { robot.programs().stop(); }>},
+};
+
+}  // namespace
+
+std::span<const Accident> accidents() {
+    return kAccidents;
+}
+
+}  // namespace metier::virtual_ur

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/virtual_ur/robot.hpp"
+
+namespace metier::virtual_ur {
+
+/// What people and accidents do to a robot.
+struct Accident {
+    const char* name;
+    const char* help;
+    /// \param value as it was given. Errors: invalid_argument, with the range.
+    Result<void> (*happen)(Robot& robot, const std::string& value);
+};
+
+/// Threading: any; pure.
+std::span<const Accident> accidents();
+
+}  // namespace metier::virtual_ur
