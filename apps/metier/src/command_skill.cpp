@@ -47,19 +47,21 @@ Exit stayUntilEnd(OpenSkill& open, const CommandOptions& options) {
     std::fflush(stdout);
     const auto ended = open.skill.awaitEnd(deadlineOf(options));
     if (!ended) {
-        return report(ended.error());
+        return reportOutcome(ended.error());
     }
     fmt::print("{} {}\n", options.choice.skill, toString(ended->to));
     return Exit::success;
 }
 
 Exit runCommand(const Command& command, const CommandOptions& options) {
-    auto open = openSkill(options.choice);
+    const bool stays = command.method == Method::resume;
+    auto open = openSkill(options.choice, stays ? OnLoss::reconnect : OnLoss::fail);
     if (!open) {
         return report(open.error());
     }
+    showConnection(*open->client);
     if (const auto called = open->skill.call(command.method); !called) {
-        return report(called.error());
+        return reportOutcome(called.error());
     }
     if (command.method == Method::suspend) {  // follows at standstill
         if (const auto reached = open->skill.awaitState(command.then, deadlineOf(options));
@@ -68,7 +70,7 @@ Exit runCommand(const Command& command, const CommandOptions& options) {
         }
     }
     fmt::print("{} {}\n", options.choice.skill, toString(command.then));
-    return command.method == Method::resume ? stayUntilEnd(*open, options) : Exit::success;
+    return stays ? stayUntilEnd(*open, options) : Exit::success;
 }
 
 }  // namespace

@@ -11,8 +11,10 @@ namespace metier::app {
 /// What the program returns to the shell.
 enum class Exit : int {
     success = 0,
-    failed = 1,  ///< a server, a skill or a device refused, failed or was not there
-    usage = 2,   ///< the command line or a file is wrong
+    failed = 1,          ///< a server, a skill or a device refused, failed or was not there
+    usage = 2,           ///< the command line or a file is wrong
+    unknown = 3,         ///< the connection was lost: nobody here knows what became of it
+    execution_lost = 4,  ///< the server was started again: what ran there is over
 };
 
 /// Prints the error to standard error and gives the exit status that fits it.

@@ -65,6 +65,9 @@ Exit runOwn(const OwnOptions& options) {
             return report(control.error());
         }
         fmt::print("control of {} taken, epoch {}\n", controller.name, control->epoch());
+        control->onLost([name = controller.name](const opcua::Failure& why) {
+            fmt::print(stderr, "metier: control of {} is lost: {}\n", name, why.message);
+        });
         controls.push_back(std::move(*control));
     }
     fmt::print("Ctrl-C gives it back\n");
@@ -73,7 +76,7 @@ Exit runOwn(const OwnOptions& options) {
         const bool lost = std::any_of(controls.begin(), controls.end(),
                                       [](const ControlHandle& control) { return !control.held(); });
         if (lost) {
-            return report({Errc::locked, "control is lost"});
+            return report({Errc::locked, "control is lost, and is not taken again by itself"});
         }
     }
     return Exit::success;

@@ -116,8 +116,12 @@ private:
         const auto called = method
                                 ? client.call(skill.node, *method)
                                 : opcua::Answer<opcua::CallResult>(tl::unexpected(method.error()));
-        if (!called) {
-            fmt::print(stderr, "metier: Halt was refused: {}\n", called.error().message);
+        if (called) {
+            return;
+        }
+        fmt::print(stderr, "metier: Halt: {}\n", called.error().message);
+        if (called.error().delivery != opcua::Failure::Delivery::answered) {
+            client.close();  // the user does not wait for the connection: the run ends as unknown
         }
     }
 
@@ -137,8 +141,9 @@ struct OwnedRun {
     const OwnerOptions& owner;
 };
 
-/// Runs the skill as the command line says: under a lease, with a choice for the loss of this
-/// client, or by plain writes and Start, which every server knows.
+/// Runs the skill as the command line says, under a lease, with a choice for the loss of this
+/// client; with an id, so that its end is learnt whatever the network does. Servers that know no
+/// executions get plain writes and Start.
 opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& client,
                                         const OwnedRun& run) {
     std::optional<skill_client::ControlHandle> control;
@@ -152,7 +157,8 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
         }
         control = std::move(*taken);
     }
-    if (!control && run.owner.action() == skill::OwnerLossAction::skill_default) {
+    if (!control && run.owner.action() == skill::OwnerLossAction::skill_default &&
+        !skill.knowsExecutions()) {
         return skill.run(run.values, run.deadline);
     }
     return skill.runWith({.parameters = run.values,
@@ -163,11 +169,12 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
 
 Exit runRun(const RunOptions& options) {
     const StopSignal signal;
-    auto open = openSkill(options.choice);
+    auto open = openSkill(options.choice, OnLoss::reconnect);
     if (!open) {
         return report(open.error());
     }
     auto& skill = open->skill;
+    showConnection(*open->client);
     if (options.fields) {
         printFields(skill);
         return Exit::success;
@@ -183,8 +190,7 @@ Exit runRun(const RunOptions& options) {
                                                std::chrono::duration<double>(options.timeout));
     const auto result = runOwned(skill, *open->client, {*values, deadline, options.owner});
     if (!result) {
-        report(result.error());
-        return Exit::failed;
+        return reportOutcome(result.error());
     }
     printResult(*result, options);
     return Exit::success;
@@ -196,7 +202,10 @@ void addRun(CLI::App& app, Exit& exit) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<RunOptions>();
     auto* command = app.add_subcommand(
-        "run", "Set a skill's parameters, start it and wait for its end; Ctrl-C halts it");
+        "run",
+        "Set a skill's parameters, start it and wait for its end, also over losses of the "
+        "connection; Ctrl-C halts it.\nExit status: 0 finished, 1 refused, failed or halted, 2 "
+        "usage, 3 unknown what became of it, 4 the server was started again: it is over");
     addSkillChoice(*command, options->choice);
     command->add_option("--set", options->settings, "A parameter: Name=value, as --fields says")
         ->type_name("Name=value")

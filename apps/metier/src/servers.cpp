@@ -30,15 +30,45 @@ Result<std::vector<std::string>> addressesOf(const ServerChoice& choice) {
     return urls;
 }
 
-Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url) {
+Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url, OnLoss on_loss) {
     opcua::ClientOptions options;
     options.application_name = "metier command";
     options.publishing_interval = std::chrono::milliseconds(20);
+    if (on_loss == OnLoss::reconnect) {
+        options.reconnect.emplace();
+    }
     auto client = opcua::Client::connect(url, options);
     if (!client) {
         return fail(client.error().code, fmt::format("{}: {}", url, client.error().message));
     }
     return std::move(*client);
+}
+
+void showConnection(opcua::Client& client) {
+    client.onConnectionChange(
+        [](const opcua::ConnectionChange& change) { fmt::print(stderr, "{}\n", textOf(change)); });
+}
+
+std::string textOf(const opcua::ConnectionChange& change) {
+    using Kind = opcua::ConnectionChange::Kind;
+    switch (change.kind) {
+        case Kind::lost:
+            return fmt::format("connection lost: {}; reconnecting", change.why.message);
+        case Kind::back:
+            return fmt::format("connection back; server restarted: {}",
+                               change.server_restarted ? "yes" : "no");
+        case Kind::given_up:
+            return fmt::format("connection given up: {}", change.why.message);
+    }
+    return {};
+}
+
+Exit reportOutcome(const opcua::Failure& failure) {
+    report(failure);
+    if (failure.code == Errc::execution_lost) {
+        return Exit::execution_lost;
+    }
+    return failure.delivery == opcua::Failure::Delivery::unknown ? Exit::unknown : Exit::failed;
 }
 
 void addSkillChoice(CLI::App& command, SkillChoice& choice) {
@@ -49,8 +79,8 @@ void addSkillChoice(CLI::App& command, SkillChoice& choice) {
         ->required();
 }
 
-Result<OpenSkill> openSkill(const SkillChoice& choice) {
-    auto client = connectTo(choice.url);
+Result<OpenSkill> openSkill(const SkillChoice& choice, OnLoss on_loss) {
+    auto client = connectTo(choice.url, on_loss);
     if (!client) {
         return fail(client.error());
     }

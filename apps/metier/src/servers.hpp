@@ -23,8 +23,19 @@ void addServerChoice(CLI::App& command, ServerChoice& choice);
 /// Errors: invalid_argument if neither addresses nor a cell are given, or the cell is wrong.
 Result<std::vector<std::string>> addressesOf(const ServerChoice& choice);
 
+/// What a command does when its connection breaks.
+enum class OnLoss { fail, reconnect };
+
 /// Connects within 5 s. The error names the address.
-Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url);
+Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url,
+                                                 OnLoss on_loss = OnLoss::fail);
+/// "connection back; server restarted: no", for people.
+std::string textOf(const opcua::ConnectionChange& change);
+/// Has each loss and return of the connection told on standard error.
+void showConnection(opcua::Client& client);
+
+/// Prints what became of an execution that did not finish, and gives the exit status for it.
+Exit reportOutcome(const opcua::Failure& failure);
 
 /// One skill of one server, for a command that names both.
 struct SkillChoice {
@@ -42,6 +53,6 @@ struct OpenSkill {
 };
 
 /// Errors: those of connectTo(), findSkill() and SkillHandle::open().
-Result<OpenSkill> openSkill(const SkillChoice& choice);
+Result<OpenSkill> openSkill(const SkillChoice& choice, OnLoss on_loss = OnLoss::fail);
 
 }  // namespace metier::app

@@ -11,7 +11,7 @@
 
 namespace metier::app {
 
-WakeEvent::WakeEvent() : descriptor_(eventfd(0, EFD_CLOEXEC)) {
+WakeEvent::WakeEvent() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     if (descriptor_ < 0) {
         throw std::runtime_error(std::strerror(errno));
     }
@@ -25,10 +25,12 @@ void WakeEvent::ring() noexcept {
     eventfd_write(descriptor_, 1);
 }
 
-void WakeEvent::wait(const StopSignal& signal) const {
+void WakeEvent::wait(const StopSignal& signal) {
     std::array<pollfd, 2> requests{{{descriptor_, POLLIN, 0}, {signal.descriptor(), POLLIN, 0}}};
     while (poll(requests.data(), requests.size(), -1) < 0 && errno == EINTR) {
     }
+    eventfd_t rung = 0;
+    eventfd_read(descriptor_, &rung);
 }
 
 }  // namespace metier::app

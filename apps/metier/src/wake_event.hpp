@@ -15,8 +15,8 @@ public:
     WakeEvent& operator=(const WakeEvent&) = delete;
 
     void ring() noexcept;
-    /// Until it was rung or the user ends the program.
-    void wait(const StopSignal& signal) const;
+    /// Until it was rung, since the last time, or the user ends the program.
+    void wait(const StopSignal& signal);
 
 private:
     int descriptor_;

@@ -1,6 +1,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -43,7 +44,23 @@ std::string jsonOf(const std::string& skill, const TransitionEvent& event) {
         .dump();
 }
 
-/// Prints transitions until it has printed enough of them. add() on the client's thread.
+std::string jsonOf(const opcua::ConnectionChange& change) {
+    using Kind = opcua::ConnectionChange::Kind;
+    const bool back = change.kind == Kind::back;
+    nlohmann::json line{{"time", timeOf(change.time)},
+                        {"connection", back                        ? "back"
+                                       : change.kind == Kind::lost ? "lost"
+                                                                   : "given up"}};
+    if (back) {
+        line["server_restarted"] = change.server_restarted;
+    } else {
+        line["text"] = change.why.message;
+    }
+    return line.dump();
+}
+
+/// Prints transitions until it has printed enough of them, and what becomes of the connection.
+/// add() on the client's thread.
 class Printer {
 public:
     explicit Printer(const WatchOptions& options) : options_(options), left_(options.count) {}
@@ -52,41 +69,63 @@ public:
         if (options_.count > 0 && left_ <= 0) {
             return;
         }
-        fmt::print("{}\n", options_.json ? jsonOf(skill, event) : lineOf(skill, event));
-        std::fflush(stdout);
+        print(options_.json ? jsonOf(skill, event) : lineOf(skill, event));
         if (--left_ == 0 && options_.count > 0) {
-            enough_.ring();
+            done_ = true;
+            news_.ring();
+        }
+    }
+    void add(const opcua::ConnectionChange& change) {
+        print(options_.json ? jsonOf(change)
+                            : fmt::format("{} {}", timeOf(change.time), textOf(change)));
+        given_up_ = change.kind == opcua::ConnectionChange::Kind::given_up;
+        if (given_up_ || change.server_restarted) {
+            restarted_ = change.server_restarted;
+            news_.ring();
         }
     }
 
-    /// Until enough was printed or a signal came.
-    void wait(const StopSignal& signal) { enough_.wait(signal); }
+    /// Until enough was printed, a signal came, or the connection was given up, which is a failure.
+    /// `look_again` is called after each restart of the server.
+    Exit wait(const StopSignal& signal, const std::function<void()>& look_again) {
+        while (!done_ && !given_up_ && !signal.came()) {
+            news_.wait(signal);
+            if (restarted_.exchange(false)) {
+                look_again();
+            }
+        }
+        return given_up_ ? Exit::failed : Exit::success;
+    }
 
 private:
+    static void print(const std::string& line) {
+        fmt::print("{}\n", line);
+        std::fflush(stdout);
+    }
+
     const WatchOptions& options_;
     int left_;
-    WakeEvent enough_;
+    std::atomic<bool> done_ = false;
+    std::atomic<bool> given_up_ = false;
+    std::atomic<bool> restarted_ = false;
+    WakeEvent news_;
 };
 
-Exit runWatch(const WatchOptions& options) {
-    const StopSignal signal;
-    auto client = connectTo(options.url);
-    if (!client) {
-        return report(client.error());
-    }
-    const auto skills = skill_client::findSkills(**client);
+/// Opens what is to be watched. Errors: those of the server; not_found.
+Result<std::vector<SkillHandle>> openAll(opcua::Client& client, const WatchOptions& options,
+                                         Printer& printer) {
+    const auto skills = skill_client::findSkills(client);
     if (!skills) {
-        return report(skills.error());
+        return fail(skills.error());
     }
-    Printer printer(options);
     std::vector<SkillHandle> handles;
     for (const auto& address : *skills) {
         if (!options.skill.empty() && address.name != options.skill) {
             continue;
         }
-        auto handle = SkillHandle::open(**client, address);
+        auto handle = SkillHandle::open(client, address);
         if (!handle) {
-            return report(handle.error());
+            return fail(handle.error());
         }
         handle->onTransition([&printer, name = address.name](const TransitionEvent& event) {
             printer.add(name, event);
@@ -94,13 +133,36 @@ Exit runWatch(const WatchOptions& options) {
         handles.push_back(std::move(*handle));
     }
     if (handles.empty()) {
-        return report(
-            {Errc::not_found, fmt::format("{}: no skill '{}'", options.url, options.skill)});
+        return fail(Errc::not_found, fmt::format("{}: no skill '{}'", options.url, options.skill));
     }
-    fmt::print(stderr, "watching {} skills; Ctrl-C ends it\n", handles.size());
-    printer.wait(signal);
-    handles.clear();
-    return Exit::success;
+    return handles;
+}
+
+void lookAgain(std::vector<SkillHandle>& handles) {
+    for (auto& handle : handles) {
+        if (const auto found = handle.refresh(); !found) {
+            report(found.error());
+        }
+    }
+}
+
+Exit runWatch(const WatchOptions& options) {
+    const StopSignal signal;
+    Printer printer(options);
+    auto client = connectTo(options.url, OnLoss::reconnect);
+    if (!client) {
+        return report(client.error());
+    }
+    (*client)->onConnectionChange(
+        [&printer](const opcua::ConnectionChange& change) { printer.add(change); });
+    auto handles = openAll(**client, options, printer);
+    if (!handles) {
+        return report(handles.error());
+    }
+    fmt::print(stderr, "watching {} skills; Ctrl-C ends it\n", handles->size());
+    const auto exit = printer.wait(signal, [&handles] { lookAgain(*handles); });
+    handles->clear();
+    return exit;
 }
 
 }  // namespace
@@ -108,7 +170,9 @@ Exit runWatch(const WatchOptions& options) {
 void addWatch(CLI::App& app, Exit& exit) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<WatchOptions>();
-    auto* command = app.add_subcommand("watch", "Print every transition of a server's skills");
+    auto* command = app.add_subcommand(
+        "watch",
+        "Print every transition of a server's skills, and each loss and return of the connection");
     command->add_option("url", options->url, "Address of the server: opc.tcp://host:port")
         ->required();
     command->add_option("skill", options->skill, "Only of the skill of this name");

@@ -107,10 +107,11 @@ private:
     class Answers {
     public:
         void take(const Answer<opcua::CallResult>& answer) {
-            if (answer || answer.error().code == Errc::timeout) {
+            const std::lock_guard lock(mutex_);
+            unanswered_ = !answer && answer.error().code == Errc::timeout ? unanswered_ + 1 : 0;
+            if (answer || unanswered_ == 1) {
                 return;
             }
-            const std::lock_guard lock(mutex_);
             if (!refusal_) {
                 refusal_ = answer.error();
                 refused_.notify_all();
@@ -129,6 +130,7 @@ private:
     private:
         mutable std::mutex mutex_;
         std::condition_variable_any refused_;
+        int unanswered_ = 0;  // in succession; each waited for a whole lease
         std::optional<Failure> refusal_;
     };
 

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "metier/opcua_skill/values.hpp"
-#include "skill_nodes.hpp"
-#include "transition_log.hpp"
+#include "skill_handle_impl.hpp"
 
 namespace metier::skill_client {
 namespace {
@@ -30,10 +29,6 @@ opcua::Value pairsOf(const skill::ValueMap& values) {
         pairs.push_back({{0, name}, opcua_skill::toOpcua(value)});
     }
     return opcua::Value::of(pairs);
-}
-
-bool endsExecution(const TransitionEvent& event) {
-    return event.to == State::ready || event.to == State::halted;
 }
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes) {
@@ -83,20 +78,6 @@ const FieldNode* findField(const std::vector<FieldNode>& nodes, std::string_view
     return found == nodes.end() ? nullptr : &*found;
 }
 
-Errc errcFor(skill::Reason reason) {
-    switch (reason) {
-        case skill::Reason::by_client:
-            return Errc::cancelled;
-        case skill::Reason::device_lost:
-            return Errc::connection_lost;
-        case skill::Reason::limit_violated:
-        case skill::Reason::force_exceeded:
-            return Errc::limit_violated;
-        default:
-            return Errc::device_fault;
-    }
-}
-
 /// A server that does not yet list the namespace has no extra event fields: any index will do.
 std::uint16_t deviceNamespace(opcua::Client& client) {
     return client.namespaceIndex(kDeviceNamespace).value_or(1);
@@ -104,80 +85,103 @@ std::uint16_t deviceNamespace(opcua::Client& client) {
 
 }  // namespace
 
-struct SkillHandle::Impl {
-    opcua::Client& client;
-    SkillAddress address;
-    SkillNodes nodes;
-    std::vector<skill::Field> parameters{};
-    std::vector<skill::Field> results{};
-    // Shared with the subscription's callback, which may run while this object moves.
-    std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
-    opcua::Subscription subscription{};
+Answer<> SkillHandle::Impl::readNodes() {
+    auto read = readSkillNodes(client, address);
+    if (!read) {
+        return tl::unexpected(read.error());
+    }
+    nodes = std::move(*read);
+    parameters = fieldsOf(nodes.parameters);
+    results = fieldsOf(nodes.results);
+    return {};
+}
 
-    Failure refused(Failure failure, std::string_view doing) const {
-        std::string text = fmt::format("{} {}: {}", address.name, doing, failure.status.name());
-        const auto reason = reasonText();
-        if (!reason.empty()) {
-            text += ": " + reason;
-        }
-        failure.message = std::move(text);
+Answer<> SkillHandle::Impl::subscribe() {
+    subscription = {};
+    auto subscribed =
+        client.subscribeEvents(address.node, transitionFilter(deviceNamespace(client)),
+                               [log = log](const opcua::EventNotice& notice) { log->add(notice); });
+    if (!subscribed) {
+        return tl::unexpected(subscribed.error());
+    }
+    subscription = std::move(*subscribed);
+    return {};
+}
+
+Answer<> SkillHandle::Impl::refresh() {
+    const auto now = client.boot();
+    if (now == boot) {
+        return {};
+    }
+    const auto controller = address.controllerName();
+    auto found = findSkill(
+        client, controller.empty() ? address.name : fmt::format("{}/{}", controller, address.name));
+    if (!found) {
+        return tl::unexpected(found.error());
+    }
+    const bool moved = found->node != address.node;
+    address = std::move(*found);
+    if (auto read = readNodes(); !read) {
+        return read;
+    }
+    if (auto subscribed = moved ? subscribe() : Answer<>(); !subscribed) {
+        return subscribed;
+    }
+    boot = now;
+    return {};
+}
+
+Failure SkillHandle::Impl::refused(Failure failure, std::string_view what) const {
+    if (failure.delivery != Failure::Delivery::answered) {
+        failure.message = fmt::format("{} {}: {}", address.name, what, failure.message);
         return failure;
     }
+    const auto reason = reasonText();
+    failure.message = fmt::format("{} refused {}: {}{}{}", address.name, what,
+                                  failure.status.name(), reason.empty() ? "" : ": ", reason);
+    return failure;
+}
 
-    /// A wrong type is refused before the skill hears of it: its text would be of an older refusal.
-    Failure wrongType(Failure failure, const FieldNode& node, const skill::Value& given) const {
-        failure.message =
-            fmt::format("{} refused {}: {}: {}: {} expected, {} given", address.name,
-                        node.field.name, failure.status.name(), node.field.name,
-                        typeNameOf(node.field.type), opcua_skill::toOpcua(given).typeName());
-        return failure;
+Failure SkillHandle::Impl::wrongType(Failure failure, const FieldNode& node,
+                                     const skill::Value& given) const {
+    failure.message =
+        fmt::format("{} refused {}: {}: {}: {} expected, {} given", address.name, node.field.name,
+                    failure.status.name(), node.field.name, typeNameOf(node.field.type),
+                    opcua_skill::toOpcua(given).typeName());
+    return failure;
+}
+
+std::string SkillHandle::Impl::reasonText() const {
+    if (nodes.reason_text == opcua::NodeId{}) {
+        return {};
     }
+    const auto value = client.read(nodes.reason_text);
+    return value ? value->as<std::string>().value_or("") : "";
+}
 
-    std::string reasonText() const {
-        if (nodes.reason_text == opcua::NodeId{}) {
-            return {};
-        }
-        const auto value = client.read(nodes.reason_text);
-        return value ? value->as<std::string>().value_or("") : "";
+Answer<const FieldNode*> SkillHandle::Impl::parameter(std::string_view name) const {
+    if (const auto* node = findField(nodes.parameters, name)) {
+        return node;
     }
-
-    Answer<const FieldNode*> parameter(std::string_view name) const {
-        if (const auto* node = findField(nodes.parameters, name)) {
-            return node;
-        }
-        std::vector<std::string> known;
-        for (const auto& field : parameters) {
-            known.push_back(field.name);
-        }
-        return tl::unexpected(
-            Failure{{Errc::not_found, fmt::format("{} has no parameter '{}'; it has: {}",
-                                                  address.name, name, fmt::join(known, ", "))},
-                    opcua::status::kBadNoMatch,
-                    {}});
+    std::vector<std::string> known;
+    for (const auto& field : parameters) {
+        known.push_back(field.name);
     }
-
-    Answer<std::vector<opcua::Value>> callMetier(const opcua::NodeId& method, std::string_view name,
-                                                 std::vector<opcua::Value> inputs);
-    skill::ValueMap resultsIn(const opcua::Value& pairs) const;
-    Answer<skill::ValueMap> awaitOutcome(std::uint64_t from, SteadyTime deadline);
-    Answer<skill::ValueMap> readResults() const;
-};
+    return tl::unexpected(
+        Failure{{Errc::not_found, fmt::format("{} has no parameter '{}'; it has: {}", address.name,
+                                              name, fmt::join(known, ", "))},
+                opcua::status::kBadNoMatch,
+                {}});
+}
 
 Answer<SkillHandle> SkillHandle::open(opcua::Client& client, SkillAddress address) {
-    auto nodes = readSkillNodes(client, address);
-    if (!nodes) {
-        return tl::unexpected(nodes.error());
+    auto impl = std::make_unique<Impl>(Impl{client, std::move(address), client.boot()});
+    if (auto read = impl->readNodes(); !read) {
+        return tl::unexpected(read.error());
     }
-    auto impl = std::make_unique<Impl>(Impl{client, std::move(address), std::move(*nodes)});
-    impl->parameters = fieldsOf(impl->nodes.parameters);
-    impl->results = fieldsOf(impl->nodes.results);
-    auto subscription = client.subscribeEvents(
-        impl->address.node, transitionFilter(deviceNamespace(client)),
-        [log = impl->log](const opcua::EventNotice& notice) { log->add(notice); });
-    if (!subscription) {
-        return tl::unexpected(subscription.error());
+    if (auto subscribed = impl->subscribe(); !subscribed) {
+        return tl::unexpected(subscribed.error());
     }
-    impl->subscription = std::move(*subscription);
     return SkillHandle(std::move(impl));
 }
 
@@ -198,19 +202,34 @@ const std::vector<skill::Field>& SkillHandle::results() const noexcept {
     return impl_->results;
 }
 
+bool SkillHandle::knowsExecutions() const noexcept {
+    return impl_->nodes.start_with != opcua::NodeId{} && impl_->tellsExecutions();
+}
+
+Answer<> SkillHandle::refresh() {
+    return impl_->refresh();
+}
+
 Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
+    if (auto current = impl_->refresh(); !current) {
+        return current;
+    }
     const auto node = impl_->parameter(name);
     if (!node) {
         return tl::unexpected(node.error());
     }
-    auto written = impl_->client.write((*node)->node, opcua_skill::toOpcua(value));
-    if (!written && written.error().status == opcua::status::kBadTypeMismatch) {
-        return tl::unexpected(impl_->wrongType(written.error(), **node, value));
-    }
+    const auto written =
+        impl_->client.writeMany({{(*node)->node, opcua_skill::toOpcua(value), {}, impl_->boot}});
     if (!written) {
-        return tl::unexpected(impl_->refused(written.error(), fmt::format("refused {}", name)));
+        return tl::unexpected(impl_->refused(written.error(), name));
     }
-    return {};
+    if (written->front() == opcua::status::kBadTypeMismatch) {
+        return tl::unexpected(
+            impl_->wrongType(opcua::failed(written->front(), "").value(), **node, value));
+    }
+    return written->front().isBad()
+               ? tl::unexpected(impl_->refused(opcua::failed(written->front(), "").value(), name))
+               : Answer<>();
 }
 
 Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
@@ -219,39 +238,42 @@ Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value,
     if (!node) {
         return tl::unexpected(node.error());
     }
-    return impl_->client.writeAsync({(*node)->node, opcua_skill::toOpcua(value), meant_for},
-                                    std::move(done));
+    return impl_->client.writeAsync(
+        {(*node)->node, opcua_skill::toOpcua(value), meant_for, impl_->boot}, std::move(done));
 }
 
 Answer<> SkillHandle::call(Method method) {
-    const auto& node = impl_->nodes.methods.at(static_cast<std::size_t>(method));
-    auto result = impl_->client.call(impl_->address.node, node);
-    if (!result) {
-        return tl::unexpected(
-            impl_->refused(result.error(), fmt::format("refused {}", toString(method))));
+    if (auto current = impl_->refresh(); !current) {
+        return current;
     }
-    return {};
+    const auto& node = impl_->nodes.methods.at(static_cast<std::size_t>(method));
+    auto result = impl_->client.call(opcua::MethodCall{impl_->address.node, node, {}, impl_->boot});
+    return result ? Answer<>() : tl::unexpected(impl_->refused(result.error(), toString(method)));
 }
 
-Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(const opcua::NodeId& method,
+Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId SkillNodes::*method,
                                                                 std::string_view name,
                                                                 std::vector<opcua::Value> inputs) {
-    if (method == opcua::NodeId{}) {
+    if (auto current = refresh(); !current) {
+        return tl::unexpected(current.error());
+    }
+    if (nodes.*method == opcua::NodeId{}) {
         return tl::unexpected(
             Failure{{Errc::not_supported, fmt::format("{} has no {}", address.name, name)},
                     opcua::status::kBadMethodInvalid,
                     {}});
     }
-    auto result = client.call(address.node, method, std::move(inputs));
+    auto result =
+        client.call(opcua::MethodCall{address.node, nodes.*method, std::move(inputs), boot});
     if (!result) {
-        return tl::unexpected(refused(result.error(), fmt::format("refused {}", name)));
+        return tl::unexpected(refused(result.error(), name));
     }
     return std::move(result->outputs);
 }
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
     auto outputs = impl_->callMetier(
-        impl_->nodes.methods.at(static_cast<std::size_t>(Method::start_with)), "StartWith",
+        &SkillNodes::start_with, "StartWith",
         {opcua::Value::of(request.execution_id), pairsOf(request.parameters),
          opcua::Value::of(static_cast<std::int32_t>(request.on_owner_loss)),
          opcua::Value::of(request.epoch), opcua::Value::of(request.deadline.value_or(UtcTime{}))});
@@ -262,7 +284,7 @@ Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
 }
 
 Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters) {
-    const auto outputs = impl_->callMetier(impl_->nodes.check, "Check", {pairsOf(parameters)});
+    const auto outputs = impl_->callMetier(&SkillNodes::check, "Check", {pairsOf(parameters)});
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }
@@ -279,14 +301,17 @@ Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters)
 }
 
 Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
+    return impl_->execution(id);
+}
+
+Answer<skill::ExecutionRecord> SkillHandle::Impl::execution(const std::string& id) {
     const auto outputs =
-        impl_->callMetier(impl_->nodes.get_execution, "GetExecution", {opcua::Value::of(id)});
+        callMetier(&SkillNodes::get_execution, "GetExecution", {opcua::Value::of(id)});
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }
     if (outputs->size() != kExecutionOutputs) {
-        return opcua::failed(opcua::status::kBadUnexpectedError,
-                             impl_->address.name + " GetExecution");
+        return opcua::failed(opcua::status::kBadUnexpectedError, address.name + " GetExecution");
     }
     skill::ExecutionRecord record;
     record.id = id;
@@ -295,7 +320,7 @@ Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
     record.reason_text = (*outputs)[2].as<std::string>().value_or("");
     record.start_time = (*outputs)[3].as<UtcTime>().value_or(UtcTime{});
     record.end_time = (*outputs)[4].as<UtcTime>().value_or(UtcTime{});
-    record.result = impl_->resultsIn((*outputs)[5]);
+    record.result = resultsIn((*outputs)[5]);
     return record;
 }
 
@@ -328,12 +353,22 @@ Answer<> SkillHandle::reset() {
 }
 
 Answer<bool> SkillHandle::executable(Method method) {
+    if (auto current = impl_->refresh(); !current) {
+        return tl::unexpected(current.error());
+    }
     return impl_->client.readUserExecutable(
         impl_->nodes.methods.at(static_cast<std::size_t>(method)));
 }
 
 Answer<State> SkillHandle::state() {
-    const auto value = impl_->client.read(impl_->nodes.state_number);
+    return impl_->state();
+}
+
+Answer<State> SkillHandle::Impl::state() {
+    if (auto current = refresh(); !current) {
+        return tl::unexpected(current.error());
+    }
+    const auto value = client.read(nodes.state_number);
     if (!value) {
         return tl::unexpected(value.error());
     }
@@ -341,7 +376,7 @@ Answer<State> SkillHandle::state() {
     if (!number || *number < static_cast<std::uint32_t>(State::halted) ||
         *number > static_cast<std::uint32_t>(State::suspended)) {
         return opcua::failed(opcua::status::kBadTypeMismatch,
-                             impl_->address.name + ": CurrentState/Number");
+                             address.name + ": CurrentState/Number");
     }
     return static_cast<State>(*number);
 }
@@ -368,94 +403,14 @@ Answer<skill::ValueMap> SkillHandle::Impl::readResults() const {
 }
 
 Answer<skill::ValueMap> SkillHandle::result() {
+    if (auto current = impl_->refresh(); !current) {
+        return tl::unexpected(current.error());
+    }
     return impl_->readResults();
 }
 
 std::string SkillHandle::reasonText() {
     return impl_->reasonText();
-}
-
-Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
-    // Transitions from here on are waited for; the state read after it covers those before.
-    const auto from = impl_->log->next();
-    const auto now = state();
-    if (!now) {
-        return tl::unexpected(now.error());
-    }
-    if (*now == wanted) {
-        return {};
-    }
-    const auto found = impl_->log->await(
-        from, deadline, [wanted](const TransitionEvent& event) { return event.to == wanted; });
-    if (!found) {
-        return tl::unexpected(found.error());
-    }
-    return {};
-}
-
-Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
-    auto found = impl_->log->await(impl_->log->next(), deadline, endsExecution);
-    if (!found) {
-        return tl::unexpected(found.error());
-    }
-    return std::move(found->event);
-}
-
-Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(std::uint64_t from, SteadyTime deadline) {
-    const auto started = log->await(from, deadline, [](const TransitionEvent& event) {
-        return event.number == skill::TransitionNumber::ready_to_running;
-    });
-    if (!started) {
-        return tl::unexpected(started.error());
-    }
-    const auto& id = started->event.execution_id;
-    const auto ended = log->await(started->number + 1, deadline, [&](const auto& event) {
-        return endsExecution(event) && event.execution_id == id;
-    });
-    if (!ended) {
-        return tl::unexpected(ended.error());
-    }
-    const auto& event = ended->event;
-    if (event.to == State::halted) {
-        return tl::unexpected(
-            Failure{{errcFor(event.reason), fmt::format("{} was halted ({}): {}", address.name,
-                                                        toString(event.reason), event.reason_text)},
-                    opcua::statusFrom(errcFor(event.reason)),
-                    {}});
-    }
-    return readResults();
-}
-
-Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& values, SteadyTime deadline) {
-    for (const auto& [name, value] : values) {
-        if (auto written = set(name, value); !written) {
-            return tl::unexpected(written.error());
-        }
-    }
-    const auto from = impl_->log->next();
-    if (auto started = start(); !started) {
-        return tl::unexpected(started.error());
-    }
-    return orHalt(impl_->awaitOutcome(from, deadline));
-}
-
-Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
-                                             SteadyTime deadline) {
-    const auto from = impl_->log->next();
-    if (auto started = startWith(request); !started) {
-        return tl::unexpected(started.error());
-    }
-    return orHalt(impl_->awaitOutcome(from, deadline));
-}
-
-Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {
-    if (!outcome && outcome.error().code == Errc::timeout) {
-        // The work has lost its client's interest: it must not go on alone.
-        if (const auto halted = halt(); !halted) {
-            outcome.error().message += "; " + halted.error().message;
-        }
-    }
-    return outcome;
 }
 
 void SkillHandle::onTransition(std::function<void(const TransitionEvent&)> callback) {

@@ -165,10 +165,9 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
         return lacks(address, "CurrentState/Number");
     }
     nodes.state_number = *number;
-    auto& start_with = nodes.methods.at(static_cast<std::size_t>(skill::Method::start_with));
     const std::array<std::pair<std::string_view, NodeId*>, 4> optional{
         {{"ReasonText", &nodes.reason_text},
-         {"StartWith", &start_with},
+         {"StartWith", &nodes.start_with},
          {"Check", &nodes.check},
          {"GetExecution", &nodes.get_execution}}};
     for (const auto& [name, node] : optional) {
@@ -176,6 +175,7 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
             *node = found->target;
         }
     }
+    nodes.methods.at(static_cast<std::size_t>(skill::Method::start_with)) = nodes.start_with;
     return {};
 }
 

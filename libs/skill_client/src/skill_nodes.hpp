@@ -20,8 +20,9 @@ struct FieldNode {
 
 /// The nodes below one skill that a client uses.
 struct SkillNodes {
-    std::array<opcua::NodeId, 6> methods;  ///< in the order of skill::Method; null: StartWith
-    opcua::NodeId check;                   ///< null if the server has none, as the next
+    std::array<opcua::NodeId, 6> methods;  ///< in the order of skill::Method
+    opcua::NodeId start_with;              ///< null if the server has none, as the next
+    opcua::NodeId check;
     opcua::NodeId get_execution;
     opcua::NodeId state_number;
     opcua::NodeId reason_text;  ///< null if the server has none

@@ -77,18 +77,18 @@ void TransitionLog::append(TransitionEvent event) {
 }
 
 void TransitionLog::add(const opcua::EventNotice& notice) {
-    const auto event =
-        notice.kind == opcua::EventNotice::Kind::event ? eventFrom(notice.fields) : std::nullopt;
+    using Kind = opcua::EventNotice::Kind;
+    const auto event = notice.kind == Kind::event ? eventFrom(notice.fields) : std::nullopt;
     Callback callback;
     {
         const std::lock_guard lock(mutex_);
         if (event) {
             append(*event);
             callback = callback_;
-        } else if (notice.kind == opcua::EventNotice::Kind::ended) {
+        } else if (notice.kind == Kind::ended) {
             ended_ = notice.status;
-        } else {
-            overflow_at_ = first_number_ + events_.size() + 1;
+        } else if (notice.kind != Kind::interrupted) {  // whose end will tell
+            ++doubts_;
         }
     }
     changed_.notify_all();
@@ -102,9 +102,9 @@ void TransitionLog::onTransition(Callback callback) {
     callback_ = std::move(callback);
 }
 
-std::uint64_t TransitionLog::next() const {
+TransitionLog::Mark TransitionLog::mark() const {
     const std::lock_guard lock(mutex_);
-    return first_number_ + events_.size();
+    return {first_number_ + events_.size(), doubts_};
 }
 
 std::optional<TransitionLog::Found> TransitionLog::findFrom(
@@ -119,28 +119,18 @@ std::optional<TransitionLog::Found> TransitionLog::findFrom(
     return std::nullopt;
 }
 
-opcua::Answer<TransitionLog::Found> TransitionLog::await(
-    std::uint64_t from, SteadyTime deadline,
-    const std::function<bool(const TransitionEvent&)>& wanted) {
+opcua::Answer<std::optional<TransitionLog::Found>> TransitionLog::await(
+    Mark from, SteadyTime deadline, const std::function<bool(const TransitionEvent&)>& wanted) {
     std::optional<Found> found;
     std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, deadline, [&] {
-        found = findFrom(from, wanted);
-        return found || ended_ || overflow_at_ > from;
+    const bool told = changed_.wait_until(lock, deadline, [&] {
+        found = findFrom(from.number, wanted);
+        return found || ended_ || doubts_ > from.doubts;
     });
-    if (found) {
-        return std::move(*found);
+    if (found || (told && !ended_)) {
+        return found;
     }
-    if (ended_) {
-        return opcua::failed(*ended_, "waiting for a transition");
-    }
-    if (overflow_at_ > from) {
-        return tl::unexpected(opcua::Failure{
-            {Errc::resource_unavailable, "the server lost transitions of this skill"},
-            opcua::status::kBadResourceUnavailable,
-            {}});
-    }
-    return opcua::failed(opcua::status::kBadTimeout, "waiting for a transition");
+    return opcua::failed(ended_.value_or(opcua::status::kBadTimeout), "waiting for a transition");
 }
 
 }  // namespace metier::skill_client

@@ -24,18 +24,24 @@ public:
     void add(const opcua::EventNotice& notice);
     void onTransition(Callback callback);
 
-    /// Number of the next transition to arrive.
-    std::uint64_t next() const;
+    /// A point in what arrives.
+    struct Mark {
+        std::uint64_t number = 0;  ///< of the next transition
+        std::uint64_t doubts = 0;  ///< times that transitions may have been missed before
+    };
+    Mark mark() const;
 
     struct Found {
         std::uint64_t number = 0;
         skill::TransitionEvent event;
     };
-    /// The first transition from number `from` on that `wanted` accepts.
-    /// Errors: timeout at the deadline; connection_lost when nothing will come any more;
-    ///         resource_unavailable if transitions were lost meanwhile.
-    opcua::Answer<Found> await(std::uint64_t from, SteadyTime deadline,
-                               const std::function<bool(const skill::TransitionEvent&)>& wanted);
+    /// The first transition from `from` on that `wanted` accepts. Nothing, if transitions may have
+    /// been missed since: the server lost some, or the connection was away and is back. Who waits
+    /// then looks what has become of the skill, and waits again from the present doubts.
+    /// Errors: timeout at the deadline; connection_lost when nothing will come any more.
+    opcua::Answer<std::optional<Found>> await(
+        Mark from, SteadyTime deadline,
+        const std::function<bool(const skill::TransitionEvent&)>& wanted);
 
 private:
     std::optional<Found> findFrom(
@@ -46,7 +52,7 @@ private:
     std::condition_variable changed_;
     std::deque<skill::TransitionEvent> events_;
     std::uint64_t first_number_ = 0;
-    std::uint64_t overflow_at_ = 0;  // number of the first transition after the last loss
+    std::uint64_t doubts_ = 0;
     std::optional<opcua::StatusCode> ended_;
     Callback callback_;
 };

@@ -24,7 +24,12 @@ namespace metier::skill_client {
 ///
 /// It hears of every transition by events, so nothing polls. Errors of every call: what the server
 /// said, with the server's own reason (value, limit, unit) where it gives one; connection_lost;
-/// timeout.
+/// timeout; Failure::delivery says whether the request left.
+///
+/// With a Client that reconnects a handle stays good. Whoever waits for an execution goes on
+/// waiting while the connection is away, up to the deadline, and is then told what has become of
+/// it by GetExecution. Nothing is ever started or resumed again. After a restart of the server it
+/// looks up the skill again, by its name and controller.
 ///
 /// Threading: any thread but the client's own; calls of one handle one at a time. Must end before
 /// its Client.
@@ -36,6 +41,11 @@ public:
     SkillHandle(SkillHandle&&) noexcept;
     SkillHandle& operator=(SkillHandle&&) noexcept;
     ~SkillHandle();
+
+    /// Looks the skill up again if the server was started again since; every call does so first.
+    /// References got from the handle before may not be used any more.
+    /// Errors: not_found, if the server has the skill no more.
+    opcua::Answer<> refresh();
 
     const SkillAddress& address() const noexcept;
     /// Parameters, of ParameterSet and of Options, with unit, range and present value as default.
@@ -54,6 +64,9 @@ public:
     /// Gives all parameters along and starts, in one step. \return the execution's id
     /// Errors: not_supported, if the server's skill lacks StartWith.
     opcua::Answer<std::string> startWith(const skill::StartRequest& request);
+    /// Whether the server can start with an id and tell what became of it: startWith() and
+    /// execution().
+    bool knowsExecutions() const noexcept;
     /// What startWith() would say now. Errors: not_supported.
     opcua::Answer<skill::CheckReport> check(const skill::ValueMap& parameters);
     /// What became of an execution, also of another session's. Errors: not_found, not_supported.
@@ -76,15 +89,20 @@ public:
     /// Errors: timeout at the deadline; connection_lost.
     opcua::Answer<> awaitState(skill::State state, SteadyTime deadline);
     /// Waits for the end of an execution: the next transition to Ready or Halted.
-    /// \return that transition
+    /// \return that transition; of one that was missed, where it led to and why
+    /// Errors: as awaitState(); execution_lost, if the server was started again meanwhile.
     opcua::Answer<skill::TransitionEvent> awaitEnd(SteadyTime deadline);
 
     /// Sets the parameters, starts, and waits for the end of this execution.
     /// At the deadline it halts the skill and reports timeout.
     /// Errors: as above; device_fault, limit_violated, connection_lost or cancelled if it ended in
-    /// Halted, with the reason.
+    /// Halted, with the reason; cancelled if it was given up while suspended; connection_lost with
+    /// Delivery::unknown if transitions were missed and the server cannot tell what became of it.
     opcua::Answer<skill::ValueMap> run(const skill::ValueMap& parameters, SteadyTime deadline);
-    /// The same by startWith().
+    /// The same by startWith(). The execution gets an id here if it has none, so that its end is
+    /// learnt even if the answer to the start, or its transitions, are lost. If that answer was
+    /// lost, connection_lost with Delivery::not_sent says that nothing was started.
+    /// Errors: also execution_lost, if the server was started again meanwhile: the motion is over.
     opcua::Answer<skill::ValueMap> runWith(const skill::StartRequest& request, SteadyTime deadline);
     /// The same for parameters and results declared as plain structs.
     template <typename Parameters, typename Results>

@@ -1,0 +1,283 @@
+// Waiting for what a skill does, also over losses of the connection.
+#include <fmt/format.h>
+
+#include <random>
+#include <utility>
+
+#include "skill_handle_impl.hpp"
+
+namespace metier::skill_client {
+namespace {
+
+using opcua::Answer;
+using opcua::Failure;
+using skill::ExecutionRecord;
+using skill::State;
+using skill::TransitionEvent;
+using skill::TransitionNumber;
+using Delivery = Failure::Delivery;
+
+bool isOver(State state) {
+    return state == State::ready || state == State::halted;
+}
+
+bool endsExecution(const TransitionEvent& event) {
+    return isOver(event.to);
+}
+
+bool begins(const TransitionEvent& event) {
+    return event.number == TransitionNumber::ready_to_running;
+}
+
+Errc errcFor(skill::Reason reason) {
+    switch (reason) {
+        case skill::Reason::by_client:
+            return Errc::cancelled;
+        case skill::Reason::device_lost:
+            return Errc::connection_lost;
+        case skill::Reason::limit_violated:
+        case skill::Reason::force_exceeded:
+            return Errc::limit_violated;
+        default:
+            return Errc::device_fault;
+    }
+}
+
+Failure failureOf(Errc code, std::string message) {
+    return {{code, std::move(message)}, opcua::statusFrom(code), {}};
+}
+
+Failure haltedFailure(const std::string& skill, skill::Reason reason, const std::string& text) {
+    return failureOf(errcFor(reason),
+                     fmt::format("{} was halted ({}): {}", skill, toString(reason), text));
+}
+
+Failure givenUpFailure(const std::string& skill) {
+    return failureOf(Errc::cancelled, skill + " was suspended, then reset: it did not finish");
+}
+
+/// Names an execution so that its client can ask for it even if the answer to Start is lost.
+std::string newExecutionId() {
+    std::random_device random;
+    return fmt::format("{:08x}{:08x}{:08x}", random(), random(), random());
+}
+
+/// Whether to ask again, once the connection allows it.
+bool isForLackOfConnection(const Failure& failure) {
+    return failure.delivery != Delivery::answered || failure.code == Errc::connection_lost;
+}
+
+}  // namespace
+
+bool SkillHandle::Impl::isBackAfter(const Failure& failure, SteadyTime deadline) {
+    return isForLackOfConnection(failure) && std::chrono::steady_clock::now() < deadline &&
+           client.awaitConnected(deadline);
+}
+
+Answer<ExecutionRecord> SkillHandle::Impl::learn(const std::string& id, std::uint64_t since_boot,
+                                                 SteadyTime deadline) {
+    for (;;) {
+        if (auto connected = client.awaitConnected(deadline); !connected) {
+            return tl::unexpected(unknownOutcome(connected.error().message));
+        }
+        const auto current = refresh();
+        auto record = current ? execution(id) : tl::unexpected(current.error());
+        if (record) {
+            return record;
+        }
+        if (record.error().code == Errc::not_found && client.boot() != since_boot) {
+            return tl::unexpected(failureOf(
+                Errc::execution_lost,
+                fmt::format("{}: the server was started again and does not know execution {}: it "
+                            "was not resumed, the motion is over",
+                            address.name, id)));
+        }
+        if (!isBackAfter(record.error(), deadline)) {
+            return record;
+        }
+    }
+}
+
+Failure SkillHandle::Impl::unknownOutcome(const std::string& why) const {
+    auto failure = failureOf(
+        Errc::connection_lost,
+        fmt::format("{}: it is unknown what became of the execution: {}", address.name, why));
+    failure.delivery = Delivery::unknown;
+    return failure;
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const ExecutionRecord& record) const {
+    if (record.state == State::halted) {
+        return tl::unexpected(haltedFailure(address.name, record.reason, record.reason_text));
+    }
+    if (record.reason != skill::Reason::finished) {
+        return tl::unexpected(givenUpFailure(address.name));
+    }
+    return record.result;
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const AwaitedExecution& awaited,
+                                                     const TransitionEvent& end,
+                                                     SteadyTime deadline) {
+    if (end.to == State::halted) {
+        return tl::unexpected(haltedFailure(address.name, end.reason, end.reason_text));
+    }
+    if (end.number == TransitionNumber::suspended_to_ready) {
+        return tl::unexpected(givenUpFailure(address.name));
+    }
+    auto values = readResults();
+    if (values || !isForLackOfConnection(values.error()) || !tellsExecutions()) {
+        return values;
+    }
+    const auto record = learn(*awaited.id, awaited.boot, deadline);
+    return record ? outcomeOf(*record) : tl::unexpected(record.error());
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(AwaitedExecution awaited,
+                                                        SteadyTime deadline) {
+    for (;;) {
+        const auto found = log->await(awaited.from, deadline, [&](const TransitionEvent& event) {
+            return awaited.id ? endsExecution(event) && event.execution_id == *awaited.id
+                              : begins(event);
+        });
+        if (!found) {
+            return tl::unexpected(found.error().code == Errc::timeout
+                                      ? found.error()
+                                      : unknownOutcome(found.error().message));
+        }
+        if (*found && awaited.id) {
+            return outcomeOf(awaited, (*found)->event, deadline);
+        }
+        if (*found) {
+            awaited.id = (*found)->event.execution_id;
+            awaited.from.number = (*found)->number + 1;
+            continue;
+        }
+        if (awaited.id.value_or("").empty() || !tellsExecutions()) {
+            return tl::unexpected(unknownOutcome("transitions may have been missed"));
+        }
+        awaited.from.doubts = log->mark().doubts;  // before it is asked for
+        const auto record = learn(*awaited.id, awaited.boot, deadline);
+        if (!record) {
+            return tl::unexpected(record.error());
+        }
+        if (isOver(record->state)) {
+            return outcomeOf(*record);
+        }
+    }
+}
+
+Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
+    for (;;) {
+        // Transitions from here on are waited for; the state read after it covers those before.
+        const auto from = impl_->log->mark();
+        const auto now = state();
+        if (!now && !impl_->isBackAfter(now.error(), deadline)) {
+            return tl::unexpected(now.error());
+        }
+        if (!now) {
+            continue;
+        }
+        if (*now == wanted) {
+            return {};
+        }
+        const auto found = impl_->log->await(
+            from, deadline, [wanted](const TransitionEvent& event) { return event.to == wanted; });
+        if (!found) {
+            return tl::unexpected(found.error());
+        }
+        if (*found) {
+            return {};
+        }
+    }
+}
+
+Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
+    auto from = impl_->log->mark();
+    const auto boot = impl_->client.boot();
+    for (;;) {
+        auto found = impl_->log->await(from, deadline, endsExecution);
+        if (!found) {
+            return tl::unexpected(found.error());
+        }
+        if (*found) {
+            return std::move((*found)->event);
+        }
+        from.doubts = impl_->log->mark().doubts;
+        const auto now = state();
+        if (now && impl_->client.boot() != boot) {
+            return tl::unexpected(failureOf(
+                Errc::execution_lost,
+                fmt::format("{}: the server was started again: what ran there was not resumed, the "
+                            "motion is over",
+                            address().name)));
+        }
+        if (now && isOver(*now)) {
+            TransitionEvent end;  // as far as the state tells
+            end.to = *now;
+            end.reason_text = reasonText();
+            return end;
+        }
+        if (!now && !impl_->isBackAfter(now.error(), deadline)) {
+            return tl::unexpected(now.error());
+        }
+    }
+}
+
+Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& values, SteadyTime deadline) {
+    for (const auto& [name, value] : values) {
+        if (auto written = set(name, value); !written) {
+            return tl::unexpected(written.error());
+        }
+    }
+    const AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
+    if (auto started = start(); !started) {
+        return tl::unexpected(started.error());
+    }
+    return orHalt(impl_->awaitOutcome(awaited, deadline));
+}
+
+Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
+                                             SteadyTime deadline) {
+    if (auto current = impl_->refresh(); !current) {
+        return tl::unexpected(current.error());
+    }
+    auto named = request;
+    if (named.execution_id.empty() && impl_->tellsExecutions()) {
+        named.execution_id = newExecutionId();
+    }
+    AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
+    auto started = startWith(named);
+    const bool unsure = !started && started.error().delivery == Delivery::unknown;
+    if (!started && !(unsure && impl_->tellsExecutions())) {
+        return tl::unexpected(started.error());
+    }
+    awaited.id = started ? *started : named.execution_id;
+    if (unsure || !request.execution_id.empty()) {  // it may have been started, or be over, before
+        auto record = impl_->learn(*awaited.id, awaited.boot, deadline);
+        if (unsure && !record && record.error().code == Errc::not_found) {
+            record.error().message = started.error().message + "; it was not: nothing was started";
+            record.error().code = Errc::connection_lost;
+            record.error().delivery = Delivery::not_sent;
+        }
+        if (!record) {
+            return tl::unexpected(record.error());
+        }
+        if (isOver(record->state)) {
+            return impl_->outcomeOf(*record);
+        }
+    }
+    return orHalt(impl_->awaitOutcome(awaited, deadline));
+}
+
+Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {
+    if (!outcome && outcome.error().code == Errc::timeout) {
+        // The work has lost its client's interest: it must not go on alone.
+        if (const auto halted = halt(); !halted) {
+            outcome.error().message += "; " + halted.error().message;
+        }
+    }
+    return outcome;
+}
+
+}  // namespace metier::skill_client
