@@ -124,11 +124,14 @@ void ClientSubscriptions::renew(const NamespaceMove& move) {
 }
 
 void ClientSubscriptions::renewed(std::uint32_t handle, Item& item, const Answer<>& outcome) {
+    if (!outcome && outcome.error().code == Errc::connection_lost) {
+        return;  // interrupt() follows, and another renewal
+    }
     item.renewing = false;
     if (outcome) {
         tell(handle, EventNotice{EventNotice::Kind::overflow, {}, {}});
         tell(handle, EventNotice{EventNotice::Kind::resumed, {}, {}});
-    } else if (!resting_) {
+    } else {
         endItem(handle, item, outcome.error().status);
     }
     oneRenewed();
