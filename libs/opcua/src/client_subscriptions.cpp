@@ -258,7 +258,11 @@ void ClientSubscriptions::settle(Item& item, Answer<> outcome) {
 
 void ClientSubscriptions::refill() {
     while (!resting_ && subscription_id_ != 0 && outstanding_ < wanted_) {
+        const auto before = outstanding_;
         publish();
+        if (outstanding_ <= before) {
+            return;  // it was refused at once: the connection is going
+        }
     }
 }
 
