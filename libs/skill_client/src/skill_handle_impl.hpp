@@ -57,10 +57,13 @@ struct SkillHandle::Impl {
     // skill_handle_outcome.cpp
 
     /// execution(), over losses of the connection.
-    /// Errors: not_found, or execution_lost if the server was started again since `boot`; those of
-    ///         the last attempt at the deadline.
+    /// Errors: not_found, or execution_lost if the server was started again since `since_boot` or
+    ///         keeps the name alone; those of the last attempt at the deadline.
     opcua::Answer<skill::ExecutionRecord> learn(const std::string& id, std::uint64_t since_boot,
                                                 SteadyTime deadline);
+    /// What the server's refusal to tell of an execution means, if it means that it is over.
+    std::optional<opcua::Failure> lostExecution(const std::string& id, std::uint64_t since_boot,
+                                                const opcua::Failure& answer) const;
     opcua::Answer<skill::ValueMap> awaitOutcome(AwaitedExecution awaited, SteadyTime deadline);
     opcua::Answer<skill::ValueMap> outcomeOf(const AwaitedExecution& awaited,
                                              const skill::TransitionEvent& end,

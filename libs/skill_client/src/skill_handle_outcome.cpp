@@ -74,6 +74,28 @@ bool SkillHandle::Impl::isBackAfter(const Failure& failure, SteadyTime deadline)
            client.awaitConnected(deadline);
 }
 
+std::optional<Failure> SkillHandle::Impl::lostExecution(const std::string& id,
+                                                        std::uint64_t since_boot,
+                                                        const Failure& answer) const {
+    const bool restarted = client.boot() != since_boot;
+    if (restarted && (answer.code == Errc::not_found || answer.code == Errc::already_exists)) {
+        return failureOf(
+            Errc::execution_lost,
+            fmt::format("{}: the server was started again and {} execution {}: it was not resumed, "
+                        "the motion is over",
+                        address.name,
+                        answer.code == Errc::not_found ? "does not know" : "knows only the name of",
+                        id));
+    }
+    if (answer.code == Errc::already_exists) {
+        return failureOf(Errc::execution_lost,
+                         fmt::format("{}: execution {} is over, and the server keeps no record of "
+                                     "it any more",
+                                     address.name, id));
+    }
+    return std::nullopt;
+}
+
 Answer<ExecutionRecord> SkillHandle::Impl::learn(const std::string& id, std::uint64_t since_boot,
                                                  SteadyTime deadline) {
     for (;;) {
@@ -85,12 +107,8 @@ Answer<ExecutionRecord> SkillHandle::Impl::learn(const std::string& id, std::uin
         if (record) {
             return record;
         }
-        if (record.error().code == Errc::not_found && client.boot() != since_boot) {
-            return tl::unexpected(failureOf(
-                Errc::execution_lost,
-                fmt::format("{}: the server was started again and does not know execution {}: it "
-                            "was not resumed, the motion is over",
-                            address.name, id)));
+        if (const auto lost = lostExecution(id, since_boot, record.error())) {
+            return tl::unexpected(*lost);
         }
         if (!isBackAfter(record.error(), deadline)) {
             return record;
@@ -249,6 +267,9 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
     AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
     auto started = startWith(named);
     const bool unsure = !started && started.error().delivery == Delivery::unknown;
+    if (!started && started.error().code == Errc::already_exists) {
+        started.error().code = Errc::execution_lost;  // it began, and nothing began now
+    }
     if (!started && !(unsure && impl_->tellsExecutions())) {
         return tl::unexpected(started.error());
     }

@@ -24,7 +24,7 @@ enum class Errc {
     access_denied,         ///< the user may not do this
     timeout,               ///< the deadline passed
     connection_lost,       ///< the peer is gone: reconnect
-    execution_lost,        ///< a restarted server does not know the execution: it is over
+    execution_lost,        ///< the server has no record of the execution any more: it is over
     device_fault,          ///< the device refused or stopped: see its own panel
     limit_violated,        ///< a limit was exceeded during a motion
     not_supported,         ///< the peer or device cannot do this

@@ -22,9 +22,9 @@ struct ControlOptions {
 /// While it lasts, only sessions of this client may command the skills of the controller; Halt is
 /// everybody's. When it is lost the server does with running skills what `on_loss` says.
 ///
-/// Control is lost with the connection, or when heartbeats get no answer for two leases. It is
-/// never taken again by itself, also if the Client reconnects: this time of control is over, and
-/// whoever wants another acquires it.
+/// Control is lost with the connection, or when two heartbeats in succession get no answer for a
+/// lease. It is never taken again by itself, also if the Client reconnects: this time of control is
+/// over, and whoever wants another acquires it.
 ///
 /// Threading: a thread of its own sends the heartbeats. Must end before its Client.
 class ControlHandle {
