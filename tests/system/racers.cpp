@@ -293,19 +293,15 @@ public:
 private:
     template <typename Raced>
     void runRounds(Raced& raced, std::uint64_t rounds, RaceCount& count) {
-        std::barrier<> gate(static_cast<std::ptrdiff_t>(racers_.size()) + 1);
-        std::barrier<> meeting(static_cast<std::ptrdiff_t>(racers_.size()));
+        const auto clients = static_cast<std::ptrdiff_t>(racers_.size());
+        std::barrier<> gate(clients + 1);
+        std::barrier<> meeting(clients);
         std::vector<std::jthread> threads;
         for (std::size_t i = 0; i < racers_.size(); ++i) {
             threads.emplace_back([&, i] {
                 for (std::uint64_t round = 0; round < rounds; ++round) {
-                    const auto own = static_cast<std::int64_t>(round * racers_.size() + i + 1);
                     gate.arrive_and_wait();
-                    racers_[i]->race(raced.track(), own, [&, meet = round % 2 == 1] {
-                        if (meet) {
-                            meeting.arrive_and_wait();
-                        }
-                    });
+                    raceOnce(raced.track(), i, round, meeting);
                     gate.arrive_and_wait();
                 }
             });
@@ -315,6 +311,16 @@ private:
             gate.arrive_and_wait();
             judge(raced, count);
         }
+    }
+
+    void raceOnce(const Track& track, std::size_t racer, std::uint64_t round,
+                  std::barrier<>& meeting) {
+        const auto own = static_cast<std::int64_t>(round * racers_.size() + racer + 1);
+        racers_[racer]->race(track, own, [&] {
+            if (round % 2 == 1) {
+                meeting.arrive_and_wait();
+            }
+        });
     }
 
     template <typename Raced>

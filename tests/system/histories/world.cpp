@@ -332,7 +332,7 @@ std::string World::command(const Step& step) {
     }
 }
 
-std::vector<opcua::KeyValue> World::parametersOf(const StartChoice& choice) const {
+std::vector<opcua::KeyValue> World::parametersOf(const StartChoice& choice) {
     std::vector<opcua::KeyValue> pairs{{{0, "SpeedOverride"}, opcua::Value::of(choice.speed)}};
     if (choice.with_target) {
         pairs.push_back({{0, "TargetJointPosition"}, targetOf(0.25)});

@@ -56,27 +56,27 @@ private:
     };
 
     void addSkill(std::size_t number);
-    skill::SkillFunctions functionsOf(Side& side, bool may_be_suspended);
+    static skill::SkillFunctions functionsOf(Side& side, bool may_be_suspended);
     void findNodes();
     void connect(std::size_t client);
     void subscribe(Side& side);
     void hear(Side& side, const opcua::EventNotice& notice);
     std::string nameOf(const std::string& execution_id) const;
 
-    std::string write(opcua::Client& client, const Side& side, const Step& step);
+    static std::string write(opcua::Client& client, const Side& side, const Step& step);
     std::string command(const Step& step);
     std::string startWith(const Step& step);
     std::string check(opcua::Client& client, const Side& side, const Step& step);
     std::string execution(opcua::Client& client, const Side& side, std::uint32_t name);
     std::string control(const Step& step);
     void happen(const Step& step);
-    std::vector<opcua::KeyValue> parametersOf(const StartChoice& choice) const;
+    static std::vector<opcua::KeyValue> parametersOf(const StartChoice& choice);
     std::string fullName(std::uint32_t name) const;
     std::string lineOf(std::size_t skill, const std::vector<opcua::DataValue>& values) const;
 
     std::shared_ptr<HandTime> time_;
+    std::array<Side, kSkills> sides_;  // also while the server closes its sessions
     BenchServer bench_;
-    std::array<Side, kSkills> sides_;
     std::unique_ptr<Relay> relay_;
     std::array<std::unique_ptr<opcua::Client>, kClients> clients_;
     std::array<std::uint64_t, kClients> epochs_{};
