@@ -9,9 +9,10 @@ namespace {
 void tell(const std::vector<skill::Program*>& programs, const device::Safety& safety) {
     const bool lost = safety.state == device::SafetyState::disconnected;
     for (auto* program : programs) {
-        // What runs learns of a stop from the motion that ends.
-        if (lost || program->state() == skill::State::ready) {
+        if (lost) {
             program->deviceLost(safety.text);
+        } else {
+            program->deviceNotReady(safety.text);
         }
     }
 }

@@ -33,6 +33,7 @@ TEST(DeviceWatch, HaltsWhatIsReadyInAProtectiveStopSoThatResetLeadsBack) {
     bench.arm().protectiveStop("fence opened");
     bench.step();
     EXPECT_EQ(bench.program(kJointPtp).state(), State::halted);
+    EXPECT_EQ(bench.program(kJointPtp).subState(), SubState::halted_error) << "it is not lost";
     EXPECT_THAT(bench.program(kJointPtp).reasonText(), ::testing::HasSubstr("fence opened"));
     bench.step();
     EXPECT_TRUE(bench.program(kJointPtp).reset(bench.caller()));

@@ -413,6 +413,14 @@ void Program::deviceStopped(std::string text) {
     });
 }
 
+void Program::deviceNotReady(std::string text) {
+    inTurn([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
+        if (!body_ && state_ == State::ready) {
+            end(TransitionNumber::ready_to_halted, std::move(cause));
+        }
+    });
+}
+
 void Program::onProgress(Value intermediate) {
     inTurn([this, value = std::move(intermediate)]() mutable {
         intermediate_ = std::move(value);

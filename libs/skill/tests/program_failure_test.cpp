@@ -106,6 +106,18 @@ TEST(DeviceLost, WhileStoppingHaltsAtOnce) {
     EXPECT_EQ(bench.executor->timerCount(), 0U);
 }
 
+TEST(DeviceNotReady, HaltsWhatIsReadyAndLeavesWhatRunsToItsMotion) {
+    ProgramBench bench;
+    bench.program->deviceNotReady("fence opened");
+    EXPECT_EQ(bench.program->state(), State::halted);
+    EXPECT_EQ(bench.program->subState(), SubState::halted_error);
+    EXPECT_EQ(bench.program->reasonText(), "fence opened");
+    ASSERT_TRUE(bench.program->reset(kAlice));
+    ASSERT_TRUE(bench.program->start(kAlice));
+    bench.program->deviceNotReady("fence opened");
+    EXPECT_EQ(bench.program->state(), State::running);
+}
+
 TEST(DeviceLost, WhileHaltedChangesTheSubStateWithoutATransition) {
     ProgramBench bench;
     bench.enter(State::halted);

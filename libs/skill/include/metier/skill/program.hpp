@@ -122,6 +122,9 @@ public:
     void deviceLost(std::string text);
     /// Somebody else has told the device to stop: what runs is Halted for an error once it rests.
     void deviceStopped(std::string text);
+    /// The device does nothing until it is reset: a Ready Program is Halted for an error. One that
+    /// runs learns it from its motion.
+    void deviceNotReady(std::string text);
 
     const SkillDescription& description() const { return description_; }
     State state() const noexcept { return state_; }
