@@ -50,10 +50,15 @@ ArmBench::~ArmBench() {
     skill_.onTransition({});
 }
 
-void ArmBench::inject(const std::string& fault, const std::string& value) {
+void ArmBench::happensNow() {
     while (events_.popUntil({})) {
     }
-    injected_ = cell_.inject("controller", fault, value);
+    injected_ = std::chrono::system_clock::now();
+}
+
+void ArmBench::inject(const std::string& fault, const std::string& value) {
+    happensNow();
+    cell_.inject("controller", fault, value);
 }
 
 void ArmBench::startLongMove() {
@@ -122,6 +127,14 @@ skill::TransitionEvent ArmBench::haltedAfterInjection() {
                                               halted.time - injected_)
                                               .count()));
     return halted;
+}
+
+void ArmBench::awaitState(const std::string& name, const std::string& value) const {
+    const auto deadline = inAMinute();
+    while (state().at(name) != value) {
+        ASSERT_LT(std::chrono::steady_clock::now(), deadline) << state();
+        pause();
+    }
 }
 
 void ArmBench::awaitReasonText(const std::string& part) {

@@ -54,6 +54,8 @@ public:
 
     /// Something happens to the controller or its cable. Events before it are forgotten.
     void inject(const std::string& fault, const std::string& value = "");
+    /// The same for what somebody else does just after this call.
+    void happensNow();
     /// Starts a move of axis 1 that takes some seconds, and waits until the controller moves.
     void startLongMove();
     /// Waits until axis 1 is by so much farther from home than now [rad].
@@ -66,6 +68,8 @@ public:
     skill::TransitionEvent endWithin(std::chrono::milliseconds time);
     /// The Halted that follows inject(), within kNoticed by the product's own time stamps.
     skill::TransitionEvent haltedAfterInjection();
+    /// Waits until the virtual controller shows that.
+    void awaitState(const std::string& name, const std::string& value) const;
     /// Waits until the skill's reason tells of it.
     void awaitReasonText(const std::string& part);
     /// The arm rests, short of the target.

@@ -2,6 +2,8 @@
 // faults, and its cable.
 #include <gmock/gmock.h>
 
+#include <ostream>
+
 #include "metier_program.hpp"
 #include "running_cell.hpp"
 
@@ -15,10 +17,14 @@ using ::testing::HasSubstr;
 
 constexpr auto kNoticed = 2s;
 
-/// A gripper on its maker's wire.
+/// A gripper on its maker's wire, with its jaws open.
 class GripperOnItsWire : public ::testing::Test {
 protected:
-    void SetUp() override { resetAll(); }
+    void SetUp() override {
+        resetAll();
+        const auto opened = release_.run({}, inAMinute());
+        ASSERT_TRUE(opened) << opened.error().message;
+    }
 
     /// Makes both skills ready: Reset acknowledges the gripper's fault and homes it.
     void resetAll() {
@@ -30,6 +36,32 @@ protected:
         }
     }
 
+    /// Starts a grasp of some seconds, and waits until the jaws move.
+    void startGrasp() {
+        ASSERT_TRUE(grasp_.start());
+        const auto deadline = inAMinute();
+        while (cell_.state("controller").at("velocity") == 0.0) {
+            ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the jaws do not move";
+        }
+    }
+    void inject(const std::string& fault, const std::string& value = "") {
+        injected_ = std::chrono::system_clock::now();
+        cell_.inject("controller", fault, value);
+    }
+    /// The Halted of a skill that runs, within kNoticed by the product's own time stamps.
+    skill::TransitionEvent endOfGrasp() {
+        const auto end = grasp_.awaitEnd(inAMinute()).value();
+        EXPECT_EQ(end.to, State::halted);
+        EXPECT_LT(end.time - injected_, kNoticed);
+        return end;
+    }
+    void expectReleases() {
+        resetAll();
+        const auto released = release_.run({}, inAMinute());
+        EXPECT_TRUE(released) << released.error().message;
+    }
+
+    UtcTime injected_{};
     RunningCell cell_{deviceCell("wsg50")};
     std::unique_ptr<opcua::Client> client_ = connectTo(cell_.url("gripper"));
     skill_client::SkillHandle grasp_ = openSkill(*client_, "GraspGripperSkill");
@@ -61,6 +93,127 @@ TEST_F(GripperOnItsWire, IsHaltedByACutCableAndComesBack) {
     ASSERT_TRUE(grasp_.awaitState(State::halted, std::chrono::steady_clock::now() + kNoticed));
     cell_.inject("controller", "restore-link");
     resetAll();
+    EXPECT_TRUE(release_.run({}, inAMinute()));
+}
+
+// ---- parts --------------------------------------------------------------------------------------
+
+TEST_F(GripperOnItsWire, SaysThatAPartIsTooWideOrTooNarrow) {
+    cell_.inject("controller", "part", "60");
+    const auto wide = grasp_.run({{"Width", 0.03}}, inAMinute());
+    ASSERT_FALSE(wide);
+    EXPECT_THAT(wide.error().message, HasSubstr("gripper: grasp blocked at 60.0 mm"));
+    expectReleases();
+    cell_.inject("controller", "part", "10");
+    const auto narrow = grasp_.run({{"Width", 0.03}}, inAMinute());
+    ASSERT_FALSE(narrow);
+    EXPECT_THAT(narrow.error().message, HasSubstr("no part found: the jaws closed to 27.0 mm"));
+    expectReleases();
+}
+
+TEST_F(GripperOnItsWire, ThatLostItsPartWhileReadySaysSoAtTheNextGrasp) {
+    cell_.inject("controller", "part", "30");
+    ASSERT_TRUE(grasp_.run({}, inAMinute()));
+    cell_.inject("controller", "lost-part");
+    EXPECT_EQ(*grasp_.state(), State::ready) << "its execution is over";
+    const auto again = grasp_.run({}, inAMinute());
+    ASSERT_FALSE(again);
+    EXPECT_THAT(again.error().message, HasSubstr("no part found"));
+    expectReleases();
+    cell_.inject("controller", "part", "30");
+    EXPECT_TRUE(grasp_.run({}, inAMinute()));
+}
+
+TEST_F(GripperOnItsWire, FindsNoPartThatIsLostOnTheWayToIt) {
+    cell_.inject("controller", "part", "20");
+    startGrasp();
+    cell_.inject("controller", "lost-part");
+    const auto end = grasp_.awaitEnd(inAMinute()).value();
+    EXPECT_EQ(end.to, State::halted);
+    EXPECT_EQ(end.reason, Reason::error);
+    EXPECT_THAT(end.reason_text, HasSubstr("gripper: no part found"));
+    expectReleases();
+}
+
+TEST_F(GripperOnItsWire, SaysWhereItsJawsAreBlocked) {
+    cell_.inject("controller", "block", "50");
+    auto move = openSkill(*client_, "MoveGripperSkill");
+    ASSERT_TRUE(move.reset());
+    const auto blocked = move.run({{"Width", 0.02}}, inAMinute());
+    ASSERT_FALSE(blocked);
+    EXPECT_THAT(blocked.error().message, HasSubstr("gripper: move blocked at 50.0 mm"));
+    cell_.inject("controller", "block", "0");
+    ASSERT_TRUE(move.reset());
+    EXPECT_TRUE(move.run({{"Width", 0.02}}, inAMinute()));
+}
+
+// ---- faults and the cable -----------------------------------------------------------------------
+
+struct GripperFault {
+    const char* name;
+    const char* fault;
+    const char* value;
+    Reason reason;
+    const char* text;
+    const char* undo = "";  ///< Reset is refused before it; empty: Reset alone leads back
+    const char* undo_value = "";
+};
+
+void PrintTo(const GripperFault& fault, std::ostream* out) {
+    *out << fault.name;
+}
+
+class FaultOfTheGripper : public GripperOnItsWire,
+                          public ::testing::WithParamInterface<GripperFault> {
+protected:
+    void expectAWayBack() {
+        if (*GetParam().undo != 0) {
+            EXPECT_FALSE(grasp_.reset()) << "it is still there";
+            cell_.inject("controller", GetParam().undo, GetParam().undo_value);
+        }
+        expectReleases();
+    }
+};
+
+TEST_P(FaultOfTheGripper, HaltsAGraspAndHasAWayBack) {
+    startGrasp();
+    inject(GetParam().fault, GetParam().value);
+    const auto halted = endOfGrasp();
+    EXPECT_EQ(halted.reason, GetParam().reason) << halted.reason_text;
+    EXPECT_THAT(halted.reason_text, HasSubstr("gripper: "));
+    EXPECT_THAT(halted.reason_text, HasSubstr(GetParam().text));
+    expectAWayBack();
+}
+
+TEST_P(FaultOfTheGripper, HaltsWhatIsReadyAndHasAWayBack) {
+    inject(GetParam().fault, GetParam().value);
+    ASSERT_TRUE(grasp_.awaitState(State::halted, inAMinute()));
+    ASSERT_TRUE(release_.awaitState(State::halted, inAMinute())) << "and every other skill";
+    EXPECT_THAT(grasp_.reasonText(), HasSubstr(GetParam().text));
+    expectAWayBack();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Wsg50, FaultOfTheGripper,
+    ::testing::Values(GripperFault{"fast_stop", "fast-stop", "", Reason::error, "fast stop"},
+                      GripperFault{"too_hot", "temperature-fault", "", Reason::error, "temperature",
+                                   "temperature-fault", "off"},
+                      GripperFault{"cut_link", "cut-link", "", Reason::device_lost, "for 400 ms",
+                                   "restore-link"},
+                      GripperFault{"late_link", "delay", "3000", Reason::device_lost, "for 400 ms",
+                                   "restore-link"},
+                      GripperFault{"garbled_link", "garble", "1000", Reason::device_lost,
+                                   "for 400 ms", "restore-link"},
+                      GripperFault{"restart", "restart", "", Reason::device_lost, ""}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST_F(GripperOnItsWire, HoldsAPartOverALinkThatIsLateWithinWhatTheDriverAllows) {
+    cell_.inject("controller", "part", "30");
+    startGrasp();
+    cell_.inject("controller", "delay", "150");
+    const auto end = grasp_.awaitEnd(inAMinute()).value();
+    EXPECT_EQ(end.to, State::ready) << end.reason_text;
+    EXPECT_EQ(grasp_.result().value().at("PartHeld"), skill::Value(true));
     EXPECT_TRUE(release_.run({}, inAMinute()));
 }
 

@@ -59,15 +59,13 @@ RunningCell::RunningCell(const std::filesystem::path& file)
     }
 }
 
-UtcTime RunningCell::inject(const std::string& controller, const std::string& fault,
-                            const std::string& value) const {
-    const auto now = std::chrono::system_clock::now();
+void RunningCell::inject(const std::string& controller, const std::string& fault,
+                         const std::string& value) const {
     const auto answer =
         askControlPort(virtualAddress(controller), {{"inject", fault}, {"value", value}});
     if (answer.contains("error")) {
         throw std::runtime_error(answer.at("error").get<std::string>());
     }
-    return now;
 }
 
 nlohmann::json RunningCell::state(const std::string& controller) const {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "metier/base/clock.hpp"
 #include "metier/process/child_process.hpp"
 
 namespace metier::system_tests {
@@ -30,9 +29,8 @@ public:
     process::ChildProcess& process() { return process_; }
 
     /// Does as `metier virtual inject`. Throws if it is refused.
-    /// \return a time shortly before
-    UtcTime inject(const std::string& controller, const std::string& fault,
-                   const std::string& value = "") const;
+    void inject(const std::string& controller, const std::string& fault,
+                const std::string& value = "") const;
     /// What `metier virtual state` shows.
     nlohmann::json state(const std::string& controller) const;
 
