@@ -22,6 +22,7 @@ constexpr UA_UInt32 kNothing = 100'001;
 constexpr UA_UInt32 kStart = 100'002;
 constexpr UA_UInt32 kFirstProgram = 200'000;
 constexpr UA_UInt32 kNodesOfProgram = 40;
+constexpr UA_UInt32 kMethods = 3;  // of each, then its parameters
 constexpr UA_UInt16 kSeverity = 300;
 
 UA_NodeId own(UA_UInt32 id) {
@@ -144,7 +145,6 @@ std::string Server::url() const {
 }
 
 void Server::addPrograms(std::uint32_t count) {
-    constexpr UA_UInt32 kMethods = 3;
     constexpr UA_UInt32 kParameters = 6;
     for (UA_UInt32 i = 0; i < count; ++i) {
         const UA_UInt32 id = kFirstProgram + i * kNodesOfProgram;
@@ -190,6 +190,13 @@ Client::~Client() {
 
 void Client::callNothing() {
     impl_->call(own(kProgram), own(kNothing));
+}
+void Client::writeParameter(double value) {
+    UA_Variant variant;
+    UA_Variant_setScalar(&variant, &value, &UA_TYPES[UA_TYPES_DOUBLE]);
+    require(
+        UA_Client_writeValueAttribute(impl_->client, own(kFirstProgram + kMethods + 1), &variant),
+        "write");
 }
 void Client::callStart() {
     impl_->call(own(kProgram), own(kStart));

@@ -44,6 +44,8 @@ public:
     void callNothing();
     /// Calls a method without arguments of another server. Ids as text, such as `ns=2;i=1`.
     void call(const std::string& object, const std::string& method);
+    /// Writes a parameter of the first of the added Programs, and waits for the answer.
+    void writeParameter(double value);
     /// Calls the Program's Start, which raises two events.
     void callStart();
     /// Subscribes to the Program's events.
