@@ -274,28 +274,29 @@ NextWrite onItsOwn(std::chrono::nanoseconds cycle) {
 }
 
 struct Run {
-    skill::Value delay;
-    double velocity;
+    std::chrono::nanoseconds cycle;
+    double velocity;  ///< of joint 1 [rad/s]
     std::chrono::nanoseconds length;
 };
 
-/// Streams a ramp and adds what passed, but for its beginning.
-void stream(Stream& stream, const Robot& robot, const Run& run, const NextWrite& next_write,
-            Figures& figures) {
-    const auto begin = steady_clock::now();
-    Time next = begin;
-    static_cast<void>(stream.tap().take());
-    while (next < begin + run.length) {
+/// Streams a ramp from `begin` on. \return its end
+Time writeRamp(Stream& stream, const Run& run, const NextWrite& next_write, Time begin) {
+    for (Time next = begin; next < begin + run.length; next = next_write(next)) {
         std::this_thread::sleep_until(next);
-        const auto now = steady_clock::now();
-        stream.write(stream.start() +
-                     run.velocity * std::chrono::duration<double>(now - begin).count());
-        next = next_write(next);
+        const std::chrono::duration<double> passed = steady_clock::now() - begin;
+        stream.write(stream.start() + run.velocity * passed.count());
     }
-    const auto end = steady_clock::now();
     if (!stream.running()) {
         refuse("the stream ended", stream.reason());
     }
+    return begin + run.length;
+}
+
+/// Streams a ramp and adds what passed, but for its beginning.
+void measureRamp(Stream& stream, const Run& run, const NextWrite& next_write, Figures& figures) {
+    static_cast<void>(stream.tap().take());
+    const auto begin = steady_clock::now();
+    const auto end = writeRamp(stream, run, next_write, begin);
     std::optional<Time> before;
     for (const auto& seen : stream.tap().take()) {
         if (seen.time < begin + kLead || seen.time > end) {
@@ -304,7 +305,7 @@ void stream(Stream& stream, const Robot& robot, const Run& run, const NextWrite&
         const std::chrono::duration<double> meant((seen.position - stream.start()) / run.velocity);
         figures.latency.add(Millis(seen.time - begin - meant).count());
         if (before) {
-            figures.interval.add(std::abs(Millis(seen.time - *before - robot.cycle).count()));
+            figures.interval.add(std::abs(Millis(seen.time - *before - run.cycle).count()));
         }
         before = seen.time;
     }
@@ -338,8 +339,8 @@ double measure(const Robot& robot, std::chrono::nanoseconds length) {
     for (const auto& delay : {Delay{"delay 0", 0.0}, Delay{"default delay", {}}}) {
         Figures in_step;
         client.begin(delay.value, robot.cycle);
-        stream(client, robot, {delay.value, velocity, length}, inStep(cell.tap(), robot.cycle),
-               in_step);
+        measureRamp(client, {robot.cycle, velocity, length}, inStep(cell.tap(), robot.cycle),
+                    in_step);
         client.end();
         print(robot, delay.name + ", in step", in_step);
         if (delay.value == skill::Value(0.0)) {
@@ -351,8 +352,8 @@ double measure(const Robot& robot, std::chrono::nanoseconds length) {
             client.begin(delay.value, robot.cycle);
             std::this_thread::sleep_for(std::chrono::nanoseconds(
                 random() % static_cast<std::uint64_t>(robot.cycle.count())));
-            stream(client, robot, {delay.value, velocity, length / 2}, onItsOwn(robot.cycle),
-                   anywhere);
+            measureRamp(client, {robot.cycle, velocity, length / 2}, onItsOwn(robot.cycle),
+                        anywhere);
             client.end();
         }
         print(robot, delay.name + ", random phase", anywhere);

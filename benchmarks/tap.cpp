@@ -120,28 +120,30 @@ void Tap::relay(int accepted, int dialled, const std::stop_token& stop) {
     const int driver = driver_dials ? accepted : dialled;
     const int controller = driver_dials ? dialled : accepted;
     const auto reader = options_.reader();
-    std::array<std::byte, 65536> buffer{};
     std::array<pollfd, 2> ends{{{driver, POLLIN, 0}, {controller, POLLIN, 0}}};
-    while (!stop.stop_requested()) {
+    bool open = true;
+    while (open && !stop.stop_requested()) {
         if (poll(ends.data(), ends.size(), kWaitMs) <= 0) {
             continue;
         }
-        for (const auto& end : ends) {
-            if (end.revents == 0) {
-                continue;
-            }
-            const auto got = recv(end.fd, buffer.data(), buffer.size(), 0);
-            const auto now = steady_clock::now();
-            const auto bytes =
-                std::span(buffer).first(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-            if (bytes.empty() || !sendAll(end.fd == driver ? controller : driver, bytes)) {
-                return;
-            }
-            if (end.fd == driver) {
-                reader->read(bytes, [&](double position) { note(position, now); });
-            }
-        }
+        open = (ends[0].revents == 0 || pass(driver, controller, reader.get())) &&
+               (ends[1].revents == 0 || pass(controller, driver, nullptr));
     }
+}
+
+bool Tap::pass(int from, int to, SetPointReader* reader) {
+    std::array<std::byte, 65536> buffer;  // NOLINT(*-member-init): filled by recv()
+    const auto got = recv(from, buffer.data(), buffer.size(), 0);
+    const auto now = steady_clock::now();
+    if (got <= 0) {
+        return false;
+    }
+    const auto bytes = std::span(buffer).first(static_cast<std::size_t>(got));
+    const bool sent = sendAll(to, bytes);
+    if (reader != nullptr) {
+        reader->read(bytes, [&](double position) { note(position, now); });
+    }
+    return sent;
 }
 
 void Tap::note(double position, steady_clock::time_point time) {

@@ -49,6 +49,8 @@ public:
 private:
     void run(const std::stop_token& stop);
     void relay(int accepted, int dialled, const std::stop_token& stop);
+    /// Hands on what is there. False once a side has ended.
+    bool pass(int from, int to, SetPointReader* reader);
     void note(double position, std::chrono::steady_clock::time_point time);
 
     Options options_;
