@@ -30,26 +30,39 @@ int replay(const char* file) {
     return divergence ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
+/// A client gives its connection up after some seconds without an answer, which a machine that is
+/// busy enough can bring about; what follows tells nothing.
+bool isVoid(const Divergence& divergence) {
+    return divergence.text.find("seen:\n  BadNotConnected") != std::string::npos ||
+           divergence.text.find("seen:\n  BadConnectionClosed") != std::string::npos;
+}
+
 int walk(std::uint64_t steps, std::uint64_t seed) {
     const auto begin = std::chrono::steady_clock::now();
     auto world = std::make_unique<World>();
     RandomSteps random(seed);
     std::uint64_t taken = 0;
     std::uint64_t histories = 0;
-    for (; taken < steps; taken += kLength, ++histories) {
-        if (histories % kHistoriesPerServer == kHistoriesPerServer - 1) {
-            world.reset();
-            world = std::make_unique<World>();
-        }
+    std::uint64_t void_histories = 0;
+    for (; taken < steps; ++histories) {
         const auto history = random.history(kLength);
-        if (findDivergence(*world, history)) {
+        const auto divergence = findDivergence(*world, history);
+        if (divergence && !isVoid(*divergence)) {
             fmt::print("history {} of seed {}: {}", histories, seed, explain(*world, history));
             return EXIT_FAILURE;
         }
+        taken += divergence ? 0 : kLength;
+        void_histories += divergence ? 1 : 0;
+        if (divergence || histories % kHistoriesPerServer == kHistoriesPerServer - 1) {
+            world.reset();
+            world = std::make_unique<World>();
+        }
     }
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    fmt::print("{} steps in {} histories of seed {}, in {:.0f} s: server and model agree\n", taken,
-               histories, seed, time.count());
+    fmt::print(
+        "{} steps in {} histories of seed {}, in {:.0f} s: server and model agree; {} more "
+        "histories lost a connection\n",
+        taken, histories - void_histories, seed, time.count(), void_histories);
     return EXIT_SUCCESS;
 }
 
