@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_controller/standing_time.hpp"
 #include "metier/virtual_edo/bridge_port.hpp"
 #include "metier/virtual_edo/robot.hpp"
 
@@ -77,6 +78,7 @@ public:
         Json shown = robot_->state();
         shown["clients"] = port_->clients();
         shown["port"] = port_->port();
+        standing_.show(shown, std::chrono::steady_clock::now());
         return shown;
     }
     void restart() override {
@@ -108,6 +110,7 @@ private:
         now_ += kCycle;
         bridge_->setTime(now_);
         world_.report(robot_->step(world_.effect()));
+        standing_.take(robot_->jointPosition().span(), std::chrono::steady_clock::now());
     }
 
     asio::io_context& context_;
@@ -122,6 +125,7 @@ private:
     std::unique_ptr<Rosbridge> bridge_;
     std::unique_ptr<BridgePort> port_;
     std::unique_ptr<CycleTimer> timer_;
+    StandingTime standing_;
 };
 
 Result<std::unique_ptr<Controller>> startEdo(const ControllerRequest& request) {

@@ -182,6 +182,10 @@ void Robot::publishBrakesCheck(std::int8_t state, std::uint8_t mask) {
     send("/brakes_check_ack", {{"state", state}, {"mask", mask}});
 }
 
+motion::JointVector Robot::jointPosition() const {
+    return armRadians(bus_.truePosition());
+}
+
 Json Robot::state() const {
     const auto report = bus_.report();
     Json joints = Json::array();

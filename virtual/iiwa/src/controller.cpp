@@ -194,6 +194,7 @@ void IiwaController::stepArm() {
     virtual_controller::WorldReport report;
     report.base_from_flange = cabinet_.arm.model().kinematics().forward(cabinet_.arm.position());
     world_.report(report);
+    standing_.take(cabinet_.arm.position().span(), std::chrono::steady_clock::now());
 }
 
 void IiwaController::stepAnswer() {
@@ -274,6 +275,7 @@ nlohmann::ordered_json IiwaController::state() const {
         {"joint_position", std::vector(arm.position().begin(), arm.position().end())},
         {"joint_velocity", std::vector(velocity.begin(), velocity.end())},
     };
+    standing_.show(state, std::chrono::steady_clock::now());
     if (application_) {
         state["error_code"] = static_cast<int>(application_->error());
         state["condition_fired"] = application_->conditionFired();

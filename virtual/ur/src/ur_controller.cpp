@@ -12,6 +12,7 @@
 #include "accidents.hpp"
 #include "metier/urscript/script_splitter.hpp"
 #include "metier/virtual_controller/controller.hpp"
+#include "metier/virtual_controller/standing_time.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
 #include "metier/virtual_ur/dashboard.hpp"
 #include "metier/virtual_ur/pacer.hpp"
@@ -103,6 +104,7 @@ private:
     std::map<TcpPeer*, std::string> lines_;  // what came since the last line feed
     std::vector<Port> ports_;
     std::optional<Pacer> pacer_;
+    virtual_controller::StandingTime standing_;
 };
 
 Result<void> UrController::listen() {
@@ -228,6 +230,7 @@ void UrController::tell(const Bytes& message) {
 void UrController::cycle() {
     robot_.cycle();
     const auto& state = robot_.state();
+    standing_.take(state.actual_q, std::chrono::steady_clock::now());
     for (const auto& [peer, session] : sessions_) {
         session->cycle(state);
     }
@@ -275,15 +278,18 @@ nlohmann::ordered_json UrController::state() const {
     for (const auto& one : ports_) {
         ports[one.name] = one.server->port();
     }
-    return {{"robot_mode", toText(state.robot_mode)},
-            {"safety_mode", toText(state.safety_mode)},
-            {"runtime_state", kRuntimeStates.at(static_cast<std::size_t>(state.runtime_state))},
-            {"remote_control", robot_.control() == Control::remote},
-            {"joint_position", state.actual_q},
-            {"tool_pose", state.actual_tcp_pose},
-            {"speed_scaling", state.speed_scaling},
-            {"timestamp", state.timestamp},
-            {"ports", std::move(ports)}};
+    nlohmann::ordered_json shown{
+        {"robot_mode", toText(state.robot_mode)},
+        {"safety_mode", toText(state.safety_mode)},
+        {"runtime_state", kRuntimeStates.at(static_cast<std::size_t>(state.runtime_state))},
+        {"remote_control", robot_.control() == Control::remote},
+        {"joint_position", state.actual_q},
+        {"tool_pose", state.actual_tcp_pose},
+        {"speed_scaling", state.speed_scaling},
+        {"timestamp", state.timestamp},
+        {"ports", std::move(ports)}};
+    standing_.show(shown, std::chrono::steady_clock::now());
+    return shown;
 }
 
 void UrController::restart() {

@@ -50,6 +50,8 @@ public:
     /// Errors: not_found, invalid_argument.
     Result<void> inject(const virtual_controller::Injection& injection);
     Json state() const;
+    /// Where the arm truly is [rad].
+    motion::JointVector jointPosition() const;
 
 private:
     void publishJointStates(const BusReport& report);

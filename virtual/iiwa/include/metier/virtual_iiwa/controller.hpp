@@ -11,6 +11,7 @@
 
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
+#include "metier/virtual_controller/standing_time.hpp"
 #include "metier/virtual_controller/tcp_dialer.hpp"
 #include "metier/virtual_iiwa/robot_application.hpp"
 
@@ -69,6 +70,7 @@ private:
     std::mt19937 random_{1};
     std::normal_distribution<double> normal_;
     std::unique_ptr<virtual_controller::TcpDialer> dialer_;
+    virtual_controller::StandingTime standing_;
     virtual_controller::CycleTimer timer_;
 };
 
