@@ -65,7 +65,8 @@ Driver iiwaDriver();
 Driver iiwaDriver() {
     return {"iiwa",
             "KUKA LBR iiwa whose cabinet runs the robot application of libiiwa and dials in (TCP)",
-            iiwa_driver::open};
+            iiwa_driver::open,
+            {"port", 12225}};
 }
 
 }  // namespace metier::driver

@@ -12,6 +12,9 @@ namespace metier::iiwa_driver {
 
 namespace {
 
+// A cycle with the slowest answer may be so late before the guard hangs up.
+constexpr std::chrono::milliseconds kGuardMargin{300};
+
 device::ArmInfo infoOf(const IiwaOptions& options, const motion::RobotModel& model) {
     device::ArmInfo info{options.name, {}, options.cycle};
     for (const auto& joint : model.chain().joints) {
@@ -38,11 +41,11 @@ Result<void> check(const IiwaOptions& options, const motion::RobotModel& model) 
 /// The parts and threads behind the faces.
 class IiwaArm::Machine {
 public:
-    Machine(const IiwaOptions& options, const motion::RobotModel& model, link::TcpListener listener)
+    Machine(const IiwaOptions& options, const motion::RobotModel& model, Session::Links links)
         : pilot_(infoOf(options, model), model, {options.force_tolerance, options.tool}),
           force_(pilot_.core()),
           notifier_([this] { pilot_.dispatch(); }),
-          session_(std::move(listener), {pilot_, force_, [this] { notifier_.signal(); }},
+          session_(std::move(links), {pilot_, force_, [this] { notifier_.signal(); }},
                    {options.precision, options.cycle, options.answer_timeout}),
           thread_([this](const std::stop_token& stop) { session_.run(stop); }) {}
 
@@ -77,8 +80,14 @@ Result<std::unique_ptr<IiwaArm>> IiwaArm::create(const IiwaOptions& options,
     if (!listener) {
         return fail(listener.error().code, options.name + ": " + listener.error().message);
     }
-    return std::unique_ptr<IiwaArm>(
-        new IiwaArm(std::make_unique<Machine>(options, model, std::move(*listener))));
+    auto guard = link::LinkGuard::start(
+        std::chrono::ceil<std::chrono::milliseconds>(options.cycle + options.answer_timeout) +
+        kGuardMargin);
+    if (!guard) {
+        return fail(guard.error().code, options.name + ": " + guard.error().message);
+    }
+    return std::unique_ptr<IiwaArm>(new IiwaArm(std::make_unique<Machine>(
+        options, model, Session::Links{std::move(*listener), std::move(*guard)})));
 }
 
 IiwaArm::IiwaArm(std::unique_ptr<Machine> machine) : machine_(std::move(machine)) {}

@@ -23,12 +23,12 @@ constexpr auto kPause = std::chrono::milliseconds(200);
 
 }  // namespace
 
-Session::Session(link::TcpListener listener, Clients clients, const SessionOptions& options)
-    : listener_(std::move(listener)), clients_(std::move(clients)), options_(options) {}
+Session::Session(Links links, Clients clients, const SessionOptions& options)
+    : links_(std::move(links)), clients_(std::move(clients)), options_(options) {}
 
 void Session::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-        auto link = listener_.accept(steady_clock::now() + kAcceptTimeout);
+        auto link = links_.listener.accept(steady_clock::now() + kAcceptTimeout);
         if (link) {
             serve(*link, stop);
         } else if (link.error().code != Errc::timeout) {
@@ -41,6 +41,8 @@ void Session::serve(link::TcpLink& link, const std::stop_token& stop) {
     answered_ = false;
     const auto served = poll(link, stop);
     link.shutdown();
+    links_.guard.release();
+    guarded_ = false;
     if (served) {
         return;
     }
@@ -61,6 +63,9 @@ Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
     pilot.connected(*first, steady_clock::now());
     auto scheduled = steady_clock::now();
     while (!stop.stop_requested()) {
+        if (auto guarded = keepGuard(link); !guarded) {
+            return guarded;
+        }
         const auto command = pilot.command();
         const auto answer =
             exchange(link, command, pilot.settlingIn() ? kFirstTimeout : options_.answer_timeout);
@@ -80,6 +85,17 @@ Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
         }
     }
     return {};
+}
+
+/// The cabinet waits for ever for the next command, and goes on with a motion meanwhile: somebody
+/// has to hang up if none comes. What it is told first may take longer than that.
+Result<void> Session::keepGuard(link::TcpLink& link) {
+    links_.guard.alive();
+    if (guarded_ || clients_.pilot.settlingIn()) {
+        return {};
+    }
+    guarded_ = true;
+    return links_.guard.guard(link);
 }
 
 Result<CabinetState> Session::exchange(link::TcpLink& link, const Command& command,

@@ -9,6 +9,7 @@
 
 #include "flange_force.hpp"
 #include "metier/iiwa_driver/wire.hpp"
+#include "metier/link/link_guard.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "pilot.hpp"
 
@@ -33,26 +34,35 @@ public:
         std::function<void()> signal;  ///< there is something to tell; neither locks nor allocates
     };
 
-    Session(link::TcpListener listener, Clients clients, const SessionOptions& options);
+    /// The ends of the connection: where the cabinet dials in, and who hangs up if this process
+    /// does not work any more.
+    struct Links {
+        link::TcpListener listener;
+        link::LinkGuard guard;
+    };
 
-    std::uint16_t port() const { return listener_.port(); }
+    Session(Links links, Clients clients, const SessionOptions& options);
+
+    std::uint16_t port() const { return links_.listener.port(); }
     /// Until `stop` is asked for; within one cycle.
     void run(const std::stop_token& stop);
     /// Any thread: ends waiting for the cabinet.
-    void shutdown() noexcept { listener_.shutdown(); }
+    void shutdown() noexcept { links_.listener.shutdown(); }
 
 private:
     void serve(link::TcpLink& link, const std::stop_token& stop);
     Result<void> poll(link::TcpLink& link, const std::stop_token& stop);
+    Result<void> keepGuard(link::TcpLink& link);
     Result<CabinetState> exchange(link::TcpLink& link, const Command& command,
                                   std::chrono::nanoseconds timeout);
     void awaitCycle(SteadyTime& scheduled);
     void pause(const std::stop_token& stop);
 
-    link::TcpListener listener_;
+    Links links_;
     Clients clients_;
     const SessionOptions options_;
     bool answered_ = false;  ///< on this connection
+    bool guarded_ = false;   ///< this connection
     std::array<std::byte, kLongestState + 1> buffer_{};
     std::mutex pause_mutex_;
     std::condition_variable_any pause_;
