@@ -112,6 +112,9 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
         return offered;
     }
     host_->haltOnLossOf(*device_.arm);
+    if (device_.gripper != nullptr) {
+        host_->stopOnStall(*device_.gripper);
+    }
     return host_->publishArm(*system, *device_.arm, model_);
 }
 

@@ -2,13 +2,20 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <netdb.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
+
+#include "metier/process/name_lock.hpp"
 
 namespace metier::app {
 namespace {
@@ -20,6 +27,7 @@ using device::SafetyState;
 constexpr std::chrono::seconds kFirstAnswer{10};
 // One that powers on or homes by itself does so meanwhile.
 constexpr std::chrono::seconds kSettling{2};
+constexpr int kLastPort = 65535;
 
 /// Whichever face a device has tells of its safety.
 template <typename Callback>
@@ -41,6 +49,50 @@ Safety safetyOf(const driver::OpenDevice& device) {
                                      : device.force_torque_sensor->safety();
 }
 
+struct LockedDevice {
+    LockedDevice(process::NameLock name_lock, std::shared_ptr<void> open_device)
+        : lock(std::move(name_lock)), device(std::move(open_device)) {}
+
+    process::NameLock lock;
+    std::shared_ptr<void> device;  // as OpenDevice::owner
+};
+
+/// The same text for all names of one host; the name itself if it is not known.
+std::string addressOf(const std::string& host) {
+    addrinfo wanted{};
+    wanted.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    if (getaddrinfo(host.c_str(), nullptr, &wanted, &found) != 0) {
+        return host;
+    }
+    std::array<char, NI_MAXHOST> text{};
+    const bool known = getnameinfo(found->ai_addr, found->ai_addrlen, text.data(), text.size(),
+                                   nullptr, 0, NI_NUMERICHOST) == 0;
+    freeaddrinfo(found);
+    return known ? text.data() : host;
+}
+
+/// \return nothing for a device that several processes may use
+Result<std::optional<process::NameLock>> lockDevice(const driver::Driver& driver,
+                                                    const configuration::DriverChoice& choice,
+                                                    const std::string& name) {
+    if (driver.port.setting.empty()) {
+        return std::optional<process::NameLock>();
+    }
+    const auto port = static_cast<int>(
+        choice.settings.numberOr(driver.port.setting, driver.port.preset, 0, kLastPort));
+    if (port == 0) {  // a free one, which nobody else has
+        return std::optional<process::NameLock>();
+    }
+    const auto device =
+        fmt::format("{} at {}, port {}", driver.name, addressOf(choice.controller), port);
+    auto lock = process::NameLock::take("device " + device, name + ": the controller " + device);
+    if (!lock) {
+        return fail(lock.error());
+    }
+    return std::optional(std::move(*lock));
+}
+
 }  // namespace
 
 Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
@@ -57,7 +109,16 @@ Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
                     fmt::format("{}: no driver of type \"{}\"; there are: {}", name, choice.type,
                                 fmt::join(names, ", ")));
     }
-    return found->open({name, choice.controller, choice.settings, model});
+    auto lock = lockDevice(*found, choice, name);
+    if (!lock) {
+        return fail(lock.error());
+    }
+    auto device = found->open({name, choice.controller, choice.settings, model});
+    if (device && *lock) {
+        // Shared, as OpenDevice asks for; the connection ends before its lock.
+        device->owner = std::make_shared<LockedDevice>(std::move(**lock), std::move(device->owner));
+    }
+    return device;
 }
 
 void awaitConnection(const driver::OpenDevice& device) {

@@ -12,7 +12,8 @@ namespace metier::app {
 /// Opens the device that a cell file names.
 /// \param name  of the server, for messages
 /// \param model of an arm; nullptr for other devices; must outlive the device
-/// Errors: invalid_argument (unknown driver with the known ones, settings).
+/// Errors: invalid_argument (unknown driver with the known ones, settings),
+///         already_exists (another process of this machine has the device; names its pid).
 Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
                                       const std::string& name, const motion::RobotModel* model);
 

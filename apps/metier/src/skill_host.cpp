@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -57,10 +58,27 @@ Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
     return {};
 }
 
+/// The kernel lets one process have a port anyway; the lock tells which one that is.
+Result<std::optional<process::NameLock>> lockPort(const configuration::ServerConfig& config) {
+    if (config.port == 0) {
+        return std::optional<process::NameLock>();
+    }
+    const auto port = fmt::format("port {} of {}", config.port, config.address);
+    auto lock = process::NameLock::take(port, config.name + ": " + port);
+    if (!lock) {
+        return fail(lock.error());
+    }
+    return std::optional(std::move(*lock));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::ServerConfig& config,
                                                      std::vector<std::string> nodesets) {
+    auto port_lock = lockPort(config);
+    if (!port_lock) {
+        return fail(port_lock.error());
+    }
     opcua::ServerOptions options;
     options.application_name = "metier " + config.name;
     options.application_uri = "urn:metier:" + config.name;
@@ -74,7 +92,8 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
     if (!server) {
         return fail(server.error());
     }
-    std::unique_ptr<SkillHost> host(new SkillHost(std::move(*server)));
+    std::unique_ptr<SkillHost> host(new SkillHost(config, std::move(*server)));
+    host->port_lock_ = std::move(*port_lock);
     auto skills = opcua_skill::SkillServer::create(*host->server_, host->clock_);
     if (!skills) {
         return fail(skills.error());
@@ -103,9 +122,27 @@ Result<void> SkillHost::keepNames(const configuration::ServerConfig& config) {
     return {};
 }
 
-SkillHost::SkillHost(std::unique_ptr<opcua::Server> server) : server_(std::move(server)) {}
+SkillHost::SkillHost(const configuration::ServerConfig& config,
+                     std::unique_ptr<opcua::Server> server)
+    : name_(config.name), stall_limit_(config.stall_limit), server_(std::move(server)) {}
 
 SkillHost::~SkillHost() = default;
+
+Result<void> SkillHost::start() {
+    stall_watch_.emplace(
+        robot_skills::StallWatch::Setup{
+            .name = name_,
+            .limit = std::chrono::duration_cast<std::chrono::nanoseconds>(stall_limit_),
+            .stop =
+                [this] {
+                    for (const auto& stop : stops_) {
+                        stop();
+                    }
+                },
+            .log = [](const std::string& line) { spdlog::error("{}", line); }},
+        skills_->executor(), skills_->programs(), clock_);
+    return server_->start();
+}
 
 Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system,
                                    const device::Arm& arm, const motion::RobotModel& model) {

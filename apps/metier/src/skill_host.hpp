@@ -14,8 +14,10 @@
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
+#include "metier/process/name_lock.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
 #include "metier/robot_skills/device_watch.hpp"
+#include "metier/robot_skills/stall_watch.hpp"
 
 namespace metier::app {
 
@@ -52,23 +54,35 @@ public:
                              std::vector<std::unique_ptr<skill::Skill>> skills,
                              const std::shared_ptr<skill::Resource>& resource);
     /// Halts the skills that are offered by now when the device is lost or stops by itself, at once
-    /// if it is so already. The device must outlive this.
+    /// if it is so already. The device must outlive this. It is stopped, too, by stopOnStall().
     template <typename Device>
     void haltOnLossOf(Device& device) {
         device_watch_.emplace(device, skills_->executor(), skills_->programs());
+        stopOnStall(device);
     }
-    Result<void> start() { return server_->start(); }
+    /// Stops the device while the server's thread does not work. Before start(); the device must
+    /// outlive this.
+    template <typename Device>
+    void stopOnStall(Device& device) {
+        stops_.emplace_back([&device] { device.stop(); });
+    }
+    Result<void> start();
 
 private:
-    explicit SkillHost(std::unique_ptr<opcua::Server> server);
+    SkillHost(const configuration::ServerConfig& config, std::unique_ptr<opcua::Server> server);
     Result<void> keepNames(const configuration::ServerConfig& config);
 
+    std::optional<process::NameLock> port_lock_;  // until the server is gone
+    const std::string name_;
+    const std::chrono::duration<double> stall_limit_;
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::shared_ptr<skill::Control> control_;       // shared with the Programs
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs
     std::optional<robot_skills::DeviceWatch> device_watch_;
+    std::vector<std::function<void()>> stops_;
+    std::optional<robot_skills::StallWatch> stall_watch_;
 };
 
 }  // namespace metier::app

@@ -14,6 +14,9 @@ constexpr std::int64_t kMaxPort = 65535;
 // A shorter silence is within the jitter of a network, a longer one leaves an arm to itself [s].
 constexpr double kShortestSilence = 0.02;
 constexpr double kLongestSilence = 2.0;
+// A shorter limit is within what a busy machine lets a thread wait [s].
+constexpr double kShortestStall = 0.1;
+constexpr double kLongestStall = 2.0;
 
 std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
                              const std::filesystem::path& folder) {
@@ -27,6 +30,21 @@ std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
         table.reject(key, fmt::format("no such file: {}", path.string()));
     }
     return path;
+}
+
+struct Bounds {
+    double least;
+    double most;
+};
+
+double secondsWithin(const TomlTable& table, std::string_view key, double preset,
+                     const Bounds& bounds) {
+    const double value = table.numberOr(key, preset);
+    if (!(value >= bounds.least && value <= bounds.most)) {
+        table.reject(key,
+                     fmt::format("{} is not within {} to {} s", value, bounds.least, bounds.most));
+    }
+    return value;
 }
 
 DriverChoice readDriver(const TomlTable& table) {
@@ -46,12 +64,8 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     }
     arm.nodeset = table.textOr("nodeset", "");
     arm.skills = table.texts("skills");
-    arm.stream_silence = table.numberOr("stream_silence", arm.stream_silence);
-    if (!(arm.stream_silence >= kShortestSilence && arm.stream_silence <= kLongestSilence)) {
-        table.reject("stream_silence",
-                     fmt::format("{} is not within {} to {} s", arm.stream_silence,
-                                 kShortestSilence, kLongestSilence));
-    }
+    arm.stream_silence = secondsWithin(table, "stream_silence", arm.stream_silence,
+                                       {kShortestSilence, kLongestSilence});
     return arm;
 }
 
@@ -83,6 +97,8 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     server.port = static_cast<std::uint16_t>(table.integerOr("port", 0, 0, kMaxPort));
     server.address = table.textOr("address", "127.0.0.1");
     server.publish_at_once = table.flagOr("publish_at_once", true);
+    server.stall_limit =
+        secondsWithin(table, "stall_limit", server.stall_limit, {kShortestStall, kLongestStall});
     const auto kind = table.text("kind");
     if (kind == "arm") {
         server.kind = ServerKind::arm;

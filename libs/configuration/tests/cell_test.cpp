@@ -113,6 +113,21 @@ stream_silence = 5.0
                 HasSubstr("cell.toml:9: server[0].stream_silence: 5 is not within 0.02 to 2 s"));
 }
 
+TEST_F(CellFile, TellsHowLongAServersThreadMayHang) {
+    const auto cell = [this](const std::string& line) {
+        return load(
+            "name = \"a\"\n[[server]]\nname = \"m\"\nkind = \"move\"\n"
+            "robot = \"opc.tcp://127.0.0.1:4840\"\n" +
+            line);
+    };
+    EXPECT_DOUBLE_EQ(cell("").value().servers[0].stall_limit, 0.25);
+    EXPECT_DOUBLE_EQ(cell("stall_limit = 1.0\n").value().servers[0].stall_limit, 1.0);
+    const auto refused = cell("stall_limit = 0.01\n");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message,
+                HasSubstr("server[0].stall_limit: 0.01 is not within 0.1 to 2 s"));
+}
+
 TEST_F(CellFile, DescribesDevicesAndTheirVirtualControllers) {
     const auto cell = load(R"(name = "a"
 [[virtual]]

@@ -36,8 +36,10 @@ Result<OpenDevice> open(const OpenRequest& request) {
 }  // namespace
 
 Driver edoDriver() {
-    return {"edo", "Comau e.DO with its gripper, by rosbridge (software up to 3.0.1, and 3.1.2 on)",
-            open};
+    return {"edo",
+            "Comau e.DO with its gripper, by rosbridge (software up to 3.0.1, and 3.1.2 on)",
+            open,
+            {"port", 9090}};
 }
 
 }  // namespace metier::driver

@@ -83,8 +83,10 @@ namespace metier::driver {
 Driver urDriver();
 
 Driver urDriver() {
-    return {"ur", "Universal Robots CB3 and e-Series, by RTDE and a script for servoj",
-            ur_driver::open};
+    return {"ur",
+            "Universal Robots CB3 and e-Series, by RTDE and a script for servoj",
+            ur_driver::open,
+            {"rtde_port", 30004}};
 }
 
 }  // namespace metier::driver

@@ -63,7 +63,8 @@ Driver wsg50Driver();
 Driver wsg50Driver() {
     return {.name = "wsg50",
             .help = "Weiss WSG 50 grippers: binary commands over TCP, port 1000",
-            .open = wsg50_driver::open};
+            .open = wsg50_driver::open,
+            .port = {"port", 1000}};
 }
 
 }  // namespace metier::driver

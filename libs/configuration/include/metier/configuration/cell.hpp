@@ -64,6 +64,8 @@ struct ServerConfig {
     /// Where the server keeps what outlives it; empty: nothing does. Not of the file: whoever
     /// starts the server says it.
     std::filesystem::path state_folder;
+    /// Longest time without a sign of life of the server's thread; then its device is stopped [s].
+    double stall_limit = 0.25;
     ArmServer arm;          ///< for ServerKind::arm
     GripperServer gripper;  ///< for ServerKind::gripper
     MoveComponent move;     ///< for ServerKind::move

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,12 @@ struct OpenRequest {
     const motion::RobotModel* model = nullptr;
 };
 
+/// The setting of a driver that tells controllers behind one address apart.
+struct DevicePort {
+    std::string_view setting{};  ///< empty: several processes may use the device at a time
+    std::uint16_t preset = 0;    ///< without the setting
+};
+
 /// One kind of controller that metier can talk to. To add one: docs/guide/add-a-robot.md.
 struct Driver {
     std::string_view name;  ///< as in `driver = { type = "ur" }`
@@ -43,6 +50,8 @@ struct Driver {
     /// only a device whose safety state is disconnected.
     /// Errors: invalid_argument for what is wrong in the settings.
     Result<OpenDevice> (*open)(const OpenRequest& request);
+    /// With it one process of this machine at a time has the device.
+    DevicePort port{};
 };
 
 /// Every driver that was built, by name.
