@@ -66,7 +66,7 @@ private:
     static std::string write(opcua::Client& client, const Side& side, const Step& step);
     std::string command(const Step& step);
     std::string startWith(const Step& step);
-    std::string check(opcua::Client& client, const Side& side, const Step& step);
+    static std::string check(opcua::Client& client, const Side& side, const Step& step);
     std::string execution(opcua::Client& client, const Side& side, std::uint32_t name);
     std::string control(const Step& step);
     void happen(const Step& step);
