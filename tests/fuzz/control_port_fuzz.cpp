@@ -27,17 +27,15 @@ std::string ownAddress(std::size_t index) {
     return fmt::format("127.{}.{}.{}", 64 + (process >> 8U) % 128, process % 256, 1 + index);
 }
 
+/// Controllers of devices that are no arms take no notice of it.
 const motion::RobotModel* modelOf(std::string_view type) {
-    static const std::map<std::string, motion::RobotModel, std::less<>> kModels = [] {
-        std::map<std::string, motion::RobotModel, std::less<>> models;
-        for (const auto& [name, file] : std::map<std::string, std::string>{
-                 {"ur", "ur5.toml"}, {"iiwa", "iiwa7.toml"}, {"edo", "edo.toml"}}) {
-            models.emplace(name, motion::RobotModel::load(METIER_MODELS_DIR "/" + file).value());
-        }
-        return models;
-    }();
-    const auto found = kModels.find(type);
-    return found == kModels.end() ? nullptr : &found->second;
+    const auto load = [](const char* file) {
+        return motion::RobotModel::load(std::string(METIER_MODELS_DIR "/") + file).value();
+    };
+    static const auto kIiwa = load("iiwa7.toml");
+    static const auto kEdo = load("edo.toml");
+    static const auto kSixAxes = load("ur5.toml");
+    return type == "iiwa" ? &kIiwa : type == "edo" ? &kEdo : &kSixAxes;
 }
 
 Values settingsOf(std::string_view type) {
