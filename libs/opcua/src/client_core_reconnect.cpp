@@ -17,9 +17,9 @@ const NodeId kNamespaceArray{0, 2255U};
 
 /// Refusals of ActivateSession that mean: the server does not have this session any more.
 bool refusesSession(StatusCode status) {
-    constexpr std::array kRefusals{status::kBadSessionIdInvalid, status::kBadSessionClosed,
-                                   status::kBadSessionNotActivated};
-    return std::find(kRefusals.begin(), kRefusals.end(), status) != kRefusals.end();
+    constexpr std::array refusals{status::kBadSessionIdInvalid, status::kBadSessionClosed,
+                                  status::kBadSessionNotActivated};
+    return std::find(refusals.begin(), refusals.end(), status) != refusals.end();
 }
 
 ServerIdentity identityFrom(const UA_ReadResponse& response) {

@@ -28,8 +28,8 @@ sockaddr_in loopback(std::uint16_t port) {
 }
 
 const sockaddr* generic(const sockaddr_in& address) {
-    return reinterpret_cast<const sockaddr*>(
-        &address);  // NOLINT(*-reinterpret-cast): as POSIX has it
+    // NOLINTNEXTLINE(*-reinterpret-cast): as POSIX has it
+    return reinterpret_cast<const sockaddr*>(&address);
 }
 
 int newSocket() {

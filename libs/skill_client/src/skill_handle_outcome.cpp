@@ -242,8 +242,8 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
     }
 }
 
-Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& values, SteadyTime deadline) {
-    for (const auto& [name, value] : values) {
+Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& parameters, SteadyTime deadline) {
+    for (const auto& [name, value] : parameters) {
         if (auto written = set(name, value); !written) {
             return tl::unexpected(written.error());
         }

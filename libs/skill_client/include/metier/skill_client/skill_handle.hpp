@@ -85,9 +85,9 @@ public:
     /// The server's reason for the last refusal to this session, or for the present state.
     std::string reasonText();
 
-    /// Waits until the skill is in `state`.
+    /// Waits until the skill is in the state `wanted`.
     /// Errors: timeout at the deadline; connection_lost.
-    opcua::Answer<> awaitState(skill::State state, SteadyTime deadline);
+    opcua::Answer<> awaitState(skill::State wanted, SteadyTime deadline);
     /// Waits for the end of an execution: the next transition to Ready or Halted.
     /// \return that transition; of one that was missed, where it led to and why
     /// Errors: as awaitState(); execution_lost, if the server was started again meanwhile.
