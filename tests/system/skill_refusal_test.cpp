@@ -14,6 +14,8 @@ using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+constexpr double kLargest = std::numeric_limits<double>::max();
 const skill::Value kGood = std::vector{0.5, -1.0};
 
 /// A value that a parameter refuses, and how.
@@ -35,6 +37,26 @@ protected:
 
     served::ServedSkill skill_;
 };
+
+/// StartWith and Check take the values that a write would, and refuse the rest in the same words.
+TEST_P(BadValue, IsRefusedByStartWithAndCheckInTheSameWords) {
+    auto handle = openSkill("JointPtpMoveSkill");
+    skill::ValueMap values{{"TargetJointPosition", kGood}};
+    values.insert_or_assign(GetParam().parameter, GetParam().value);
+    const auto refused = handle.startWith({.parameters = values});
+    EXPECT_EQ(statusOf(refused), GetParam().status);
+    EXPECT_THAT(refused.error().message, HasSubstr(GetParam().text));
+    EXPECT_THAT(handle.reasonText(), HasSubstr(GetParam().text));
+    const auto report = handle.check(values);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_FALSE(report->possible);
+    EXPECT_THAT(report->reason, HasSubstr(GetParam().text));
+    EXPECT_EQ(report->first_failing_fraction, 0.0);
+    EXPECT_EQ(*handle.state(), State::ready);
+    EXPECT_EQ(served::readAs<double>(client(), skill_, "Options/SpeedOverride"), 1.0)
+        << "nothing of it is taken";
+    EXPECT_TRUE(handle.startWith({.parameters = {{"TargetJointPosition", kGood}}}));
+}
 
 TEST_P(BadValue, IsRefusedWithItsTextAndTheSkillStaysUsable) {
     auto handle = openSkill("JointPtpMoveSkill");
@@ -71,6 +93,24 @@ INSTANTIATE_TEST_SUITE_P(
                  "TargetJointPosition[1]: nan rad is not finite"},
         BadWrite{"Infinite", "SpeedOverride", -kInfinity, "BadOutOfRange",
                  "SpeedOverride: -inf is not finite"},
+        BadWrite{"InfiniteInAList", "TargetJointPosition", std::vector{kInfinity, 0.0},
+                 "BadOutOfRange", "TargetJointPosition[0]: inf rad is not finite"},
+        BadWrite{"TheLargestNumber", "TargetJointPosition", std::vector{0.0, kLargest},
+                 "BadOutOfRange", " rad is over the limit 3 rad"},
+        BadWrite{"NegativeDenormal", "SpeedOverride", -kDenormal, "BadOutOfRange",
+                 "SpeedOverride: -5e-324 is under the limit 0"},
+        BadWrite{"ALittleOverTheLimit", "SpeedOverride", std::nextafter(1.0, 2.0), "BadOutOfRange",
+                 "SpeedOverride: 1.0000000000000002 is over the limit 1"},
+        BadWrite{"ManyNumbers", "TargetJointPosition", std::vector<double>(100'000, 1.0),
+                 "BadOutOfRange", "TargetJointPosition: 100000 elements are more than 2"},
+        BadWrite{"NotANumberForMaxVelocity", "MaxVelocity", std::vector{1.0, kNan}, "BadOutOfRange",
+                 "MaxVelocity[1]: nan rad/s is not finite"},
+        BadWrite{"BooleanForNumber", "SpeedOverride", true, "BadTypeMismatch",
+                 "SpeedOverride: Double expected, Boolean given"},
+        BadWrite{"NumberForText", "ToolFrame", 1.0, "BadTypeMismatch",
+                 "ToolFrame: String expected, Double given"},
+        BadWrite{"TextsForText", "ToolFrame", std::vector<std::string>{"flange"}, "BadTypeMismatch",
+                 "ToolFrame: String expected, String[1] given"},
         BadWrite{"OverTheLimit", "TargetJointPosition", std::vector{3.5, 0.0}, "BadOutOfRange",
                  "TargetJointPosition[0]: 3.5 rad is over the limit 3 rad"},
         BadWrite{"UnderTheLimit", "MaxVelocity", std::vector{1.0, -0.5}, "BadOutOfRange",
@@ -87,6 +127,103 @@ protected:
     served::ServedSkill skill_;
     served::ServedSkill line_;
 };
+
+/// A value at the edge of what is allowed, which arrives as it was sent.
+class EdgeValue : public ServedContract,
+                  public ::testing::WithParamInterface<std::pair<const char*, skill::Value>> {
+protected:
+    EdgeValue() : skill_(add(served::jointMoveDescription())) { serve(); }
+
+    void expectStartedWith(const skill::Value& value) {
+        ASSERT_TRUE(skill_.hand->await("start"));
+        EXPECT_EQ(skill_.hand->snapshot().at(GetParam().first), value);
+        skill_.hand->execution().finish();
+    }
+
+    served::ServedSkill skill_;
+};
+
+TEST_P(EdgeValue, IsTakenByWriteStartWithAndCheck) {
+    const auto& [name, value] = GetParam();
+    auto handle = openSkill("JointPtpMoveSkill");
+    ASSERT_TRUE(handle.set("TargetJointPosition", kGood));
+    const auto written = handle.set(name, value);
+    ASSERT_TRUE(written) << written.error().message;
+    ASSERT_TRUE(handle.start());
+    expectStartedWith(value);
+    ASSERT_TRUE(handle.awaitState(State::ready, soon()));
+    skill::ValueMap values{{"TargetJointPosition", kGood}};
+    values.insert_or_assign(name, value);
+    EXPECT_TRUE(handle.check(values).value().possible);
+    ASSERT_TRUE(handle.startWith({.parameters = values}));
+    expectStartedWith(value);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parameters, EdgeValue,
+    ::testing::Values(std::pair<const char*, skill::Value>("SpeedOverride", kDenormal),
+                      std::pair<const char*, skill::Value>("SpeedOverride", -0.0),
+                      std::pair<const char*, skill::Value>("SpeedOverride", 1.0),
+                      std::pair<const char*, skill::Value>("TargetJointPosition",
+                                                           std::vector{-3.0, 3.0}),
+                      std::pair<const char*, skill::Value>("TargetJointPosition",
+                                                           std::vector{-kDenormal, kDenormal}),
+                      std::pair<const char*, skill::Value>("ToolFrame", std::string())));
+
+TEST_F(Refusal, OfNullForAParameterThatIsNeededFollowsAtStart) {
+    auto handle = openSkill("JointPtpMoveSkill");
+    ASSERT_TRUE(handle.set("TargetJointPosition", kGood));
+    ASSERT_TRUE(handle.set("TargetJointPosition", {})) << "Null asks for the default";
+    EXPECT_EQ(statusOf(handle.start()), "BadInvalidArgument");
+    const skill::ValueMap null{{"TargetJointPosition", {}}};
+    EXPECT_EQ(statusOf(handle.startWith({.parameters = null})), "BadInvalidArgument");
+    EXPECT_EQ(handle.check(null).value().reason, "a value is needed for TargetJointPosition");
+}
+
+TEST_F(Refusal, OfNullIsNoneWhereThereIsADefault) {
+    auto handle = openSkill("JointPtpMoveSkill");
+    ASSERT_TRUE(
+        handle.startWith({.parameters = {{"TargetJointPosition", kGood}, {"SpeedOverride", {}}}}));
+    ASSERT_TRUE(skill_.hand->await("start"));
+    EXPECT_EQ(skill_.hand->snapshot().at("SpeedOverride"), skill::Value(1.0));
+}
+
+TEST_F(Refusal, OfAParameterThatStartWithDoesNotKnowOrIsGivenTwice) {
+    auto handle = openSkill("JointPtpMoveSkill");
+    const skill::ValueMap unknown{{"TargetJointPosition", kGood}, {"Target", kGood}};
+    EXPECT_EQ(statusOf(handle.startWith({.parameters = unknown})), "BadInvalidArgument");
+    EXPECT_EQ(handle.reasonText(), "no parameter Target");
+    EXPECT_EQ(handle.check(unknown).value().reason, "no parameter Target");
+    const opcua::KeyValue speed{{0, "SpeedOverride"}, opcua::Value::of(0.5)};
+    const auto twice = client().call(skill_.id, skill_.node("Check"),
+                                     {opcua::Value::of(std::vector{speed, speed})});
+    ASSERT_TRUE(twice) << twice.error().message;
+    EXPECT_EQ(twice->outputs.at(0).as<bool>(), false);
+    EXPECT_EQ(twice->outputs.at(1).as<std::string>(), "SpeedOverride is given twice");
+}
+
+/// A matrix is no list: 2 x 1 values for a list of two.
+TEST_F(Refusal, OfAValueOfAnotherRank) {
+    const auto matrix = opcua::Value::ofRows({{0.5}, {-1.0}});
+    EXPECT_EQ(served::write(client(), skill_, "ParameterSet/TargetJointPosition", matrix),
+              "BadTypeMismatch");
+    const opcua::KeyValue target{{0, "TargetJointPosition"}, matrix};
+    const auto report =
+        client().call(skill_.id, skill_.node("Check"), {opcua::Value::of(std::vector{target})});
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->outputs.at(0).as<bool>(), false);
+    EXPECT_THAT(report->outputs.at(1).as<std::string>().value(), HasSubstr("TargetJointPosition"));
+}
+
+TEST_F(Refusal, OfAnOptionForLossOrALeaseThatDoesNotExistNamesItsLimits) {
+    const auto started =
+        client().call(skill_.id, skill_.node("StartWith"),
+                      {opcua::Value::of(""), opcua::Value::of(std::vector<opcua::KeyValue>{}),
+                       opcua::Value::of(std::int32_t{7}), opcua::Value::of(std::uint64_t{0}),
+                       opcua::Value::of(UtcTime{})});
+    EXPECT_EQ(statusOf(started), "BadOutOfRange");
+    EXPECT_EQ(openSkill("JointPtpMoveSkill").reasonText(), "OnOwnerLoss: 7 is not within 0 to 3");
+}
 
 TEST_F(Refusal, OfAFrameThatIsNotFiniteNamesThePart) {
     auto handle = openSkill("CartesianLinearMoveSkill");
