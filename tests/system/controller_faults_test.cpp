@@ -245,8 +245,7 @@ TEST_P(HarmlessWhileSuspended, LetsTheSkillGoOnToItsTarget) {
 
 INSTANTIATE_TEST_SUITE_P(
     Devices, HarmlessWhileSuspended,
-    ::testing::Values(Harmless{"program_stop", kUr5, inject("program-stop")},
-                      Harmless{"failed_motion", kIiwa, inject("protective-stop")}),
+    ::testing::Values(Harmless{"failed_motion", kIiwa, inject("protective-stop")}),
     [](const auto& event) { return std::string(event.param.arm.name) + "_" + event.param.name; });
 
 TEST(LocalControl, RefusesAMoveUntilSomebodySwitchesToRemoteControl) {

@@ -28,12 +28,12 @@ public:
         clock_.advance(1s);
         watch_.emplace(StallWatch::Setup{.name = "ur5",
                                          .limit = kLimit,
-                                         .stop =
-                                             [this] {
-                                                 bench_.arm().stop();
-                                                 stop();
-                                             },
-                                         .log = [this](const std::string&) { ++lines; }},
+                                         .stop = [this] { bench_.arm().stop(); },
+                                         .log =
+                                             [this](const std::string&) {
+                                                 ++lines;
+                                                 noticed();
+                                             }},
                        bench_.sharedExecutor(), programs(), clock_);
     }
 
@@ -78,15 +78,16 @@ private:
     std::vector<skill::Program*> programs() {
         return {&bench_.program(kJointPtp), &bench_.program(kPositionStream)};
     }
-    void stop() {
-        if (!stop_seen_.exchange(true)) {
+    /// The last that the watchdog does: the arm is stopped and the owner's thread has work by then.
+    void noticed() {
+        if (!noticed_.exchange(true)) {
             stopped_.set_value();
         }
     }
 
     Bench& bench_;
     ManualClock clock_;
-    std::atomic<bool> stop_seen_ = false;
+    std::atomic<bool> noticed_ = false;
     std::promise<void> stopped_;
     std::optional<StallWatch> watch_;
 };
