@@ -41,7 +41,7 @@ void write(void* context, UA_LogLevel level, UA_LogCategory /*category*/, const 
     if (!target.should_log(our_level)) {
         return;
     }
-    guarded([&] {
+    guarded([&]() -> UA_StatusCode {
         std::array<char, 1024> text{};
         std::vsnprintf(text.data(), text.size(), format, arguments);
         std::replace(text.begin(), text.end(), '\t', ' ');  // the stack's columns

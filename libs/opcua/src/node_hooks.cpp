@@ -154,7 +154,7 @@ UA_Boolean userExecutable(UA_Server* server, UA_AccessControl* /*control*/,
                           const UA_NodeId* /*session_id*/, void* session_context,
                           const UA_NodeId* /*method_id*/, void* method_context) noexcept {
     bool executable = true;
-    guarded([&] {
+    guarded([&]() -> UA_StatusCode {
         auto& core = ServerCore::of(server);
         const auto* hooks = core.hooks().at(method_context);
         const auto* method = hooks == nullptr ? nullptr : std::get_if<MethodHooks>(&hooks->work);

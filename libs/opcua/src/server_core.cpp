@@ -44,7 +44,7 @@ struct ServerCore::Callbacks {
         if (parent->namespaceIndex == 0) {
             return UA_STATUSCODE_GOOD;  // an event's node: any free id will do
         }
-        return guarded([&] {
+        return guarded([&]() -> UA_StatusCode {
             Owned<UA_QualifiedName> name(UA_TYPES[UA_TYPES_QUALIFIEDNAME]);
             const auto read = UA_Server_readBrowseName(server, *source, name.get());
             if (read == UA_STATUSCODE_GOOD) {
@@ -60,7 +60,7 @@ struct ServerCore::Callbacks {
         if (attribute != UA_ATTRIBUTEID_EVENTNOTIFIER) {
             return;
         }
-        guarded([&] {
+        guarded([&]() -> UA_StatusCode {
             auto& watch = ServerCore::of(server).watch_;
             const NodeId owner = session == nullptr ? NodeId() : fromNative(*session);
             if (removed) {
@@ -216,7 +216,7 @@ bool ServerCore::onServerThread() const noexcept {
 }
 
 void ServerCore::runGuarded(const std::function<void()>& work) noexcept {
-    const auto done = guarded([&] {
+    const auto done = guarded([&]() -> UA_StatusCode {
         work();
         return UA_STATUSCODE_GOOD;
     });

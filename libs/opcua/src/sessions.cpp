@@ -79,7 +79,7 @@ struct Sessions::Callbacks {
     }
     static void close(UA_Server* /*server*/, UA_AccessControl* control, const UA_NodeId* id,
                       void* /*context*/) noexcept {
-        guarded([&] {
+        guarded([&]() -> UA_StatusCode {
             owner(control).close(*id);
             return UA_STATUSCODE_GOOD;
         });
