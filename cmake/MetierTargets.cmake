@@ -60,6 +60,10 @@ function(metier_add_benchmark name)
 endfunction()
 
 option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)
+if(METIER_FUZZ)
+    target_compile_options(metier_warnings INTERFACE
+        -fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/tests/fuzz/without_coverage.txt)
+endif()
 
 # metier_add_fuzz_target(<name> SOURCES ... LIBRARIES ... [SEEDS files] [LONGEST bytes] [ONE_IN n])
 # Defines LLVMFuzzerTestOneInput. SEEDS are inputs to begin with, LONGEST is that of an input (512).
