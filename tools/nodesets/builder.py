@@ -81,6 +81,8 @@ class Builder:
         node.references.append(Reference(HAS_SUBTYPE, base, False))
         if table.get("abstract"):
             node.attributes["IsAbstract"] = "true"
+        if "inverse" in table:
+            node.attributes["InverseName"] = table["inverse"]
         interfaces = [self._names.type_id(i) for i in table.get("interfaces", [])]
         self._add_type_references(node, interfaces, table)
         self.commit(node)

@@ -15,7 +15,7 @@ NODE_KEYS = {
 }
 ROOT_KEYS = {
     "name", "base", "abstract", "doc", "symbol", "interfaces", "events", "children", "extends",
-    "parent", "type", "notifier", "include", "refs", "published_as", "reference",
+    "parent", "type", "notifier", "include", "refs", "published_as", "reference", "inverse",
 }
 
 

@@ -90,11 +90,16 @@ class Writer:
             "    <References>",
             *[self._reference(r) for r in node.references],
             "    </References>",
+            *self._inverse_name(node),
             *([self._xml(node.definition)] if node.definition is not None else []),
             *([self._xml(node.value)] if node.value is not None else []),
             f"  </{tag}>\n",
         ]
         return "\n".join(lines)
+
+    def _inverse_name(self, node: Node) -> list[str]:
+        name = node.attributes.get("InverseName")
+        return [f"    <InverseName>{escape(name)}</InverseName>"] if name else []
 
     def _reference(self, reference: Reference) -> str:
         direction = "" if reference.forward else ' IsForward="false"'

@@ -18,6 +18,10 @@ constexpr double kLongestSilence = 2.0;
 constexpr double kShortestStall = 0.1;
 constexpr double kLongestStall = 2.0;
 
+bool isAddress(const std::string& server) {
+    return server.starts_with("opc.tcp://");
+}
+
 std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
                              const std::filesystem::path& folder) {
     const auto text = table.text(key);
@@ -77,6 +81,25 @@ GripperServer readGripper(const TomlTable& table) {
     return gripper;
 }
 
+CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder) {
+    CompositionServer composition;
+    for (const auto& file : table.texts("compositions")) {
+        composition.files.push_back(std::filesystem::absolute(folder / file).lexically_normal());
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(composition.files.back(), error)) {
+            table.reject("compositions",
+                         fmt::format("no such file: {}", composition.files.back().string()));
+        }
+    }
+    if (composition.files.empty()) {
+        table.reject("compositions", "needs at least one file");
+    }
+    for (const auto& server : table.texts("servers")) {
+        composition.servers.push_back({server, isAddress(server) ? server : ""});
+    }
+    return composition;
+}
+
 VirtualController readVirtual(const TomlTable& table, const std::filesystem::path& folder) {
     VirtualController controller;
     controller.name = table.text("name");
@@ -109,14 +132,32 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     } else if (kind == "move") {
         server.kind = ServerKind::move;
         server.move.robot = table.text("robot");
+    } else if (kind == "composition") {
+        server.kind = ServerKind::composition;
+        server.composition = readComposition(table, folder);
     } else if (!kind.empty()) {
-        table.reject("kind", fmt::format("\"{}\" is not one of: arm, gripper, move", kind));
+        table.reject("kind",
+                     fmt::format("\"{}\" is not one of: arm, gripper, move, composition", kind));
     }
     return server;
 }
 
-bool isAddress(const std::string& robot) {
-    return robot.starts_with("opc.tcp://");
+/// Whoever uses others comes after them, so that they can be started in the order of the file.
+void checkUsedServers(const CellConfig& cell, std::size_t index, const TomlTable& table) {
+    for (const auto& used : cell.servers[index].composition.servers) {
+        const auto end = cell.servers.begin() + static_cast<std::ptrdiff_t>(index);
+        const bool above = std::any_of(cell.servers.begin(), end, [&](const auto& server) {
+            return server.name == used.name;
+        });
+        const auto* server = cell.find(used.name);
+        const bool other_kind = server != nullptr && server->kind != ServerKind::composition;
+        if (used.url.empty() && !above && !other_kind) {
+            table.reject("servers", fmt::format("\"{}\" is neither a server of this file (one of "
+                                                "kind composition only above this one) nor an "
+                                                "opc.tcp:// address",
+                                                used.name));
+        }
+    }
 }
 
 void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& tables) {
@@ -130,6 +171,7 @@ void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& table
         if (server.port != 0 && !ports.insert(server.port).second) {
             tables[i].reject("port", fmt::format("{} is taken by a server above", server.port));
         }
+        checkUsedServers(cell, i, tables[i]);
         if (server.kind != ServerKind::move || isAddress(server.move.robot)) {
             continue;
         }

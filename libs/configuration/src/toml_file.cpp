@@ -26,6 +26,7 @@ struct TomlFile::Impl {
     // Line numbers order the report as a reader goes through the file.
     std::multimap<toml::source_index, std::string> problems = {};
     std::vector<std::unique_ptr<const TomlTable::Impl>> tables = {};
+    std::vector<std::unique_ptr<const TomlValue::Impl>> values = {};
 
     // Out of line: TomlTable::Impl is complete only below.
     Impl(std::string file_name, toml::table table);
@@ -35,10 +36,20 @@ struct TomlFile::Impl {
 
     TomlTable open(const toml::table* table, std::string path);
 
+    TomlValue openValue(const toml::node& node, std::string path);
+
     void note(const toml::source_region& where, std::string_view key, std::string_view why) {
-        problems.emplace(where.begin.line,
-                         fmt::format("{}:{}: {}: {}", name, where.begin.line, key, why));
+        note(where.begin.line, key, why);
     }
+    void note(toml::source_index line, std::string_view key, std::string_view why) {
+        problems.emplace(line, fmt::format("{}:{}: {}: {}", name, line, key, why));
+    }
+};
+
+struct TomlValue::Impl {
+    TomlFile::Impl* file = nullptr;
+    const toml::node* node = nullptr;
+    std::string path;
 };
 
 struct TomlTable::Impl {
@@ -116,14 +127,95 @@ TomlFile::Impl::Impl(std::string file_name, toml::table table)
 
 TomlFile::Impl::~Impl() = default;
 
+/// One view of each table, so that it is known what was asked for, however often it is opened.
 TomlTable TomlFile::Impl::open(const toml::table* table, std::string path) {
+    const auto known = std::find_if(tables.begin(), tables.end(), [&](const auto& opened) {
+        return table != nullptr && opened->table == table;
+    });
+    if (known != tables.end()) {
+        return TomlTable(known->get());
+    }
     tables.push_back(
         std::make_unique<TomlTable::Impl>(TomlTable::Impl{this, table, std::move(path)}));
     return TomlTable(tables.back().get());
 }
 
+TomlValue TomlFile::Impl::openValue(const toml::node& node, std::string path) {
+    values.push_back(
+        std::make_unique<TomlValue::Impl>(TomlValue::Impl{this, &node, std::move(path)}));
+    return TomlValue(values.back().get());
+}
+
+std::optional<bool> TomlValue::flag() const {
+    return impl_->node->value_exact<bool>();
+}
+
+std::optional<std::int64_t> TomlValue::integer() const {
+    return impl_->node->value_exact<std::int64_t>();
+}
+
+std::optional<double> TomlValue::number() const {
+    const auto number = impl_->node->is_number() ? impl_->node->value<double>() : std::nullopt;
+    return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<std::string> TomlValue::text() const {
+    return impl_->node->value_exact<std::string>();
+}
+
+bool TomlValue::isList() const {
+    return impl_->node->is_array();
+}
+
+std::vector<TomlValue> TomlValue::items() const {
+    std::vector<TomlValue> result;
+    if (const auto* array = impl_->node->as_array()) {
+        for (const auto& element : *array) {
+            result.push_back(
+                impl_->file->openValue(element, fmt::format("{}[{}]", impl_->path, result.size())));
+        }
+    }
+    return result;
+}
+
+std::optional<TomlTable> TomlValue::table() const {
+    const auto* table = impl_->node->as_table();
+    return table == nullptr ? std::nullopt : std::optional(impl_->file->open(table, impl_->path));
+}
+
+std::uint32_t TomlValue::line() const {
+    return impl_->node->source().begin.line;
+}
+
+void TomlValue::reject(std::string_view why) const {
+    impl_->file->note(impl_->node->source(), impl_->path, why);
+}
+
 bool TomlTable::has(std::string_view key) const {
     return impl_->find(key) != nullptr;
+}
+
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::pair<std::pair<toml::source_index, toml::source_index>, std::string>> placed;
+    if (impl_->table != nullptr) {
+        for (const auto& [key, node] : *impl_->table) {
+            const auto& begin = key.source().begin;
+            placed.emplace_back(std::pair(begin.line, begin.column), std::string(key.str()));
+        }
+    }
+    std::sort(placed.begin(), placed.end());
+    std::vector<std::string> names;
+    names.reserve(placed.size());
+    for (auto& [place, name] : placed) {
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+std::optional<TomlValue> TomlTable::value(std::string_view key) const {
+    const auto* node = impl_->find(key);
+    return node == nullptr ? std::nullopt
+                           : std::optional(impl_->file->openValue(*node, impl_->fullName(key)));
 }
 
 std::string TomlTable::text(std::string_view key) const {
@@ -277,8 +369,11 @@ void TomlTable::reject(std::string_view key, std::string_view why) const {
 }
 
 std::string TomlTable::place() const {
-    const auto line = impl_->table == nullptr ? 1 : impl_->table->source().begin.line;
-    return fmt::format("{}:{}", impl_->file->name, line);
+    return fmt::format("{}:{}", impl_->file->name, line());
+}
+
+std::uint32_t TomlTable::line() const {
+    return impl_->table == nullptr ? 1 : impl_->table->source().begin.line;
 }
 
 Result<TomlFile> TomlFile::load(const std::filesystem::path& path) {
@@ -312,6 +407,10 @@ TomlFile::~TomlFile() = default;
 
 TomlTable TomlFile::root() const {
     return impl_->open(&impl_->root, "");
+}
+
+void TomlFile::note(std::uint32_t line, std::string_view what, std::string_view why) const {
+    impl_->note(line, what, why);
 }
 
 Result<void> TomlFile::finish() const {

@@ -196,5 +196,36 @@ TEST_F(CellFile, NeedsAServer) {
     EXPECT_THAT(cell.error().message, HasSubstr("at least one [[server]]"));
 }
 
+TEST(ComposedCellFile, DescribesServersOfComposedSkills) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "composed_cell";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "skill.toml") << "name = 'X'\n";
+    const auto load = [&](const std::string& servers) {
+        std::ofstream(folder / "cell.toml") << R"(name = "cell"
+[[server]]
+name = "inner"
+kind = "composition"
+compositions = ["skill.toml"]
+servers = [)" << servers << R"(]
+[[server]]
+name = "outer"
+kind = "composition"
+compositions = ["skill.toml"]
+servers = ["inner", "opc.tcp://127.0.0.1:4840"]
+)";
+        return loadCell(folder / "cell.toml");
+    };
+    const auto cell = load("");
+    ASSERT_TRUE(cell) << cell.error().message;
+    EXPECT_EQ(cell->servers[1].kind, ServerKind::composition);
+    EXPECT_EQ(cell->servers[1].composition.files.front(), folder / "skill.toml");
+    EXPECT_EQ(cell->servers[1].composition.servers.size(), 2U);
+    const auto around = load("\"outer\"");
+    ASSERT_FALSE(around);
+    EXPECT_NE(around.error().message.find("server[0].servers: \"outer\" is neither"),
+              std::string::npos)
+        << around.error().message;
+}
+
 }  // namespace
 }  // namespace metier::configuration

@@ -91,5 +91,43 @@ TEST(TomlFile, TellsThatAFileIsMissing) {
     EXPECT_EQ(file.error().code, Errc::not_found);
 }
 
+TEST(TomlFile, GivesValuesOfAnyKindAsTheFileHasThem) {
+    const auto file = parsed("a = [1, { b = 'c' }, true]\n");
+    const auto list = file.root().value("a");
+    ASSERT_TRUE(list && list->isList());
+    const auto items = list->items();
+    ASSERT_EQ(items.size(), 3U);
+    EXPECT_EQ(items[0].integer(), 1);
+    EXPECT_EQ(items[0].number(), 1.0);
+    EXPECT_FALSE(items[0].flag());
+    EXPECT_EQ(items[1].table()->text("b"), "c");
+    EXPECT_EQ(items[2].flag(), true);
+    EXPECT_FALSE(items[2].number());
+    EXPECT_FALSE(file.root().value("z"));
+}
+
+TEST(TomlFile, TellsAllKeysInTheOrderOfTheFile) {
+    const auto file = parsed("[t]\nz = 1\na = 2\nm = 3\n");
+    EXPECT_THAT(file.root().table("t").keys(), ElementsAre("z", "a", "m"));
+    EXPECT_FALSE(file.finish()) << "telling a key is no asking for it";
+}
+
+TEST(TomlFile, RemembersWhatWasAskedForHoweverOftenATableIsOpened) {
+    const auto file = parsed("[t]\nx = 1\n");
+    EXPECT_TRUE(file.root().value("t")->table());
+    EXPECT_DOUBLE_EQ(file.root().table("t").number("x"), 1.0);
+    EXPECT_TRUE(file.finish());
+}
+
+TEST(TomlFile, SortsWhatItsReaderNotesAmongItsOwn) {
+    const auto file = parsed("x = 1\ny = [inf]\n");
+    file.root().value("y")->items().front().reject("is not finite");
+    file.note(1, "x", "is one too many");
+    const auto finished = file.finish();
+    ASSERT_FALSE(finished);
+    EXPECT_EQ(finished.error().message.find("a.toml:1: x: is one too many"), 0U);
+    EXPECT_THAT(finished.error().message, HasSubstr("a.toml:2: y[0]: is not finite"));
+}
+
 }  // namespace
 }  // namespace metier::configuration

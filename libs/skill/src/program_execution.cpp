@@ -103,6 +103,7 @@ Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std:
     if (id.empty()) {
         id = fmt::format("{}-{}", boot_id_, ++execution_count_);
     }
+    execution_id_ = id;
     execution_ = std::make_shared<ExecutionCore>(executor_, id, static_cast<ExecutionSink&>(*this));
     owner_session_ = caller.session_id;
     on_owner_loss_ = on_owner_loss;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "method_values.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "skill_handle_impl.hpp"
 
@@ -19,17 +20,6 @@ using skill::State;
 using skill::TransitionEvent;
 
 constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
-
-constexpr std::size_t kCheckOutputs = 5;
-constexpr std::size_t kExecutionOutputs = 6;
-
-opcua::Value pairsOf(const skill::ValueMap& values) {
-    std::vector<opcua::KeyValue> pairs;
-    for (const auto& [name, value] : values) {
-        pairs.push_back({{0, name}, opcua_skill::toOpcua(value)});
-    }
-    return opcua::Value::of(pairs);
-}
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes) {
     std::vector<skill::Field> fields;
@@ -272,11 +262,8 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
 }
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
-    auto outputs = impl_->callMetier(
-        &SkillNodes::start_with, "StartWith",
-        {opcua::Value::of(request.execution_id), pairsOf(request.parameters),
-         opcua::Value::of(static_cast<std::int32_t>(request.on_owner_loss)),
-         opcua::Value::of(request.epoch), opcua::Value::of(request.deadline.value_or(UtcTime{}))});
+    auto outputs =
+        impl_->callMetier(&SkillNodes::start_with, "StartWith", startWithInputs(request));
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }
@@ -288,16 +275,7 @@ Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters)
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }
-    if (outputs->size() != kCheckOutputs) {
-        return opcua::failed(opcua::status::kBadUnexpectedError, impl_->address.name + " Check");
-    }
-    skill::CheckReport report;
-    report.possible = (*outputs)[0].as<bool>().value_or(false);
-    report.reason = (*outputs)[1].as<std::string>().value_or("");
-    report.first_failing_fraction = (*outputs)[2].as<double>().value_or(0.0);
-    report.planned_duration = (*outputs)[3].as<double>().value_or(0.0);
-    report.joint_path = (*outputs)[4].asRows().value_or(std::vector<std::vector<double>>{});
-    return report;
+    return checkReportFrom(*outputs, impl_->address.name);
 }
 
 Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
@@ -310,30 +288,7 @@ Answer<skill::ExecutionRecord> SkillHandle::Impl::execution(const std::string& i
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }
-    if (outputs->size() != kExecutionOutputs) {
-        return opcua::failed(opcua::status::kBadUnexpectedError, address.name + " GetExecution");
-    }
-    skill::ExecutionRecord record;
-    record.id = id;
-    record.state = static_cast<State>((*outputs)[0].as<std::uint32_t>().value_or(0));
-    record.reason = static_cast<skill::Reason>((*outputs)[1].as<std::int32_t>().value_or(0));
-    record.reason_text = (*outputs)[2].as<std::string>().value_or("");
-    record.start_time = (*outputs)[3].as<UtcTime>().value_or(UtcTime{});
-    record.end_time = (*outputs)[4].as<UtcTime>().value_or(UtcTime{});
-    record.result = resultsIn((*outputs)[5]);
-    return record;
-}
-
-skill::ValueMap SkillHandle::Impl::resultsIn(const opcua::Value& pairs) const {
-    skill::ValueMap values;
-    for (const auto& [key, value] :
-         pairs.as<std::vector<opcua::KeyValue>>().value_or(std::vector<opcua::KeyValue>{})) {
-        if (const auto* node = findField(nodes.results, key.name)) {
-            values[key.name] =
-                opcua_skill::fromOpcua(value, node->field.type).value_or(skill::Value{});
-        }
-    }
-    return values;
+    return executionFrom(*outputs, id, results, address.name);
 }
 
 Answer<> SkillHandle::start() {

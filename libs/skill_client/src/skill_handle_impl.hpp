@@ -48,7 +48,6 @@ struct SkillHandle::Impl {
     opcua::Answer<std::vector<opcua::Value>> callMetier(opcua::NodeId SkillNodes::*method,
                                                         std::string_view name,
                                                         std::vector<opcua::Value> inputs);
-    skill::ValueMap resultsIn(const opcua::Value& pairs) const;
     opcua::Answer<skill::ValueMap> readResults() const;
     opcua::Answer<skill::State> state();
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);

@@ -165,8 +165,9 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
         return lacks(address, "CurrentState/Number");
     }
     nodes.state_number = *number;
-    const std::array<std::pair<std::string_view, NodeId*>, 4> optional{
+    const std::array<std::pair<std::string_view, NodeId*>, 5> optional{
         {{"ReasonText", &nodes.reason_text},
+         {"ExecutionId", &nodes.execution_id},
          {"StartWith", &nodes.start_with},
          {"Check", &nodes.check},
          {"GetExecution", &nodes.get_execution}}};

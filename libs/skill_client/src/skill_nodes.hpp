@@ -25,7 +25,8 @@ struct SkillNodes {
     opcua::NodeId check;
     opcua::NodeId get_execution;
     opcua::NodeId state_number;
-    opcua::NodeId reason_text;  ///< null if the server has none
+    opcua::NodeId reason_text;  ///< null if the server has none, as the next
+    opcua::NodeId execution_id;
     std::vector<FieldNode> parameters;
     std::vector<FieldNode> results;
 };

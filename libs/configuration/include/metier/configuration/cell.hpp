@@ -49,7 +49,19 @@ struct MoveComponent {
     std::string robot;
 };
 
-enum class ServerKind { arm, gripper, move };
+/// A server that another one uses.
+struct UsedServer {
+    std::string name;  ///< of a server of the same cell file, or the address
+    std::string url;   ///< empty until the name is resolved
+};
+
+/// Skills that files declare, made of skills of other servers.
+struct CompositionServer {
+    std::vector<std::filesystem::path> files;  ///< absolute
+    std::vector<UsedServer> servers;           ///< where the used skills are
+};
+
+enum class ServerKind { arm, gripper, move, composition };
 
 /// One process of a cell: one OPC UA server.
 struct ServerConfig {
@@ -66,9 +78,10 @@ struct ServerConfig {
     std::filesystem::path state_folder;
     /// Longest time without a sign of life of the server's thread; then its device is stopped [s].
     double stall_limit = 0.25;
-    ArmServer arm;          ///< for ServerKind::arm
-    GripperServer gripper;  ///< for ServerKind::gripper
-    MoveComponent move;     ///< for ServerKind::move
+    ArmServer arm;                  ///< for ServerKind::arm
+    GripperServer gripper;          ///< for ServerKind::gripper
+    MoveComponent move;             ///< for ServerKind::move
+    CompositionServer composition;  ///< for ServerKind::composition
 };
 
 /// A controller without its device, in a process of its own.

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,35 @@
 #include "metier/configuration/settings.hpp"
 
 namespace metier::configuration {
+
+class TomlTable;
+
+/// A value whose kind is up to the file: what it is not, it gives nothing for.
+///
+/// Valid as long as its TomlFile. Threading: one thread.
+class TomlValue {
+public:
+    std::optional<bool> flag() const;
+    std::optional<std::int64_t> integer() const;
+    /// Also of a whole number; nothing if it is not finite.
+    std::optional<double> number() const;
+    std::optional<std::string> text() const;
+    bool isList() const;
+    /// Of a list; empty for all else.
+    std::vector<TomlValue> items() const;
+    std::optional<TomlTable> table() const;
+    /// Where it stands, from 1.
+    std::uint32_t line() const;
+    /// Notes that it is not acceptable, and why.
+    void reject(std::string_view why) const;
+
+private:
+    friend class TomlFile;
+    friend class TomlTable;
+    struct Impl;
+    explicit TomlValue(const Impl* impl) : impl_(impl) {}
+    const Impl* impl_;  // owned by the file
+};
 
 /// One table of a TOML file. Reading never fails at once: what is wrong is noted, with file, line
 /// and key, and a harmless value is returned; TomlFile::finish() then tells everything that is
@@ -22,6 +52,10 @@ namespace metier::configuration {
 class TomlTable {
 public:
     bool has(std::string_view key) const;
+    /// The keys as the file gives them; none of them counts as asked for by this.
+    std::vector<std::string> keys() const;
+    /// The value of `key`, whatever kind it is; nothing if there is none.
+    std::optional<TomlValue> value(std::string_view key) const;
 
     /// Required values. Noted if missing or of another type.
     std::string text(std::string_view key) const;
@@ -49,9 +83,12 @@ public:
     void reject(std::string_view key, std::string_view why) const;
     /// "file:line", for messages about the whole table.
     std::string place() const;
+    /// Where the table begins, from 1.
+    std::uint32_t line() const;
 
 private:
     friend class TomlFile;
+    friend class TomlValue;
     struct Impl;
     explicit TomlTable(const Impl* impl) : impl_(impl) {}
     const Impl* impl_;  // owned by the file
@@ -71,12 +108,15 @@ public:
     ~TomlFile();
 
     TomlTable root() const;
+    /// Notes what is wrong with a line for reasons that only its reader knows.
+    void note(std::uint32_t line, std::string_view what, std::string_view why) const;
     /// Errors: invalid_argument with one line for each thing that is wrong: "file:line: key: why".
     Result<void> finish() const;
 
 private:
     struct Impl;
     friend class TomlTable;
+    friend class TomlValue;
     explicit TomlFile(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };

@@ -131,6 +131,10 @@ public:
     SubState subState() const noexcept { return sub_state_; }
     /// The step of a sequence; empty unless an execution is under way.
     const std::string& step() const noexcept { return step_; }
+    /// The latest intermediate result; Null unless an execution is under way and has told one.
+    const Value& intermediate() const noexcept { return intermediate_; }
+    /// The execution that is under way, or else the last one; empty before the first.
+    const std::string& executionId() const noexcept { return execution_id_; }
     /// Why the Program is where it is: the reason of the last transition, or of a refused Reset.
     Reason reason() const noexcept { return reason_; }
     const std::string& reasonText() const noexcept { return reason_text_; }
@@ -230,6 +234,7 @@ private:
     std::string boot_id_;
     std::uint64_t execution_count_ = 0;
     ExecutionHistory history_;
+    std::string execution_id_;
     std::string owner_session_;
     OwnerLossAction on_owner_loss_ = OwnerLossAction::skill_default;
     Value intermediate_;

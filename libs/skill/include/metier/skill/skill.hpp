@@ -22,7 +22,8 @@ struct SkillDescription {
     std::string description{};  ///< one line for a person
     Fields parameters{};
     Fields results{};
-    bool suspendable = true;  ///< false: Suspend is refused with not_supported
+    std::vector<std::string> steps{};  ///< of a sequence, by name, in order
+    bool suspendable = true;           ///< false: Suspend is refused with not_supported
     /// What an execution does when its owner is gone, unless its Start says otherwise. Skills that
     /// move an arm halt.
     OwnerLossAction on_owner_loss = OwnerLossAction::keep_going;

@@ -1,0 +1,78 @@
+#include "method_values.hpp"
+
+#include <algorithm>
+
+#include "metier/opcua/types.hpp"
+#include "metier/opcua_skill/values.hpp"
+
+namespace metier::skill_client {
+namespace {
+
+constexpr std::size_t kCheckOutputs = 5;
+constexpr std::size_t kExecutionOutputs = 6;
+
+skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& results) {
+    skill::ValueMap values;
+    for (const auto& [key, value] :
+         pairs.as<std::vector<opcua::KeyValue>>().value_or(std::vector<opcua::KeyValue>{})) {
+        const auto field = std::find_if(results.begin(), results.end(), [&](const auto& result) {
+            return result.name == key.name;
+        });
+        if (field != results.end()) {
+            values[key.name] = opcua_skill::fromOpcua(value, field->type).value_or(skill::Value{});
+        }
+    }
+    return values;
+}
+
+}  // namespace
+
+opcua::Value pairsOf(const skill::ValueMap& values) {
+    std::vector<opcua::KeyValue> pairs;
+    for (const auto& [name, value] : values) {
+        pairs.push_back({{0, name}, opcua_skill::toOpcua(value)});
+    }
+    return opcua::Value::of(pairs);
+}
+
+std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request) {
+    return {opcua::Value::of(request.execution_id), pairsOf(request.parameters),
+            opcua::Value::of(static_cast<std::int32_t>(request.on_owner_loss)),
+            opcua::Value::of(request.epoch),
+            opcua::Value::of(request.deadline.value_or(UtcTime{}))};
+}
+
+opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value>& outputs,
+                                                  std::string_view skill) {
+    if (outputs.size() != kCheckOutputs) {
+        return opcua::failed(opcua::status::kBadUnexpectedError, std::string(skill) + " Check");
+    }
+    skill::CheckReport report;
+    report.possible = outputs[0].as<bool>().value_or(false);
+    report.reason = outputs[1].as<std::string>().value_or("");
+    report.first_failing_fraction = outputs[2].as<double>().value_or(0.0);
+    report.planned_duration = outputs[3].as<double>().value_or(0.0);
+    report.joint_path = outputs[4].asRows().value_or(std::vector<std::vector<double>>{});
+    return report;
+}
+
+opcua::Answer<skill::ExecutionRecord> executionFrom(const std::vector<opcua::Value>& outputs,
+                                                    const std::string& id,
+                                                    const skill::Fields& results,
+                                                    std::string_view skill) {
+    if (outputs.size() != kExecutionOutputs) {
+        return opcua::failed(opcua::status::kBadUnexpectedError,
+                             std::string(skill) + " GetExecution");
+    }
+    skill::ExecutionRecord record;
+    record.id = id;
+    record.state = static_cast<skill::State>(outputs[0].as<std::uint32_t>().value_or(0));
+    record.reason = static_cast<skill::Reason>(outputs[1].as<std::int32_t>().value_or(0));
+    record.reason_text = outputs[2].as<std::string>().value_or("");
+    record.start_time = outputs[3].as<UtcTime>().value_or(UtcTime{});
+    record.end_time = outputs[4].as<UtcTime>().value_or(UtcTime{});
+    record.result = resultsIn(outputs[5], results);
+    return record;
+}
+
+}  // namespace metier::skill_client
