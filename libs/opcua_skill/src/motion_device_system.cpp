@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "model_ids.hpp"
 
@@ -24,9 +25,6 @@ constexpr std::uint32_t kControllerType = 1003;
 constexpr std::uint32_t kAxisType = 16601;
 constexpr std::uint32_t kControls = 4002;
 constexpr std::uint32_t kSkillMotionDeviceType = 15857;
-constexpr std::uint32_t kISkillControllerType = 15396;
-constexpr std::uint32_t kIControlLeaseType = 20056;
-constexpr std::uint32_t kLockingServicesType = 6388;
 constexpr std::int32_t kArticulatedRobot = 1;
 constexpr std::int32_t kRotary = 1;
 
@@ -207,86 +205,14 @@ private:
         controller.event_notifier = opcua::EventNotifier::subscribable;
         made.controller = steps_.object(std::move(controller));
         tellMaker(made.controller);
-        steps_.reference(made.controller, opcua::ids::kHasInterface,
-                         NodeId(index_.device, kISkillControllerType));
-        steps_.reference(made.controller, opcua::ids::kHasInterface,
-                         NodeId(index_.metier, kIControlLeaseType));
-        addLease(made.controller);
         steps_.check([&]() -> Result<void> {
-            return nodes()
-                .addObject(objectSpec(made.controller, {index_.di, "Lock"},
-                                      NodeId(index_.di, kLockingServicesType),
-                                      "Used to lock the controller."),
-                           opcua::MethodNodes::own)
-                .map([](const NodeId& /*lock*/) {});
-        });
-        made.skills =
-            steps_.object(objectSpec(made.controller, {index_.device, "Skills"},
-                                     opcua::ids::kBaseObjectType, "The skills of the controller."));
-    }
-
-    /// What the lease's interface declares, at the controller itself.
-    void addLease(const NodeId& controller) {
-        steps_.check([&]() -> Result<void> {
-            const auto declared = nodes().browse(NodeId(index_.metier, kIControlLeaseType),
-                                                 {opcua::ids::kHasComponent});
-            if (!declared) {
-                return fail(declared.error());
+            auto skills = makeSkillController(nodes(), made.controller);
+            if (!skills) {
+                return fail(std::move(skills.error()));
             }
-            for (const auto& declaration : *declared) {
-                auto added = declaration.node_class == opcua::NodeClass::method
-                                 ? addMethod(controller, declaration)
-                                 : addVariable(controller, declaration);
-                if (!added) {
-                    return added;
-                }
-            }
+            made.skills = std::move(*skills);
             return {};
         });
-    }
-
-    Result<void> addMethod(const NodeId& parent, const Reference& declaration) {
-        const auto method = nodes().addMethod({nodeSpec(parent, declaration), {}, {}, {}});
-        return method ? shareProperties(*method, declaration.target)
-                      : Result<void>(fail(method.error()));
-    }
-
-    Result<void> addVariable(const NodeId& parent, const Reference& declaration) {
-        const auto shape = nodes().shapeOf(declaration.target);
-        if (!shape) {
-            return fail(shape.error());
-        }
-        opcua::VariableSpec spec;
-        spec.node = nodeSpec(parent, declaration);
-        spec.type = declaration.type_definition;
-        spec.data_type = shape->data_type;
-        spec.value_rank = shape->value_rank;
-        spec.children = opcua::Children::none;
-        const auto variable = nodes().addVariable(spec);
-        return variable ? shareProperties(*variable, declaration.target)
-                        : Result<void>(fail(variable.error()));
-    }
-
-    static opcua::NodeSpec nodeSpec(const NodeId& parent, const Reference& declaration) {
-        opcua::NodeSpec spec;
-        spec.parent = parent;
-        spec.browse_name = declaration.browse_name;
-        return spec;
-    }
-
-    /// Arguments, units and ranges are the declaration's own.
-    Result<void> shareProperties(const NodeId& node, const NodeId& declaration) {
-        const auto properties = nodes().browse(declaration, {opcua::ids::kHasProperty});
-        if (!properties) {
-            return fail(properties.error());
-        }
-        for (const auto& property : *properties) {
-            auto shared = nodes().addReference(node, opcua::ids::kHasProperty, property.target);
-            if (!shared) {
-                return shared;
-            }
-        }
-        return {};
     }
 
     void tellMaker(const NodeId& component) {

@@ -34,6 +34,10 @@ enum class Role : std::uint8_t {
     result_range,
     diagnostic,  ///< detail: DiagnosticItem
     reason_text,
+    execution_id,
+    steps,  ///< of a sequence
+    current_step,
+    progress,
 };
 
 /// Which part of a value a Variable holds.

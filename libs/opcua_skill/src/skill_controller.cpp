@@ -1,13 +1,147 @@
 #include "metier/opcua_skill/skill_controller.hpp"
 
+#include <utility>
+
 #include "model_ids.hpp"
 
 namespace metier::opcua_skill {
 namespace {
 
+using opcua::AddressSpace;
+using opcua::NodeId;
+using opcua::Reference;
+
 constexpr std::uint32_t kDeviceSet = 5001;
+constexpr std::uint32_t kISkillControllerType = 15396;
+constexpr std::uint32_t kIControlLeaseType = 20056;
+constexpr std::uint32_t kLockingServicesType = 6388;
+constexpr std::uint16_t kOwnNamespace = 1;
+
+opcua::NodeSpec specOf(const NodeId& parent, const Reference& declaration) {
+    opcua::NodeSpec spec;
+    spec.parent = parent;
+    spec.browse_name = declaration.browse_name;
+    return spec;
+}
+
+/// Arguments, units and ranges are the declaration's own.
+Result<void> shareProperties(AddressSpace& nodes, const NodeId& node, const NodeId& declaration) {
+    const auto properties = nodes.browse(declaration, {opcua::ids::kHasProperty});
+    if (!properties) {
+        return fail(properties.error());
+    }
+    for (const auto& property : *properties) {
+        auto shared = nodes.addReference(node, opcua::ids::kHasProperty, property.target);
+        if (!shared) {
+            return shared;
+        }
+    }
+    return {};
+}
+
+Result<NodeId> addVariable(AddressSpace& nodes, const NodeId& parent,
+                           const Reference& declaration) {
+    const auto shape = nodes.shapeOf(declaration.target);
+    if (!shape) {
+        return fail(shape.error());
+    }
+    opcua::VariableSpec spec;
+    spec.node = specOf(parent, declaration);
+    spec.type = declaration.type_definition;
+    spec.data_type = shape->data_type;
+    spec.value_rank = shape->value_rank;
+    spec.children = opcua::Children::none;
+    return nodes.addVariable(spec);
+}
+
+/// What the lease's interface declares, at the controller itself.
+Result<void> addLease(AddressSpace& nodes, const NodeId& controller, const NodeId& interface) {
+    const auto declared = nodes.browse(interface, {opcua::ids::kHasComponent});
+    if (!declared) {
+        return fail(declared.error());
+    }
+    for (const auto& declaration : *declared) {
+        const auto added = declaration.node_class == opcua::NodeClass::method
+                               ? nodes.addMethod({specOf(controller, declaration), {}, {}, {}})
+                               : addVariable(nodes, controller, declaration);
+        if (!added) {
+            return fail(added.error());
+        }
+        if (auto shared = shareProperties(nodes, *added, declaration.target); !shared) {
+            return shared;
+        }
+    }
+    return {};
+}
+
+Result<void> addLock(AddressSpace& nodes, const NodeId& controller) {
+    const auto di = nodes.namespaceIndex(kDiUri);
+    if (!di) {
+        return fail(di.error());
+    }
+    opcua::ObjectSpec lock;
+    lock.node.parent = controller;
+    lock.node.browse_name = {*di, "Lock"};
+    lock.node.description = {"en", "Used to lock the controller."};
+    lock.type = NodeId(*di, kLockingServicesType);
+    return nodes.addObject(lock, opcua::MethodNodes::own).map([](const NodeId& /*lock*/) {});
+}
 
 }  // namespace
+
+Result<NodeId> makeSkillController(AddressSpace& nodes, const NodeId& controller) {
+    const auto device = nodes.namespaceIndex(kDeviceUri);
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!device || !metier) {
+        return fail(device ? metier.error() : device.error());
+    }
+    const NodeId lease(*metier, kIControlLeaseType);
+    for (const auto& interface : {NodeId(*device, kISkillControllerType), lease}) {
+        if (auto added = nodes.addReference(controller, opcua::ids::kHasInterface, interface);
+            !added) {
+            return fail(std::move(added.error()));
+        }
+    }
+    if (auto added = addLease(nodes, controller, lease); !added) {
+        return fail(std::move(added.error()));
+    }
+    if (auto locked = addLock(nodes, controller); !locked) {
+        return fail(std::move(locked.error()));
+    }
+    opcua::ObjectSpec skills;
+    skills.node.parent = controller;
+    skills.node.browse_name = {*device, "Skills"};
+    skills.node.description = {"en", "The skills of the controller."};
+    return nodes.addObject(skills);
+}
+
+Result<SkillController> publishSkillController(AddressSpace& nodes, const std::string& name,
+                                               const std::string& description) {
+    const auto di = nodes.namespaceIndex(kDiUri);
+    if (!di) {
+        return fail(di.error());
+    }
+    opcua::ObjectSpec spec;
+    spec.node.id = NodeId(kOwnNamespace, name);
+    spec.node.parent = NodeId(*di, kDeviceSet);
+    spec.node.browse_name = {kOwnNamespace, name};
+    spec.node.description = {"en", description};
+    spec.event_notifier = opcua::EventNotifier::subscribable;
+    auto controller = nodes.addObject(spec);
+    if (!controller) {
+        return fail(std::move(controller.error()));
+    }
+    if (auto linked =
+            nodes.addReference(opcua::ids::kServer, opcua::ids::kHasNotifier, *controller);
+        !linked) {
+        return fail(std::move(linked.error()));
+    }
+    auto skills = makeSkillController(nodes, *controller);
+    if (!skills) {
+        return fail(std::move(skills.error()));
+    }
+    return SkillController{std::move(*controller), std::move(*skills)};
+}
 
 Result<SkillController> findSkillController(const opcua::AddressSpace& nodes) {
     const auto di = nodes.namespaceIndex(kDiUri);

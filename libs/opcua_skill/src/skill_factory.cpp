@@ -15,6 +15,7 @@ using opcua::NodeClass;
 using opcua::NodeId;
 
 constexpr std::string_view kDiagnosticParts = "ProgramDiagnostic/";
+constexpr std::string_view kSequenceSkillType = "SequenceSkillType";
 constexpr std::uint32_t kHashBegin = 2166136261;  // FNV-1a
 constexpr std::uint32_t kHashPrime = 16777619;
 constexpr std::uint32_t kFirstCompactId = 0x8000'0000;  // below: ids that people give
@@ -52,7 +53,8 @@ bool isRange(Role role) {
 }
 
 const skill::Field& fieldOf(const skill::SkillDescription& description, Purpose purpose) {
-    const bool is_result = purpose.role == Role::result_unit || purpose.role == Role::result_range;
+    const bool is_result = purpose.role == Role::result || purpose.role == Role::result_unit ||
+                           purpose.role == Role::result_range;
     return (is_result ? description.results : description.parameters)[purpose.field];
 }
 
@@ -88,8 +90,8 @@ bool isOf(std::string_view path, std::string_view node) {
 void dropWhatCompactLacks(SkillLayout& layout) {
     for (auto& node : layout) {
         const bool dropped = node.path.substr(0, kDiagnosticParts.size()) == kDiagnosticParts ||
-                             isOf(node.path, "StartWith") || isOf(node.path, "Check") ||
-                             isOf(node.path, "GetExecution");
+                             isOf(node.path, "StartWith") || isOf(node.path, "ExecutionId") ||
+                             isOf(node.path, "Check") || isOf(node.path, "GetExecution");
         if (dropped) {
             node.path.clear();
             node.rule = LayoutNode::Rule::optional;
@@ -155,13 +157,19 @@ Result<const SkillFactory::Plan*> SkillFactory::planFor(const skill::SkillDescri
 
 Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription& description,
                                                   NodeStyle style) {
-    auto type = findType(ids_.skill_type, description.type);
+    const bool sequence = !description.steps.empty();
+    auto type = findType(ids_.skill_type, sequence ? kSequenceSkillType : description.type);
     if (!type) {
         return fail(std::move(type.error()));
     }
     auto layout = layoutOfType(nodes_, *type);
     if (!layout) {
         return fail(std::move(layout.error()));
+    }
+    if (sequence) {
+        if (auto added = addDeclaredFields(nodes_, *type, description, *layout); !added) {
+            return fail(std::move(added.error()));
+        }
     }
     if (style == NodeStyle::compact) {
         dropWhatCompactLacks(*layout);
@@ -198,11 +206,24 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
         if (auto described = describe(step); !described) {
             return fail(std::move(described.error()));
         }
+        if (node.declared_by_skill) {
+            takeFrom(fieldOf(description, *step.purpose), step);
+        }
         step.shared = !has_children[i] && serves(step, description);
         step_of[i] = plan.steps.size();
         plan.steps.push_back(std::move(step));
     }
     return plan;
+}
+
+/// A placeholder says little: the field itself says what its node is like.
+void SkillFactory::takeFrom(const skill::Field& field, Step& step) {
+    const auto shape = shapeOf(field.type);
+    step.shape = {shape.data_type, shape.value_rank, {}};
+    if (shape.value_rank > 0) {
+        step.shape.array_dimensions = {0};
+    }
+    step.description = {"en", field.description};
 }
 
 Result<void> SkillFactory::describe(Step& step) const {

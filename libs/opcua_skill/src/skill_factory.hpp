@@ -60,6 +60,7 @@ private:
     Result<const Plan*> planFor(const skill::SkillDescription& description, NodeStyle style);
     Result<Plan> makePlan(const skill::SkillDescription& description, NodeStyle style);
     Result<void> describe(Step& step) const;
+    static void takeFrom(const skill::Field& field, Step& step);
     /// Whether the type's own node says what the instance has to say.
     static bool serves(const Step& step, const skill::SkillDescription& description);
     Result<opcua::NodeId> findType(const opcua::NodeId& base, std::string_view name) const;

@@ -8,6 +8,7 @@
 
 #include "metier/base/error.hpp"
 #include "metier/opcua/address_space.hpp"
+#include "metier/skill/skill.hpp"
 
 namespace metier::opcua_skill {
 
@@ -20,6 +21,8 @@ struct LayoutNode {
     std::size_t parent = kSkill;  ///< index of the node above; kSkill: the skill object itself
     opcua::Reference reference;   ///< from the node above; its target is the node described
     Rule rule = Rule::mandatory;
+    /// A field that the skill declares by itself stands for the type's placeholder.
+    bool declared_by_skill = false;
 };
 
 /// All nodes below a skill; each comes after the one above it.
@@ -33,5 +36,11 @@ Result<SkillLayout> layoutOfType(const opcua::AddressSpace& nodes, const opcua::
 /// Errors: not_found.
 Result<SkillLayout> layoutOfInstance(const opcua::AddressSpace& nodes,
                                      const opcua::NodeId& instance);
+
+/// Adds nodes for the fields of `description` that have none yet, in the place of the placeholders
+/// of the SequenceSkillType `type`.
+/// Errors: not_found, if the type has no placeholder.
+Result<void> addDeclaredFields(const opcua::AddressSpace& nodes, const opcua::NodeId& type,
+                               const skill::SkillDescription& description, SkillLayout& layout);
 
 }  // namespace metier::opcua_skill

@@ -169,6 +169,16 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
             const auto* refusal = context_.refusals.find(session, *this);
             return {Value::of(refusal == nullptr ? program_->reasonText() : *refusal), {}, {}, {}};
         }
+        case Role::execution_id:
+            return {Value::of(program_->executionId()), {}, {}, {}};
+        case Role::steps:
+            return {Value::of(program_->description().steps), {}, {}, {}};
+        case Role::current_step:
+            return {Value::of(program_->step()), {}, {}, {}};
+        case Role::progress: {
+            const auto* progress = std::get_if<double>(&program_->intermediate());
+            return {Value::of(progress == nullptr ? 0.0 : *progress), {}, {}, {}};
+        }
         default:
             return {{}, opcua::status::kBadInternalError, {}, {}};
     }

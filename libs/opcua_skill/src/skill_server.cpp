@@ -29,6 +29,10 @@ public:
     ~State() {
         server_.stop();
         server_executor_->close();
+        // A skill may use those before it.
+        while (!skills_.empty()) {
+            skills_.pop_back();
+        }
     }
     State(const State&) = delete;
     State& operator=(const State&) = delete;

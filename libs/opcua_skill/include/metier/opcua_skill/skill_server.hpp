@@ -77,7 +77,7 @@ public:
     Result<void> serveControl(const opcua::NodeId& controller,
                               std::shared_ptr<skill::Control> control);
 
-    /// All Programs, in the order in which they came.
+    /// All Programs, in the order in which they came; they end in the opposite one.
     std::vector<skill::Program*> programs() const;
 
 private:

@@ -1,0 +1,113 @@
+#include "metier/opcua_skill/used_skills.hpp"
+
+#include <array>
+#include <utility>
+
+#include "model_ids.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+using opcua::AddressSpace;
+using opcua::NodeId;
+
+const NodeId kNonHierarchicalReferences{0, 32U};
+constexpr const char* kFolder = "UsedSkills";
+
+/// The type of the Metier NodeSet directly below `base`.
+Result<NodeId> typeBelow(const AddressSpace& nodes, const NodeId& base,
+                         const opcua::QualifiedName& name) {
+    const auto types = nodes.browse(base, {opcua::ids::kHasSubtype});
+    if (!types) {
+        return fail(types.error());
+    }
+    for (const auto& type : *types) {
+        if (type.browse_name == name) {
+            return type.target;
+        }
+    }
+    return fail(Errc::not_found, "the server has no type " + name.name);
+}
+
+Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& user, std::uint16_t metier) {
+    if (auto found = nodes.find(user, {metier, kFolder})) {
+        return found;
+    }
+    opcua::ObjectSpec spec;
+    spec.node.parent = user;
+    spec.node.browse_name = {metier, kFolder};
+    spec.node.description = {"en", "The skills of other servers that it runs."};
+    return nodes.addObject(spec);
+}
+
+Result<void> setProperties(AddressSpace& nodes, const NodeId& object, std::uint16_t metier,
+                           const RemoteSkill& used) {
+    const std::array<std::pair<const char*, const std::string*>, 4> properties{
+        {{"EndpointUrl", &used.endpoint_url},
+         {"SkillName", &used.name},
+         {"SkillTypeName", &used.type_name},
+         {"ControllerName", &used.controller}}};
+    for (const auto& [name, value] : properties) {
+        const auto property = nodes.find(object, {metier, name});
+        if (!property) {
+            return fail(property.error());
+        }
+        if (auto written = nodes.write(*property, opcua::Value::of(*value)); !written) {
+            return written;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const NodeId& used) {
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    const auto uses = typeBelow(nodes, kNonHierarchicalReferences, {*metier, "UsesSkill"});
+    return uses ? nodes.addReference(user, *uses, used) : Result<void>(fail(uses.error()));
+}
+
+Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    const auto folder = folderOf(nodes, user, *metier);
+    const auto type = typeBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "UsedSkillType"});
+    if (!folder || !type) {
+        return fail(folder ? type.error() : folder.error());
+    }
+    opcua::ObjectSpec spec;
+    spec.node.parent = *folder;
+    spec.node.browse_name = {folder->namespaceIndex(), used.alias};
+    spec.node.description = {"en", used.name + " at " + used.endpoint_url};
+    spec.type = *type;
+    const auto object = nodes.addObject(spec);
+    if (!object) {
+        return fail(object.error());
+    }
+    if (auto set = setProperties(nodes, *object, *metier, used); !set) {
+        return set;
+    }
+    return publishUse(nodes, user, *object);
+}
+
+Result<NodeId> findSkillObject(const AddressSpace& nodes, const NodeId& skills,
+                               const std::string& name) {
+    const auto children = nodes.browse(skills);
+    if (!children) {
+        return fail(children.error());
+    }
+    for (const auto& child : *children) {
+        if (child.browse_name.name == name) {
+            return child.target;
+        }
+    }
+    return fail(Errc::not_found, "there is no skill " + name);
+}
+
+}  // namespace metier::opcua_skill
