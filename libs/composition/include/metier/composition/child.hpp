@@ -1,0 +1,79 @@
+#pragma once
+
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/skill/program.hpp"
+#include "metier/skill/skill.hpp"
+#include "metier/skill/state.hpp"
+#include "metier/skill/value.hpp"
+
+namespace metier::composition {
+
+/// How the execution of a used skill ended.
+struct ChildEnd {
+    enum class Kind {
+        finished,
+        halted,
+        refused,  ///< it did not begin
+        lost,     ///< nothing is known of it any more
+    };
+    Kind kind = Kind::finished;
+    skill::ValueMap result{};  ///< of one that finished
+    skill::Reason reason = skill::Reason::none;
+    std::string text{};  ///< with value, limit and unit
+};
+
+/// Who hears of the execution of a used skill.
+///
+/// Threading: the owner's thread; never from inside a call to the Child.
+class ChildListener {
+public:
+    virtual ~ChildListener() = default;
+    /// Answers Child::reset().
+    virtual void onReset(const Result<void>& outcome) = 0;
+    /// It came to rest; at whoever's request.
+    virtual void onSuspended() = 0;
+    virtual void onResumed() = 0;
+    virtual void onProgress(const skill::Value& intermediate) = 0;
+    /// A suspend(), resume() or halt() was refused; all goes on as before.
+    virtual void onRefused(skill::Method method, const Error& error) = 0;
+    /// Once for each begin().
+    virtual void onEnd(ChildEnd end) = 0;
+};
+
+/// A skill that a composed skill uses, in the same process or elsewhere.
+///
+/// One execution at a time. Threading: the owner's thread; nothing waits.
+class Child {
+public:
+    virtual ~Child() = default;
+    /// For texts: "GraspGripperSkill of wsg50".
+    virtual const std::string& name() const = 0;
+    virtual const skill::SkillDescription& description() const = 0;
+
+    /// Whether it can be reached.
+    /// Errors: connection_lost.
+    virtual Result<void> available() const = 0;
+    /// As far as is known here.
+    virtual skill::State state() const = 0;
+    /// Why it is in its state.
+    virtual std::string reasonText() const = 0;
+
+    /// Whether it is Halted because it still ran for the composed skill when nobody waited for it.
+    virtual bool leftOver() const { return false; }
+    /// Clears a fault; `listener` hears the outcome.
+    /// Errors: it refuses, where that is known at once; then the listener is not called.
+    virtual Result<void> reset(ChildListener& listener) = 0;
+    /// Begins; `listener` hears what follows, its end at the latest. What is asked of the execution
+    /// right after this waits until it has begun.
+    virtual void begin(skill::StartRequest request, ChildListener& listener) = 0;
+    /// Ask what runs, begun here or not; what is refused is told, at once where it is known.
+    virtual Result<void> suspend() = 0;
+    virtual Result<void> resume() = 0;
+    virtual void halt() = 0;
+    /// The listener is not called any more.
+    virtual void release() = 0;
+};
+
+}  // namespace metier::composition

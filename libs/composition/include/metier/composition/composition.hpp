@@ -1,0 +1,28 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/composition/definition.hpp"
+#include "metier/skill/skill.hpp"
+
+namespace metier::composition {
+
+/// Descriptions of the used skills by alias.
+using Descriptions = std::map<std::string, skill::SkillDescription, std::less<>>;
+
+/// A definition whose bindings fit the skills that it uses.
+struct Composition {
+    Definition definition;
+    skill::SkillDescription description;  ///< of the composed skill
+};
+
+/// Checks names, types, units, ranges and lengths of all bindings against the used skills.
+/// Errors: invalid_argument with a line "file:line: key: why" for all that is wrong.
+Result<Composition> compose(Definition definition, const Descriptions& used);
+
+/// What clients may know of the composed skill.
+skill::SkillDescription descriptionOf(const Definition& definition);
+
+}  // namespace metier::composition

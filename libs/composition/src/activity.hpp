@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "metier/composition/definition.hpp"
+#include "metier/skill/state.hpp"
+
+namespace metier::composition {
+
+class Run;
+
+/// Why a step failed.
+struct StepFailure {
+    enum class Kind {
+        failed,
+        final,      ///< neither tried again nor replaced: a client halted it, or it does not stop
+        cancelled,  ///< the composed skill halted it
+    };
+    skill::Reason reason = skill::Reason::error;
+    std::string text{};
+    Kind kind = Kind::failed;
+};
+
+inline StepFailure cancelled() {
+    return {skill::Reason::by_client, "halted", StepFailure::Kind::cancelled};
+}
+
+/// What became of a step: nothing if it succeeded.
+using Outcome = std::optional<StepFailure>;
+using OnEnd = std::function<void(Outcome)>;
+
+/// One step under way.
+///
+/// It ends exactly once, after everything below it has ended, and is told so by a later turn of the
+/// Run; whoever made it then destroys it. Threading: the owner's thread.
+class Activity {
+public:
+    /// \param path of the step, with what it is in: "prepare/open"
+    Activity(Run& run, const Step& step, std::string path, OnEnd on_end)
+        : run_(run), step_(step), path_(std::move(path)), on_end_(std::move(on_end)) {}
+    virtual ~Activity() = default;
+    Activity(const Activity&) = delete;
+    Activity& operator=(const Activity&) = delete;
+
+    /// Once.
+    virtual void start() = 0;
+    /// Has what runs come to its end soon; the end follows all the same.
+    virtual void halt() = 0;
+    /// 0 to 1.
+    virtual double progress() const = 0;
+
+protected:
+    void end(Outcome outcome);
+
+    Run& run_;
+    const Step& step_;
+    const std::string path_;
+
+private:
+    OnEnd on_end_;
+};
+
+/// What runs a step, with its attempts and time limit.
+std::unique_ptr<Activity> makeActivity(Run& run, const Step& step, const std::string& above,
+                                       OnEnd on_end);
+/// One after the other. \param path of the step that they belong to
+std::unique_ptr<Activity> makeSequence(Run& run, const Step& step, const std::vector<Step>& steps,
+                                       std::string path, OnEnd on_end);
+
+/// "prepare/open"
+std::string pathOf(const std::string& above, const std::string& name);
+
+}  // namespace metier::composition

@@ -1,0 +1,244 @@
+#include "call_activity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace metier::composition {
+
+using skill::Reason;
+using skill::State;
+
+CallActivity::~CallActivity() {
+    if (stage_ == Stage::resetting || stage_ == Stage::runs) {
+        child().release();
+    }
+    run_.detach(*this);
+}
+
+std::string CallActivity::describe() const {
+    return fmt::format("step {}: {}", path_, child().name());
+}
+
+StepFailure CallActivity::failure(Reason reason, const std::string& text,
+                                  StepFailure::Kind kind) const {
+    return {reason, fmt::format("{} {}", describe(), text), kind};
+}
+
+void CallActivity::start() {
+    run_.attach(*this);
+    if (run_.held()) {
+        stage_ = Stage::parked;
+    } else {
+        launch();
+    }
+}
+
+void CallActivity::unpark() {
+    if (stage_ == Stage::parked) {
+        launch();
+    }
+}
+
+void CallActivity::launch() {
+    const auto& used = run_.used(step_.use);
+    if (const auto available = child().available(); !available) {
+        over(failure(Reason::device_lost, "cannot be reached: " + available.error().message));
+    } else if (child().state() != State::halted) {
+        begin();
+    } else if (used.mayReset()) {
+        stage_ = Stage::resetting;
+        if (const auto asked = child().reset(*this); !asked) {
+            over(failure(Reason::error, "refused Reset: " + asked.error().message));
+        }
+    } else {
+        over(failure(Reason::error,
+                     fmt::format("is Halted: {}; reset it, or write reset = true in [uses.{}]",
+                                 child().reasonText(), step_.use)));
+    }
+}
+
+void CallActivity::onReset(const Result<void>& outcome) {
+    run_.enter([this, outcome] {
+        child().release();
+        if (halting_) {
+            over(cancelled());
+        } else if (!outcome) {
+            over(failure(Reason::error, "refused Reset: " + outcome.error().message));
+        } else if (run_.held()) {
+            stage_ = Stage::parked;
+        } else {
+            begin();
+        }
+    });
+}
+
+void CallActivity::begin() {
+    skill::StartRequest request{.on_owner_loss = run_.onOwnerLoss()};
+    for (const auto& argument : step_.arguments) {
+        const auto& fields = child().description().parameters;
+        const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
+            return candidate.name == argument.name;
+        });
+        if (field == fields.end()) {
+            over(failure(Reason::error, "has no parameter " + argument.name));
+            return;
+        }
+        auto value = run_.scope().evaluate(argument.value, field->type);
+        if (!value) {
+            over(failure(Reason::error, "has no value: " + value.error().message));
+            return;
+        }
+        request.parameters.emplace(argument.name, std::move(*value));
+    }
+    request.execution_id = run_.childExecution(step_.name);
+    stage_ = Stage::runs;
+    run_.used(step_.use).halted_by_us = false;
+    child().begin(std::move(request), *this);
+}
+
+void CallActivity::halt() {
+    if (halting_ || stage_ == Stage::ended) {
+        return;
+    }
+    halting_ = true;
+    if (stage_ == Stage::parked) {
+        over(cancelled());
+        return;
+    }
+    haltChild();
+}
+
+void CallActivity::haltChild() {
+    rest_timer_ = run_.after(run_.restTime(), [this] { restTimePassed(); });
+    if (stage_ == Stage::runs) {
+        run_.used(step_.use).halted_by_us = true;
+        child().halt();
+    }
+}
+
+void CallActivity::restTimePassed() {
+    const double limit = std::chrono::duration<double>(run_.restTime()).count();
+    auto text = fmt::format("did not end within {} s after Halt", limit);
+    if (!refusal_.empty()) {
+        text += " (" + refusal_ + ")";
+    }
+    child().release();
+    over(failure(Reason::error, text, StepFailure::Kind::final));
+}
+
+void CallActivity::suspend() {
+    if (stage_ != Stage::runs || halting_ || suspended_) {
+        return;
+    }
+    if (const auto asked = child().suspend(); !asked) {
+        refusal_ = asked.error().message;
+    }
+}
+
+Result<void> CallActivity::resume() {
+    auto resumed = child().resume();
+    if (resumed) {
+        suspended_ = false;
+    }
+    return resumed;
+}
+
+void CallActivity::fail(const Error& error) {
+    if (halting_) {
+        return;
+    }
+    halting_ = true;
+    failure_ = failure(Reason::error, "refused Resume: " + error.message, StepFailure::Kind::final);
+    haltChild();
+}
+
+void CallActivity::forceStop() noexcept {
+    if (stage_ == Stage::runs && !halting_) {
+        run_.used(step_.use).halted_by_us = true;
+        child().halt();
+    }
+}
+
+bool CallActivity::atRest() const noexcept {
+    return stage_ == Stage::parked || stage_ == Stage::ended ||
+           (stage_ == Stage::runs && suspended_);
+}
+
+void CallActivity::onSuspended() {
+    run_.enter([this] { suspended_ = true; });
+}
+
+void CallActivity::onResumed() {
+    run_.enter([this] {
+        suspended_ = false;
+        if (run_.held()) {
+            suspend();  // somebody else resumed it, but the whole is to stand still
+        }
+    });
+}
+
+void CallActivity::onProgress(const skill::Value& intermediate) {
+    const auto* fraction = std::get_if<double>(&intermediate);
+    if (fraction != nullptr && *fraction >= 0.0 && *fraction <= 1.0) {
+        run_.enter([this, fraction = *fraction] { progress_ = fraction; });
+    }
+}
+
+void CallActivity::onRefused(skill::Method method, const Error& error) {
+    run_.enter([this, method, error] {
+        if (method == skill::Method::resume) {
+            suspended_ = true;
+            fail(error);
+        } else {
+            refusal_ = fmt::format("{} was refused: {}", skill::toString(method), error.message);
+        }
+    });
+}
+
+Outcome CallActivity::outcomeOf(ChildEnd& end) {
+    if (failure_) {
+        return std::move(failure_);
+    }
+    switch (end.kind) {
+        case ChildEnd::Kind::finished:
+            return std::nullopt;
+        case ChildEnd::Kind::refused:
+            return failure(end.reason, "refused Start: " + end.text);
+        case ChildEnd::Kind::lost:
+            // Its server halts it, or it is halted once it can be reached: either is by us.
+            run_.used(step_.use).halted_by_us = true;
+            return failure(Reason::device_lost, "is lost: " + end.text);
+        case ChildEnd::Kind::halted:
+            break;
+    }
+    if (halting_) {
+        return cancelled();
+    }
+    const bool final = end.reason == Reason::by_client || end.reason == Reason::owner_lost;
+    return failure(end.reason,
+                   fmt::format("was Halted ({}){}{}", skill::toString(end.reason),
+                               end.text.empty() ? "" : ": ", end.text),
+                   final ? StepFailure::Kind::final : StepFailure::Kind::failed);
+}
+
+void CallActivity::onEnd(ChildEnd end) {
+    run_.enter([this, end = std::move(end)]() mutable {
+        child().release();
+        if (end.kind == ChildEnd::Kind::finished) {
+            progress_ = 1.0;
+            run_.scope().setResult(step_.name, std::move(end.result));
+        }
+        over(outcomeOf(end));
+    });
+}
+
+void CallActivity::over(Outcome outcome) {
+    stage_ = Stage::ended;
+    rest_timer_.cancel();
+    run_.detach(*this);
+    this->end(std::move(outcome));
+}
+
+}  // namespace metier::composition

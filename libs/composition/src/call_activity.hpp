@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "activity.hpp"
+#include "metier/composition/child.hpp"
+#include "run.hpp"
+
+namespace metier::composition {
+
+/// A step that runs a used skill.
+class CallActivity final : public Activity, private ChildListener {
+public:
+    using Activity::Activity;
+    ~CallActivity() override;
+
+    void start() override;
+    void halt() override;
+    double progress() const override { return progress_; }
+
+    void suspend();
+    bool needsResume() const noexcept { return stage_ == Stage::runs && suspended_; }
+    Result<void> resume();
+    /// Begins what waited while the Run was held.
+    void unpark();
+    /// The execution cannot go on: halts it, and fails with `error`.
+    void fail(const Error& error);
+    void forceStop() noexcept;
+    /// Nothing of it moves.
+    bool atRest() const noexcept;
+    const std::string& path() const noexcept { return path_; }
+    /// "step prepare/open: ReleaseGripperSkill"
+    std::string describe() const;
+
+private:
+    enum class Stage { parked, resetting, runs, ended };
+
+    void onReset(const Result<void>& outcome) override;
+    void onSuspended() override;
+    void onResumed() override;
+    void onProgress(const skill::Value& intermediate) override;
+    void onRefused(skill::Method method, const Error& error) override;
+    void onEnd(ChildEnd end) override;
+
+    void launch();
+    void begin();
+    void haltChild();
+    void restTimePassed();
+    void over(Outcome outcome);
+    Outcome outcomeOf(ChildEnd& end);
+    StepFailure failure(skill::Reason reason, const std::string& text,
+                        StepFailure::Kind kind = StepFailure::Kind::failed) const;
+    Child& child() const { return *run_.used(step_.use).child; }
+
+    Stage stage_ = Stage::ended;
+    bool halting_ = false;
+    bool suspended_ = false;
+    double progress_ = 0.0;
+    std::string refusal_;                 // of the last Suspend or Halt
+    std::optional<StepFailure> failure_;  // that it is halted for
+    skill::Timer rest_timer_;
+};
+
+}  // namespace metier::composition

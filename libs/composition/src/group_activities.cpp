@@ -1,0 +1,253 @@
+#include "group_activities.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "run.hpp"
+
+namespace metier::composition {
+
+namespace {
+
+using skill::Reason;
+
+constexpr double kMostRounds = 1e6;
+
+}  // namespace
+
+std::unique_ptr<Activity> makeSequence(Run& run, const Step& step, const std::vector<Step>& steps,
+                                       std::string path, OnEnd on_end) {
+    return std::make_unique<SequenceActivity>(run, step, steps, std::move(path), std::move(on_end));
+}
+
+void SequenceActivity::next() {
+    if (index_ == steps_.size()) {
+        end(std::nullopt);
+        return;
+    }
+    current_ = makeActivity(run_, steps_[index_], path_, [this](Outcome outcome) {
+        current_.reset();
+        ++index_;
+        if (outcome) {
+            end(std::move(outcome));
+        } else if (halting_) {
+            end(cancelled());
+        } else {
+            next();
+        }
+    });
+    current_->start();
+}
+
+void SequenceActivity::halt() {
+    halting_ = true;
+    if (current_) {
+        current_->halt();
+    }
+}
+
+double SequenceActivity::progress() const {
+    if (steps_.empty()) {
+        return 1.0;
+    }
+    const double current = current_ ? current_->progress() : 0.0;
+    return (static_cast<double>(index_) + current) / static_cast<double>(steps_.size());
+}
+
+void ParallelActivity::start() {
+    open_ = step_.steps.size();
+    for (std::size_t i = 0; i < step_.steps.size(); ++i) {
+        branches_.push_back({makeActivity(run_, step_.steps[i], path_, [this, i](Outcome outcome) {
+            branchEnded(i, std::move(outcome));
+        })});
+    }
+    for (const auto& branch : branches_) {
+        branch.activity->start();
+    }
+}
+
+void ParallelActivity::branchEnded(std::size_t index, Outcome outcome) {
+    using Kind = StepFailure::Kind;
+    branches_[index].ended = true;
+    --open_;
+    const bool all = step_.wait_for == WaitFor::all;
+    if (!deciding_) {
+        // What does not stop outranks what was decided before.
+        if (outcome && outcome->kind == Kind::final) {
+            outcome_ = std::move(outcome);
+        }
+    } else if (outcome && (all || outcome->kind != Kind::failed)) {
+        decide(std::move(outcome));
+    } else if (!outcome && (!all || open_ == 0)) {
+        decide(std::nullopt);
+    } else if (outcome) {
+        failures_ += (failures_.empty() ? "" : "; ") + outcome->text;
+        if (open_ == 0) {
+            decide(StepFailure{outcome->reason,
+                               fmt::format("step {}: no branch succeeded: {}", path_, failures_)});
+        }
+    }
+    if (open_ == 0) {
+        end(std::move(outcome_));
+    }
+}
+
+void ParallelActivity::decide(Outcome outcome) {
+    deciding_ = false;
+    outcome_ = std::move(outcome);
+    haltOthers();
+}
+
+void ParallelActivity::haltOthers() {
+    for (const auto& branch : branches_) {
+        if (!branch.ended) {
+            branch.activity->halt();
+        }
+    }
+}
+
+void ParallelActivity::halt() {
+    decide(deciding_ ? cancelled() : std::move(outcome_));
+}
+
+double ParallelActivity::progress() const {
+    double sum = 0.0;
+    for (const auto& branch : branches_) {
+        sum += branch.ended ? 1.0 : branch.activity->progress();
+    }
+    return branches_.empty() ? 0.0 : sum / static_cast<double>(branches_.size());
+}
+
+void FallbackActivity::next() {
+    current_ = makeActivity(run_, step_.steps[index_], path_, [this](Outcome outcome) {
+        current_.reset();
+        ++index_;
+        if (!outcome || outcome->kind != StepFailure::Kind::failed) {
+            end(std::move(outcome));
+            return;
+        }
+        if (halting_) {
+            end(cancelled());
+            return;
+        }
+        failures_ += (failures_.empty() ? "" : "; ") + outcome->text;
+        if (index_ == step_.steps.size()) {
+            end(StepFailure{outcome->reason,
+                            fmt::format("step {}: nothing is left to try: {}", path_, failures_)});
+        } else {
+            next();
+        }
+    });
+    current_->start();
+}
+
+void FallbackActivity::halt() {
+    halting_ = true;
+    if (current_) {
+        current_->halt();
+    }
+}
+
+void ChoiceActivity::start() {
+    const auto held = run_.scope().holds(*step_.condition);
+    if (!held) {
+        end(StepFailure{Reason::error, fmt::format("step {}: {}", path_, held.error().message)});
+        return;
+    }
+    chosen_ = makeSequence(run_, step_, *held ? step_.steps : step_.otherwise, path_,
+                           [this](Outcome outcome) { end(std::move(outcome)); });
+    chosen_->start();
+}
+
+void ChoiceActivity::halt() {
+    if (chosen_) {
+        chosen_->halt();
+    }
+}
+
+void LoopActivity::start() {
+    if (step_.times) {
+        const auto times = run_.scope().number(*step_.times);
+        if (!times || !(*times >= 0.0 && *times <= kMostRounds) || *times != std::floor(*times)) {
+            end(StepFailure{Reason::error,
+                            fmt::format("step {}: {}", path_,
+                                        times ? fmt::format("times is {}; it needs a whole number "
+                                                            "from 0 to {}",
+                                                            *times, kMostRounds)
+                                              : times.error().message)});
+            return;
+        }
+        times_ = static_cast<std::uint64_t>(*times);
+    }
+    nextRound();
+}
+
+Result<bool> LoopActivity::goesOn() const {
+    if (times_ && round_ == *times_) {
+        return false;
+    }
+    if (step_.condition) {
+        const auto held = run_.scope().holds(*step_.condition);
+        if (!held || !*held) {
+            return held;
+        }
+    }
+    if (step_.until && round_ > 0) {
+        const auto done = run_.scope().holds(*step_.until);
+        if (!done || *done) {
+            return done ? Result<bool>(false) : done;
+        }
+    }
+    if (step_.at_most && round_ == *step_.at_most) {
+        return fail(Errc::out_of_range, fmt::format("not done after {} rounds", round_));
+    }
+    return true;
+}
+
+void LoopActivity::nextRound() {
+    const auto more = goesOn();
+    if (!more) {
+        end(StepFailure{Reason::error, fmt::format("step {}: {}", path_, more.error().message)});
+        return;
+    }
+    if (halting_) {
+        end(cancelled());
+        return;
+    }
+    if (!*more) {
+        end(std::nullopt);
+        return;
+    }
+    ++round_;
+    body_ = makeSequence(run_, step_, step_.steps, fmt::format("{}[{}]", path_, round_),
+                         [this](Outcome outcome) { roundEnded(std::move(outcome)); });
+    body_->start();
+}
+
+void LoopActivity::roundEnded(Outcome outcome) {
+    body_.reset();
+    if (outcome) {
+        end(std::move(outcome));
+    } else {
+        run_.nextTurn([this] { nextRound(); });
+    }
+}
+
+void LoopActivity::halt() {
+    halting_ = true;
+    if (body_) {
+        body_->halt();
+    }
+}
+
+double LoopActivity::progress() const {
+    const double current = body_ ? body_->progress() : 0.0;
+    const auto rounds = times_ ? *times_ : step_.at_most.value_or(1);
+    const auto done = static_cast<double>(round_) - (body_ ? 1.0 : 0.0);
+    return rounds == 0 ? 1.0 : std::min(1.0, (done + current) / static_cast<double>(rounds));
+}
+
+}  // namespace metier::composition

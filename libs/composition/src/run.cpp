@@ -1,0 +1,269 @@
+#include "run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "call_activity.hpp"
+
+namespace metier::composition {
+
+namespace {
+
+constexpr std::size_t kLongestId = 128;
+// FNV-1a, 64 bit
+constexpr std::uint64_t kHashBegin = 14695981039346656037U;
+constexpr std::uint64_t kHashPrime = 1099511628211U;
+
+std::string hashOf(std::string_view text) {
+    std::uint64_t hash = kHashBegin;
+    for (const char letter : text) {
+        hash = (hash ^ static_cast<unsigned char>(letter)) * kHashPrime;
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+}  // namespace
+
+void StepTimer::start(std::chrono::nanoseconds delay, std::function<void()> due) {
+    cancel();
+    remaining_ = delay;
+    due_ = std::move(due);
+    run_.timers_.push_back(this);
+    if (!run_.held()) {
+        go();
+    }
+}
+
+void StepTimer::cancel() {
+    timer_.cancel();
+    running_ = false;
+    std::erase(run_.timers_, this);
+}
+
+void StepTimer::pause() {
+    if (running_) {
+        remaining_ -= run_.setup_.clock.now() - since_;
+        timer_.cancel();
+        running_ = false;
+    }
+}
+
+void StepTimer::go() {
+    since_ = run_.setup_.clock.now();
+    running_ = true;
+    timer_ = run_.after(std::max(remaining_, std::chrono::nanoseconds(0)), [this] {
+        auto due = std::move(due_);
+        cancel();
+        due();
+    });
+}
+
+Run::Run(RunSetup setup, skill::ValueMap parameters)
+    : setup_(std::move(setup)), scope_(std::move(parameters)) {}
+
+Run::~Run() {
+    *alive_ = false;
+    due_.clear();
+    root_.reset();
+}
+
+void Run::start(skill::Execution execution) {
+    execution_ = std::move(execution);
+    enter([this] {
+        const auto& root = setup_.composition.definition.root;
+        root_ = makeSequence(*this, root, root.steps, "",
+                             [this](Outcome outcome) { ended(std::move(outcome)); });
+        root_->start();
+    });
+}
+
+void Run::enter(const std::function<void()>& work) {
+    if (draining_) {
+        due_.push_back(work);
+        return;
+    }
+    draining_ = true;
+    work();
+    drain();
+    draining_ = false;
+}
+
+void Run::drain() {
+    while (!due_.empty()) {
+        const auto work = std::move(due_.front());
+        due_.pop_front();
+        work();
+    }
+    report();
+    checkRest();
+}
+
+void Run::nextTurn(std::function<void()> work) {
+    setup_.executor->post([this, alive = alive_, work = std::move(work)] {
+        if (*alive) {
+            enter(work);
+        }
+    });
+}
+
+skill::Timer Run::after(std::chrono::nanoseconds delay, std::function<void()> due) {
+    return setup_.executor->after(delay, [this, due = std::move(due)] { enter(due); });
+}
+
+std::string Run::childExecution(const std::string& step) {
+    const auto own = fmt::format("/{}/{}", step, ++begun_);
+    auto above = fmt::format("{}/{}", setup_.origin, execution_.id());
+    if (above.size() + own.size() > kLongestId) {
+        above = above.substr(0, setup_.origin.size() + 1) + hashOf(above);
+    }
+    return above + own;
+}
+
+void Run::detach(CallActivity& call) {
+    std::erase(calls_, &call);
+}
+
+void Run::suspend() {
+    held_ = true;
+    suspending_ = true;
+    for (auto* timer : timers_) {
+        timer->pause();
+    }
+    rest_timer_ = after(restTime(), [this] { restTimePassed(); });
+    enter([this] {
+        for (auto* call : calls_) {
+            call->suspend();
+        }
+    });
+}
+
+Result<void> Run::resume() {
+    bool first = true;
+    for (auto* call : calls_) {
+        if (!call->needsResume()) {
+            continue;
+        }
+        auto resumed = call->resume();
+        if (!resumed && first) {
+            return resumed;
+        }
+        if (!resumed) {
+            call->fail(resumed.error());
+        }
+        first = false;
+    }
+    held_ = false;
+    const auto timers = timers_;
+    for (auto* timer : timers) {
+        timer->go();
+    }
+    enter([this] {
+        const auto calls = calls_;
+        for (auto* call : calls) {
+            call->unpark();
+        }
+    });
+    return {};
+}
+
+void Run::halt() {
+    held_ = false;
+    suspending_ = false;
+    halting_ = true;
+    enter([this] {
+        if (over_) {
+            execution_.atRest();
+        } else {
+            root_->halt();
+        }
+    });
+}
+
+void Run::forceStop() noexcept {
+    for (auto* call : calls_) {
+        call->forceStop();
+    }
+}
+
+/// Suspended, once everything that runs is at rest.
+void Run::checkRest() {
+    const bool at_rest = std::all_of(calls_.begin(), calls_.end(),
+                                     [](const CallActivity* call) { return call->atRest(); });
+    if (suspending_ && !over_ && at_rest) {
+        suspending_ = false;
+        rest_timer_.cancel();
+        execution_.atRest();
+    }
+}
+
+void Run::restTimePassed() {
+    std::vector<std::string> names;
+    for (const auto* call : calls_) {
+        if (!call->atRest()) {
+            names.push_back(call->describe());
+        }
+    }
+    gave_up_ = StepFailure{
+        skill::Reason::error,
+        fmt::format("not at rest within {} s after Suspend, and halted: {}",
+                    std::chrono::duration<double>(restTime()).count(), fmt::join(names, ", ")),
+        StepFailure::Kind::final};
+    suspending_ = false;
+    root_->halt();
+}
+
+void Run::ended(Outcome outcome) {
+    over_ = true;
+    rest_timer_.cancel();
+    if (gave_up_) {
+        outcome = std::move(gave_up_);
+    }
+    if (halting_ && !(outcome && outcome->kind == StepFailure::Kind::final)) {
+        execution_.atRest();
+    } else if (outcome) {
+        execution_.fail(outcome->reason, std::move(outcome->text));
+    } else {
+        finish();
+    }
+}
+
+void Run::finish() {
+    skill::ValueMap result;
+    for (const auto& declared : setup_.composition.definition.results) {
+        auto value = scope_.evaluate(declared.from, declared.field.type);
+        if (!value) {
+            execution_.fail(skill::Reason::error, value.error().message);
+            return;
+        }
+        result.emplace(declared.field.name, std::move(*value));
+    }
+    execution_.finish(std::move(result));
+}
+
+std::string Run::stepNames() const {
+    std::vector<std::string_view> paths;
+    for (const auto* call : calls_) {
+        paths.push_back(call->path());
+    }
+    return fmt::format("{}", fmt::join(paths, ", "));
+}
+
+/// Tells step and progress where they have changed.
+void Run::report() {
+    if (over_ || !root_) {
+        return;
+    }
+    if (auto step = stepNames(); step != told_step_ && !step.empty()) {
+        told_step_ = std::move(step);
+        execution_.step(told_step_);
+    }
+    if (const auto progress = root_->progress(); progress != told_progress_) {
+        told_progress_ = progress;
+        execution_.progress(progress);
+    }
+}
+
+}  // namespace metier::composition

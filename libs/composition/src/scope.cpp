@@ -1,0 +1,213 @@
+#include "scope.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+
+namespace metier::composition {
+
+namespace {
+
+using skill::Frame;
+using skill::Value;
+using skill::ValueType;
+using skill::Vector3;
+
+std::string nameOf(const Reference& reference) {
+    auto name = reference.step.empty() ? reference.name
+                                       : fmt::format("{}.{}", reference.step, reference.name);
+    return reference.element ? fmt::format("{}[{}]", name, *reference.element) : name;
+}
+
+std::optional<double> asNumber(const Value& value) {
+    return std::visit(
+        [](const auto& held) -> std::optional<double> {
+            using T = std::decay_t<decltype(held)>;
+            if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+                return static_cast<double>(held);
+            } else {
+                return std::nullopt;
+            }
+        },
+        value);
+}
+
+std::optional<Value> elementOf(const Value& value, std::size_t index) {
+    if (const auto* f = std::get_if<Frame>(&value)) {
+        const std::array parts{f->x, f->y, f->z, f->a, f->b, f->c};
+        return index < parts.size() ? std::optional<Value>(parts[index]) : std::nullopt;
+    }
+    if (const auto* v = std::get_if<Vector3>(&value)) {
+        const std::array parts{v->x, v->y, v->z};
+        return index < parts.size() ? std::optional<Value>(parts[index]) : std::nullopt;
+    }
+    const auto from = [&](const auto& list) {
+        return index < list.size() ? std::optional<Value>(list[index]) : std::nullopt;
+    };
+    if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+        return from(*numbers);
+    }
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
+        return from(*texts);
+    }
+    const auto* frames = std::get_if<std::vector<Frame>>(&value);
+    return frames == nullptr ? std::nullopt : from(*frames);
+}
+
+Result<Value> made(const std::vector<double>& n, ValueType type) {
+    if (type == ValueType::frame && n.size() == 6) {
+        return Frame{n[0], n[1], n[2], n[3], n[4], n[5]};
+    }
+    if (type == ValueType::vector3 && n.size() == 3) {
+        return Vector3{n[0], n[1], n[2]};
+    }
+    return type == ValueType::numbers
+               ? Result<Value>(n)
+               : fail(Errc::internal, fmt::format("{} numbers for a value of type {}", n.size(),
+                                                  skill::toString(type)));
+}
+
+Result<Value> shifted(Value value, const std::vector<double>& by) {
+    if (auto* number = std::get_if<double>(&value); number != nullptr && by.size() == 1) {
+        return *number + by[0];
+    }
+    if (auto* frame = std::get_if<Frame>(&value); frame != nullptr && by.size() == 3) {
+        frame->x += by[0];
+        frame->y += by[1];
+        frame->z += by[2];
+        return value;
+    }
+    if (auto* vector = std::get_if<Vector3>(&value); vector != nullptr && by.size() == 3) {
+        return Vector3{vector->x + by[0], vector->y + by[1], vector->z + by[2]};
+    }
+    auto* numbers = std::get_if<std::vector<double>>(&value);
+    if (numbers == nullptr || numbers->size() != by.size()) {
+        return fail(Errc::invalid_argument, fmt::format("{} cannot be shifted by {} numbers",
+                                                        skill::toString(value), by.size()));
+    }
+    std::transform(numbers->begin(), numbers->end(), by.begin(), numbers->begin(), std::plus<>());
+    return value;
+}
+
+/// An error that tells where in the file it came up.
+template <typename T>
+Result<T> at(const Binding& binding, Result<T> result) {
+    return std::move(result).map_error([&](Error error) {
+        error.message = fmt::format("{} (line {}): {}", binding.key, binding.line, error.message);
+        return error;
+    });
+}
+
+}  // namespace
+
+Result<Value> Scope::read(const Reference& reference) const {
+    const auto* values = &parameters_;
+    if (!reference.step.empty()) {
+        const auto step = results_.find(reference.step);
+        if (step == results_.end()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("step {} has no result yet", reference.step));
+        }
+        values = &step->second;
+    }
+    const auto found = values->find(reference.name);
+    if (found == values->end() || skill::isNull(found->second)) {
+        return fail(Errc::invalid_argument, fmt::format("{} has no value", nameOf(reference)));
+    }
+    if (!reference.element) {
+        return found->second;
+    }
+    if (auto element = elementOf(found->second, *reference.element)) {
+        return std::move(*element);
+    }
+    return fail(Errc::out_of_range, fmt::format("there is no {} in {}", nameOf(reference),
+                                                skill::toString(found->second)));
+}
+
+Result<std::vector<double>> Scope::numbersOf(const std::vector<Term>& terms) const {
+    std::vector<double> numbers;
+    for (const auto& term : terms) {
+        if (!term.from) {
+            numbers.push_back(term.constant);
+            continue;
+        }
+        const auto value = read(*term.from);
+        if (!value) {
+            return fail(value.error());
+        }
+        numbers.push_back(asNumber(*value).value_or(0.0));
+    }
+    return numbers;
+}
+
+Result<Value> Scope::unshifted(const Binding& binding, ValueType type) const {
+    if (std::holds_alternative<Literal>(binding.source)) {
+        return binding.constant;
+    }
+    if (const auto* reference = std::get_if<Reference>(&binding.source)) {
+        return read(*reference);
+    }
+    const auto numbers = numbersOf(std::get<std::vector<Term>>(binding.source));
+    return numbers ? made(*numbers, type) : Result<Value>(fail(numbers.error()));
+}
+
+Result<Value> Scope::evaluate(const Binding& binding, ValueType type) const {
+    auto value = unshifted(binding, type);
+    if (value && !binding.shift.empty()) {
+        const auto by = numbersOf(binding.shift);
+        value = by ? shifted(std::move(*value), *by) : Result<Value>(fail(by.error()));
+    }
+    return at(binding, std::move(value));
+}
+
+Result<double> Scope::number(const Binding& binding) const {
+    const auto value = evaluate(binding, ValueType::number);
+    if (!value) {
+        return fail(value.error());
+    }
+    const auto number = asNumber(*value);
+    return number ? Result<double>(*number)
+                  : at(binding, Result<double>(fail(Errc::invalid_argument, "is no number")));
+}
+
+Result<bool> Scope::compare(const Condition& condition) const {
+    const auto subject = read(condition.subject);
+    if (!subject) {
+        return at(condition.operand, Result<bool>(fail(subject.error())));
+    }
+    const auto operand = evaluate(condition.operand, skill::typeOf(*subject));
+    if (!operand) {
+        return fail(operand.error());
+    }
+    const auto left = asNumber(*subject);
+    const auto right = asNumber(*operand);
+    if (condition.kind == Condition::Kind::is) {
+        return left && right ? *left == *right : *subject == *operand;
+    }
+    if (!left || !right) {
+        return fail(Errc::internal, "a comparison of what are no numbers");
+    }
+    return condition.kind == Condition::Kind::less ? *left < *right : *left > *right;
+}
+
+Result<bool> Scope::holds(const Condition& condition) const {
+    if (condition.parts.empty()) {
+        return compare(condition);
+    }
+    const bool all = condition.kind == Condition::Kind::all;
+    for (const auto& part : condition.parts) {
+        const auto held = holds(part);
+        if (!held || condition.kind == Condition::Kind::negation) {
+            return held ? Result<bool>(!*held) : held;
+        }
+        if (*held != all) {
+            return *held;
+        }
+    }
+    return all;
+}
+
+}  // namespace metier::composition

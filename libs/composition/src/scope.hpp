@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "metier/base/error.hpp"
+#include "metier/composition/definition.hpp"
+
+namespace metier::composition {
+
+/// The values of one execution: its parameters, and the results of the steps so far.
+class Scope {
+public:
+    explicit Scope(skill::ValueMap parameters) : parameters_(std::move(parameters)) {}
+
+    /// Of the last time that the step ran.
+    void setResult(const std::string& step, skill::ValueMap result) {
+        results_[step] = std::move(result);
+    }
+
+    /// The value of a binding for a target of that type.
+    /// Errors: invalid_argument, out_of_range, with the place in the file.
+    Result<skill::Value> evaluate(const Binding& binding, skill::ValueType type) const;
+    Result<bool> holds(const Condition& condition) const;
+    /// Of a number of any type.
+    Result<double> number(const Binding& binding) const;
+    Result<skill::Value> read(const Reference& reference) const;
+
+private:
+    Result<skill::Value> unshifted(const Binding& binding, skill::ValueType type) const;
+    Result<std::vector<double>> numbersOf(const std::vector<Term>& terms) const;
+    Result<bool> compare(const Condition& condition) const;
+
+    skill::ValueMap parameters_;
+    std::map<std::string, skill::ValueMap, std::less<>> results_;
+};
+
+}  // namespace metier::composition

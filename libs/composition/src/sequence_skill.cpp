@@ -1,0 +1,130 @@
+#include "metier/composition/sequence_skill.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "run.hpp"
+
+namespace metier::composition {
+
+namespace {
+
+using skill::State;
+
+class SequenceBody final : public skill::Body {
+public:
+    SequenceBody(RunSetup setup, const skill::ValueMap& parameters)
+        : run_(std::move(setup), parameters) {}
+
+    void start(skill::Execution execution) override { run_.start(std::move(execution)); }
+    Result<void> suspend() override {
+        run_.suspend();
+        return {};
+    }
+    Result<void> resume() override { return run_.resume(); }
+    void halt() override { run_.halt(); }
+    void forceStop() noexcept override { run_.forceStop(); }
+
+private:
+    Run run_;
+};
+
+/// The aliases of the calls that every execution comes by.
+void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& aliases) {
+    for (const auto& step : steps) {
+        if (step.kind == StepKind::call) {
+            if (std::find(aliases.begin(), aliases.end(), step.use) == aliases.end()) {
+                aliases.push_back(step.use);
+            }
+        } else if (step.kind == StepKind::sequence ||
+                   (step.kind == StepKind::parallel && step.wait_for == WaitFor::all)) {
+            collectNeeded(step.steps, aliases);
+        } else if (step.kind == StepKind::loop && !step.condition) {
+            collectNeeded(step.steps, aliases);
+        }
+    }
+}
+
+}  // namespace
+
+/// A Reset of a used skill that nobody waits for: what it leads to shows at the next Start.
+class SequenceSkill::Unheard final : public ChildListener {
+public:
+    void onReset(const Result<void>& /*outcome*/) override {}
+    void onSuspended() override {}
+    void onResumed() override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
+    void onEnd(ChildEnd /*end*/) override {}
+};
+
+SequenceSkill::SequenceSkill(Composition composition,
+                             std::map<std::string, std::unique_ptr<Child>> children,
+                             std::shared_ptr<skill::Executor> executor, const Clock& clock,
+                             std::string origin)
+    : composition_(std::move(composition)),
+      executor_(std::move(executor)),
+      clock_(clock),
+      origin_(std::move(origin)),
+      unheard_(std::make_unique<Unheard>()) {
+    for (const auto& use : composition_.definition.uses) {
+        used_[use.alias] = UsedSkill{std::move(children.at(use.alias)), use.reset};
+    }
+    collectNeeded(composition_.definition.root.steps, needed_);
+}
+
+SequenceSkill::~SequenceSkill() = default;
+
+Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
+    const auto& used = used_.find(alias)->second;
+    const auto& child = *used.child;
+    if (const auto available = child.available(); !available) {
+        return fail(available.error().code,
+                    fmt::format("{} ({}) cannot be reached: {}", child.name(), alias,
+                                available.error().message));
+    }
+    if (child.state() == State::halted && !used.mayReset()) {
+        return fail(Errc::invalid_state,
+                    fmt::format("{} ({}) is Halted: {}; reset it, or write reset = true in "
+                                "[uses.{}]",
+                                child.name(), alias, child.reasonText(), alias));
+    }
+    if (child.state() == State::running || child.state() == State::suspended) {
+        return fail(Errc::resource_unavailable, fmt::format("{} ({}) is {}", child.name(), alias,
+                                                            skill::toString(child.state())));
+    }
+    return {};
+}
+
+Result<std::unique_ptr<skill::Body>> SequenceSkill::prepare(const skill::ValueMap& snapshot) {
+    for (const auto& alias : needed_) {
+        if (auto usable = checkUsable(alias); !usable) {
+            return fail(std::move(usable.error()));
+        }
+    }
+    return std::make_unique<SequenceBody>(RunSetup{composition_, used_, executor_, clock_, origin_},
+                                          snapshot);
+}
+
+Result<void> SequenceSkill::reset() {
+    for (auto& [alias, used] : used_) {
+        auto& child = *used.child;
+        if (!used.mayReset() || !child.available() || child.state() != State::halted) {
+            continue;
+        }
+        if (const auto asked = child.reset(*unheard_); !asked) {
+            return fail(asked.error().code, fmt::format("{} ({}) refused Reset: {}", child.name(),
+                                                        alias, asked.error().message));
+        }
+    }
+    return {};
+}
+
+std::chrono::milliseconds restDeadlineOf(const Definition& definition) {
+    constexpr std::chrono::milliseconds kSpare{1'000};
+    return std::chrono::duration_cast<std::chrono::milliseconds>(2 * definition.rest_time) + kSpare;
+}
+
+}  // namespace metier::composition

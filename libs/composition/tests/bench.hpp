@@ -1,0 +1,223 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "metier/composition/definition_file.hpp"
+#include "metier/composition/sequence_skill.hpp"
+#include "metier/skill/program.hpp"
+#include "metier/skill/testing/manual_executor.hpp"
+#include "metier/skill/testing/recording_observer.hpp"
+
+namespace metier::composition::testing {
+
+inline const skill::Caller kClient{"session", "client", "user"};
+
+/// A skill that moves: one limited parameter, one result.
+inline skill::SkillDescription moveDescription() {
+    return {
+        .name = "MoveSkill",
+        .type = "MoveSkillType",
+        .parameters = {{.name = "Target",
+                        .type = skill::ValueType::number,
+                        .unit = skill::kMetre,
+                        .range = skill::Range{0.0, 10.0},
+                        .default_value = 0.0},
+                       {.name = "Pose", .type = skill::ValueType::frame, .optional = true},
+                       {.name = "Joints",
+                        .type = skill::ValueType::numbers,
+                        .unit = skill::kRadian,
+                        .length = skill::LengthLimit{2, 2},
+                        .optional = true}},
+        .results = {{.name = "Reached", .type = skill::ValueType::number, .unit = skill::kMetre},
+                    {.name = "ReachedPose", .type = skill::ValueType::frame}}};
+}
+
+/// A skill that grasps: a parameter that must be given, two results.
+inline skill::SkillDescription graspDescription() {
+    return {.name = "GraspSkill",
+            .type = "GraspSkillType",
+            .parameters = {{.name = "Force",
+                            .type = skill::ValueType::number,
+                            .unit = skill::kNewton,
+                            .range = skill::Range{0.0, 80.0}}},
+            .results = {{.name = "Width", .type = skill::ValueType::number, .unit = skill::kMetre},
+                        {.name = "Held", .type = skill::ValueType::boolean}}};
+}
+
+/// A used skill whose every word is the test's.
+class ScriptedChild final : public Child {
+public:
+    ScriptedChild(std::string name, skill::SkillDescription description)
+        : name_(std::move(name)), description_(std::move(description)) {}
+
+    const std::string& name() const override { return name_; }
+    const skill::SkillDescription& description() const override { return description_; }
+    Result<void> available() const override { return reachable; }
+    skill::State state() const override { return state_now; }
+    std::string reasonText() const override { return reason_text; }
+    Result<void> reset(ChildListener& to) override {
+        calls.emplace_back("reset");
+        listener = &to;
+        return reset_answer;
+    }
+    void begin(skill::StartRequest asked, ChildListener& to) override {
+        calls.emplace_back("begin");
+        request = std::move(asked);
+        listener = &to;
+        state_now = skill::State::running;
+    }
+    Result<void> suspend() override {
+        calls.emplace_back("suspend");
+        return suspend_answer;
+    }
+    Result<void> resume() override {
+        calls.emplace_back("resume");
+        return resume_answer;
+    }
+    void halt() override { calls.emplace_back("halt"); }
+    void release() override { listener = nullptr; }
+
+    // What happens to it.
+    void finish(skill::ValueMap result = {}) {
+        state_now = skill::State::ready;
+        listener->onEnd({ChildEnd::Kind::finished, std::move(result)});
+    }
+    void halted(skill::Reason reason = skill::Reason::by_client, std::string text = {}) {
+        state_now = skill::State::halted;
+        reason_text = text;
+        listener->onEnd({ChildEnd::Kind::halted, {}, reason, std::move(text)});
+    }
+    void refused(std::string text) {
+        state_now = skill::State::ready;
+        listener->onEnd({ChildEnd::Kind::refused, {}, skill::Reason::error, std::move(text)});
+    }
+    void suspended() {
+        state_now = skill::State::suspended;
+        listener->onSuspended();
+    }
+    void resumed() {
+        state_now = skill::State::running;
+        listener->onResumed();
+    }
+    void wasReset(const Result<void>& outcome = {}) {
+        state_now = outcome ? skill::State::ready : skill::State::halted;
+        listener->onReset(outcome);
+    }
+    /// What was called since the last time.
+    std::vector<std::string> heard() { return std::exchange(calls, {}); }
+    bool runs() const { return listener != nullptr; }
+
+    Result<void> reachable{};
+    skill::State state_now = skill::State::ready;
+    std::string reason_text{};
+    Result<void> reset_answer{};
+    Result<void> suspend_answer{};
+    Result<void> resume_answer{};
+    std::vector<std::string> calls{};
+    skill::StartRequest request{};
+    ChildListener* listener = nullptr;
+
+private:
+    std::string name_;
+    skill::SkillDescription description_;
+};
+
+/// The head of a file that uses `a` and `b`, which move, and `grip`.
+inline const std::string kHead = R"(
+name = "TestSkill"
+rest_time = 2
+[uses.a]
+type = "MoveSkillType"
+[uses.b]
+type = "MoveSkillType"
+)";
+
+inline const std::string kHeadWithGrip = kHead + R"(
+[uses.grip]
+type = "GraspSkillType"
+)";
+
+/// A composed skill over scripted children; the test moves the time and everything else.
+class Bench {
+public:
+    /// \param text a composition file; what it uses by the type GraspSkillType grasps, all else
+    ///             moves
+    explicit Bench(const std::string& text) {
+        auto definition = parseDefinition(text, "test.toml");
+        if (!definition) {
+            throw std::invalid_argument(definition.error().message);
+        }
+        Descriptions descriptions;
+        std::map<std::string, std::unique_ptr<Child>> children;
+        for (const auto& use : definition->uses) {
+            const auto description =
+                use.type == "GraspSkillType" ? graspDescription() : moveDescription();
+            auto child =
+                std::make_unique<ScriptedChild>(description.name + " " + use.alias, description);
+            children_[use.alias] = child.get();
+            descriptions.emplace(use.alias, description);
+            children.emplace(use.alias, std::move(child));
+        }
+        const auto deadline = restDeadlineOf(*definition);
+        auto composition = compose(std::move(*definition), descriptions);
+        if (!composition) {
+            throw std::invalid_argument(composition.error().message);
+        }
+        program = std::make_unique<skill::Program>(
+            skill::ProgramOptions{.rest_deadline = deadline},
+            std::make_unique<SequenceSkill>(std::move(*composition), std::move(children), executor,
+                                            executor->clock(), "here.TestSkill"),
+            executor, executor->clock());
+        program->attach(observer);
+    }
+
+    ScriptedChild& operator[](const std::string& alias) { return *children_.at(alias); }
+
+    /// Starts, and lets what follows happen.
+    Result<void> start(skill::ValueMap parameters = {}) {
+        auto started = program->startWith(kClient, {"run", std::move(parameters)});
+        run();
+        return started.map([](const std::string& /*id*/) {});
+    }
+    void run() { executor->run(); }
+    void advance(std::chrono::nanoseconds step) { executor->advance(step); }
+    Result<void> call(skill::Method method) {
+        auto outcome = command(method);
+        run();
+        return outcome;
+    }
+    std::string state() const { return std::string(toString(program->state())); }
+    const std::string& why() const { return program->reasonText(); }
+
+    std::shared_ptr<skill::testing::ManualExecutor> executor =
+        std::make_shared<skill::testing::ManualExecutor>();
+    skill::testing::RecordingObserver observer;
+    std::unique_ptr<skill::Program> program;
+
+private:
+    Result<void> command(skill::Method method) {
+        switch (method) {
+            case skill::Method::suspend:
+                return program->suspend(kClient);
+            case skill::Method::resume:
+                return program->resume(kClient);
+            case skill::Method::halt:
+                return program->halt(kClient);
+            case skill::Method::reset:
+                return program->reset(kClient);
+            default:
+                return program->start(kClient);
+        }
+    }
+
+    std::map<std::string, ScriptedChild*> children_;  // owned by the skill
+};
+
+}  // namespace metier::composition::testing

@@ -1,0 +1,172 @@
+// Composed skills over real Programs, one composed skill within another.
+#include "metier/composition/local_child.hpp"
+
+#include <gmock/gmock.h>
+
+#include "bench.hpp"
+#include "metier/skill/lambda_skill.hpp"
+
+namespace metier::composition {
+namespace {
+
+using skill::Program;
+using skill::State;
+using skill::ValueMap;
+using ::testing::HasSubstr;
+using testing::kClient;
+
+/// Programs of one thread; the test is the device.
+class LocalChildren : public ::testing::Test {
+protected:
+    Program& addMove() {
+        skill::SkillFunctions functions;
+        functions.start = [this](const ValueMap& parameters, const skill::Execution& execution) {
+            snapshot_ = parameters;
+            execution_ = execution;
+        };
+        functions.suspend = [](const skill::Execution& execution) -> Result<void> {
+            execution.atRest();
+            return {};
+        };
+        functions.resume = [](const skill::Execution&) -> Result<void> { return {}; };
+        functions.halt = [](const skill::Execution& execution) { execution.atRest(); };
+        return add(
+            std::make_unique<skill::LambdaSkill>(testing::moveDescription(), std::move(functions)));
+    }
+
+    /// A composed skill of that name with one step, which runs `inner`.
+    Program& addAround(const std::string& name, Program& inner) {
+        const auto text = "name = \"" + name +
+                          "\"\n[parameters.Target]\ntype = \"number\"\nunit = "
+                          "\"m\"\ndefault = 1\n[results.Reached]\ntype = \"number\"\nunit = "
+                          "\"m\"\nfrom = \"go.Reached\"\n[uses.inner]\ntype = \"" +
+                          inner.description().type +
+                          "\"\n[[step]]\nname = \"go\"\nrun = \"inner\"\nwith.Target = { from = "
+                          "\"Target\" }\n";
+        auto composition =
+            compose(parseDefinition(text, name + ".toml").value(), {{"inner", inner.description()}})
+                .value();
+        std::map<std::string, std::unique_ptr<Child>> children;
+        children.emplace(
+            "inner", std::make_unique<LocalChild>(inner, executor_, skill::Caller{name, name, ""}));
+        return add(std::make_unique<SequenceSkill>(std::move(composition), std::move(children),
+                                                   executor_, executor_->clock(), "here." + name));
+    }
+
+    Program& add(std::unique_ptr<skill::Skill> skill) {
+        programs_.push_back(std::make_unique<Program>(skill::ProgramOptions{}, std::move(skill),
+                                                      executor_, executor_->clock()));
+        return *programs_.back();
+    }
+
+    ~LocalChildren() override {
+        while (!programs_.empty()) {
+            programs_.pop_back();  // the outer ones first
+        }
+    }
+
+    std::shared_ptr<skill::testing::ManualExecutor> executor_ =
+        std::make_shared<skill::testing::ManualExecutor>();
+    std::vector<std::unique_ptr<Program>> programs_;
+    ValueMap snapshot_;
+    skill::Execution execution_;
+};
+
+TEST_F(LocalChildren, StackThreeDeep) {
+    auto& move = addMove();
+    auto& inner = addAround("Inner", move);
+    auto& middle = addAround("Middle", inner);
+    auto& outer = addAround("Outer", middle);
+    ASSERT_TRUE(outer.startWith(kClient, {"top", {{"Target", 4.0}}}));
+    executor_->run();
+    for (const auto* program : {&outer, &middle, &inner, &move}) {
+        EXPECT_EQ(program->state(), State::running);
+    }
+    EXPECT_EQ(snapshot_.at("Target"), skill::Value(4.0));
+    EXPECT_EQ(execution_.id(), "here.Inner/here.Middle/here.Outer/top/go/1/go/1/go/1");
+    execution_.finish({{"Reached", 3.9}});
+    executor_->run();
+    for (const auto* program : {&outer, &middle, &inner, &move}) {
+        EXPECT_EQ(program->state(), State::ready);
+    }
+    EXPECT_EQ(outer.finalResult(), (ValueMap{{"Reached", 3.9}}));
+}
+
+TEST_F(LocalChildren, AreSuspendedResumedAndHaltedThroughAllLevels) {
+    auto& move = addMove();
+    auto& inner = addAround("Inner", move);
+    auto& outer = addAround("Outer", inner);
+    ASSERT_TRUE(outer.start(kClient));
+    executor_->run();
+    ASSERT_TRUE(outer.suspend(kClient));
+    executor_->run();
+    for (const auto* program : {&outer, &inner, &move}) {
+        EXPECT_EQ(program->state(), State::suspended);
+    }
+    ASSERT_TRUE(outer.resume(kClient));
+    executor_->run();
+    for (const auto* program : {&outer, &inner, &move}) {
+        EXPECT_EQ(program->state(), State::running);
+    }
+    ASSERT_TRUE(outer.halt(kClient));
+    executor_->run();
+    for (const auto* program : {&outer, &inner, &move}) {
+        EXPECT_EQ(program->state(), State::halted);
+    }
+    ASSERT_TRUE(outer.reset(kClient));
+    executor_->run();
+    for (const auto* program : {&outer, &inner, &move}) {
+        EXPECT_EQ(program->state(), State::ready) << "what it halted itself, it resets";
+    }
+}
+
+TEST_F(LocalChildren, TellTheFailureOfTheInnermostSkill) {
+    auto& move = addMove();
+    auto& outer = addAround("Outer", addAround("Inner", move));
+    ASSERT_TRUE(outer.start(kClient));
+    executor_->run();
+    move.deviceLost("the cable is cut");
+    executor_->run();
+    EXPECT_EQ(outer.subState(), skill::SubState::halted_device_lost);
+    EXPECT_EQ(outer.reasonText(),
+              "step go: Inner was Halted (DeviceLost): step go: MoveSkill was Halted "
+              "(DeviceLost): the cable is cut");
+}
+
+TEST_F(LocalChildren, TellARefusedStart) {
+    auto& outer = addAround("Outer", addMove());
+    ASSERT_TRUE(outer.startWith(kClient, {"", {{"Target", 11.0}}}));
+    executor_->run();
+    EXPECT_EQ(outer.state(), State::halted);
+    EXPECT_THAT(outer.reasonText(),
+                HasSubstr("refused Start: Target: 11 m is over the limit 10 m"));
+}
+
+TEST_F(LocalChildren, EndWithAFailureIfTheyAreResetWhileSuspended) {
+    auto& move = addMove();
+    auto& outer = addAround("Outer", move);
+    ASSERT_TRUE(outer.start(kClient));
+    executor_->run();
+    ASSERT_TRUE(move.suspend(kClient));
+    executor_->run();
+    EXPECT_EQ(outer.state(), State::running);
+    ASSERT_TRUE(move.reset(kClient));
+    executor_->run();
+    EXPECT_EQ(outer.state(), State::halted);
+    EXPECT_THAT(outer.reasonText(), HasSubstr("it was reset while it was suspended"));
+}
+
+TEST_F(LocalChildren, TellTheirProgress) {
+    auto& outer = addAround("Outer", addMove());
+    skill::testing::RecordingObserver observer;
+    outer.attach(observer);
+    ASSERT_TRUE(outer.start(kClient));
+    executor_->run();
+    execution_.progress(0.25);
+    executor_->run();
+    EXPECT_THAT(observer.log, ::testing::Contains("progress 0.25"));
+    outer.detach(observer);
+}
+
+}  // namespace
+}  // namespace metier::composition

@@ -1,0 +1,539 @@
+// What each kind of step does when all goes well, and where values come from.
+#include <gmock/gmock.h>
+
+#include "bench.hpp"
+
+namespace metier::composition {
+namespace {
+
+using namespace std::chrono_literals;
+using skill::Frame;
+using skill::Reason;
+using skill::Value;
+using skill::ValueMap;
+using testing::Bench;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::kHead;
+using testing::kHeadWithGrip;
+
+TEST(Sequence, RunsItsStepsOneAfterTheOther) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    EXPECT_TRUE(bench["a"].runs());
+    EXPECT_FALSE(bench["b"].runs());
+    EXPECT_EQ(bench.program->step(), "first");
+    bench["a"].finish();
+    bench.run();
+    EXPECT_TRUE(bench["b"].runs());
+    EXPECT_EQ(bench.program->step(), "second");
+    EXPECT_EQ(bench.state(), "Running");
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_EQ(bench.program->reason(), Reason::finished);
+}
+
+TEST(Sequence, NamesTheExecutionsOfItsStepsAfterItsOwn) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    EXPECT_EQ(bench["a"].request.execution_id, "here.TestSkill/run/first/1");
+    bench["a"].finish();
+    EXPECT_EQ(bench["b"].request.execution_id, "here.TestSkill/run/second/2");
+    EXPECT_EQ(bench["b"].request.on_owner_loss, skill::OwnerLossAction::halt);
+}
+
+TEST(Sequence, ShortensIdsThatWouldBeTooLong) {
+    Bench bench(kHead +
+                "[[step]]\nname = \"first\"\nrun = \"a\"\n[[step]]\nname = \"s\"\nrun = \"b\"\n");
+    const std::string id(120, 'x');
+    ASSERT_TRUE(bench.program->startWith(testing::kClient, {id, {}}));
+    const auto& child = bench["a"].request.execution_id;
+    EXPECT_LE(child.size(), 128U);
+    EXPECT_EQ(child.find("here.TestSkill/"), 0U);
+    EXPECT_NE(child.find("/first/1"), std::string::npos);
+}
+
+TEST(Sequence, GivesParametersResultsAndConstantsToItsSteps) {
+    Bench bench(kHeadWithGrip + R"(
+[parameters.Force]
+type = "number"
+unit = "N"
+default = 7
+[parameters.Pose]
+type = "frame"
+[results.Width]
+type = "number"
+unit = "m"
+from = "grasp.Width"
+[[step]]
+name = "grasp"
+run = "grip"
+with.Force = { from = "Force" }
+[[step]]
+name = "move"
+run = "a"
+with.Target = { from = "grasp.Width" }
+with.Pose = { from = "Pose", shift = [0, 1, { from = "grasp.Width" }] }
+with.Joints = [1, { from = "Pose", element = "z" }]
+[[step]]
+name = "back"
+run = "b"
+with.Target = { from = "Pose", element = 0, shift = 0.5 }
+with.Joints = [1, 2.5]
+)");
+    ASSERT_TRUE(bench.start({{"Pose", Frame{1, 2, 3, 0, 0, 1}}}));
+    EXPECT_EQ(bench["grip"].request.parameters, (ValueMap{{"Force", 7.0}}));
+    bench["grip"].finish({{"Width", 0.25}, {"Held", true}});
+    EXPECT_EQ(bench["a"].request.parameters, (ValueMap{{"Target", 0.25},
+                                                       {"Pose", Frame{1, 3, 3.25, 0, 0, 1}},
+                                                       {"Joints", std::vector<double>{1.0, 3.0}}}));
+    bench["a"].finish();
+    EXPECT_EQ(bench["b"].request.parameters,
+              (ValueMap{{"Target", 1.5}, {"Joints", std::vector<double>{1.0, 2.5}}}));
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->finalResult(), (ValueMap{{"Width", 0.25}}));
+}
+
+TEST(Sequence, TellsItsProgressWithThatOfItsSteps) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_THAT(bench.observer.log, Contains("progress 0.25"));
+    bench["a"].finish();
+    bench.run();
+    EXPECT_THAT(bench.observer.log, Contains("progress 0.5"));
+}
+
+const std::string kParallel = kHead + R"(
+[[step]]
+name = "both"
+WAIT
+[[step.parallel]]
+name = "left"
+run = "a"
+[[step.parallel]]
+name = "right"
+run = "b"
+)";
+
+std::string parallel(const std::string& wait) {
+    auto text = kParallel;
+    return text.replace(text.find("WAIT"), 4, wait);
+}
+
+TEST(Parallel, WaitsForAllItsBranches) {
+    Bench bench(parallel(""));
+    ASSERT_TRUE(bench.start());
+    EXPECT_TRUE(bench["a"].runs() && bench["b"].runs());
+    EXPECT_EQ(bench.program->step(), "both/left, both/right");
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Running");
+    EXPECT_EQ(bench.program->step(), "both/left");
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(Parallel, HaltsTheOthersOnceOneHasSucceededIfOneIsEnough) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].finish();
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    EXPECT_EQ(bench.state(), "Running") << "the other one has not ended";
+    bench["a"].halted();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(Parallel, FailsIfNoneSucceedsWhereOneIsEnough) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].halted(Reason::error, "stuck");
+    bench.run();
+    EXPECT_EQ(bench.state(), "Running");
+    bench["a"].halted(Reason::error, "jammed");
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("stuck"));
+    EXPECT_THAT(bench.why(), HasSubstr("jammed"));
+}
+
+TEST(Retry, TriesAgainAfterAPauseAndAReset) {
+    Bench bench(kHead + R"(
+reset = true
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "move"
+run = "b"
+retry = 2
+pause = 0.5
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench["b"].halted(Reason::error, "missed");
+    bench.advance(400ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+    bench.advance(100ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].wasReset();
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(Retry, TellsTheLastFailureWhenItGivesUp) {
+    Bench bench(kHead + R"(
+reset = true
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "move"
+run = "b"
+retry = 1
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench["b"].refused("too far");
+    bench.advance(0ms);
+    bench["b"].refused("still too far");
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step move: MoveSkill b refused Start: still too far (attempt 2 of 2)");
+}
+
+TEST(Retry, DoesNotOverrideAClientThatHaltedTheSkill) {
+    Bench bench(kHead + R"(
+reset = true
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "move"
+run = "b"
+retry = 5
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench["b"].halted(Reason::by_client);
+    bench.advance(1s);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("step move: MoveSkill b was Halted (ByClient)"));
+}
+
+TEST(Timeout, HaltsTheStepAndFailsIt) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "move"
+run = "a"
+timeout = 3
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench.advance(2999ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
+    bench.advance(1ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("halt"));
+    EXPECT_EQ(bench.state(), "Running") << "the child has not ended";
+    bench["a"].halted();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step move: not done within 3 s");
+}
+
+TEST(Timeout, IsNoMatterOfWhatIsDoneInTime) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "move"
+run = "a"
+timeout = 3
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.advance(10s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+    EXPECT_EQ(bench.state(), "Running");
+}
+
+TEST(Timeout, StandsStillWhileTheSkillIsSuspended) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "move"
+run = "a"
+timeout = 3
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench.advance(2s);
+    ASSERT_TRUE(bench.call(skill::Method::suspend));
+    bench["a"].suspended();
+    bench.advance(60s);
+    EXPECT_EQ(bench.state(), "Suspended");
+    ASSERT_TRUE(bench.call(skill::Method::resume));
+    bench.advance(999ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "suspend", "resume"));
+    bench.advance(1ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("halt"));
+}
+
+TEST(Fallback, TakesTheFirstThatSucceeds) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::error, "stuck");
+    bench.run();
+    EXPECT_TRUE(bench["b"].runs());
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(Fallback, TellsAllFailuresIfNothingIsLeft) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::error, "stuck");
+    bench["b"].halted(Reason::limit_violated, "jammed");
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.program->reason(), Reason::limit_violated);
+    EXPECT_THAT(bench.why(), HasSubstr("either/left"));
+    EXPECT_THAT(bench.why(), HasSubstr("jammed"));
+}
+
+const std::string kChoice = kHeadWithGrip + R"(
+[[step]]
+name = "grasp"
+run = "grip"
+with.Force = 5
+[[step]]
+name = "decide"
+if = IF
+[[step.then]]
+name = "left"
+run = "a"
+[[step.else]]
+name = "right"
+run = "b"
+)";
+
+std::string choice(const std::string& condition) {
+    auto text = kChoice;
+    return text.replace(text.find("IF"), 2, condition);
+}
+
+TEST(Choice, FollowsItsCondition) {
+    struct Case {
+        std::string condition;
+        bool then;
+    };
+    for (const auto& [condition, then] : {
+             Case{"{ from = \"grasp.Held\", is = true }", true},
+             Case{"{ from = \"grasp.Held\", is = false }", false},
+             Case{"{ from = \"grasp.Width\", less = 0.02 }", false},
+             Case{"{ from = \"grasp.Width\", greater = 0.02 }", true},
+             Case{"{ not = { from = \"grasp.Held\", is = true } }", false},
+             Case{"{ all = [{ from = \"grasp.Held\", is = true }, { from = \"grasp.Width\", less "
+                  "= 0.1 }] }",
+                  true},
+             Case{"{ all = [{ from = \"grasp.Held\", is = true }, { from = \"grasp.Width\", less "
+                  "= 0.01 }] }",
+                  false},
+             Case{"{ any = [{ from = \"grasp.Held\", is = false }, { from = \"grasp.Width\", less "
+                  "= 0.1 }] }",
+                  true},
+         }) {
+        Bench bench(choice(condition));
+        ASSERT_TRUE(bench.start());
+        bench["grip"].finish({{"Width", 0.03}, {"Held", true}});
+        EXPECT_EQ(bench["a"].runs(), then) << condition;
+        EXPECT_EQ(bench["b"].runs(), !then) << condition;
+    }
+}
+
+TEST(Choice, PassesOnIfThereIsNothingToDo) {
+    Bench bench(kHeadWithGrip + R"(
+[[step]]
+name = "grasp"
+run = "grip"
+with.Force = 5
+[[step]]
+name = "decide"
+if = { from = "grasp.Held", is = false }
+[[step.then]]
+name = "left"
+run = "a"
+[[step]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["grip"].finish({{"Held", true}});
+    EXPECT_TRUE(bench["b"].runs());
+}
+
+TEST(Loop, RepeatsAsOftenAsAParameterSays) {
+    Bench bench(kHead + R"(
+[parameters.Laps]
+type = "uint32"
+range = [0, 9]
+[[step]]
+name = "laps"
+times = { from = "Laps" }
+[[step.repeat]]
+name = "there"
+run = "a"
+[[step.repeat]]
+name = "back"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start({{"Laps", std::uint32_t{2}}}));
+    EXPECT_EQ(bench.program->step(), "laps[1]/there");
+    for (int lap = 0; lap < 2; ++lap) {
+        bench["a"].finish();
+        bench.run();
+        bench["b"].finish();
+        bench.run();
+    }
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "begin"));
+    ASSERT_TRUE(bench.start({{"Laps", std::uint32_t{0}}}));
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_TRUE(bench["a"].heard().empty());
+}
+
+TEST(Loop, EndsWhenItsConditionHoldsAfterARound) {
+    Bench bench(kHeadWithGrip + R"(
+[[step]]
+name = "move"
+run = "a"
+[[step]]
+name = "other"
+run = "b"
+[[step]]
+name = "until_held"
+at_most = 3
+until = { from = "grasp.Held", is = true }
+[[step.repeat]]
+name = "grasp"
+run = "grip"
+with.Force = 5
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench["b"].finish();
+    bench["grip"].finish({{"Held", false}});
+    bench.run();
+    EXPECT_TRUE(bench["grip"].runs());
+    bench["grip"].finish({{"Held", true}});
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(Loop, FailsAtItsBound) {
+    Bench bench(kHeadWithGrip + R"(
+[[step]]
+name = "move"
+run = "a"
+[[step]]
+name = "other"
+run = "b"
+[[step]]
+name = "until_held"
+at_most = 2
+until = { from = "grasp.Held", is = true }
+[[step.repeat]]
+name = "grasp"
+run = "grip"
+with.Force = 5
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench["b"].finish();
+    for (int round = 0; round < 2; ++round) {
+        bench["grip"].finish({{"Held", false}});
+        bench.run();
+    }
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step until_held: not done after 2 rounds");
+}
+
+TEST(Loop, GoesOnWhileItsConditionHolds) {
+    Bench bench(kHeadWithGrip + R"(
+[[step]]
+name = "first"
+run = "grip"
+with.Force = 5
+[[step]]
+name = "until_held"
+at_most = 5
+while = { from = "first.Held", is = false }
+[[step.repeat]]
+name = "move"
+run = "a"
+[[step.repeat]]
+name = "other"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["grip"].finish({{"Held", true}});
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_TRUE(bench["a"].heard().empty());
+}
+
+}  // namespace
+}  // namespace metier::composition
