@@ -1,0 +1,154 @@
+#include "connection.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "remote_child.hpp"
+
+namespace metier::remote_skill {
+
+using skill_client::AsyncSkill;
+using skill_client::SkillAddress;
+
+void ChildLink::post(std::function<void(RemoteChild&)> work) {
+    executor_->post([self = shared_from_this(), work = std::move(work)] {
+        if (self->child_ != nullptr) {
+            work(*self->child_);
+        }
+    });
+}
+
+Connection::Connection(RemoteServerOptions options, std::shared_ptr<opcua::Client> client)
+    : options_(std::move(options)), client_(std::move(client)) {
+    watch(*client_);
+    thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+}
+
+Connection::~Connection() {
+    thread_.request_stop();
+    thread_ = {};
+    jobs_.clear();
+    client_.reset();  // its thread may still tell of a loss until here
+}
+
+opcua::Answer<std::unique_ptr<opcua::Client>> Connection::connect(
+    const RemoteServerOptions& options) {
+    opcua::ClientOptions client;
+    client.application_name = options.application_name;
+    client.session_timeout = options.session_timeout;
+    return opcua::Client::connect(options.url, client);
+}
+
+void Connection::watch(opcua::Client& client) {
+    client.onConnectionLost([this](const opcua::Failure& failure) {
+        {
+            const std::lock_guard lock(mutex_);
+            lost_ = failure.message.empty() ? "the connection is lost" : failure.message;
+        }
+        changed_.notify_all();
+    });
+}
+
+Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
+                                                    const std::shared_ptr<ChildLink>& link) {
+    auto skill = AsyncSkill::open(*client_, address, [link](const skill::TransitionEvent& event) {
+        link->post([event](RemoteChild& child) { child.onTransition(event); });
+    });
+    if (!skill) {
+        return fail(skill.error());
+    }
+    const auto controller = address.controllerName();
+    auto name = controller.empty() ? address.name : fmt::format("{}/{}", controller, address.name);
+    const std::lock_guard lock(mutex_);
+    const bool known =
+        std::any_of(uses_.begin(), uses_.end(), [&](const Use& use) { return use.link == link; });
+    if (!known) {
+        uses_.push_back({std::move(name), link});
+    }
+    return std::make_shared<OpenSkill>(OpenSkill{client_, std::move(*skill)});
+}
+
+void Connection::run(std::function<void()> job) {
+    {
+        const std::lock_guard lock(mutex_);
+        jobs_.push_back(std::move(job));
+    }
+    changed_.notify_all();
+}
+
+void Connection::work(const std::stop_token& stop) {
+    bool connected = true;
+    while (!stop.stop_requested()) {
+        std::vector<std::function<void()>> jobs;
+        std::string lost;
+        {
+            std::unique_lock lock(mutex_);
+            const auto due = [this] { return !jobs_.empty() || !lost_.empty(); };
+            if (connected) {
+                changed_.wait(lock, stop, due);
+            } else {
+                changed_.wait_for(lock, stop, options_.retry_interval, due);
+            }
+            jobs = std::exchange(jobs_, {});
+            lost = std::exchange(lost_, {});
+        }
+        for (auto& job : jobs) {
+            job();
+        }
+        jobs.clear();
+        if (!lost.empty()) {
+            connected = false;
+            lose(lost);
+        }
+        if (!connected && !stop.stop_requested()) {
+            connected = reconnect();
+        }
+    }
+}
+
+void Connection::lose(const std::string& why) {
+    spdlog::warn("{}: {}; connecting again", options_.url, why);
+    std::vector<Use> uses;
+    {
+        const std::lock_guard lock(mutex_);
+        uses = uses_;
+    }
+    for (const auto& use : uses) {
+        use.link->post([why](RemoteChild& child) { child.lost(why); });
+    }
+}
+
+bool Connection::reconnect() {
+    auto client = connect(options_);
+    if (!client) {
+        return false;
+    }
+    client_ = std::move(*client);
+    watch(*client_);
+    std::vector<Use> uses;
+    {
+        const std::lock_guard lock(mutex_);
+        uses = uses_;
+    }
+    for (const auto& use : uses) {
+        const auto address = skill_client::findSkill(*client_, use.skill);
+        auto skill = address ? open(*address, use.link)
+                             : Result<std::shared_ptr<OpenSkill>>(fail(address.error()));
+        const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
+        if (!skill || !now) {
+            spdlog::warn("{}: {} is not there yet: {}", options_.url, use.skill,
+                         skill ? now.error().message : skill.error().message);
+            return false;
+        }
+        use.link->post([skill = std::move(*skill), now = *now](RemoteChild& child) {
+            child.adopt(skill, now);
+        });
+    }
+    spdlog::info("{}: connected again", options_.url);
+    return true;
+}
+
+}  // namespace metier::remote_skill

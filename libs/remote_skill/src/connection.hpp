@@ -1,0 +1,85 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "metier/opcua/client.hpp"
+#include "metier/remote_skill/remote_server.hpp"
+#include "metier/skill_client/async_skill.hpp"
+
+namespace metier::remote_skill {
+
+class RemoteChild;
+
+/// A skill together with the client that leads to it, which ends after it.
+struct OpenSkill {
+    std::shared_ptr<opcua::Client> client;  // shared by the skills of one session
+    skill_client::AsyncSkill skill;
+};
+
+/// The way to a child on the owner's thread, for as long as both are there.
+class ChildLink : public std::enable_shared_from_this<ChildLink> {
+public:
+    explicit ChildLink(std::shared_ptr<skill::Executor> executor)
+        : executor_(std::move(executor)) {}
+
+    /// Runs `work` with the child, on the owner's thread. Any thread.
+    void post(std::function<void(RemoteChild&)> work);
+    /// The owner's thread.
+    void attach(RemoteChild* child) { child_ = child; }
+
+private:
+    std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
+    RemoteChild* child_ = nullptr;
+};
+
+/// The thread that waits for the other server: connects again, reads, and ends what takes time.
+class Connection {
+public:
+    /// A skill that is opened again with each session.
+    struct Use {
+        std::string skill;  ///< "Controller/Name"
+        std::shared_ptr<ChildLink> link;
+    };
+
+    Connection(RemoteServerOptions options, std::shared_ptr<opcua::Client> client);
+    ~Connection();
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    const RemoteServerOptions& options() const noexcept { return options_; }
+    opcua::Client& client() { return *client_; }
+    /// Opens a skill of the present session, and of each one to come.
+    Result<std::shared_ptr<OpenSkill>> open(const skill_client::SkillAddress& address,
+                                            const std::shared_ptr<ChildLink>& link);
+    /// Runs `job` on this thread; jobs may wait.
+    void run(std::function<void()> job);
+
+    static opcua::Answer<std::unique_ptr<opcua::Client>> connect(
+        const RemoteServerOptions& options);
+
+private:
+    void work(const std::stop_token& stop);
+    void watch(opcua::Client& client);
+    void lose(const std::string& why);
+    /// Whether all is there again.
+    bool reconnect();
+
+    const RemoteServerOptions options_;
+    std::shared_ptr<opcua::Client> client_;  // with its OpenSkills, whichever ends last
+    std::vector<Use> uses_;                  // guarded by mutex_
+
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::vector<std::function<void()>> jobs_;
+    std::string lost_;  // why; empty while connected
+    std::jthread thread_;
+};
+
+}  // namespace metier::remote_skill

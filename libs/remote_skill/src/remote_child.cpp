@@ -1,0 +1,292 @@
+#include "remote_child.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace metier::remote_skill {
+
+using composition::ChildListener;
+using skill::Method;
+using skill::Reason;
+using skill::State;
+using skill::TransitionNumber;
+
+RemoteChild::RemoteChild(Connection& connection, std::shared_ptr<ChildLink> link, std::string name,
+                         std::string origin)
+    : connection_(connection),
+      link_(std::move(link)),
+      name_(std::move(name)),
+      origin_(std::move(origin)) {
+    link_->attach(this);
+}
+
+RemoteChild::~RemoteChild() {
+    link_->attach(nullptr);
+    drop();
+}
+
+/// To end a subscription, or a client, takes time: that is for the connection's thread.
+void RemoteChild::drop() {
+    if (skill_) {
+        connection_.run([skill = std::move(skill_)]() mutable { skill.reset(); });
+    }
+}
+
+Result<void> RemoteChild::available() const {
+    return skill_ ? Result<void>{} : fail(Errc::connection_lost, lost_);
+}
+
+bool RemoteChild::isOurs(const std::string& execution) const {
+    return execution.starts_with(origin_ + "/") || execution.starts_with(origin_ + "~");
+}
+
+void RemoteChild::adopt(std::shared_ptr<OpenSkill> skill,
+                        const skill_client::AsyncSkill::Now& now) {
+    drop();
+    skill_ = std::move(skill);
+    description_ = skill_->skill.description();
+    state_ = now.state;
+    reason_text_ = now.reason_text;
+    const bool runs = state_ == State::running || state_ == State::suspended;
+    if (runs && isOurs(now.execution_id)) {
+        spdlog::warn("{}: execution {} is {} and nobody waits for it: it is halted", name_,
+                     now.execution_id, toString(state_));
+        left_over_ = true;
+        static_cast<void>(command(Method::halt));
+    }
+}
+
+void RemoteChild::lost(const std::string& why) {
+    drop();
+    lost_ = why;
+    if (resetting_) {
+        tellReset(fail(Errc::connection_lost, why));
+    }
+    if (!execution_.empty()) {
+        end({ChildEnd::Kind::lost, {}, Reason::device_lost, why});
+    }
+}
+
+void RemoteChild::begin(skill::StartRequest request, ChildListener& listener) {
+    listener_ = &listener;
+    execution_ = request.execution_id;
+    started_ = halt_wanted_ = suspend_wanted_ = left_over_ = false;
+    const auto sent =
+        skill_
+            ? skill_->skill.startWith(
+                  request,
+                  [link = link_, id = execution_](const opcua::Answer<std::string>& answer) {
+                      link->post([id, answer](RemoteChild& child) { child.started(id, answer); });
+                  })
+            : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
+    if (!sent) {
+        link_->post([text = sent.error().message](RemoteChild& child) {
+            child.end({ChildEnd::Kind::lost, {}, Reason::device_lost, text});
+        });
+    }
+}
+
+void RemoteChild::started(const std::string& id, const opcua::Answer<std::string>& answer) {
+    if (id != execution_) {
+        return;
+    }
+    if (answer) {
+        started_ = true;
+        if (halt_wanted_) {
+            static_cast<void>(command(Method::halt));
+        } else if (suspend_wanted_) {
+            static_cast<void>(command(Method::suspend));
+        }
+        return;
+    }
+    const auto& failure = answer.error();
+    if (failure.delivery != opcua::Failure::Delivery::answered) {
+        haltIfRuns(id);
+        end({ChildEnd::Kind::lost, {}, Reason::device_lost, failure.message});
+        return;
+    }
+    withReason(failure.message, [id](RemoteChild& child, std::string text) {
+        if (child.execution_ == id) {
+            child.end({ChildEnd::Kind::refused, {}, Reason::error, std::move(text)});
+        }
+    });
+}
+
+/// What was sent may have been carried out, though nobody has heard of it.
+void RemoteChild::haltIfRuns(const std::string& id) {
+    if (!skill_) {
+        return;
+    }
+    const auto sent = skill_->skill.execution(
+        id, [link = link_](const opcua::Answer<skill::ExecutionRecord>& record) {
+            if (record && (record->state == State::running || record->state == State::suspended)) {
+                link->post([](RemoteChild& child) {
+                    child.left_over_ = true;
+                    static_cast<void>(child.command(Method::halt));
+                });
+            }
+        });
+    static_cast<void>(sent);  // nothing can be done about a server that does not hear
+}
+
+void RemoteChild::withReason(std::string otherwise,
+                             std::function<void(RemoteChild&, std::string)> then) {
+    connection_.run(
+        [skill = skill_, link = link_, otherwise = std::move(otherwise), then = std::move(then)] {
+            const auto now =
+                skill ? skill->skill.now() : opcua::Answer<skill_client::AsyncSkill::Now>();
+            auto text = now && !now->reason_text.empty() ? now->reason_text : otherwise;
+            link->post([then, text = std::move(text)](RemoteChild& child) { then(child, text); });
+        });
+}
+
+void RemoteChild::onTransition(const skill::TransitionEvent& event) {
+    state_ = event.to;
+    reason_text_ = event.reason_text;
+    if (execution_.empty() || event.execution_id != execution_) {
+        return;
+    }
+    switch (event.number) {
+        case TransitionNumber::ready_to_running:
+            return;
+        case TransitionNumber::running_to_suspended:
+            if (listener_ != nullptr) {
+                listener_->onSuspended();
+            }
+            return;
+        case TransitionNumber::suspended_to_running:
+            if (listener_ != nullptr) {
+                listener_->onResumed();
+            }
+            return;
+        case TransitionNumber::running_to_ready:
+            return finished();
+        case TransitionNumber::suspended_to_ready:
+            return end(
+                {ChildEnd::Kind::halted, {}, event.reason, "it was reset while it was suspended"});
+        default:
+            return end({ChildEnd::Kind::halted, {}, event.reason, event.reason_text});
+    }
+}
+
+/// Fetches the result, if there is any.
+void RemoteChild::finished() {
+    if (description_.results.empty() || !skill_) {
+        end({});
+        return;
+    }
+    const auto sent = skill_->skill.execution(
+        execution_,
+        [link = link_, id = execution_](const opcua::Answer<skill::ExecutionRecord>& record) {
+            link->post([id, record](RemoteChild& child) {
+                if (child.execution_ != id) {
+                    return;
+                }
+                child.end(record ? ChildEnd{ChildEnd::Kind::finished, record->result}
+                                 : ChildEnd{ChildEnd::Kind::lost,
+                                            {},
+                                            Reason::device_lost,
+                                            "its result: " + record.error().message});
+            });
+        });
+    if (!sent) {
+        end({ChildEnd::Kind::lost, {}, Reason::device_lost, sent.error().message});
+    }
+}
+
+void RemoteChild::end(ChildEnd end) {
+    execution_.clear();
+    if (auto* listener = std::exchange(listener_, nullptr)) {
+        listener->onEnd(std::move(end));
+    }
+}
+
+Result<void> RemoteChild::command(Method method) {
+    if (!skill_) {
+        return fail(Errc::connection_lost, lost_);
+    }
+    auto sent = skill_->skill.call(method, [link = link_, method](const opcua::Answer<>& answer) {
+        if (!answer) {
+            link->post([method, failure = answer.error()](RemoteChild& child) {
+                child.refused(method, failure);
+            });
+        }
+    });
+    return sent ? Result<void>{} : fail(sent.error());
+}
+
+void RemoteChild::refused(Method method, const opcua::Failure& failure) {
+    withReason(failure.message,
+               [method, code = failure.code](RemoteChild& child, std::string text) {
+                   if (child.listener_ != nullptr && !child.execution_.empty()) {
+                       child.listener_->onRefused(method, {code, std::move(text)});
+                   }
+               });
+}
+
+Result<void> RemoteChild::suspend() {
+    if (!execution_.empty() && !started_) {
+        suspend_wanted_ = true;
+        return {};
+    }
+    return command(Method::suspend);
+}
+
+Result<void> RemoteChild::resume() {
+    return command(Method::resume);
+}
+
+void RemoteChild::halt() {
+    if (!execution_.empty() && !started_) {
+        halt_wanted_ = true;
+        return;
+    }
+    static_cast<void>(command(Method::halt));  // a server that is lost is told by lost()
+}
+
+Result<void> RemoteChild::reset(ChildListener& listener) {
+    listener_ = &listener;
+    if (resetting_) {
+        return {};
+    }
+    if (!skill_) {
+        return fail(Errc::connection_lost, lost_);
+    }
+    resetting_ = true;
+    const auto sent =
+        skill_->skill.call(Method::reset, [link = link_](const opcua::Answer<>& answer) {
+            link->post([answer](RemoteChild& child) { child.wasReset(answer); });
+        });
+    if (!sent) {
+        resetting_ = false;
+        return fail(sent.error());
+    }
+    return {};
+}
+
+void RemoteChild::wasReset(const opcua::Answer<>& answer) {
+    if (!resetting_) {
+        return;
+    }
+    if (answer) {
+        state_ = State::ready;
+        tellReset({});
+        return;
+    }
+    withReason(answer.error().message,
+               [code = answer.error().code](RemoteChild& child, std::string text) {
+                   child.tellReset(child.state_ == State::ready ? Result<void>{}
+                                                                : fail(code, std::move(text)));
+               });
+}
+
+void RemoteChild::tellReset(const Result<void>& outcome) {
+    resetting_ = false;
+    if (listener_ != nullptr && execution_.empty()) {
+        listener_->onReset(outcome);
+    }
+}
+
+}  // namespace metier::remote_skill

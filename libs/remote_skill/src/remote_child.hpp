@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "connection.hpp"
+#include "metier/composition/child.hpp"
+
+namespace metier::remote_skill {
+
+/// A skill of another server, by asynchronous requests and events.
+///
+/// Threading: the owner's thread.
+class RemoteChild final : public composition::Child {
+public:
+    /// \param connection must outlive this
+    /// \param name       for texts
+    /// \param origin     as the ids of executions begin that are begun here
+    RemoteChild(Connection& connection, std::shared_ptr<ChildLink> link, std::string name,
+                std::string origin);
+    ~RemoteChild() override;
+    RemoteChild(const RemoteChild&) = delete;
+    RemoteChild& operator=(const RemoteChild&) = delete;
+
+    const std::string& name() const override { return name_; }
+    const skill::SkillDescription& description() const override { return description_; }
+    Result<void> available() const override;
+    skill::State state() const override { return state_; }
+    std::string reasonText() const override { return reason_text_; }
+    bool leftOver() const override { return left_over_; }
+    Result<void> reset(composition::ChildListener& listener) override;
+    void begin(skill::StartRequest request, composition::ChildListener& listener) override;
+    Result<void> suspend() override;
+    Result<void> resume() override;
+    void halt() override;
+    void release() override { listener_ = nullptr; }
+
+    // What the connection tells.
+    void adopt(std::shared_ptr<OpenSkill> skill, const skill_client::AsyncSkill::Now& now);
+    void lost(const std::string& why);
+    void onTransition(const skill::TransitionEvent& event);
+
+private:
+    using ChildEnd = composition::ChildEnd;
+
+    bool isOurs(const std::string& execution) const;
+    void started(const std::string& id, const opcua::Answer<std::string>& answer);
+    void finished();
+    void end(ChildEnd end);
+    void wasReset(const opcua::Answer<>& answer);
+    void tellReset(const Result<void>& outcome);
+    /// Sends a command and tells the listener if it is refused.
+    Result<void> command(skill::Method method);
+    void refused(skill::Method method, const opcua::Failure& failure);
+    void haltIfRuns(const std::string& id);
+    /// Has `then` called with the server's reason for the last refusal, or else with `otherwise`.
+    void withReason(std::string otherwise, std::function<void(RemoteChild&, std::string)> then);
+    void drop();
+
+    Connection& connection_;
+    std::shared_ptr<ChildLink> link_;  // with whatever is on its way here
+    std::string name_;
+    std::string origin_;
+    skill::SkillDescription description_;
+    std::shared_ptr<OpenSkill> skill_;  // with the work that waits for the server; null: lost
+    std::string lost_;                  // why there is none
+    skill::State state_ = skill::State::halted;
+    std::string reason_text_;
+    bool left_over_ = false;
+    bool resetting_ = false;
+
+    composition::ChildListener* listener_ = nullptr;
+    std::string execution_;  // begun here and not over
+    bool started_ = false;   // the server has said so
+    bool halt_wanted_ = false;
+    bool suspend_wanted_ = false;
+};
+
+}  // namespace metier::remote_skill

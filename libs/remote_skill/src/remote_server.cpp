@@ -1,0 +1,80 @@
+#include "metier/remote_skill/remote_server.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "connection.hpp"
+#include "remote_child.hpp"
+
+namespace metier::remote_skill {
+
+class RemoteServer::Worker {
+public:
+    Worker(RemoteServerOptions options, std::unique_ptr<opcua::Client> client,
+           std::shared_ptr<skill::Executor> owner)
+        : connection(std::move(options), std::move(client)), executor(std::move(owner)) {}
+
+    Connection connection;
+    std::shared_ptr<skill::Executor> executor;  // shared by what its thread owns
+};
+
+Result<std::unique_ptr<RemoteServer>> RemoteServer::connect(
+    RemoteServerOptions options, std::shared_ptr<skill::Executor> executor) {
+    if (options.name.empty()) {
+        options.name = options.url;
+    }
+    auto client = Connection::connect(options);
+    if (!client) {
+        return fail(client.error().code,
+                    fmt::format("{}: {}", options.url, client.error().message));
+    }
+    return std::unique_ptr<RemoteServer>(new RemoteServer(
+        std::make_unique<Worker>(std::move(options), std::move(*client), std::move(executor))));
+}
+
+RemoteServer::RemoteServer(std::unique_ptr<Worker> worker) : worker_(std::move(worker)) {}
+
+RemoteServer::~RemoteServer() = default;
+
+const std::string& RemoteServer::url() const noexcept {
+    return worker_->connection.options().url;
+}
+
+const std::string& RemoteServer::name() const noexcept {
+    return worker_->connection.options().name;
+}
+
+opcua::Client& RemoteServer::client() {
+    return worker_->connection.client();
+}
+
+Result<std::vector<skill_client::SkillAddress>> RemoteServer::skills() {
+    auto found = skill_client::findSkills(worker_->connection.client());
+    return found ? Result<std::vector<skill_client::SkillAddress>>(std::move(*found))
+                 : fail(found.error());
+}
+
+Result<std::unique_ptr<composition::Child>> RemoteServer::use(
+    const skill_client::SkillAddress& skill, std::string origin) {
+    auto& connection = worker_->connection;
+    const auto link = std::make_shared<ChildLink>(worker_->executor);
+    auto child = std::make_unique<RemoteChild>(
+        connection, link, fmt::format("{} of {}", skill.name, name()), std::move(origin));
+    auto open = connection.open(skill, link);
+    if (!open) {
+        return fail(std::move(open.error()));
+    }
+    const auto now = (*open)->skill.now();
+    if (!now) {
+        return fail(now.error());
+    }
+    if (!(*open)->skill.knowsExecutions()) {
+        return fail(Errc::not_supported,
+                    fmt::format("{}: {} has no StartWith and GetExecution", url(), skill.name));
+    }
+    child->adopt(std::move(*open), *now);
+    return child;
+}
+
+}  // namespace metier::remote_skill

@@ -1,0 +1,173 @@
+// Children of another server; its skills are the test's.
+#include "metier/remote_skill/remote_server.hpp"
+
+#include <gmock/gmock.h>
+
+#include "metier/skill/testing/manual_executor.hpp"
+#include "served_skills.hpp"
+
+namespace metier::remote_skill {
+namespace {
+
+using namespace std::chrono_literals;
+using composition::ChildEnd;
+using opcua_skill::testing::ServedSkill;
+using skill::Reason;
+using skill::State;
+using ::testing::HasSubstr;
+
+/// Keeps what it is told.
+class Listener final : public composition::ChildListener {
+public:
+    void onReset(const Result<void>& outcome) override { reset = outcome; }
+    void onSuspended() override { suspended = true; }
+    void onResumed() override { suspended = false; }
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onRefused(skill::Method method, const Error& error) override {
+        refusal = std::string(toString(method)) + ": " + error.message;
+    }
+    void onEnd(ChildEnd told) override { end = std::move(told); }
+
+    std::optional<Result<void>> reset;
+    bool suspended = false;
+    std::string refusal;
+    std::optional<ChildEnd> end;
+};
+
+class RemoteChildTest : public opcua_skill::testing::ServedSkills {
+protected:
+    RemoteChildTest() : move_(add(description())) {
+        serve();
+        remote_ = RemoteServer::connect({.url = server().endpointUrl(), .name = "other"}, executor_)
+                      .value();
+        child_ = use("here.Test");
+    }
+
+    static skill::SkillDescription description() {
+        auto description = opcua_skill::testing::jointMoveDescription();
+        description.on_owner_loss = skill::OwnerLossAction::keep_going;
+        return description;
+    }
+    std::unique_ptr<composition::Child> use(const std::string& origin) {
+        return remote_->use(remote_->skills().value().front(), origin).value();
+    }
+    void begin(const std::string& id) {
+        child_->begin({id, {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}}, listener_);
+    }
+    void beginAndAwait(const std::string& id) {
+        begin(id);
+        ASSERT_TRUE(move_.hand->await("start"));
+        ASSERT_TRUE(until([this] { return child_->state() == State::running; }));
+    }
+    bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
+
+    std::shared_ptr<skill::testing::ManualExecutor> executor_ =
+        std::make_shared<skill::testing::ManualExecutor>();
+    ServedSkill move_;
+    std::unique_ptr<RemoteServer> remote_;
+    Listener listener_;
+    std::unique_ptr<composition::Child> child_;
+};
+
+TEST_F(RemoteChildTest, RunsToItsResult) {
+    EXPECT_EQ(child_->name(), "JointPtpMoveSkill of other");
+    beginAndAwait("here.Test/1/move/1");
+    EXPECT_EQ(move_.hand->execution().id(), "here.Test/1/move/1");
+    EXPECT_EQ(move_.hand->snapshot().at("TargetJointPosition"),
+              skill::Value(std::vector<double>{0.1, 0.2}));
+    skill::ValueMap result;
+    for (const auto& field : description().results) {
+        if (field.type == skill::ValueType::number) {
+            result.emplace(field.name, 1.5);
+        }
+    }
+    ASSERT_FALSE(result.empty());
+    move_.hand->execution().finish(result);
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::finished);
+    for (const auto& [name, value] : result) {
+        EXPECT_EQ(listener_.end->result.at(name), value);
+    }
+    EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, TellsARefusedStartInTheServersWords) {
+    move_.hand->refuseStart({Errc::unreachable, "2 m is beyond the reach of 1 m"});
+    begin("here.Test/1/move/1");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::refused);
+    EXPECT_EQ(listener_.end->text, "2 m is beyond the reach of 1 m");
+}
+
+TEST_F(RemoteChildTest, IsSuspendedResumedAndHalted) {
+    beginAndAwait("here.Test/1/move/1");
+    ASSERT_TRUE(child_->suspend());
+    ASSERT_TRUE(move_.hand->await("suspend"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return listener_.suspended; }));
+    ASSERT_TRUE(child_->resume());
+    ASSERT_TRUE(until([this] { return !listener_.suspended; }));
+    child_->halt();
+    ASSERT_TRUE(move_.hand->await("halt"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->reason, Reason::by_client);
+    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(until([this] { return listener_.reset.has_value(); }));
+    EXPECT_TRUE(*listener_.reset);
+    EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, HaltsRightAfterItsStartWasAskedFor) {
+    begin("here.Test/1/move/1");
+    child_->halt();
+    EXPECT_TRUE(until([&] { return child_->state() == State::running; }));
+    ASSERT_TRUE(move_.hand->await("halt"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+}
+
+TEST_F(RemoteChildTest, TellsARefusedReset) {
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->text, "stuck");
+    move_.hand->refuseReset({Errc::device_fault, "the emergency stop is pressed"});
+    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(until([this] { return listener_.reset.has_value(); }));
+    ASSERT_FALSE(*listener_.reset);
+    EXPECT_EQ(listener_.reset->error().message, "the emergency stop is pressed");
+}
+
+TEST_F(RemoteChildTest, TellsTheServersWordsWhenResumeIsRefusedToIt) {
+    beginAndAwait("here.Test/1/move/1");
+    ASSERT_TRUE(child_->resume()) << "it is sent; the server refuses it, since it is Running";
+    ASSERT_TRUE(until([this] { return !listener_.refusal.empty(); }));
+    EXPECT_THAT(listener_.refusal, HasSubstr("Resume: Resume is not possible while Running"));
+}
+
+TEST_F(RemoteChildTest, IsLostWithItsServer) {
+    beginAndAwait("here.Test/1/move/1");
+    shutDown();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_EQ(listener_.end->reason, Reason::device_lost);
+    EXPECT_FALSE(child_->available());
+}
+
+TEST_F(RemoteChildTest, HaltsWhatIsLeftOverOfItsOwnAndNothingElse) {
+    beginAndAwait("here.Test/1/move/1");
+    const auto other = use("there.Test");
+    EXPECT_EQ(other->state(), State::running);
+    EXPECT_FALSE(other->leftOver());
+    const auto again = use("here.Test");
+    EXPECT_TRUE(again->leftOver());
+    ASSERT_TRUE(move_.hand->await("halt"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([&] { return again->state() == State::halted; }));
+}
+
+}  // namespace
+}  // namespace metier::remote_skill
