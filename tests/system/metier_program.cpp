@@ -20,8 +20,9 @@ auto orThrow(Answer answer) {
 }
 
 std::vector<std::string> serveArguments(const std::string& name,
-                                        const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"serve", simulatedCell().string(), "--server", name};
+                                        const std::vector<std::string>& more,
+                                        const std::filesystem::path& cell) {
+    std::vector<std::string> arguments{"serve", cell.string(), "--server", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return metierCommand(arguments);
 }
@@ -66,8 +67,9 @@ std::filesystem::path deviceCell(const std::string& name) {
            (name + ".toml");
 }
 
-ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more)
-    : process_(orThrow(process::ChildProcess::start(serveArguments(name, more)))) {
+ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more,
+                             const std::filesystem::path& cell)
+    : process_(orThrow(process::ChildProcess::start(serveArguments(name, more, cell)))) {
     const std::string ready = "ready ";
     const auto line = orThrow(process_.readLine(inAMinute()));
     if (!line.starts_with(ready)) {

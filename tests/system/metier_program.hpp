@@ -43,9 +43,11 @@ std::filesystem::path deviceCell(const std::string& name);
 class ServerProcess {
 public:
     /// \param more arguments of `metier serve`, such as a port; without it a free one
+    /// \param cell another cell file
     /// Errors: throws unless it serves within a minute.
     explicit ServerProcess(const std::string& name,
-                           const std::vector<std::string>& more = {"--port", "0"});
+                           const std::vector<std::string>& more = {"--port", "0"},
+                           const std::filesystem::path& cell = simulatedCell());
 
     const std::string& url() const noexcept { return url_; }
     std::string port() const { return url_.substr(url_.rfind(':') + 1); }

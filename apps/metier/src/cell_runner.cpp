@@ -30,6 +30,7 @@ const configuration::DriverChoice* driverOf(const configuration::ServerConfig& s
         case ServerKind::gripper:
             return &server.gripper.driver;
         case ServerKind::move:
+        case ServerKind::composition:
             break;
     }
     return nullptr;
@@ -59,7 +60,8 @@ Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Port
             }
         }
     }
-    for (const auto kind : {ServerKind::arm, ServerKind::gripper, ServerKind::move}) {
+    for (const auto kind :
+         {ServerKind::arm, ServerKind::gripper, ServerKind::move, ServerKind::composition}) {
         for (const auto& server : cell.servers) {
             if (server.kind != kind) {
                 continue;
@@ -103,6 +105,13 @@ Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
     });
     if (server.kind == ServerKind::move && robot != running_.end()) {
         command.insert(command.end(), {"--robot", robot->url});
+    }
+    for (const auto& used : server.composition.servers) {
+        for (const auto& other : running_) {
+            if (other.name == used.name) {
+                command.insert(command.end(), {"--use", used.name + "=" + other.url});
+            }
+        }
     }
     const auto give = [&](const configuration::DriverChoice& driver, const char* option) {
         const auto found = virtual_addresses_.find(driver.controller);

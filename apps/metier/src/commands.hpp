@@ -36,6 +36,7 @@ void addFk(CLI::App& app, Exit& exit);
 void addIk(CLI::App& app, Exit& exit);
 void addCheck(CLI::App& app, Exit& exit);
 void addPlot(CLI::App& app, Exit& exit);
+void addGraph(CLI::App& app, Exit& exit);
 void addSkillCommands(CLI::App& app, Exit& exit);
 void addOwn(CLI::App& app, Exit& exit);
 void addCompletion(CLI::App& app, Exit& exit);

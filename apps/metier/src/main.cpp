@@ -37,6 +37,7 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addIk(app, exit);
     metier::app::addCheck(app, exit);
     metier::app::addPlot(app, exit);
+    metier::app::addGraph(app, exit);
     metier::app::addVirtual(app, exit);
     metier::app::addCompletion(app, exit);
 }

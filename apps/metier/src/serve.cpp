@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include "arm_server.hpp"
 #include "commands.hpp"
+#include "composition_server.hpp"
 #include "gripper_server.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
@@ -23,6 +25,7 @@ struct ServeOptions {
     std::string robot;
     std::string controller;
     std::string sensor;
+    std::vector<std::string> used;
     std::string state;
 };
 
@@ -100,6 +103,31 @@ void resolveRobot(const configuration::CellConfig& cell, configuration::ServerCo
     }
 }
 
+/// The addresses of the servers that composed skills use: as the command line says, or the file.
+Result<void> resolveUsed(const configuration::CellConfig& cell,
+                         const std::vector<std::string>& given,
+                         std::vector<configuration::UsedServer>& used) {
+    for (const auto& option : given) {
+        const auto equals = option.find('=');
+        const auto found = std::find_if(used.begin(), used.end(), [&](const auto& server) {
+            return server.name == option.substr(0, equals);
+        });
+        if (equals == std::string::npos || found == used.end()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("--use {}: is not NAME=opc.tcp://... with a name of `servers`",
+                                    option));
+        }
+        found->url = option.substr(equals + 1);
+    }
+    for (auto& server : used) {
+        const auto* known = cell.find(server.name);
+        if (server.url.empty() && known != nullptr) {
+            server.url = fmt::format("opc.tcp://{}:{}", known->address, known->port);
+        }
+    }
+    return {};
+}
+
 template <typename Server>
 Exit serveUntil(const StopSignal& stop, Result<std::unique_ptr<Server>> server) {
     if (!server) {
@@ -127,6 +155,13 @@ Exit runServe(const ServeOptions& options) {
     if (config->kind == configuration::ServerKind::gripper) {
         return serveUntil(stop, GripperServer::start(*config));
     }
+    if (config->kind == configuration::ServerKind::composition) {
+        if (const auto right = resolveUsed(*cell, options.used, config->composition.servers);
+            !right) {
+            return reportUsage(right.error());
+        }
+        return serveUntil(stop, CompositionServer::start(*config));
+    }
     resolveRobot(*cell, *config);
     return serveUntil(stop, MoveServer::start(*config));
 }
@@ -147,6 +182,8 @@ void addServe(CLI::App& app, Exit& exit) {
                         "Another address of the device's controller than the file's");
     command->add_option("--sensor", options->sensor,
                         "Another address of the force-torque sensor than the file's");
+    command->add_option("--use", options->used,
+                        "Another address of a used server than the file's, as NAME=opc.tcp://...");
     command->add_option("--state", options->state,
                         "Folder for what outlives the server: the names of executions. Else that "
                         "of the user, and none with --port 0");

@@ -45,6 +45,8 @@ public:
     Result<void> offerControl(const opcua::NodeId& controller);
     /// For the Programs of the controller's skills.
     const std::shared_ptr<skill::Control>& control() const noexcept { return control_; }
+    /// For the Programs of the server.
+    const std::shared_ptr<skill::ExecutionNames>& names() const noexcept { return names_; }
     /// Offers those of `skills` that are `wanted`: at the nodes of the NodeSet that have their
     /// names, at new nodes below `folder` for others. They exclude each other by `resource`.
     /// Errors: not_supported (no skill of a wanted name), invalid_argument (the NodeSet has one

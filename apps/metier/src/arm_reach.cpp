@@ -1,0 +1,31 @@
+#include "arm_reach.hpp"
+
+#include <vector>
+
+#include "kinematics_conversion.hpp"
+#include "metier/skill_client/kinematics_reader.hpp"
+
+namespace metier::app {
+
+std::optional<double> reachOf(opcua::Client& client, const skill_client::SkillAddress& skill) {
+    const auto nodes = skill_client::findKinematics(client, skill);
+    if (!nodes) {
+        return std::nullopt;
+    }
+    const auto data = skill_client::readKinematics(client, *nodes);
+    if (!data) {
+        return std::nullopt;
+    }
+    std::vector<double> middle;
+    for (std::size_t axis = 0; axis < data->axisCount(); ++axis) {
+        middle.push_back((data->min_joint_position[axis] + data->max_joint_position[axis]) / 2);
+    }
+    auto chain = toChain(*data, middle);
+    if (!chain) {
+        return std::nullopt;
+    }
+    const auto model = motion::RobotModel::fromChain(std::move(*chain));
+    return model ? std::optional(model->kinematics().reach()) : std::nullopt;
+}
+
+}  // namespace metier::app

@@ -1,0 +1,243 @@
+#include "composition_server.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <utility>
+
+#include "arm_reach.hpp"
+#include "metier/composition/composition.hpp"
+#include "metier/composition/definition_file.hpp"
+#include "metier/composition/local_child.hpp"
+#include "metier/composition/sequence_skill.hpp"
+#include "metier/opcua_skill/used_skills.hpp"
+#include "skill_matching.hpp"
+
+namespace metier::app {
+namespace {
+
+using composition::Definition;
+
+/// All files, each after those that it uses; everything that is wrong with any of them.
+Result<std::vector<Definition>> loadAll(const std::vector<std::filesystem::path>& files) {
+    std::vector<Definition> definitions;
+    std::string problems;
+    for (const auto& file : files) {
+        auto definition = composition::loadDefinition(file);
+        if (definition) {
+            definitions.push_back(std::move(*definition));
+        } else {
+            problems += (problems.empty() ? "" : "\n") + definition.error().message;
+        }
+    }
+    if (!problems.empty()) {
+        return fail(Errc::invalid_argument, std::move(problems));
+    }
+    return composition::inOrderOfUse(std::move(definitions));
+}
+
+/// Tells the executions of this life of the component from those before.
+std::string newLife() {
+    constexpr unsigned kMask = 0xFFFFFF;
+    std::random_device device;
+    return fmt::format("{:06x}", device() & kMask);
+}
+
+}  // namespace
+
+/// Finds the children of one definition and what to publish of them.
+class CompositionServer::Cast {
+public:
+    Cast(CompositionServer& server, const Definition& definition)
+        : server_(server),
+          definition_(definition),
+          origin_(fmt::format("{}.{}", server.name_, definition.name)) {}
+
+    const std::string& origin() const noexcept { return origin_; }
+
+    /// Errors: a line "file:line: uses.ALIAS: why" for each use that nothing serves.
+    Result<void> find() {
+        std::string problems;
+        for (const auto& use : definition_.uses) {
+            if (const auto found = findOne(use); !found) {
+                problems +=
+                    fmt::format("{}{}:{}: uses.{}: {}", problems.empty() ? "" : "\n",
+                                definition_.file, use.line, use.alias, found.error().message);
+            }
+        }
+        return problems.empty() ? Result<void>{} : fail(Errc::invalid_argument, problems);
+    }
+
+    composition::Descriptions descriptions() const {
+        composition::Descriptions result;
+        for (const auto& [alias, child] : children_) {
+            result.emplace(alias, child->description());
+        }
+        return result;
+    }
+    std::map<std::string, std::unique_ptr<composition::Child>> takeChildren() {
+        return std::move(children_);
+    }
+
+    Result<void> publish(const opcua::NodeId& skills, const std::string& name) {
+        auto& nodes = server_.host_->nodes();
+        const auto user = opcua_skill::findSkillObject(nodes, skills, name);
+        if (!user) {
+            return fail(user.error());
+        }
+        for (const auto& used : remote_) {
+            if (auto published = opcua_skill::publishUse(nodes, *user, used); !published) {
+                return published;
+            }
+        }
+        for (const auto& used : local_) {
+            const auto object = opcua_skill::findSkillObject(nodes, skills, used);
+            if (!object) {
+                return fail(object.error());
+            }
+            if (auto published = opcua_skill::publishUse(nodes, *user, *object); !published) {
+                return published;
+            }
+        }
+        return {};
+    }
+
+private:
+    Result<void> findOne(const composition::Use& use) {
+        const bool own = use.server.empty() || use.server == server_.name_;
+        for (auto* program : server_.host_->skills().programs()) {
+            if (own && program->description().type == use.type) {
+                useLocal(use, *program);
+                return {};
+            }
+        }
+        return findRemote(use);
+    }
+
+    void useLocal(const composition::Use& use, skill::Program& program) {
+        const auto& name = definition_.name;
+        children_.emplace(use.alias, std::make_unique<composition::LocalChild>(
+                                         program, server_.host_->skills().executor(),
+                                         skill::Caller{"composition " + name, name, ""}));
+        const auto& used = program.description().name;
+        if (std::find(local_.begin(), local_.end(), used) == local_.end()) {
+            local_.push_back(used);
+        }
+    }
+
+    Result<void> findRemote(const composition::Use& use) {
+        auto offered = choose(use, server_.offered_);
+        if (!offered) {
+            return fail(std::move(offered.error()));
+        }
+        auto& remote = *server_.servers_[offered->index];
+        auto child = remote.use(offered->address, origin_);
+        if (!child) {
+            return fail(std::move(child.error()));
+        }
+        children_.emplace(use.alias, std::move(*child));
+        remote_.push_back({use.alias, remote.url(), offered->address.name,
+                           offered->address.type_name, offered->address.controllerName()});
+        return {};
+    }
+
+    CompositionServer& server_;
+    const Definition& definition_;
+    std::string origin_;
+    std::map<std::string, std::unique_ptr<composition::Child>> children_;
+    std::vector<opcua_skill::RemoteSkill> remote_;
+    std::vector<std::string> local_;  // names of used skills of this server
+};
+
+Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
+    const configuration::ServerConfig& config) {
+    auto definitions = loadAll(config.composition.files);
+    if (!definitions) {
+        return fail(std::move(definitions.error()));
+    }
+    auto host = SkillHost::create(config, {});
+    if (!host) {
+        return fail(host.error());
+    }
+    std::unique_ptr<CompositionServer> server(new CompositionServer(config.name, std::move(*host)));
+    if (auto connected = server->connect(config.composition.servers); !connected) {
+        return fail(std::move(connected.error()));
+    }
+    if (auto offered = server->offer(std::move(*definitions)); !offered) {
+        return fail(std::move(offered.error()));
+    }
+    if (auto started = server->host_->start(); !started) {
+        return fail(started.error());
+    }
+    return server;
+}
+
+CompositionServer::CompositionServer(std::string name, std::unique_ptr<SkillHost> host)
+    : name_(std::move(name)), life_(newLife()), host_(std::move(host)) {}
+
+CompositionServer::~CompositionServer() = default;
+
+Result<void> CompositionServer::connect(const std::vector<configuration::UsedServer>& servers) {
+    for (const auto& used : servers) {
+        auto server = remote_skill::RemoteServer::connect(
+            {.url = used.url, .name = used.name, .application_name = "metier " + name_},
+            host_->skills().executor());
+        if (!server) {
+            return fail(std::move(server.error()));
+        }
+        auto skills = (*server)->skills();
+        if (!skills) {
+            return fail(std::move(skills.error()));
+        }
+        for (auto& skill : *skills) {
+            const auto reach = reachOf((*server)->client(), skill);
+            offered_.push_back({used.name, servers_.size(), std::move(skill), reach});
+        }
+        servers_.push_back(std::move(*server));
+    }
+    return {};
+}
+
+Result<void> CompositionServer::offer(std::vector<Definition> definitions) {
+    const auto place = opcua_skill::publishSkillController(host_->nodes(), name_,
+                                                           "Skills that are made of other skills.");
+    if (!place) {
+        return fail(place.error());
+    }
+    for (auto& definition : definitions) {
+        if (auto offered = offerOne(*place, std::move(definition)); !offered) {
+            return offered;
+        }
+    }
+    return host_->offerControl(place->controller);
+}
+
+Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
+                                         Definition definition) {
+    const auto name = definition.name;
+    Cast cast(*this, definition);
+    if (auto found = cast.find(); !found) {
+        return found;
+    }
+    auto composed = composition::compose(definition, cast.descriptions());
+    if (!composed) {
+        return fail(std::move(composed.error()));
+    }
+    const skill::ProgramOptions options{.control = host_->control(),
+                                        .names = host_->names(),
+                                        .rest_deadline = composition::restDeadlineOf(definition)};
+    const auto published = host_->skills().publish(
+        place.skills,
+        std::make_unique<composition::SequenceSkill>(std::move(*composed), cast.takeChildren(),
+                                                     host_->skills().executor(), host_->clock(),
+                                                     cast.origin() + "~" + life_),
+        options);
+    if (!published) {
+        return fail(published.error());
+    }
+    return cast.publish(place.skills, name);
+}
+
+}  // namespace metier::app

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/composition/definition.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/opcua_skill/skill_controller.hpp"
+#include "metier/remote_skill/remote_server.hpp"
+#include "skill_host.hpp"
+#include "skill_matching.hpp"
+
+namespace metier::app {
+
+/// Skills that files declare, made of skills of other servers and of each other.
+///
+/// Threading: one thread starts and ends it.
+class CompositionServer {
+public:
+    /// Errors: what is wrong with the files; a used server that cannot be reached; a used skill
+    ///         that nobody or more than one server offers; the port.
+    static Result<std::unique_ptr<CompositionServer>> start(
+        const configuration::ServerConfig& config);
+
+    ~CompositionServer();
+    CompositionServer(const CompositionServer&) = delete;
+    CompositionServer& operator=(const CompositionServer&) = delete;
+
+    std::string url() const { return host_->url(); }
+
+private:
+    class Cast;
+    CompositionServer(std::string name, std::unique_ptr<SkillHost> host);
+    Result<void> connect(const std::vector<configuration::UsedServer>& servers);
+    Result<void> offer(std::vector<composition::Definition> definitions);
+    Result<void> offerOne(const opcua_skill::SkillController& place,
+                          composition::Definition definition);
+
+    std::string name_;
+    std::string life_;  // part of the ids of executions
+    std::vector<std::unique_ptr<remote_skill::RemoteServer>> servers_;
+    std::vector<OfferedSkill> offered_;  // of all of them
+    std::unique_ptr<SkillHost> host_;    // ends before the servers that its skills use
+};
+
+}  // namespace metier::app

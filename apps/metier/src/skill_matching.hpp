@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/composition/definition.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::app {
+
+/// A skill that some server offers.
+struct OfferedSkill {
+    std::string server;     ///< its name in the cell file, or its address
+    std::size_t index = 0;  ///< of the server
+    skill_client::SkillAddress address;
+    std::optional<double> reach{};  ///< of the arm that it moves [m]
+};
+
+/// Whether a skill is of that type: by the BrowseName of its type, or, for composed skills, which
+/// all are of SequenceSkillType, by its own name with "Type".
+bool isOfType(const skill_client::SkillAddress& skill, const std::string& type);
+
+/// The one skill that a file asks for.
+/// Errors: not_found, with what there is; invalid_argument, with the names of all that fit.
+Result<OfferedSkill> choose(const composition::Use& use, const std::vector<OfferedSkill>& offered);
+
+}  // namespace metier::app

@@ -1,0 +1,177 @@
+// What composing costs, over OPC UA on loopback; every server has a thread of its own, in one
+// process.
+//
+// - per child step: a composed skill of 100 steps that run a skill of another server which does
+//   nothing, its time by 100, beside the same client running that skill directly (StartWith, event,
+//   GetExecution), in turns. Goal: at most 1 ms more (p50).
+// - three levels: 2 x 5 x 10 steps that do nothing, three composed skills on three servers above
+//   the one that does nothing. Goal: 0.5 s.
+//
+// composition_benchmark [ROUNDS]
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "metier/base/queue.hpp"
+#include "metier/composition/definition_file.hpp"
+#include "metier/composition/sequence_skill.hpp"
+#include "metier/opcua_skill/skill_controller.hpp"
+#include "metier/opcua_skill/skill_server.hpp"
+#include "metier/remote_skill/remote_server.hpp"
+#include "metier/skill/lambda_skill.hpp"
+#include "metier/skill_client/skill_handle.hpp"
+
+namespace metier::benchmarks {
+namespace {
+
+using std::chrono::steady_clock;
+
+template <typename Answer>
+auto orThrow(Answer answer) {
+    if (!answer) {
+        throw std::runtime_error(answer.error().message);
+    }
+    if constexpr (!std::is_void_v<typename Answer::value_type>) {
+        return std::move(*answer);
+    }
+}
+
+/// A server with one skill.
+class OneSkillServer {
+public:
+    explicit OneSkillServer(const std::string& name) : name_(name) {
+        skills_ = orThrow(opcua_skill::SkillServer::create(*server_, clock_));
+        place_ = orThrow(
+            opcua_skill::publishSkillController(server_->nodes(), name, "Of the benchmark."));
+    }
+
+    void serve(std::unique_ptr<skill::Skill> skill) {
+        orThrow(skills_->publish(place_.skills, std::move(skill)));
+        orThrow(server_->start());
+    }
+    /// A composed skill whose only used skill is that of `below`.
+    void serveAbove(OneSkillServer& below, const std::string& text) {
+        below_ =
+            orThrow(remote_skill::RemoteServer::connect({.url = below.url()}, skills_->executor()));
+        auto child = orThrow(below_->use(orThrow(below_->skills()).front(), name_));
+        auto composed = orThrow(composition::compose(
+            orThrow(composition::parseDefinition(text, name_)), {{"inner", child->description()}}));
+        std::map<std::string, std::unique_ptr<composition::Child>> children;
+        children.emplace("inner", std::move(child));
+        serve(std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(children),
+                                                           skills_->executor(), clock_, name_));
+    }
+    std::string url() const { return server_->endpointUrl(); }
+
+private:
+    std::string name_;
+    SystemClock clock_;
+    std::unique_ptr<opcua::Server> server_ =
+        orThrow(opcua::Server::create({.port = 0, .nodesets = {"device", "robotics", "metier"}}));
+    std::unique_ptr<remote_skill::RemoteServer> below_;
+    std::unique_ptr<opcua_skill::SkillServer> skills_;  // ends before what it uses
+    opcua_skill::SkillController place_;
+};
+
+/// A skill that is done as soon as it has begun.
+std::unique_ptr<skill::Skill> idleSkill() {
+    skill::SkillFunctions functions;
+    functions.start = [](const skill::ValueMap&, const skill::Execution& execution) {
+        execution.finish({{"Number", 1.0}});
+    };
+    return std::make_unique<skill::LambdaSkill>(
+        skill::SkillDescription{.name = "IdleSkill",
+                                .type = "IdleSkillType",
+                                .results = {{.name = "Number",
+                                             .type = skill::ValueType::number,
+                                             .place = skill::Place::final_result}},
+                                .steps = {"nothing"}},
+        std::move(functions));
+}
+
+std::string repeated(const std::string& name, const std::string& inner, int times) {
+    return fmt::format(
+        "name = \"{}\"\n[results.Number]\ntype = \"number\"\nfrom = \"go.Number\"\n"
+        "[uses.inner]\ntype = \"{}\"\n[[step]]\nname = \"all\"\ntimes = {}\n[[step.repeat]]\n"
+        "name = \"go\"\nrun = \"inner\"\n",
+        name, inner, times);
+}
+
+/// A skill as a client runs it; one that waits as little as possible.
+class Runner {
+public:
+    explicit Runner(const std::string& url)
+        : client_(orThrow(opcua::Client::connect(url))),
+          skill_(orThrow(skill_client::SkillHandle::open(
+              *client_, orThrow(skill_client::findSkills(*client_)).front()))) {}
+
+    /// [ms]
+    double run() {
+        const auto begin = steady_clock::now();
+        orThrow(skill_.runWith({.execution_id = fmt::format("{}", ++count_)},
+                               begin + std::chrono::seconds(60)));
+        return std::chrono::duration<double, std::milli>(steady_clock::now() - begin).count();
+    }
+
+private:
+    std::unique_ptr<opcua::Client> client_;
+    skill_client::SkillHandle skill_;
+    std::uint64_t count_ = 0;
+};
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+void run(int rounds) {
+    OneSkillServer idle("idle");
+    idle.serve(idleSkill());
+    OneSkillServer hundred("hundred");
+    hundred.serveAbove(idle, repeated("HundredSkill", "IdleSkillType", 100));
+    OneSkillServer inner("inner");
+    inner.serveAbove(idle, repeated("InnerSkill", "IdleSkillType", 10));
+    OneSkillServer middle("middle");
+    middle.serveAbove(inner, repeated("MiddleSkill", "InnerSkillType", 5));
+    OneSkillServer outer("outer");
+    outer.serveAbove(middle, repeated("OuterSkill", "MiddleSkillType", 2));
+
+    Runner direct(idle.url());
+    Runner composed(hundred.url());
+    Runner stacked(outer.url());
+    std::vector<double> alone;
+    std::vector<double> step;
+    std::vector<double> whole;
+    for (int round = 0; round < rounds; ++round) {
+        for (int i = 0; i < 100; ++i) {
+            alone.push_back(direct.run());
+        }
+        step.push_back(composed.run() / 100);
+        whole.push_back(stacked.run());
+    }
+    fmt::print("{} rounds, p50:\n", rounds);
+    fmt::print("a skill run directly             {:8.3f} ms\n", median(alone));
+    fmt::print("a step of a composed skill       {:8.3f} ms\n", median(step));
+    fmt::print("composing costs, of 1 ms         {:8.3f} ms\n", median(step) - median(alone));
+    fmt::print("three levels, 100 steps, of 500 ms {:6.1f} ms\n", median(whole));
+}
+
+}  // namespace
+}  // namespace metier::benchmarks
+
+int main(int argc, char** argv) {
+    constexpr int kRounds = 20;
+    spdlog::set_level(spdlog::level::err);
+    try {
+        metier::benchmarks::run(argc > 1 ? std::stoi(argv[1]) : kRounds);
+        return 0;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "composition_benchmark: {}\n", error.what());
+        return 1;
+    }
+}
