@@ -49,6 +49,13 @@ TEST_F(Controlled, KeepsOthersOutWhileTheLeaseLasts) {
     EXPECT_FALSE(control.checkEpoch(kBob, *epoch)) << "an epoch is the session's own";
 }
 
+TEST_F(Controlled, LetsASkillOfTheServerRunOthersForWhoeverStartedIt) {
+    ASSERT_TRUE(control.acquire(kAlice, 500ms, OwnerLossAction::halt));
+    const Caller skill{.session_id = "composition Pick", .of_this_server = true};
+    EXPECT_TRUE(control.checkCommand(skill));
+    EXPECT_TRUE(control.checkEpoch(skill, 0));
+}
+
 TEST_F(Controlled, LosesItWhenTheLeaseRunsOutWithoutAHeartbeat) {
     const auto epoch = control.acquire(kAlice, 500ms, OwnerLossAction::suspend);
     executor->advance(499ms);
