@@ -56,6 +56,7 @@ public:
             callback(safety_);
         }
     }
+    void setPartHeld(bool held) { state_.part_held = held; }
     void setMoving(bool moving) { state_.moving = moving; }
     void setForceControl(bool has) { info_.max_force = has ? 80.0 : 0.0; }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "metier/device/gripper.hpp"
+#include "metier/skill/executor.hpp"
 #include "metier/skill/field_list.hpp"
 #include "metier/skill/resource.hpp"
 #include "metier/skill/skill.hpp"
@@ -42,5 +43,14 @@ struct GripperSkills {
 ///
 /// \param gripper must outlive the skills
 GripperSkills makeGripperSkills(device::Gripper& gripper);
+
+/// Makes the HoldGripperSkill: Running for as long as the gripper holds a part, Halted with an
+/// error within 20 ms after its state tells that the part is lost. It moves nothing, so it needs no
+/// resource, and others run beside it. It does not end by itself while the part is held: Halt it.
+///
+/// Start and Resume are refused if no part is held.
+/// \param gripper must outlive the skill
+std::unique_ptr<skill::Skill> makeHoldSkill(const device::Gripper& gripper,
+                                            std::shared_ptr<skill::Executor> executor);
 
 }  // namespace metier::robot_skills
