@@ -155,21 +155,39 @@ Result<const SkillFactory::Plan*> SkillFactory::planFor(const skill::SkillDescri
     return &found->second;
 }
 
+/// A composed skill may be of a type that others are of, too; else it is a SequenceSkill.
+Result<NodeId> SkillFactory::typeFor(const skill::SkillDescription& description) const {
+    auto type = findType(ids_.skill_type, description.type);
+    return type || description.steps.empty() ? type : findType(ids_.skill_type, kSequenceSkillType);
+}
+
+Result<SkillLayout> SkillFactory::layoutFor(const skill::SkillDescription& description,
+                                            const NodeId& type) const {
+    if (description.steps.empty()) {
+        return layoutOfType(nodes_, type);
+    }
+    const auto sequence = findType(ids_.skill_type, kSequenceSkillType);
+    if (!sequence) {
+        return fail(sequence.error());
+    }
+    auto layout = layoutOfType(nodes_, type, *sequence);
+    if (layout) {
+        if (auto added = addDeclaredFields(nodes_, *sequence, description, *layout); !added) {
+            return fail(std::move(added.error()));
+        }
+    }
+    return layout;
+}
+
 Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription& description,
                                                   NodeStyle style) {
-    const bool sequence = !description.steps.empty();
-    auto type = findType(ids_.skill_type, sequence ? kSequenceSkillType : description.type);
+    auto type = typeFor(description);
     if (!type) {
         return fail(std::move(type.error()));
     }
-    auto layout = layoutOfType(nodes_, *type);
+    auto layout = layoutFor(description, *type);
     if (!layout) {
         return fail(std::move(layout.error()));
-    }
-    if (sequence) {
-        if (auto added = addDeclaredFields(nodes_, *type, description, *layout); !added) {
-            return fail(std::move(added.error()));
-        }
     }
     if (style == NodeStyle::compact) {
         dropWhatCompactLacks(*layout);

@@ -58,6 +58,9 @@ private:
     };
 
     Result<const Plan*> planFor(const skill::SkillDescription& description, NodeStyle style);
+    Result<opcua::NodeId> typeFor(const skill::SkillDescription& description) const;
+    Result<SkillLayout> layoutFor(const skill::SkillDescription& description,
+                                  const opcua::NodeId& type) const;
     Result<Plan> makePlan(const skill::SkillDescription& description, NodeStyle style);
     Result<void> describe(Step& step) const;
     static void takeFrom(const skill::Field& field, Step& step);

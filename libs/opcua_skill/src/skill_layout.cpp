@@ -141,10 +141,13 @@ private:
 
 }  // namespace
 
-Result<SkillLayout> layoutOfType(const AddressSpace& nodes, const NodeId& type) {
+Result<SkillLayout> layoutOfType(const AddressSpace& nodes, const NodeId& type,
+                                 const NodeId& also) {
     LayoutReader reader(nodes);
-    if (auto added = reader.addType(LayoutNode::kSkill, type); !added) {
-        return fail(std::move(added.error()));
+    for (const auto& one : {type, also}) {
+        if (auto added = reader.addType(LayoutNode::kSkill, one); !added) {
+            return fail(std::move(added.error()));
+        }
     }
     return std::move(reader).take();
 }

@@ -30,7 +30,9 @@ using SkillLayout = std::vector<LayoutNode>;
 
 /// What an instance of `type` has: inherited and of interfaces, the nearest declaration first.
 /// Errors: not_found.
-Result<SkillLayout> layoutOfType(const opcua::AddressSpace& nodes, const opcua::NodeId& type);
+/// \param also what it has besides as an instance of that type, too; null: nothing
+Result<SkillLayout> layoutOfType(const opcua::AddressSpace& nodes, const opcua::NodeId& type,
+                                 const opcua::NodeId& also = {});
 
 /// What `instance` has.
 /// Errors: not_found.

@@ -83,6 +83,41 @@ TEST_F(SequenceNodes, TellStepProgressExecutionAndResult) {
     EXPECT_EQ(readAs<std::string>(*client, pick, "ExecutionId"), execution.id());
 }
 
+TEST_F(SequenceNodes, AreOfTheTypeThatTheFileNamesIfThereIsOne) {
+    auto place = description();
+    place.type = "PickPlaceSkillType";
+    const auto frame = [](const char* name) {
+        return skill::Field{.name = name, .type = skill::ValueType::frame};
+    };
+    const auto number = [](const char* name, skill::Unit unit) {
+        return skill::Field{
+            .name = name, .type = skill::ValueType::number, .unit = unit, .default_value = 1.0};
+    };
+    place.parameters = {frame("PickPose"), frame("PlacePose"),
+                        number("ApproachDistance", skill::kMetre),
+                        number("GraspForce", skill::kNewton), number("Extra", skill::kOne)};
+    const auto result = skill::Place::final_result;
+    place.results = {{.name = "Steps", .type = skill::ValueType::texts, .place = result},
+                     {.name = "StepDurations",
+                      .type = skill::ValueType::numbers,
+                      .unit = skill::kSecond,
+                      .place = result},
+                     {.name = "PartHeld", .type = skill::ValueType::boolean, .place = result}};
+    const auto pick = add(place);
+    serve();
+    const auto client = connect();
+    const auto robotics = client->namespaceIndex("https://fortiss.org/UA/Robotics/").value();
+    const auto type =
+        client->browse({.node = pick.id, .reference_type = opcua::ids::kHasTypeDefinition}).value();
+    ASSERT_EQ(type.size(), 1U);
+    EXPECT_EQ(type.front().target, opcua::NodeId(robotics, 20217U));
+    EXPECT_EQ(write(*client, pick, "ParameterSet/ApproachDistance", opcua::Value::of(0.2)), "Good");
+    EXPECT_EQ(readAs<double>(*client, pick, "ParameterSet/Extra"), 1.0) << "the file's own";
+    EXPECT_THAT(readAs<std::vector<std::string>>(*client, pick, "Steps"),
+                ElementsAre("down", "grasp"));
+    EXPECT_EQ(readAs<std::string>(*client, pick, "CurrentStep"), "");
+}
+
 TEST_F(SequenceNodes, ReferToTheSkillsThatAreUsed) {
     const auto pick = add(description());
     auto inner = description();
