@@ -28,6 +28,8 @@ std::unique_ptr<Activity> makePlain(Run& run, const Step& step, std::string path
                                                       std::move(on_end));
         case StepKind::choice:
             return std::make_unique<ChoiceActivity>(run, step, std::move(path), std::move(on_end));
+        case StepKind::failure:
+            return std::make_unique<FailureActivity>(run, step, std::move(path), std::move(on_end));
         case StepKind::loop:
             return std::make_unique<LoopActivity>(run, step, std::move(path), std::move(on_end));
     }

@@ -94,6 +94,7 @@ void CallActivity::begin() {
     }
     request.execution_id = run_.childExecution(step_.name);
     stage_ = Stage::runs;
+    begun_ = run_.now();
     run_.used(step_.use).halted_by_us = false;
     child().begin(std::move(request), *this);
 }
@@ -228,6 +229,7 @@ void CallActivity::onEnd(ChildEnd end) {
         child().release();
         if (end.kind == ChildEnd::Kind::finished) {
             progress_ = 1.0;
+            run_.finished(path_, run_.now() - begun_);
             run_.scope().setResult(step_.name, std::move(end.result));
         }
         over(outcomeOf(end));

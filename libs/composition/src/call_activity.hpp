@@ -57,6 +57,7 @@ private:
     bool halting_ = false;
     bool suspended_ = false;
     double progress_ = 0.0;
+    SteadyTime begun_{};
     std::string refusal_;                 // of the last Suspend or Halt
     std::optional<StepFailure> failure_;  // that it is halted for
     skill::Timer rest_timer_;

@@ -67,6 +67,16 @@ std::string namesOf(const skill::Fields& fields) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// What an execution tells of itself.
+const skill::Fields& executionFields() {
+    static const skill::Fields kFields(
+        {Field{.name = std::string(kExecutionSteps), .type = ValueType::texts},
+         Field{.name = std::string(kExecutionDurations),
+               .type = ValueType::numbers,
+               .unit = skill::kSecond}});
+    return kFields;
+}
+
 class Binder {
 public:
     Binder(Definition definition, const Descriptions& used)
@@ -193,6 +203,13 @@ private:
         const Field* field = nullptr;
         if (reference.step.empty()) {
             field = findField(own_.parameters, reference.name);
+        } else if (reference.step == kExecution) {
+            field = findField(executionFields(), reference.name);
+            if (field == nullptr) {
+                note(at, fmt::format("an execution has no \"{}\"; it has: {}", reference.name,
+                                     namesOf(executionFields())));
+                return std::nullopt;
+            }
         } else {
             const auto* description = descriptionOfUse(use_of_[reference.step]);
             if (description == nullptr) {
@@ -312,6 +329,9 @@ private:
         auto size = sizeOf(target.type);
         if (target.type == ValueType::frame) {
             size = kShiftOfFrame;
+        } else if (binding.shift_axes == ShiftAxes::own) {
+            note(binding, fmt::format("{} is of type {}, which has no axes of its own", target.name,
+                                      skill::toString(target.type)));
         }
         if (!size && target.type != ValueType::numbers) {
             note(binding, fmt::format("{} is of type {}, which cannot be shifted", target.name,

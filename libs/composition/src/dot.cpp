@@ -171,6 +171,12 @@ private:
                                     inQuotes(titleOf(step) + " — " + types_[step.use])));
             return {{node}, {node}};
         }
+        if (step.kind == StepKind::failure) {
+            const auto node = inQuotes(step.name);
+            line(depth, fmt::format("{} [shape=octagon, label={}];", node,
+                                    inQuotes("fails: " + step.text)));
+            return {{node}, {}};
+        }
         line(depth, fmt::format("subgraph {} {{", inQuotes("cluster_" + step.name)));
         line(depth + 1, fmt::format("label={};", inQuotes(titleOf(step))));
         auto ends = drawWithin(step, depth + 1);

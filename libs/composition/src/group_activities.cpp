@@ -59,6 +59,8 @@ double SequenceActivity::progress() const {
 
 void ParallelActivity::start() {
     open_ = step_.steps.size();
+    awaited_ = static_cast<std::size_t>(std::count_if(
+        step_.steps.begin(), step_.steps.end(), [](const Step& step) { return !step.background; }));
     for (std::size_t i = 0; i < step_.steps.size(); ++i) {
         branches_.push_back({makeActivity(run_, step_.steps[i], path_, [this, i](Outcome outcome) {
             branchEnded(i, std::move(outcome));
@@ -73,6 +75,7 @@ void ParallelActivity::branchEnded(std::size_t index, Outcome outcome) {
     using Kind = StepFailure::Kind;
     branches_[index].ended = true;
     --open_;
+    awaited_ -= step_.steps[index].background ? 0 : 1;
     const bool all = step_.wait_for == WaitFor::all;
     if (!deciding_) {
         // What does not stop outranks what was decided before.
@@ -81,7 +84,7 @@ void ParallelActivity::branchEnded(std::size_t index, Outcome outcome) {
         }
     } else if (outcome && (all || outcome->kind != Kind::failed)) {
         decide(std::move(outcome));
-    } else if (!outcome && (!all || open_ == 0)) {
+    } else if (!outcome && (!all || awaited_ == 0)) {
         decide(std::nullopt);
     } else if (outcome) {
         failures_ += (failures_.empty() ? "" : "; ") + outcome->text;
@@ -115,10 +118,14 @@ void ParallelActivity::halt() {
 
 double ParallelActivity::progress() const {
     double sum = 0.0;
-    for (const auto& branch : branches_) {
-        sum += branch.ended ? 1.0 : branch.activity->progress();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < branches_.size(); ++i) {
+        if (!step_.steps[i].background) {
+            sum += branches_[i].ended ? 1.0 : branches_[i].activity->progress();
+            ++count;
+        }
     }
-    return branches_.empty() ? 0.0 : sum / static_cast<double>(branches_.size());
+    return count == 0 ? 0.0 : sum / static_cast<double>(count);
 }
 
 void FallbackActivity::next() {
@@ -166,6 +173,10 @@ void ChoiceActivity::halt() {
     if (chosen_) {
         chosen_->halt();
     }
+}
+
+void FailureActivity::start() {
+    end(StepFailure{Reason::error, fmt::format("step {}: {}", path_, step_.text)});
 }
 
 void LoopActivity::start() {

@@ -48,7 +48,8 @@ private:
     };
     std::vector<Branch> branches_;
     std::size_t open_ = 0;
-    bool deciding_ = true;  // until the outcome is known
+    std::size_t awaited_ = 0;  // of those, without what is in the background
+    bool deciding_ = true;     // until the outcome is known
     Outcome outcome_;
     std::string failures_;  // that did not decide
 };
@@ -82,6 +83,16 @@ public:
 
 private:
     std::unique_ptr<Activity> chosen_;
+};
+
+/// Fails at once.
+class FailureActivity final : public Activity {
+public:
+    using Activity::Activity;
+
+    void start() override;
+    void halt() override {}
+    double progress() const override { return 0.0; }
 };
 
 /// Steps again and again.

@@ -113,6 +113,13 @@ skill::Timer Run::after(std::chrono::nanoseconds delay, std::function<void()> du
     return setup_.executor->after(delay, [this, due = std::move(due)] { enter(due); });
 }
 
+void Run::finished(const std::string& path, std::chrono::nanoseconds time) {
+    if (finished_.size() < kMostReportedSteps) {
+        finished_.push_back(path);
+        times_.push_back(std::chrono::duration<double>(time).count());
+    }
+}
+
 std::string Run::childExecution(const std::string& step) {
     const auto own = fmt::format("/{}/{}", step, ++begun_);
     auto above = fmt::format("{}/{}", setup_.origin, execution_.id());
@@ -231,6 +238,9 @@ void Run::ended(Outcome outcome) {
 }
 
 void Run::finish() {
+    scope_.setResult(std::string(kExecution),
+                     {{std::string(kExecutionSteps), std::move(finished_)},
+                      {std::string(kExecutionDurations), std::move(times_)}});
     skill::ValueMap result;
     for (const auto& declared : setup_.composition.definition.results) {
         auto value = scope_.evaluate(declared.from, declared.field.type);

@@ -87,6 +87,9 @@ public:
     skill::OwnerLossAction onOwnerLoss() const {
         return setup_.composition.definition.on_owner_loss;
     }
+    /// A step has finished. \param time that it took
+    void finished(const std::string& path, std::chrono::nanoseconds time);
+    SteadyTime now() const { return setup_.clock.now(); }
     /// The id of the next execution of a used skill.
     std::string childExecution(const std::string& step);
     void attach(CallActivity& call) { calls_.push_back(&call); }
@@ -114,6 +117,8 @@ private:
     bool over_ = false;
     std::optional<StepFailure> gave_up_;  // because something did not come to rest
     std::uint64_t begun_ = 0;
+    std::vector<std::string> finished_;  // paths
+    std::vector<double> times_;          // of these [s]
     std::string told_step_;
     double told_progress_ = -1.0;
     std::vector<CallActivity*> calls_;

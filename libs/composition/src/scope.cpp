@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "metier/geometry/frame.hpp"
+
 namespace metier::composition {
 
 namespace {
@@ -70,14 +72,22 @@ Result<Value> made(const std::vector<double>& n, ValueType type) {
                                                   skill::toString(type)));
 }
 
-Result<Value> shifted(Value value, const std::vector<double>& by) {
+void shift(Frame& frame, const std::vector<double>& by, ShiftAxes axes) {
+    Eigen::Vector3d way(by[0], by[1], by[2]);
+    if (axes == ShiftAxes::own) {
+        way = geometry::toPose(frame).rotation * way;
+    }
+    frame.x += way.x();
+    frame.y += way.y();
+    frame.z += way.z();
+}
+
+Result<Value> shifted(Value value, const std::vector<double>& by, ShiftAxes axes) {
     if (auto* number = std::get_if<double>(&value); number != nullptr && by.size() == 1) {
         return *number + by[0];
     }
     if (auto* frame = std::get_if<Frame>(&value); frame != nullptr && by.size() == 3) {
-        frame->x += by[0];
-        frame->y += by[1];
-        frame->z += by[2];
+        shift(*frame, by, axes);
         return value;
     }
     if (auto* vector = std::get_if<Vector3>(&value); vector != nullptr && by.size() == 3) {
@@ -138,7 +148,7 @@ Result<std::vector<double>> Scope::numbersOf(const std::vector<Term>& terms) con
         if (!value) {
             return fail(value.error());
         }
-        numbers.push_back(asNumber(*value).value_or(0.0));
+        numbers.push_back(term.factor * asNumber(*value).value_or(0.0));
     }
     return numbers;
 }
@@ -158,7 +168,8 @@ Result<Value> Scope::evaluate(const Binding& binding, ValueType type) const {
     auto value = unshifted(binding, type);
     if (value && !binding.shift.empty()) {
         const auto by = numbersOf(binding.shift);
-        value = by ? shifted(std::move(*value), *by) : Result<Value>(fail(by.error()));
+        value = by ? shifted(std::move(*value), *by, binding.shift_axes)
+                   : Result<Value>(fail(by.error()));
     }
     return at(binding, std::move(value));
 }

@@ -54,8 +54,10 @@ public:
         collectNames(definition_.root);
         const auto known = after(definition_.root, {});
         for (const auto& result : definition_.results) {
-            checkReference(std::get<Reference>(result.from.source),
-                           {result.line, result.from.key, ""}, known);
+            const auto& reference = std::get<Reference>(result.from.source);
+            if (reference.step != kExecution) {
+                checkReference(reference, {result.line, result.from.key, ""}, known);
+            }
         }
         const auto used = aliasesOf(definition_.root);
         for (const auto& use : definition_.uses) {
@@ -72,6 +74,11 @@ private:
     }
 
     void collectNames(const Step& step) {
+        if (step.name == kExecution) {
+            note(step.line, step.key + ".name",
+                 fmt::format("\"{}\" stands for the execution itself", kExecution));
+        }
+        checkBackground(step);
         if (!step.name.empty() && !steps_.emplace(step.name, &step).second) {
             note(step.line, step.key + ".name",
                  fmt::format("\"{}\" is the name of the step at line {}, too", step.name,
@@ -80,6 +87,24 @@ private:
         for (const auto* steps : {&step.steps, &step.otherwise}) {
             for (const auto& inner : *steps) {
                 collectNames(inner);
+            }
+        }
+    }
+
+    /// Only beside others of a parallel that waits for all can a step be in the background.
+    void checkBackground(const Step& step) {
+        const auto in_background =
+            std::count_if(step.steps.begin(), step.steps.end(),
+                          [](const Step& inner) { return inner.background; });
+        const auto all = static_cast<std::ptrdiff_t>(step.steps.size());
+        const bool possible =
+            step.kind == StepKind::parallel && step.wait_for == WaitFor::all && in_background < all;
+        for (const auto* steps : {&step.steps, &step.otherwise}) {
+            for (const auto& inner : *steps) {
+                if (inner.background && !possible) {
+                    note(inner.line, inner.key + ".background",
+                         "is for some of the steps of a parallel that waits for all");
+                }
             }
         }
     }
@@ -102,8 +127,18 @@ private:
             }
             case StepKind::loop:
                 return afterLoop(step, known);
+            case StepKind::failure:
+                return all();  // nothing comes after it
         }
         return known;
+    }
+
+    Names all() const {
+        Names names;
+        for (const auto& [name, step] : steps_) {
+            names.insert(name);
+        }
+        return names;
     }
 
     Names afterCall(const Step& step, Names known) {
@@ -142,7 +177,10 @@ private:
         }
         Names all = known;
         for (const auto& branch : step.steps) {
-            all.merge(after(branch, known));
+            auto finished = after(branch, known);
+            if (!branch.background) {
+                all.merge(finished);
+            }
         }
         return all;
     }

@@ -27,7 +27,8 @@ struct KindKey {
 constexpr std::array kKinds{
     KindKey{"run", StepKind::call},          KindKey{"sequence", StepKind::sequence},
     KindKey{"parallel", StepKind::parallel}, KindKey{"fallback", StepKind::fallback},
-    KindKey{"if", StepKind::choice},         KindKey{"repeat", StepKind::loop}};
+    KindKey{"if", StepKind::choice},         KindKey{"repeat", StepKind::loop},
+    KindKey{"fail", StepKind::failure}};
 
 std::string joined(const std::string& path, std::string_view key) {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
@@ -103,6 +104,9 @@ void readWhatItDoes(const TomlTable& table, Step& step) {
             return readChoice(table, step);
         case StepKind::loop:
             return readLoop(table, step);
+        case StepKind::failure:
+            step.text = table.text("fail");
+            return;
     }
 }
 
@@ -127,7 +131,7 @@ std::optional<StepKind> kindOf(const TomlTable& table) {
     if (given.empty()) {
         table.reject("run",
                      "missing; a step says what it does by one of: run, sequence, "
-                     "parallel, fallback, if, repeat");
+                     "parallel, fallback, if, repeat, fail");
         return std::nullopt;
     }
     if (given.size() > 1) {
@@ -150,9 +154,10 @@ Step readStep(const TomlTable& table, std::string key) {
         return step;
     }
     step.kind = *kind;
+    step.background = table.flagOr("background", false);
     readWhatItDoes(table, step);
     readLimits(table, step);
-    if (step.kind != StepKind::call && step.steps.empty()) {
+    if (step.kind != StepKind::call && step.kind != StepKind::failure && step.steps.empty()) {
         table.reject(step.kind == StepKind::choice ? "then" : "name", "has no steps");
     }
     return step;
@@ -181,7 +186,7 @@ Term readTerm(const TomlValue& value) {
         return {*number, {}};
     }
     if (const auto table = value.table()) {
-        return {0.0, readReference(*table, "from", "element")};
+        return {0.0, readReference(*table, "from", "element"), table->numberOr("times", 1.0)};
     }
     value.reject("is neither a number nor { from = \"...\" }");
     return {};
@@ -193,6 +198,14 @@ std::vector<Term> readTerms(const TomlValue& list) {
         terms.push_back(readTerm(item));
     }
     return terms;
+}
+
+ShiftAxes readShiftAxes(const TomlTable& table) {
+    const auto axes = table.textOr("shift_axes", "base");
+    if (axes != "base" && axes != "own") {
+        table.reject("shift_axes", fmt::format("\"{}\" is none of: \"base\", \"own\"", axes));
+    }
+    return axes == "own" ? ShiftAxes::own : ShiftAxes::base;
 }
 
 void readComparison(const TomlTable& table, Condition& condition) {
@@ -245,6 +258,7 @@ Binding readBinding(const TomlValue& value, std::string key) {
         binding.source = readReference(*table, "from", "element");
         if (const auto shift = table->value("shift")) {
             binding.shift = shift->isList() ? readTerms(*shift) : std::vector{readTerm(*shift)};
+            binding.shift_axes = readShiftAxes(*table);
         }
         return binding;
     }

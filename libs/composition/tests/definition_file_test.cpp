@@ -25,19 +25,22 @@ TEST(CompositionFile, IsReadAsAWhole) {
     const auto definition =
         loadDefinition(std::string(METIER_COMPOSITIONS_DIR) + "/pick_and_place.toml");
     ASSERT_TRUE(definition) << definition.error().message;
-    EXPECT_EQ(definition->name, "PickAndPlaceSkill");
-    EXPECT_EQ(definition->type, "PickAndPlaceSkillType");
-    ASSERT_EQ(definition->parameters.size(), 4U);
-    EXPECT_EQ(definition->parameters[2].field.name, "Approach");
+    EXPECT_EQ(definition->name, "PickPlaceSkill");
+    EXPECT_EQ(definition->type, "PickPlaceSkillType");
+    ASSERT_EQ(definition->parameters.size(), 6U);
+    EXPECT_EQ(definition->parameters[2].field.name, "ApproachDistance");
     EXPECT_EQ(definition->parameters[2].field.unit, skill::kMetre);
     EXPECT_EQ(definition->parameters[2].field.range, (skill::Range{0.0, 0.5}));
     EXPECT_EQ(definition->parameters[2].field.default_value, skill::Value(0.1));
-    ASSERT_EQ(definition->uses.size(), 4U);
+    ASSERT_EQ(definition->uses.size(), 5U);
     EXPECT_TRUE(definition->uses[2].reset);
-    ASSERT_EQ(definition->root.steps.size(), 8U);
-    EXPECT_EQ(definition->root.steps[0].kind, StepKind::parallel);
-    EXPECT_EQ(definition->root.steps[2].retry->times, 1U);
-    EXPECT_EQ(*definition->root.steps[2].timeout, std::chrono::seconds(10));
+    ASSERT_EQ(definition->root.steps.size(), 7U);
+    const auto& take = definition->root.steps[3];
+    EXPECT_EQ(take.kind, StepKind::fallback);
+    EXPECT_EQ(take.steps[0].retry->times, 1U);
+    EXPECT_EQ(*take.steps[0].timeout, std::chrono::seconds(20));
+    EXPECT_EQ(take.steps[1].steps.back().kind, StepKind::failure);
+    EXPECT_TRUE(definition->root.steps[4].steps[0].background);
 }
 
 TEST(CompositionFile, OfTheSquareIsRight) {
@@ -117,6 +120,18 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"SameName",
               kHead + "[[step]]\nname = \"x\"\nrun = \"a\"\n[[step]]\nname = \"x\"\nrun = \"b\"\n",
               "c.toml:11: step[1].name: \"x\" is the name of the step at line 8, too"},
+        Wrong{"StepCalledExecution", kHead + "[[step]]\nname = \"execution\"\nrun = \"a\"\n",
+              "step[0].name: \"execution\" stands for the execution itself"},
+        Wrong{"BackgroundAlone", kHead + "[[step]]\nname = \"x\"\nrun = \"a\"\nbackground = true\n",
+              "step[0].background: is for some of the steps of a parallel that waits for all"},
+        Wrong{"AllInTheBackground",
+              kHead + "[[step]]\nname = \"p\"\n[[step.parallel]]\nname = \"x\"\nrun = "
+                      "\"a\"\nbackground = true\n",
+              "step[0].parallel[0].background: is for some of the steps"},
+        Wrong{"ShiftAlongNoAxes",
+              kHead + "[[step]]\nname = \"x\"\nrun = \"a\"\nwith.Pose = { from = \"P\", shift = "
+                      "[0, 0, 1], shift_axes = \"tool\" }\n",
+              "\"tool\" is none of: \"base\", \"own\""},
         Wrong{"ResultOfLaterStep",
               kHead + "[[step]]\nname = \"x\"\nrun = \"a\"\nwith.Target = { from = \"y.Reached\" "
                       "}\n[[step]]\nname = \"y\"\nrun = \"b\"\n",

@@ -111,6 +111,61 @@ with.Joints = [1, 2.5]
     EXPECT_EQ(bench.program->finalResult(), (ValueMap{{"Width", 0.25}}));
 }
 
+TEST(Sequence, ShiftsAFrameAlongItsOwnAxesIfAsked) {
+    Bench bench(kHead + R"(
+[parameters.Pose]
+type = "frame"
+[parameters.Distance]
+type = "number"
+unit = "m"
+[[step]]
+name = "before"
+run = "a"
+with.Pose = { from = "Pose", shift = [0, 0, { from = "Distance", times = -1 }], shift_axes = "own" }
+[[step]]
+name = "rest"
+run = "b"
+)");
+    constexpr double kHalfTurn = 3.141592653589793;
+    ASSERT_TRUE(
+        bench.start({{"Pose", Frame{0.5, 0.1, 0.2, kHalfTurn, 0, 0.4}}, {"Distance", 0.25}}));
+    const auto pose = std::get<Frame>(bench["a"].request.parameters.at("Pose"));
+    EXPECT_NEAR(pose.x, 0.5, 1e-12);
+    EXPECT_NEAR(pose.y, 0.1, 1e-12);
+    EXPECT_NEAR(pose.z, 0.45, 1e-12) << "the tool looks down, so before it is above";
+    EXPECT_EQ(pose.c, 0.4);
+}
+
+TEST(Sequence, TellsWhichStepsItDidAndHowLongEachTook) {
+    Bench bench(kHead + R"(
+[results.Steps]
+type = "texts"
+from = "execution.Steps"
+[results.Durations]
+type = "numbers"
+unit = "s"
+from = "execution.Durations"
+[[step]]
+name = "group"
+[[step.sequence]]
+name = "first"
+run = "a"
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench.advance(250ms);
+    bench["a"].finish();
+    bench.run();
+    bench.advance(500ms);
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->finalResult(),
+              (ValueMap{{"Steps", std::vector<std::string>{"group/first", "second"}},
+                        {"Durations", std::vector<double>{0.25, 0.5}}}));
+}
+
 TEST(Sequence, TellsItsProgressWithThatOfItsSteps) {
     Bench bench(kHead + R"(
 [[step]]
@@ -183,6 +238,89 @@ TEST(Parallel, FailsIfNoneSucceedsWhereOneIsEnough) {
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_THAT(bench.why(), HasSubstr("stuck"));
     EXPECT_THAT(bench.why(), HasSubstr("jammed"));
+}
+
+TEST(Failure, EndsTheWholeInTheWordsOfTheFileAfterWhatComesBefore) {
+    Bench bench(kHeadWithGrip + R"(
+[results.Held]
+type = "boolean"
+from = "grasp.Held"
+[[step]]
+name = "take"
+[[step.fallback]]
+name = "grasp"
+run = "grip"
+with.Force = 5
+[[step.fallback]]
+name = "leave"
+[[step.fallback.sequence]]
+name = "up"
+run = "a"
+[[step.fallback.sequence]]
+name = "no_part"
+fail = "there is no part"
+[[step]]
+name = "on"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["grip"].halted(Reason::error, "missed");
+    bench.run();
+    EXPECT_TRUE(bench["a"].runs());
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_FALSE(bench["b"].runs());
+    EXPECT_THAT(bench.why(), HasSubstr("missed"));
+    EXPECT_THAT(bench.why(), HasSubstr("step take/leave/no_part: there is no part"));
+}
+
+const std::string kWatched = kHead + R"(
+[[step]]
+name = "carry"
+[[step.parallel]]
+name = "watch"
+run = "a"
+background = true
+[[step.parallel]]
+name = "move"
+run = "b"
+)";
+
+TEST(Background, IsHaltedOnceTheOthersAreDone) {
+    Bench bench(kWatched);
+    ASSERT_TRUE(bench.start());
+    bench["b"].finish();
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    bench["a"].halted();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(Background, HaltsTheOthersIfItFails) {
+    Bench bench(kWatched);
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::error, "the part is lost");
+    bench.run();
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+    bench["b"].halted();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("carry/watch"));
+    EXPECT_THAT(bench.why(), HasSubstr("the part is lost"));
+}
+
+TEST(Background, MayEndBeforeTheOthers) {
+    Bench bench(kWatched);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Running");
+    EXPECT_EQ(bench.program->step(), "carry/move");
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
 }
 
 TEST(Retry, TriesAgainAfterAPauseAndAReset) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -31,7 +32,11 @@ struct Reference {
 struct Term {
     double constant = 0.0;
     std::optional<Reference> from{};  ///< instead of the constant
+    double factor = 1.0;              ///< of what comes from there
 };
+
+/// Along which axes a frame is shifted.
+enum class ShiftAxes { base, own };
 
 /// Where a value comes from.
 struct Binding {
@@ -40,6 +45,7 @@ struct Binding {
     std::variant<Literal, Reference, std::vector<Term>> source{};
     /// Added number by number; to a frame, along the axes of the frame that it is given in [m].
     std::vector<Term> shift{};
+    ShiftAxes shift_axes = ShiftAxes::base;  ///< own: along the axes of the shifted frame itself
     /// The Literal in the type of its target; Null before compose().
     skill::Value constant{};
 };
@@ -73,6 +79,7 @@ enum class StepKind {
     fallback,  ///< the first that succeeds
     choice,    ///< `steps` if the condition holds, else `otherwise`
     loop,
+    failure,  ///< fails, in the file's words
 };
 
 enum class WaitFor {
@@ -85,11 +92,14 @@ struct Step {
     std::string key{};  ///< where it stands: "step[1].parallel[0]"
     std::string name{};
     StepKind kind = StepKind::call;
-    std::string use{};                       ///< of a call
-    std::vector<Argument> arguments{};       ///< of a call
-    std::vector<Step> steps{};               ///< of all others
-    std::vector<Step> otherwise{};           ///< of a choice
-    WaitFor wait_for = WaitFor::all;         ///< of a parallel
+    std::string use{};                  ///< of a call
+    std::vector<Argument> arguments{};  ///< of a call
+    std::string text{};                 ///< of a failure
+    std::vector<Step> steps{};          ///< of all others
+    std::vector<Step> otherwise{};      ///< of a choice
+    WaitFor wait_for = WaitFor::all;    ///< of a parallel
+    /// Of a step within a parallel: nobody waits for its end; it is halted with the others.
+    bool background = false;
     std::optional<Condition> condition{};    ///< of a choice; of a loop, holds before each round
     std::optional<Condition> until{};        ///< of a loop, ends it after a round
     std::optional<Binding> times{};          ///< of a loop
@@ -130,6 +140,14 @@ struct Definition {
     std::chrono::nanoseconds rest_time{};
     skill::OwnerLossAction on_owner_loss = skill::OwnerLossAction::halt;
 };
+
+/// In a reference of a result instead of a step: the execution itself. Its values are
+/// kExecutionSteps, the paths of the steps that have finished, in order, and kExecutionDurations,
+/// how long each took [s]; of the first kMostReportedSteps.
+inline constexpr std::string_view kExecution = "execution";
+inline constexpr std::string_view kExecutionSteps = "Steps";
+inline constexpr std::string_view kExecutionDurations = "Durations";
+inline constexpr std::size_t kMostReportedSteps = 1'000;
 
 /// The longest text of one attempt and step that an execution id has room for.
 inline constexpr std::size_t kLongestStepName = 40;
