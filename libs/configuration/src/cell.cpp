@@ -59,6 +59,36 @@ DriverChoice readDriver(const TomlTable& table) {
     return driver;
 }
 
+Tool readTool(const TomlTable& table) {
+    Tool tool;
+    tool.name = table.text("name");
+    tool.mass = table.numberOr("mass", 0.0);
+    const auto frame = table.numbers("frame");
+    if (frame.size() == tool.frame.size()) {
+        std::copy(frame.begin(), frame.end(), tool.frame.begin());
+    } else {
+        table.reject("frame", fmt::format("has {} numbers; needs 6: x, y, z [m], a, b, c [rad]",
+                                          frame.size()));
+    }
+    return tool;
+}
+
+std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char* key,
+                                             const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& file : table.texts(key)) {
+        files.push_back(std::filesystem::absolute(folder / file).lexically_normal());
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(files.back(), error)) {
+            table.reject(key, fmt::format("no such file: {}", files.back().string()));
+        }
+    }
+    if (files.empty()) {
+        table.reject(key, "needs at least one file");
+    }
+    return files;
+}
+
 ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     ArmServer arm;
     arm.model = pathIn(table, "model", folder);
@@ -68,6 +98,9 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     }
     arm.nodeset = table.textOr("nodeset", "");
     arm.skills = table.texts("skills");
+    for (const auto& tool : table.tables("tool")) {
+        arm.tools.push_back(readTool(tool));
+    }
     arm.stream_silence = secondsWithin(table, "stream_silence", arm.stream_silence,
                                        {kShortestSilence, kLongestSilence});
     return arm;
@@ -83,17 +116,7 @@ GripperServer readGripper(const TomlTable& table) {
 
 CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder) {
     CompositionServer composition;
-    for (const auto& file : table.texts("compositions")) {
-        composition.files.push_back(std::filesystem::absolute(folder / file).lexically_normal());
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(composition.files.back(), error)) {
-            table.reject("compositions",
-                         fmt::format("no such file: {}", composition.files.back().string()));
-        }
-    }
-    if (composition.files.empty()) {
-        table.reject("compositions", "needs at least one file");
-    }
+    composition.files = readFiles(table, "compositions", folder);
     for (const auto& server : table.texts("servers")) {
         composition.servers.push_back({server, isAddress(server) ? server : ""});
     }
@@ -126,6 +149,9 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     if (kind == "arm") {
         server.kind = ServerKind::arm;
         server.arm = readArm(table, folder);
+        if (table.has("compositions")) {
+            server.own_compositions = readFiles(table, "compositions", folder);
+        }
     } else if (kind == "gripper") {
         server.kind = ServerKind::gripper;
         server.gripper = readGripper(table);

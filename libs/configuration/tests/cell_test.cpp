@@ -57,6 +57,45 @@ robot = "ur5"
     EXPECT_EQ(cell->find("other"), nullptr);
 }
 
+TEST_F(CellFile, GivesAnArmToolsAndSkillsOfItsOwn) {
+    std::ofstream(folder_ / "pick.toml") << "\n";
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "ur5"
+kind = "arm"
+driver = { type = "ur", controller = "10.0.0.5" }
+model = "ur5.toml"
+skills = ["PositionStreamSkill"]
+tool = [{ name = "jaws", frame = [0, 0, 0.2, 0, 0, 0.5], mass = 1.2 }]
+compositions = ["pick.toml"]
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    const auto& server = cell->servers.front();
+    ASSERT_EQ(server.arm.tools.size(), 1U);
+    EXPECT_EQ(server.arm.tools[0].name, "jaws");
+    EXPECT_THAT(server.arm.tools[0].frame, ElementsAre(0, 0, 0.2, 0, 0, 0.5));
+    EXPECT_EQ(server.arm.tools[0].mass, 1.2);
+    EXPECT_THAT(server.own_compositions, ElementsAre(folder_ / "pick.toml"));
+}
+
+TEST_F(CellFile, NamesWhatIsWrongWithAToolAndACompositionOfAnArm) {
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "ur5"
+kind = "arm"
+driver = { type = "ur", controller = "10.0.0.5" }
+model = "ur5.toml"
+skills = ["PositionStreamSkill"]
+tool = [{ name = "jaws", frame = [0, 0, 0.2] }]
+compositions = ["none.toml"]
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr("frame: has 3 numbers; needs 6"));
+    EXPECT_THAT(cell.error().message, HasSubstr("no such file"));
+}
+
 TEST_F(CellFile, NamesLineAndKeyOfAnUnknownKind) {
     const auto cell = load("name = \"a\"\n[[server]]\nname = \"x\"\nkind = \"lathe\"\n");
     ASSERT_FALSE(cell);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -19,6 +20,14 @@ struct DriverChoice {
     Settings settings;       ///< the driver's own
 };
 
+/// A tool at the flange of an arm.
+struct Tool {
+    std::string name;
+    /// In the flange frame: x, y, z [m], a, b, c [rad], rotations about x, y, z.
+    std::array<double, 6> frame{};
+    double mass = 0.0;  ///< [kg]
+};
+
 /// An arm behind its own OPC UA server.
 struct ArmServer {
     /// The robot's model file, absolute.
@@ -31,6 +40,7 @@ struct ArmServer {
     std::string nodeset;
     /// Skills that the server offers, such as `PositionStreamSkill`.
     std::vector<std::string> skills;
+    std::vector<Tool> tools;  ///< besides those of the model
     /// Silence of a moving stream that ends it [s].
     double stream_silence = 0.15;
 };
@@ -82,6 +92,8 @@ struct ServerConfig {
     GripperServer gripper;          ///< for ServerKind::gripper
     MoveComponent move;             ///< for ServerKind::move
     CompositionServer composition;  ///< for ServerKind::composition
+    /// Files with skills made of the server's own; absolute. For ServerKind::arm.
+    std::vector<std::filesystem::path> own_compositions;
 };
 
 /// A controller without its device, in a process of its own.
