@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "device_opening.hpp"
+#include "metier/geometry/frame.hpp"
 #include "metier/robot_skills/gripper_skills.hpp"
+#include "own_compositions.hpp"
 
 namespace metier::app {
 namespace {
@@ -34,6 +36,18 @@ std::vector<std::string> nodesetsOf(const configuration::ArmServer& config) {
     return {config.nodeset};
 }
 
+/// The model with the tools of the cell besides its own.
+Result<motion::RobotModel> withTools(const motion::RobotModel& model,
+                                     const std::vector<configuration::Tool>& tools) {
+    auto chain = model.chain();
+    for (const auto& tool : tools) {
+        const auto& f = tool.frame;
+        chain.tools.push_back(
+            {tool.name, geometry::toPose(Frame{f[0], f[1], f[2], f[3], f[4], f[5]}), tool.mass});
+    }
+    return model.withChain(std::move(chain));
+}
+
 /// \return nothing if the cell file names none
 Result<std::optional<driver::OpenDevice>> openSensor(const configuration::ServerConfig& config) {
     if (!config.arm.force_torque_sensor) {
@@ -54,7 +68,9 @@ Result<std::optional<driver::OpenDevice>> openSensor(const configuration::Server
 }  // namespace
 
 Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerConfig& config) {
-    auto loaded = motion::RobotModel::load(config.arm.model);
+    auto loaded = motion::RobotModel::load(config.arm.model).and_then([&](const auto& model) {
+        return withTools(model, config.arm.tools);
+    });
     if (!loaded) {
         return fail(loaded.error());
     }
@@ -108,6 +124,9 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
     if (auto offered = offerSkills(*system, config.arm); !offered) {
         return offered;
     }
+    if (auto offered = offerOwnCompositions(*host_, system->skills, config); !offered) {
+        return offered;
+    }
     if (auto offered = host_->offerControl(system->controller); !offered) {
         return offered;
     }
@@ -135,7 +154,12 @@ Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& syste
         auto gripper = robot_skills::makeGripperSkills(*device_.gripper);
         std::move(gripper.skills.begin(), gripper.skills.end(), std::back_inserter(skills));
     }
-    return host_->offerSkills(system.skills, config.skills, std::move(skills), arm->resource);
+    auto offered = sharing(arm->resource, std::move(skills));
+    if (device_.gripper != nullptr) {
+        offered.push_back(
+            {robot_skills::makeHoldSkill(*device_.gripper, host_->skills().executor()), nullptr});
+    }
+    return host_->offerSkills(system.skills, config.skills, std::move(offered));
 }
 
 }  // namespace metier::app

@@ -30,6 +30,7 @@ void addList(CLI::App& app, Exit& exit);
 void addRun(CLI::App& app, Exit& exit);
 void addWatch(CLI::App& app, Exit& exit);
 void addHalt(CLI::App& app, Exit& exit);
+void addPickPlace(CLI::App& app, Exit& exit);
 void addSquare(CLI::App& app, Exit& exit);
 void addDemo(CLI::App& app, Exit& exit);
 void addFk(CLI::App& app, Exit& exit);

@@ -4,48 +4,19 @@
 
 #include <algorithm>
 #include <map>
-#include <random>
 #include <utility>
 
 #include "arm_reach.hpp"
+#include "composition_files.hpp"
 #include "metier/composition/composition.hpp"
-#include "metier/composition/definition_file.hpp"
 #include "metier/composition/local_child.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 #include "skill_matching.hpp"
 
 namespace metier::app {
-namespace {
 
 using composition::Definition;
-
-/// All files, each after those that it uses; everything that is wrong with any of them.
-Result<std::vector<Definition>> loadAll(const std::vector<std::filesystem::path>& files) {
-    std::vector<Definition> definitions;
-    std::string problems;
-    for (const auto& file : files) {
-        auto definition = composition::loadDefinition(file);
-        if (definition) {
-            definitions.push_back(std::move(*definition));
-        } else {
-            problems += (problems.empty() ? "" : "\n") + definition.error().message;
-        }
-    }
-    if (!problems.empty()) {
-        return fail(Errc::invalid_argument, std::move(problems));
-    }
-    return composition::inOrderOfUse(std::move(definitions));
-}
-
-/// Tells the executions of this life of the component from those before.
-std::string newLife() {
-    constexpr unsigned kMask = 0xFFFFFF;
-    std::random_device device;
-    return fmt::format("{:06x}", device() & kMask);
-}
-
-}  // namespace
 
 /// Finds the children of one definition and what to publish of them.
 class CompositionServer::Cast {
@@ -120,7 +91,9 @@ private:
         const auto& name = definition_.name;
         children_.emplace(use.alias, std::make_unique<composition::LocalChild>(
                                          program, server_.host_->skills().executor(),
-                                         skill::Caller{"composition " + name, name, ""}));
+                                         skill::Caller{.session_id = "composition " + name,
+                                                       .client_name = name,
+                                                       .of_this_server = true}));
         const auto& used = program.description().name;
         if (std::find(local_.begin(), local_.end(), used) == local_.end()) {
             local_.push_back(used);
@@ -153,7 +126,7 @@ private:
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     const configuration::ServerConfig& config) {
-    auto definitions = loadAll(config.composition.files);
+    auto definitions = loadDefinitions(config.composition.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
     }

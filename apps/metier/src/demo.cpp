@@ -2,9 +2,12 @@
 #include <unistd.h>
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "cell_runner.hpp"
 #include "commands.hpp"
+#include "pick_place_command.hpp"
 #include "square_command.hpp"
 #include "stop_signal.hpp"
 
@@ -15,6 +18,7 @@ struct DemoOptions {
     std::string cell;
     bool headless = false;
     bool free_ports = false;
+    std::string pick_and_place;
     SquareSettings settings;
     SquareOutput output;
 };
@@ -29,24 +33,47 @@ void waitForEnter(CellRunner& cell) {
     }
 }
 
-Exit runDemo(const DemoOptions& options) {
-    const auto config = configuration::loadCell(options.cell);
+Result<CellRunner> startCell(const std::string& file, const DemoOptions& options) {
+    const auto config = configuration::loadCell(file);
     if (!config) {
-        return reportUsage(config.error());
+        return fail(config.error());
     }
     fmt::print(stderr, "the servers of the cell '{}':\n", config->name);
     const auto ports = options.free_ports ? CellRunner::Ports::free : CellRunner::Ports::configured;
-    auto cell = CellRunner::start(*config, ports, [](const CellRunner::Running& server) {
+    return CellRunner::start(*config, ports, [](const CellRunner::Running& server) {
         fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
     });
-    if (!cell) {
-        return report(cell.error());
-    }
+}
+
+std::vector<std::string> addressesOf(const CellRunner& cell) {
     std::vector<std::string> urls;
-    for (const auto& server : cell->servers()) {
+    for (const auto& server : cell.servers()) {
         urls.push_back(server.url);
     }
-    const auto exit = moveAlongSquares(urls, options.settings, options.output);
+    return urls;
+}
+
+/// Squares in the first cell, then parts in the second; both stay up for whoever wants to look.
+Exit runDemo(const DemoOptions& options) {
+    auto started = startCell(options.cell, options);
+    if (!started) {
+        return started.error().code == Errc::invalid_argument ? reportUsage(started.error())
+                                                              : report(started.error());
+    }
+    std::optional<CellRunner> cell(std::move(*started));
+    auto exit = moveAlongSquares(addressesOf(*cell), options.settings, options.output);
+    std::optional<CellRunner> second;
+    if (exit == Exit::success && !options.pick_and_place.empty()) {
+        if (options.headless) {
+            cell.reset();
+        }
+        auto more = startCell(options.pick_and_place, options);
+        if (!more) {
+            return report(more.error());
+        }
+        second.emplace(std::move(*more));
+        exit = pickAndPlace(addressesOf(*second), PickPlaceSettings());
+    }
     if (!options.headless) {
         waitForEnter(*cell);
     }
@@ -65,6 +92,8 @@ void addDemo(CLI::App& app, Exit& exit) {
     command->add_flag("--headless", options->headless, "End when the squares are done");
     command->add_flag("--free-ports", options->free_ports,
                       "Take free ports instead of those in the file");
+    command->add_option("--pick-and-place", options->pick_and_place,
+                        "Then a cell whose PickPlaceSkills move ten parts each");
     addSquareOptions(*command, options->settings, options->output);
     command->callback([options, &exit] { exit = runDemo(*options); });
 }

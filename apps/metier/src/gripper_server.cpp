@@ -45,9 +45,10 @@ Result<void> GripperServer::offer(const configuration::GripperServer& config) {
         return fail(found.error());
     }
     auto skills = robot_skills::makeGripperSkills(*device_.gripper);
-    if (auto offered = host_->offerSkills(found->skills, config.skills, std::move(skills.skills),
-                                          skills.resource);
-        !offered) {
+    auto all = sharing(skills.resource, std::move(skills.skills));
+    all.push_back(
+        {robot_skills::makeHoldSkill(*device_.gripper, host_->skills().executor()), nullptr});
+    if (auto offered = host_->offerSkills(found->skills, config.skills, std::move(all)); !offered) {
         return offered;
     }
     if (auto offered = host_->offerControl(found->controller); !offered) {

@@ -19,6 +19,7 @@ constexpr const char* kAbout =
     "  metier list --cell cells/demo.toml              what it offers\n"
     "  metier run opc.tcp://127.0.0.1:48421 JointPtpMoveSkill --fields\n"
     "  metier square --cell cells/demo.toml            move every arm along a square\n"
+    "  metier pick-place --cell cells/pick_and_place.toml   pick and place ten parts each\n"
     "Without a server:\n"
     "  metier check ur5 --to-pose 0.4,-0.1,0.3,3.14,0,0 --linear    would it move, and how";
 
@@ -33,6 +34,7 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addSkillCommands(app, exit);
     metier::app::addOwn(app, exit);
     metier::app::addSquare(app, exit);
+    metier::app::addPickPlace(app, exit);
     metier::app::addFk(app, exit);
     metier::app::addIk(app, exit);
     metier::app::addCheck(app, exit);

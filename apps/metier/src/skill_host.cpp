@@ -154,10 +154,18 @@ Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {
     return skills_->serveControl(controller, control_);
 }
 
+std::vector<DeviceSkill> sharing(const std::shared_ptr<skill::Resource>& resource,
+                                 std::vector<std::unique_ptr<skill::Skill>> skills) {
+    std::vector<DeviceSkill> all;
+    for (auto& skill : skills) {
+        all.push_back({std::move(skill), resource});
+    }
+    return all;
+}
+
 Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
                                     const std::vector<std::string>& wanted,
-                                    std::vector<std::unique_ptr<skill::Skill>> skills,
-                                    const std::shared_ptr<skill::Resource>& resource) {
+                                    std::vector<DeviceSkill> skills) {
     const auto nodes = server_->nodes().browse(folder);
     if (!nodes) {
         return fail(nodes.error());
@@ -166,8 +174,8 @@ Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
         return all_wanted;
     }
     for (const auto& name : wanted) {
-        const auto found = std::find_if(skills.begin(), skills.end(), [&](const auto& skill) {
-            return skill && skill->description().name == name;
+        const auto found = std::find_if(skills.begin(), skills.end(), [&](const auto& one) {
+            return one.skill && one.skill->description().name == name;
         });
         if (found == skills.end()) {
             return fail(Errc::not_supported, fmt::format("no skill '{}' for this device", name));
@@ -176,10 +184,10 @@ Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
             return reference.browse_name.name == name;
         });
         const skill::ProgramOptions options{
-            .resource = resource, .control = control_, .names = names_};
+            .resource = found->resource, .control = control_, .names = names_};
         const auto offered = node == nodes->end()
-                                 ? skills_->publish(folder, std::move(*found), options)
-                                 : skills_->bind(node->target, std::move(*found), options);
+                                 ? skills_->publish(folder, std::move(found->skill), options)
+                                 : skills_->bind(node->target, std::move(found->skill), options);
         if (!offered) {
             return fail(offered.error());
         }

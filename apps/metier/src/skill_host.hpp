@@ -21,6 +21,16 @@
 
 namespace metier::app {
 
+/// A skill that a device can have.
+struct DeviceSkill {
+    std::unique_ptr<skill::Skill> skill;
+    std::shared_ptr<skill::Resource> resource;  ///< its skills exclude each other; none: not this
+};
+
+/// Skills that exclude each other.
+std::vector<DeviceSkill> sharing(const std::shared_ptr<skill::Resource>& resource,
+                                 std::vector<std::unique_ptr<skill::Skill>> skills);
+
 /// An OPC UA server with the skills of one arm: what all servers of arms have in common.
 ///
 /// Threading: one thread makes, starts and ends it.
@@ -48,13 +58,11 @@ public:
     /// For the Programs of the server.
     const std::shared_ptr<skill::ExecutionNames>& names() const noexcept { return names_; }
     /// Offers those of `skills` that are `wanted`: at the nodes of the NodeSet that have their
-    /// names, at new nodes below `folder` for others. They exclude each other by `resource`.
+    /// names, at new nodes below `folder` for others.
     /// Errors: not_supported (no skill of a wanted name), invalid_argument (the NodeSet has one
-    /// that
-    ///         is not wanted); those of SkillServer.
+    ///         that is not wanted); those of SkillServer.
     Result<void> offerSkills(const opcua::NodeId& folder, const std::vector<std::string>& wanted,
-                             std::vector<std::unique_ptr<skill::Skill>> skills,
-                             const std::shared_ptr<skill::Resource>& resource);
+                             std::vector<DeviceSkill> skills);
     /// Halts the skills that are offered by now when the device is lost or stops by itself, at once
     /// if it is so already. The device must outlive this. It is stopped, too, by stopOnStall().
     template <typename Device>

@@ -1,0 +1,285 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <utility>
+
+#include "metier/base/queue.hpp"
+#include "metier/skill_client/skill_handle.hpp"
+#include "pick_place_command.hpp"
+#include "progress_view.hpp"
+#include "servers.hpp"
+#include "value_text.hpp"
+
+namespace metier::app {
+namespace {
+
+using skill_client::SkillHandle;
+
+constexpr const char* kType = "PickPlaceSkillType";
+constexpr std::size_t kUpdates = 10'000;
+
+/// One PickPlaceSkill with the connection that it is used over.
+struct Component {
+    std::string name;
+    std::string url;
+    std::unique_ptr<opcua::Client> client;
+    SkillHandle skill;  // ends before its client
+};
+
+struct Tally {
+    int placed = 0;
+    std::vector<std::string> failures;  // "part 3: why"
+    double time = 0.0;                  // of all parts [s]
+};
+
+struct Update {
+    std::size_t row = 0;
+    double fraction = 0.0;
+    std::string text;
+    bool last = false;
+};
+
+Result<std::vector<Component>> findComponents(const std::vector<std::string>& urls) {
+    std::vector<Component> found;
+    for (const auto& url : urls) {
+        auto client = connectTo(url);
+        if (!client) {
+            return fail(client.error());
+        }
+        const auto skills = skill_client::findSkills(**client);
+        if (!skills) {
+            return fail(skills.error());
+        }
+        const auto skill = std::find_if(skills->begin(), skills->end(), [](const auto& address) {
+            return address.type_name == kType;
+        });
+        if (skill == skills->end()) {
+            continue;
+        }
+        auto handle = SkillHandle::open(**client, *skill);
+        if (!handle) {
+            return fail(handle.error());
+        }
+        found.push_back({skill->controllerName(), url, std::move(*client), std::move(*handle)});
+    }
+    if (found.empty()) {
+        return fail(Errc::not_found, fmt::format("no skill of type {} found", kType));
+    }
+    return found;
+}
+
+/// Where the part of that number is, if the first one is at `first`.
+Frame placeOf(int part, const Frame& first, const PickPlaceSettings& settings) {
+    const double angle = settings.turn * part;
+    const double x = first.x + settings.step.x * part;
+    const double y = first.y + settings.step.y * part;
+    auto frame = first;
+    frame.x = std::cos(angle) * x - std::sin(angle) * y;
+    frame.y = std::sin(angle) * x + std::cos(angle) * y;
+    frame.z += settings.step.z * part;
+    frame.c += angle;
+    return frame;
+}
+
+class Mover {
+public:
+    Mover(Component& component, const PickPlaceSettings& settings,
+          std::function<void(double, std::string)> tell)
+        : component_(component), settings_(settings), tell_(std::move(tell)) {}
+
+    Tally run() {
+        const auto begun = std::chrono::steady_clock::now();
+        for (int part = 0; part < settings_.parts && ready(part); ++part) {
+            tell_(static_cast<double>(part) / settings_.parts,
+                  fmt::format("part {} of {}", part + 1, settings_.parts));
+            move(part);
+        }
+        tally_.time =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        return std::move(tally_);
+    }
+
+private:
+    void note(int part, const std::string& why) {
+        tally_.failures.push_back(fmt::format("part {}: {}", part + 1, why));
+    }
+
+    /// Resets what is Halted. \return whether the skill can begin
+    bool ready(int part) {
+        const auto state = component_.skill.state();
+        if (state && *state != skill::State::halted) {
+            return true;
+        }
+        const auto reset = state ? component_.skill.reset() : opcua::Answer<>();
+        if (!state || !reset) {
+            note(part, !state ? state.error().message : "Reset: " + reset.error().message);
+            return false;
+        }
+        return true;
+    }
+
+    void move(int part) {
+        const skill::ValueMap parameters{{"PickPose", placeOf(part, settings_.pick, settings_)},
+                                         {"PlacePose", placeOf(part, settings_.place, settings_)},
+                                         {"ApproachDistance", settings_.approach},
+                                         {"GraspForce", settings_.force}};
+        const auto deadline = std::chrono::steady_clock::now() + settings_.timeout;
+        const auto result = component_.skill.runWith({"", parameters}, deadline);
+        if (result) {
+            ++tally_.placed;
+        } else {
+            note(part, result.error().message);
+        }
+    }
+
+    Component& component_;
+    const PickPlaceSettings& settings_;
+    const std::function<void(double, std::string)> tell_;
+    Tally tally_;
+};
+
+/// All components at the same time, one thread each; this one shows how it goes.
+std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSettings& settings) {
+    std::vector<std::string> names;
+    for (const auto& component : components) {
+        names.push_back(component.name);
+    }
+    std::vector<Tally> tallies(components.size());
+    ProgressView view(names, ProgressView::detect());
+    Queue<Update> updates(kUpdates);
+    std::vector<std::jthread> threads;
+    for (std::size_t row = 0; row < components.size(); ++row) {
+        threads.emplace_back([&, row] {
+            Mover mover(components[row], settings, [&](double fraction, std::string text) {
+                updates.tryPush({row, fraction, std::move(text), false});
+            });
+            tallies[row] = mover.run();
+            updates.tryPush({row, 1.0, tallies[row].failures.empty() ? "done" : "failed", true});
+        });
+    }
+    const auto deadline = std::chrono::steady_clock::now() + settings.timeout * settings.parts;
+    for (std::size_t running = components.size(); running > 0;) {
+        const auto update = updates.popUntil(deadline);
+        if (!update) {
+            break;  // every part has its own deadline: the threads end soon
+        }
+        if (update->last) {
+            view.finish(update->row, update->text);
+            --running;
+        } else {
+            view.update(update->row, update->fraction, update->text);
+        }
+    }
+    threads.clear();
+    return tallies;
+}
+
+std::string tableOf(const std::vector<Component>& components, const std::vector<Tally>& tallies) {
+    auto table =
+        fmt::format("{:<16} {:>6} {:>6} {:>8}\n", "component", "placed", "failed", "time/s");
+    for (std::size_t i = 0; i < components.size(); ++i) {
+        table += fmt::format("{:<16} {:>6} {:>6} {:>8.2f}\n", components[i].name, tallies[i].placed,
+                             tallies[i].failures.size(), tallies[i].time);
+        for (const auto& failure : tallies[i].failures) {
+            table += fmt::format("  {}\n", failure);
+        }
+    }
+    return table;
+}
+
+std::string jsonOf(const std::vector<Component>& components, const std::vector<Tally>& tallies) {
+    auto json = nlohmann::json::array();
+    for (std::size_t i = 0; i < components.size(); ++i) {
+        json.push_back({{"component", components[i].name},
+                        {"url", components[i].url},
+                        {"placed", tallies[i].placed},
+                        {"failures", tallies[i].failures},
+                        {"time_s", tallies[i].time}});
+    }
+    return json.dump(2) + "\n";
+}
+
+struct PickPlaceOptions {
+    ServerChoice servers;
+    PickPlaceSettings settings;
+};
+
+Exit runPickPlace(const PickPlaceOptions& options) {
+    const auto urls = addressesOf(options.servers);
+    return urls ? pickAndPlace(*urls, options.settings) : reportUsage(urls.error());
+}
+
+/// An option that is a list of numbers, as "0.3,-0.1,0.2,3.14,0,0".
+template <typename T>
+void addNumbers(CLI::App& command, const std::string& name, T& target, skill::ValueType type,
+                const std::string& description) {
+    command.add_option_function<std::string>(
+        name,
+        [&target, type, name](const std::string& text) {
+            const auto value = parseValue(type, text);
+            if (!value) {
+                throw CLI::ValidationError(name, value.error().message);
+            }
+            target = std::get<T>(*value);
+        },
+        description);
+}
+
+}  // namespace
+
+void addPickPlaceOptions(CLI::App& command, PickPlaceSettings& settings) {
+    addNumbers(command, "--pick", settings.pick, skill::ValueType::frame,
+               "Where the first part is grasped: x,y,z,a,b,c in the robot base frame [m, rad]");
+    addNumbers(command, "--place", settings.place, skill::ValueType::frame,
+               "Where the first part goes");
+    addNumbers(command, "--step", settings.step, skill::ValueType::vector3,
+               "From one part to the next: x,y,z [m]");
+    command
+        .add_option("--turn", settings.turn,
+                    "From one part to the next, about z of the robot base [rad]")
+        ->check(CLI::Range(-3.15, 3.15))
+        ->capture_default_str();
+    command.add_option("--parts", settings.parts, "How many parts")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command.add_option("--approach", settings.approach, "Distance to come in and leave [m]")
+        ->check(CLI::Range(0.0, 0.5))
+        ->capture_default_str();
+    command
+        .add_option("--force", settings.force, "Force to hold a part with [N]; 0: the gripper's")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    command.add_flag("--json", settings.json, "Print the result as JSON");
+}
+
+Exit pickAndPlace(const std::vector<std::string>& urls, const PickPlaceSettings& settings) {
+    auto components = findComponents(urls);
+    if (!components) {
+        return report(components.error());
+    }
+    const auto tallies = moveAll(*components, settings);
+    fmt::print("{}", settings.json ? jsonOf(*components, tallies) : tableOf(*components, tallies));
+    const bool all_placed = std::all_of(tallies.begin(), tallies.end(), [&](const auto& one) {
+        return one.placed == settings.parts;
+    });
+    return all_placed ? Exit::success : Exit::failed;
+}
+
+void addPickPlace(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callback, which reads it.
+    auto options = std::make_shared<PickPlaceOptions>();
+    auto* command = app.add_subcommand(
+        "pick-place", "Have every PickPlaceSkill of some servers move a row of parts");
+    command->footer(
+        "A part that fails is told with the reason; the skill is Reset and takes the next.\n"
+        "Exit status 1 if a part was not placed.");
+    addServerChoice(*command, options->servers);
+    addPickPlaceOptions(*command, options->settings);
+    command->callback([options, &exit] { exit = runPickPlace(*options); });
+}
+
+}  // namespace metier::app
