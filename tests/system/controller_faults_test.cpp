@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
                         sendScript("def other():\n  sleep(0.1)\nend\n"), Reason::error,
                         "someone stopped it"},
         ControllerFault{"speed_slider", kUr5, When::moving, sendScript("set speed 0.5\n"),
-                        Reason::error, "put its speed slider to 100 %",
+                        Reason::error, "runs at 50 % of the speed: put its speed slider to 100 %",
                         sendScript("set speed 1.0\n")}),
     nameOf);
 

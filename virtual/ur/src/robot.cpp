@@ -84,8 +84,8 @@ void Robot::cycle() {
     state_.timestamp = static_cast<double>(state_.cycle) / rate_;
     modes_->step(options_.arm.cycle, arm_.standing());
     programs_->step(arm_.standing());
-    state_.speed_scaling = state_.speed_slider * programs_->timeShare();
-    if (const auto violation = arm_.cycle(state_.speed_scaling)) {
+    state_.speed_scaling = programs_->timeShare();
+    if (const auto violation = arm_.cycle(state_.speed_scaling * state_.speed_slider)) {
         protectiveStop(*violation);
     }
     watchSafety();

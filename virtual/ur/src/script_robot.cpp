@@ -109,7 +109,6 @@ void ScriptRobot::beginCycle() {
     seen_.flange_from_tool = Pose{state.tcp_offset};
     seen_.payload_mass = state.payload;
     seen_.payload_cog = state.payload_cog;
-    seen_.speed_scaling = state.speed_scaling;
     seen_.time = state.timestamp;
     seen_.steady = parts_.arm.standing();
 

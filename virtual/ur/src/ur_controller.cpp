@@ -285,6 +285,7 @@ nlohmann::ordered_json UrController::state() const {
         {"remote_control", robot_.control() == Control::remote},
         {"joint_position", state.actual_q},
         {"tool_pose", state.actual_tcp_pose},
+        {"speed_slider", state.speed_slider},
         {"speed_scaling", state.speed_scaling},
         {"timestamp", state.timestamp},
         {"ports", std::move(ports)}};

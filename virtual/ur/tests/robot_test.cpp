@@ -311,7 +311,7 @@ TEST(Robot, OutputsThatClientsWriteAreMasked) {
     table.robot.inputsWritten({"standard_digital_output"});
     table.cycles(1);
     EXPECT_EQ(table.robot.state().io.digital_outputs, 0x20105U);
-    EXPECT_EQ(table.robot.state().speed_scaling, 0.25);
+    EXPECT_EQ(table.robot.state().speed_slider, 0.25);
 }
 
 TEST(Robot, TheWorldsWrenchIsTheForceOnTheTool) {

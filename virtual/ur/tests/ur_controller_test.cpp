@@ -238,6 +238,28 @@ TEST(UrController, DigitalOutputsOfAClientShowInTheOutputs) {
     EXPECT_EQ(bits, 0x81U);
 }
 
+TEST(UrController, TheSpeedSliderIsToldOnceAndNotInTheScalingOfTheLimiter) {
+    Cell cell;
+    RtdeClient client(cell.connect("rtde"));
+    EXPECT_EQ(client.ask('I', bytes({}, "speed_slider_mask,speed_slider_fraction")),
+              bytes({1}, "UINT32,DOUBLE"));
+    ByteWriter half;
+    half.put(std::uint8_t{1}).put(std::uint32_t{1}).put(0.5);
+    client.sendPackage('U', std::move(half).take());
+    client.setUpOutputs(125.0, "speed_scaling,target_speed_fraction");
+    double scaling = 0.0;
+    double slider = 1.0;
+    for (int i = 0; i < 100 && slider != 0.5; ++i) {
+        const auto sample = client.sample();
+        ByteReader reader(sample);
+        scaling = reader.get<double>();
+        slider = reader.get<double>();
+    }
+    EXPECT_EQ(slider, 0.5);
+    EXPECT_EQ(scaling, 1.0);
+    EXPECT_EQ(cell.state()["speed_slider"], 0.5);
+}
+
 TEST(UrController, AnInputIsFreeAgainWhenItsClientIsGone) {
     Cell cell;
     const auto names = bytes({}, "input_int_register_24");

@@ -91,7 +91,7 @@ struct RobotState {
     std::uint32_t script_line = 0;
 
     double speed_slider = 1.0;   ///< what was asked for, 0 to 1
-    double speed_scaling = 1.0;  ///< what is driven now, 0 to 1
+    double speed_scaling = 1.0;  ///< of the trajectory limiter, 0 to 1; times the slider is driven
 
     double payload = 0.0;  ///< [kg]
     Vector3 payload_cog{};

@@ -24,13 +24,12 @@ struct RobotState {
     Pose target_tool_pose;
     Vector6 actual_twist{};
     Vector6 target_twist{};
-    Vector6 wrench{};            ///< at the tool
-    Pose flange_from_tool;       ///< as set_tcp set it
-    double payload_mass = 0.0;   ///< [kg]
-    Vector3 payload_cog{};       ///< [m]
-    double speed_scaling = 1.0;  ///< what of the programmed speed is driven now, 0 to 1
-    double time = 0.0;           ///< of the controller [s]; counts cycles, never a clock
-    bool steady = true;          ///< stands still
+    Vector6 wrench{};           ///< at the tool
+    Pose flange_from_tool;      ///< as set_tcp set it
+    double payload_mass = 0.0;  ///< [kg]
+    Vector3 payload_cog{};      ///< [m]
+    double time = 0.0;          ///< of the controller [s]; counts cycles, never a clock
+    bool steady = true;         ///< stands still
 };
 
 enum class RegisterBank { input, output };
