@@ -44,6 +44,20 @@ protected:
             ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the jaws do not move";
         }
     }
+    /// Hears of the gripper's live PartHeld, its value now first.
+    opcua::Subscription watchPartHeld(Queue<bool>& heard) {
+        const auto metier = client_->namespaceIndex("urn:metier:skills").value();
+        const auto node =
+            client_->translate(grasp_.address().controller()->node, {{metier, "PartHeld"}});
+        return client_
+            ->subscribeData(node.value(), {},
+                            [&](const opcua::DataValue& now) {
+                                if (const auto held = now.value.as<bool>()) {
+                                    heard.tryPush(*held);
+                                }
+                            })
+            .value();
+    }
     void inject(const std::string& fault, const std::string& value = "") {
         injected_ = std::chrono::system_clock::now();
         cell_.inject("controller", fault, value);
@@ -122,6 +136,17 @@ TEST_F(GripperOnItsWire, ThatLostItsPartWhileReadySaysSoAtTheNextGrasp) {
     expectReleases();
     cell_.inject("controller", "part", "30");
     EXPECT_TRUE(grasp_.run({}, inAMinute()));
+}
+
+TEST_F(GripperOnItsWire, TellsAtOnceThatItLostItsPartWhileNoSkillRuns) {
+    cell_.inject("controller", "part", "30");
+    ASSERT_TRUE(grasp_.run({}, inAMinute()));
+    Queue<bool> heard{10};
+    const auto watch = watchPartHeld(heard);
+    EXPECT_EQ(heard.popUntil(inAMinute()), true);
+    cell_.inject("controller", "lost-part");
+    EXPECT_EQ(heard.popUntil(inAMinute()), false);
+    EXPECT_EQ(*grasp_.state(), State::ready);
 }
 
 TEST_F(GripperOnItsWire, FindsNoPartThatIsLostOnTheWayToIt) {
@@ -215,6 +240,19 @@ TEST_F(GripperOnItsWire, HoldsAPartOverALinkThatIsLateWithinWhatTheDriverAllows)
     EXPECT_EQ(end.to, State::ready) << end.reason_text;
     EXPECT_EQ(grasp_.result().value().at("PartHeld"), skill::Value(true));
     EXPECT_TRUE(release_.run({}, inAMinute()));
+}
+
+// ---- a gripper of the arm's own controller
+// --------------------------------------------------------
+
+TEST(BuiltInGripper, ShowsAtTheArmsControllerThatItHoldsNoPart) {
+    RunningCell cell(deviceCell("edo"));
+    const auto client = connectTo(cell.url("arm"));
+    const auto grasp = openSkill(*client, "GraspGripperSkill");
+    const auto metier = client->namespaceIndex("urn:metier:skills").value();
+    const auto node =
+        client->translate(grasp.address().controller()->node, {{metier, "PartHeld"}}).value();
+    EXPECT_EQ(client->read(node).value(), opcua::Value::of(false));
 }
 
 }  // namespace

@@ -133,6 +133,9 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
     host_->haltOnLossOf(*device_.arm);
     if (device_.gripper != nullptr) {
         host_->stopOnStall(*device_.gripper);
+        if (auto shown = host_->publishGripper(system->controller, *device_.gripper); !shown) {
+            return shown;
+        }
     }
     return host_->publishArm(*system, *device_.arm, model_);
 }

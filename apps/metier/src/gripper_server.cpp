@@ -55,7 +55,7 @@ Result<void> GripperServer::offer(const configuration::GripperServer& config) {
         return offered;
     }
     host_->haltOnLossOf(*device_.gripper);
-    return {};
+    return host_->publishGripper(found->controller, *device_.gripper);
 }
 
 }  // namespace metier::app

@@ -10,6 +10,7 @@
 
 #include "kinematics_conversion.hpp"
 #include "metier/geometry/frame.hpp"
+#include "metier/opcua_skill/gripper_node.hpp"
 
 namespace metier::app {
 namespace {
@@ -148,6 +149,17 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
                                    const device::Arm& arm, const motion::RobotModel& model) {
     return opcua_skill::publishKinematics(server_->nodes(), system, toKinematicsData(model),
                                           [&arm, &model] { return stateOf(arm, model); });
+}
+
+Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,
+                                       const device::Gripper& gripper) {
+    return opcua_skill::publishPartHeld(server_->nodes(), parent,
+                                        [&gripper]() -> std::optional<bool> {
+                                            const auto state = gripper.state();
+                                            return state.safety == device::SafetyState::disconnected
+                                                       ? std::nullopt
+                                                       : std::optional(state.part_held);
+                                        });
 }
 
 Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {

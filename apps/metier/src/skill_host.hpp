@@ -51,6 +51,8 @@ public:
     /// Shows what is known of the arm, and its live state. `arm` and `model` must outlive this.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const device::Arm& arm,
                             const motion::RobotModel& model);
+    /// Shows at `parent` whether the gripper holds a part. `gripper` must outlive this.
+    Result<void> publishGripper(const opcua::NodeId& parent, const device::Gripper& gripper);
     /// Lets clients take control of the skills below `controller`, by lease or lock.
     Result<void> offerControl(const opcua::NodeId& controller);
     /// For the Programs of the controller's skills.

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "metier/opcua_skill/gripper_node.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "served_skills.hpp"
@@ -172,6 +173,31 @@ TEST_F(Publishing, KinematicsAreReadBack) {
     EXPECT_EQ(value({{*metier, "SafetyState"}}).as<std::int32_t>(), 1);
     EXPECT_EQ(value({{*metier, "ToolFrames"}}),
               opcua::Value::of(std::vector<std::string>{"", "gripper"}));
+}
+
+TEST_F(Publishing, APartHeldIsLiveAndBadWhileNobodyKnows) {
+    std::atomic<int> held{1};
+    ASSERT_TRUE(
+        publishPartHeld(server().nodes(), system().controller, [&]() -> std::optional<bool> {
+            return held < 0 ? std::nullopt : std::optional(held == 1);
+        }));
+    serve();
+    const auto client = connect();
+    const auto metier = client->namespaceIndex("urn:metier:skills").value();
+    const auto node = client->translate(system().controller, {{metier, "PartHeld"}}).value();
+    Queue<opcua::DataValue> seen{10};
+    const auto watch =
+        client->subscribeData(node, {.sampling_interval = std::chrono::milliseconds(10)},
+                              [&](const opcua::DataValue& value) { seen.tryPush(value); });
+    ASSERT_TRUE(watch) << watch.error().message;
+    const auto next = [&] {
+        return seen.popUntil(clock_.now() + std::chrono::seconds(10)).value();
+    };
+    EXPECT_EQ(next().value, opcua::Value::of(true));
+    held = 0;
+    EXPECT_EQ(next().value, opcua::Value::of(false));
+    held = -1;
+    EXPECT_EQ(next().status.name(), "BadNoCommunication");
 }
 
 TEST_F(Publishing, KinematicsOfDifferentLengthsAreRefused) {
