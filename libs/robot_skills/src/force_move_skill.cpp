@@ -11,6 +11,7 @@
 #include "move_source.hpp"
 #include "planned_body.hpp"
 #include "planned_motion.hpp"
+#include "sensor_failure.hpp"
 #include "source_body.hpp"
 
 namespace metier::robot_skills {
@@ -83,12 +84,12 @@ class SensorWatch final : public ContactWatch {
 public:
     SensorWatch(const FeelingArm& arm, const ForceMoveParameters& parameters,
                 const motion::ForceLimit& limit)
-        : arm_(arm), parameters_(parameters), limit_(limit) {}
+        : arm_(arm), parameters_(parameters), limit_(limit), failure_(arm.sensor) {}
 
     bool mustEnd(const device::ArmState& state) noexcept override {
         const auto sample = arm_.sensor.sample();
         if (sample.health != SafetyState::normal) {
-            sensor_lost_ = true;
+            failure_.keep(sample.health);
             return true;
         }
         const auto rotation = arm_.model.kinematics().forward(toVector(state.position)).rotation;
@@ -102,10 +103,10 @@ public:
     void tell(const skill::Execution& tell, const MoveResults& results) override {
         const bool broken =
             excess_ && excess_->quantity == motion::ForceExcess::Quantity::not_finite;
-        if (sensor_lost_ || broken) {
+        if (failure_.kept() || broken) {
             tell.fail(skill::Reason::error,
                       fmt::format("{} failed during the motion: {}", arm_.sensor.name(),
-                                  broken ? "its force is not finite" : arm_.sensor.safety().text));
+                                  broken ? "its force is not finite" : failure_.text()));
             return;
         }
         tellForceMove(tell, parameters_, results, met_);
@@ -116,7 +117,7 @@ private:
     ForceMoveParameters parameters_;
     motion::ForceLimit limit_;
     std::optional<motion::ForceExcess> excess_;
-    bool sensor_lost_ = false;
+    SensorFailure failure_;
     MetForce met_;
 };
 

@@ -105,12 +105,25 @@ public:
     device::WrenchSample now;
     const std::string& name() const noexcept override { return name_; }
     device::WrenchSample sample() const noexcept override { return now; }
-    device::Safety safety() const override { return {now.health, "netft: silent", false}; }
+    device::Safety safety() const override { return {now.health, text_, false}; }
     Result<void> tare() override { return {}; }
-    device::Registration onSafetyChange(SafetyCallback /*callback*/) override { return {}; }
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        hear_ = std::move(callback);
+        return device::Registration([this] { hear_ = nullptr; });
+    }
+    /// Changes its state, and says so.
+    void become(SafetyState health, const std::string& text = "") {
+        now.health = health;
+        text_ = text;
+        if (hear_) {
+            hear_(safety());
+        }
+    }
 
 private:
     const std::string name_ = "netft";
+    std::string text_ = "netft: silent";
+    SafetyCallback hear_;
 };
 
 class ForceMove : public ::testing::Test {
@@ -205,6 +218,31 @@ TEST_F(ForceMove, ASensorThatFailsStopsIt) {
         sensor.now.health = SafetyState::normal;
         ASSERT_TRUE(force.reset(bench.caller()));
     }
+}
+
+TEST_F(ForceMove, KeepsTheFirstReasonOfASensorThatRecoversWhileTheArmBrakes) {
+    ASSERT_TRUE(bench.start(kForceMove, downUntil(20)));
+    bench.steps(15);
+    sensor.become(SafetyState::fault, "netft: saturation");
+    bench.steps(1);
+    sensor.become(SafetyState::disconnected, "netft: no record");
+    bench.steps(1);
+    sensor.become(SafetyState::normal);
+    ASSERT_TRUE(bench.stepUntil(kForceMove, State::halted));
+    EXPECT_EQ(force.reasonText(), "netft failed during the motion: netft: saturation");
+}
+
+TEST_F(ForceMove, TellsWhatASensorWasThatIsWellAgainBeforeItSaysWhy) {
+    ASSERT_TRUE(bench.start(kForceMove, downUntil(20)));
+    sensor.become(SafetyState::fault, "netft: saturation");
+    sensor.become(SafetyState::normal);
+    bench.steps(15);
+    sensor.now.health = SafetyState::disconnected;
+    bench.steps(1);
+    sensor.become(SafetyState::normal);
+    ASSERT_TRUE(bench.stepUntil(kForceMove, State::halted));
+    EXPECT_EQ(force.reasonText(),
+              "netft failed during the motion: disconnected for a moment, and well again");
 }
 
 TEST_F(ForceMove, DoesNotBeginWithoutItsSensor) {
