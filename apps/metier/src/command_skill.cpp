@@ -14,6 +14,9 @@ namespace {
 using skill::Method;
 using skill::State;
 
+constexpr auto kResetTimeout = std::chrono::seconds(30);
+constexpr auto kResetPause = std::chrono::milliseconds(100);
+
 struct Command {
     const char* name;
     const char* help;
@@ -53,6 +56,20 @@ Exit stayUntilEnd(OpenSkill& open, const CommandOptions& options) {
     return Exit::success;
 }
 
+/// A controller that takes longer for a Reset than its server waits for it is asked again.
+opcua::Answer<> call(skill_client::SkillHandle& skill, const Command& command) {
+    const auto deadline = std::chrono::steady_clock::now() + kResetTimeout;
+    auto called = skill.call(command.method);
+    while (command.method == Method::reset && !called && called.error().code == Errc::timeout &&
+           std::chrono::steady_clock::now() < deadline) {
+        // The server is not to be kept busy: it may be ready by itself meanwhile, or not.
+        static_cast<void>(
+            skill.awaitState(command.then, std::chrono::steady_clock::now() + kResetPause));
+        called = skill.call(command.method);
+    }
+    return called;
+}
+
 Exit runCommand(const Command& command, const CommandOptions& options) {
     const bool stays = command.method == Method::resume;
     auto open = openSkill(options.choice, stays ? OnLoss::reconnect : OnLoss::fail);
@@ -60,7 +77,7 @@ Exit runCommand(const Command& command, const CommandOptions& options) {
         return report(open.error());
     }
     showConnection(*open->client);
-    if (const auto called = open->skill.call(command.method); !called) {
+    if (const auto called = call(open->skill, command); !called) {
         return reportOutcome(called.error());
     }
     if (command.method == Method::suspend) {  // follows at standstill

@@ -110,12 +110,12 @@ Result<void> EdoConnection::resetFault() {
     if (safety.state == SafetyState::disconnected) {
         return fail(Errc::connection_lost, safety.text);
     }
-    auto outcome = session_.resetDesk().ask(options_.reset_wait);
-    if (!outcome && outcome.error().code == Errc::timeout) {
+    const auto outcome = session_.resetDesk().ask();
+    if (!outcome) {
         return fail(Errc::timeout, fmt::format("{}: the reset goes on, ask again ({})",
                                                options_.name, core_.safety().text));
     }
-    return outcome;
+    return *outcome;
 }
 
 // ---- cycle thread ------------------------------------------------------------------------------

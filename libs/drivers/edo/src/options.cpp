@@ -74,7 +74,6 @@ void readTimes(const configuration::Settings& settings, EdoOptions& options) {
     read("joint_timeout", options.joint_timeout, 0.03, 10);
     read("machine_timeout", options.machine_timeout, 0.3, 10);
     read("hold_control", options.hold_control, 0.05, 60);
-    read("reset_wait", options.reset_wait, 0, 30);
     read("following_time", options.following.time, 0.02, 10);
 }
 

@@ -94,7 +94,7 @@ public:
     /// What another thread gets that asks for a reset and waits for its end.
     Result<void> reset() {
         auto answer = std::async(std::launch::async, [this] {
-            return session.resetDesk().ask(std::chrono::seconds(20));
+            return session.resetDesk().ask(std::chrono::seconds(20)).value();
         });
         while (answer.wait_for(std::chrono::microseconds(50)) != std::future_status::ready) {
             cycle();

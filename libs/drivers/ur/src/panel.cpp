@@ -18,7 +18,7 @@ namespace {
 constexpr auto kUploadTimeout = 2s;
 constexpr auto kRemoteCheckTimeout = 500ms;
 constexpr auto kScriptLinkLife = 2s;
-constexpr auto kSlice = 20ms;  // how soon a new job or the end is seen
+constexpr auto kSlice = 5ms;  // how soon a new job or the end is seen
 
 }  // namespace
 
@@ -35,13 +35,16 @@ void Panel::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         const auto now = std::chrono::steady_clock::now();
         if (auto job = parts_.jobs.popUntil(script_link_ ? now : now + kSlice)) {
-            handle(*job, stop);
+            handle(*job);
+        }
+        if (parts_.resets.taken()) {
+            parts_.resets.answer(recovery_.run(stop));
         }
         drain();
     }
 }
 
-void Panel::handle(PanelJob& job, const std::stop_token& stop) {
+void Panel::handle(const PanelJob& job) {
     switch (job.kind) {
         case PanelJob::Kind::upload:
             if (const auto uploaded = upload(job.token); !uploaded) {
@@ -55,9 +58,6 @@ void Panel::handle(PanelJob& job, const std::stop_token& stop) {
             if (const auto stopped = recovery_.stopProgram(); !stopped) {
                 spdlog::warn("{}", stopped.error().message);
             }
-            break;
-        case PanelJob::Kind::reset:
-            job.outcome->set_value(recovery_.run(stop));
             break;
     }
 }

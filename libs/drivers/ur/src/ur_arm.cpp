@@ -19,7 +19,6 @@ namespace {
 
 constexpr auto kConnectTimeout = 2s;
 constexpr auto kFirstPackage = 1s;  // from the start of RTDE to its first data
-constexpr auto kResetWait = 500ms;  // docs/decisions/0006-reset-of-a-remote-arm-waits.md
 constexpr std::size_t kMaxJobs = 16;
 constexpr std::int32_t kLinkCycles = 3;
 constexpr double kFullSpeed = 0.99;
@@ -80,9 +79,10 @@ UrArm::UrArm(UrArmOptions options)
       reporter_(core_, [this] { notifier_.signal(); }),
       streamer_(core_, streamOptions(options_), firstToken()),
       notifier_([this] { notify(); }),
-      panel_({jobs_, reporter_, [this](std::int32_t token) { streamer_.refuseStart(token); }},
-             {options_.name, options_.host}, options_.settings, scriptOptions(options_.settings),
-             [this] { return observed_.read(); }),
+      panel_(
+          {jobs_, resets_, reporter_, [this](std::int32_t token) { streamer_.refuseStart(token); }},
+          {options_.name, options_.host}, options_.settings, scriptOptions(options_.settings),
+          [this] { return observed_.read(); }),
       primary_(options_.host, options_.settings.primary_port,
                [this](const primary::Package& package) { hear(package); }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -116,21 +116,12 @@ Result<void> UrArm::resetFault() {
     if (core_.safetyState() == SafetyState::disconnected) {
         return fail(Errc::connection_lost, core_.safety().text);
     }
-    const std::lock_guard lock(reset_mutex_);
-    if (!reset_.valid()) {
-        auto outcome = std::make_shared<std::promise<Result<void>>>();
-        auto future = outcome->get_future().share();
-        if (!jobs_.tryPush({PanelJob::Kind::reset, 0, std::move(outcome)})) {
-            return fail(Errc::timeout, options_.name + ": busy with what was asked before");
-        }
-        reset_ = std::move(future);
-    }
-    if (reset_.wait_for(kResetWait) != std::future_status::ready) {
+    const auto outcome = resets_.ask();
+    if (!outcome) {
         return fail(Errc::timeout, fmt::format("{}: the reset goes on: try again ({})",
                                                options_.name, core_.safety().text));
     }
-    const auto done = std::exchange(reset_, {});
-    return done.get();
+    return *outcome;
 }
 
 device::Registration UrArm::onSafetyChange(SafetyCallback callback) {
@@ -139,10 +130,10 @@ device::Registration UrArm::onSafetyChange(SafetyCallback callback) {
 
 void UrArm::notify() {
     if (const auto token = upload_.exchange(0); token != 0) {
-        jobs_.tryPush({PanelJob::Kind::upload, token, {}});
+        jobs_.tryPush({PanelJob::Kind::upload, token});
     }
     if (stop_program_.exchange(false)) {
-        jobs_.tryPush({PanelJob::Kind::stop_program, 0, {}});
+        jobs_.tryPush({PanelJob::Kind::stop_program, 0});
     }
     core_.dispatch();
 }

@@ -18,12 +18,6 @@ Result<void> OrderDesk::ask(const Motion& motion, device::Gripper::Done done) {
     return {};
 }
 
-std::future<Result<void>> OrderDesk::askReset() {
-    const std::lock_guard lock(mutex_);
-    reset_asked_ = true;
-    return resets_.emplace_back().get_future();
-}
-
 void OrderDesk::open() {
     const std::lock_guard lock(mutex_);
     closed_.reset();
@@ -44,28 +38,11 @@ bool OrderDesk::occupied() const {
     return done_ && !outcome_;
 }
 
-bool OrderDesk::takeReset() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(reset_asked_, false);
-}
-
 void OrderDesk::endMotion(Result<device::GripperOutcome> outcome) {
     const std::lock_guard lock(mutex_);
     if (done_ && !outcome_) {
         asked_.reset();
         outcome_ = std::move(outcome);
-    }
-}
-
-void OrderDesk::endReset(const Result<void>& outcome) {
-    std::vector<std::promise<Result<void>>> answered;
-    {
-        const std::lock_guard lock(mutex_);
-        reset_asked_ = false;
-        answered.swap(resets_);
-    }
-    for (auto& promise : answered) {
-        promise.set_value(outcome);
     }
 }
 

@@ -17,7 +17,6 @@ constexpr auto kConnectTimeout = 1s;
 constexpr auto kSendTimeout = 200ms;
 // How long an order from another thread may lie before the gripper gets it.
 constexpr auto kSlice = 5ms;
-constexpr auto kResetWait = 500ms;
 
 SteadyTime now() {
     return std::chrono::steady_clock::now();
@@ -75,11 +74,11 @@ Result<void> Wsg50Gripper::Session::resetFault() {
     if (safety.state == SafetyState::disconnected) {
         return fail(Errc::connection_lost, safety.text);
     }
-    auto answer = desk_.askReset();
-    if (answer.wait_for(kResetWait) == std::future_status::ready) {
-        return answer.get();
+    const auto outcome = resets_.ask();
+    if (!outcome) {
+        return fail(Errc::timeout, safety_.safety().text + "; Reset again when it is done");
     }
-    return fail(Errc::device_fault, safety_.safety().text + "; Reset again when it is done");
+    return *outcome;
 }
 
 void Wsg50Gripper::Session::run(const std::stop_token& stop) {
@@ -104,7 +103,7 @@ Result<void> Wsg50Gripper::Session::connection(const std::stop_token& stop) {
         return fail(link.error());
     }
     // What was asked before belongs to the connection before.
-    desk_.endReset(fail(Errc::connection_lost, named("the connection was lost")));
+    resets_.answer(fail(Errc::connection_lost, named("the connection was lost")));
     link_ = &*link;
     sent_ = {};
     auto conversation_options = options_.conversation;
@@ -167,7 +166,7 @@ void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
     } else if (stop) {
         conversation.stop(now());
     }
-    if (conversation.started() && desk_.takeReset()) {
+    if (conversation.started() && resets_.taken()) {
         conversation.reset(now());
     }
 }
@@ -186,7 +185,7 @@ void Wsg50Gripper::Session::lost(const Error& why) {
     desk_.close({Errc::connection_lost, why.message});
     setSafety({SafetyState::disconnected, text, false});
     desk_.endMotion(fail(Errc::connection_lost, text));
-    desk_.endReset(fail(Errc::connection_lost, text));
+    resets_.answer(fail(Errc::connection_lost, text));
     notifier_.signal();
 }
 
@@ -240,7 +239,7 @@ void Wsg50Gripper::Session::onMotionEnd(Result<device::GripperOutcome> outcome) 
 }
 
 void Wsg50Gripper::Session::onResetEnd(Result<void> outcome) {
-    desk_.endReset(outcome ? outcome : fail(outcome.error().code, named(outcome.error().message)));
+    resets_.answer(outcome ? outcome : fail(outcome.error().code, named(outcome.error().message)));
 }
 
 }  // namespace metier::wsg50_driver

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "metier/device/notifier.hpp"
+#include "metier/device/reset_desk.hpp"
 #include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/link/tcp_link.hpp"
@@ -62,6 +63,7 @@ private:
     device::SharedValue<device::GripperState> state_;
     device::SafetyPublisher safety_;
     OrderDesk desk_;
+    device::ResetDesk resets_;
 
     link::TcpLink* link_ = nullptr;  // during a connection
     Result<void> sent_;              // the first failure of this connection

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "fake_gripper.hpp"
+#include "metier/device/reset_desk.hpp"
 #include "metier/wsg50_driver/wsg50_gripper.hpp"
 
 namespace metier::wsg50_driver::testing {
@@ -235,7 +236,9 @@ TEST_F(Gripper, ThatIsLostDuringHomingMustBeResetAgain) {
     auto reset = std::async(std::launch::async, [&] { return gripper->resetFault(); });
     ASSERT_TRUE(fake.got(0x20));
     fake.drop();
-    EXPECT_EQ(reset.get().error().code, Errc::connection_lost);
+    const auto asked = reset.get();
+    ASSERT_FALSE(asked);
+    EXPECT_TRUE(asked.error().code == Errc::connection_lost || asked.error().code == Errc::timeout);
     ASSERT_TRUE(fake.connections(2));
     ASSERT_TRUE(watch->reaches(SafetyState::fault));
     const auto ids = fake.ids();
@@ -270,17 +273,26 @@ TEST_F(Gripper, IsResetFromAFastStop) {
     auto reset = std::async(std::launch::async, [&] { return gripper->resetFault(); });
     ASSERT_TRUE(fake.got(0x24));
     fake.set({});
-    EXPECT_TRUE(reset.get());
     EXPECT_TRUE(watch->reaches(SafetyState::normal));
+    const auto asked = reset.get();
+    EXPECT_TRUE(asked || asked.error().code == Errc::timeout) << asked.error().message;
     EXPECT_TRUE(gripper->resetFault()) << "of a healthy one does nothing";
 }
 
 TEST_F(Gripper, TellsThatHomingTakesLongerThanAResetWaits) {
     connect({0, kIdle, 50, 0});
     ASSERT_TRUE(watch->reaches(SafetyState::fault));
-    const auto reset = gripper->resetFault();
-    ASSERT_FALSE(reset);
-    EXPECT_THAT(reset.error().message, HasSubstr("homing: the jaws move; Reset again"));
+    auto shortest = std::chrono::nanoseconds::max();
+    for (int i = 0; i < 5; ++i) {  // one of them is not held up by other work of the machine
+        const auto before = std::chrono::steady_clock::now();
+        const auto reset = gripper->resetFault();
+        shortest = std::min(shortest, std::chrono::steady_clock::now() - before);
+        ASSERT_FALSE(reset);
+        EXPECT_EQ(reset.error().code, Errc::timeout);
+        EXPECT_THAT(reset.error().message, HasSubstr("; Reset again"));
+    }
+    EXPECT_LT(shortest, 5 * device::kResetWait);
+    EXPECT_THAT(gripper->safety().text, HasSubstr("homing: the jaws move"));
     fake.set({kReferenced, kIdle, 110, 0});
     fake.send(reply(0x20, kSuccess));
     ASSERT_TRUE(watch->reaches(SafetyState::normal));

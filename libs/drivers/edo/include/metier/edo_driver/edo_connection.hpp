@@ -38,7 +38,7 @@ public:
     void stopJaws() noexcept { session_.gripperDesk().askToStop(); }
     device::GripperState gripperState() const noexcept;
 
-    /// Waits for the robot, at most EdoOptions::reset_wait.
+    /// Waits for the robot, at most device::kResetWait.
     /// Errors: device_fault, connection_lost; timeout if it is still under way: ask again.
     Result<void> resetFault();
 

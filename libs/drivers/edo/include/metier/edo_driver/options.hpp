@@ -48,7 +48,6 @@ struct EdoOptions {
     FollowingOptions following;
     GripperOptions gripper;
     ResetRequest reset;
-    Duration reset_wait = std::chrono::milliseconds(500);  ///< longest wait of resetFault()
     Duration joint_timeout = std::chrono::milliseconds(100);
     Duration machine_timeout = std::chrono::seconds(1);
     Duration hold_control = std::chrono::milliseconds(300);  ///< at rest, before it is given back

@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
+#include "metier/device/reset_desk.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/edo_driver/arm_drive.hpp"
 #include "metier/edo_driver/gripper_desk.hpp"
 #include "metier/edo_driver/recovery.hpp"
-#include "metier/edo_driver/reset_desk.hpp"
 
 namespace metier::edo_driver {
 
@@ -34,7 +34,7 @@ public:
     /// Whether control is with the robot.
     bool closed() const noexcept { return arm_.free(); }
 
-    ResetDesk& resetDesk() noexcept { return reset_desk_; }
+    device::ResetDesk& resetDesk() noexcept { return reset_desk_; }
     GripperDesk& gripperDesk() noexcept { return gripper_desk_; }
     device::GripperState gripperState() const noexcept { return gripper_state_.read(); }
 
@@ -65,7 +65,7 @@ private:
     ArmDrive arm_;
     GripperDrive gripper_;
     Recovery recovery_;
-    ResetDesk reset_desk_;
+    device::ResetDesk reset_desk_;
     GripperDesk gripper_desk_;
     device::SharedValue<device::GripperState> gripper_state_;
 

@@ -2,12 +2,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <future>
-#include <memory>
 #include <optional>
 #include <thread>
 
 #include "metier/base/queue.hpp"
+#include "metier/device/reset_desk.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "metier/ur_driver/recovery.hpp"
 #include "metier/ur_driver/servoj_script.hpp"
@@ -17,11 +16,9 @@ namespace metier::ur_driver {
 
 /// What takes its time and therefore is done on a thread of its own.
 struct PanelJob {
-    enum class Kind : std::uint8_t { upload, stop_program, reset };
+    enum class Kind : std::uint8_t { upload, stop_program };
     Kind kind{};
     std::int32_t token = 0;  ///< of the script to upload
-    /// Of a reset; shared with whoever waits for its outcome.
-    std::shared_ptr<std::promise<Result<void>>> outcome{};
 };
 
 using PanelJobs = Queue<PanelJob>;
@@ -33,6 +30,7 @@ public:
     ///                reporter was told why
     struct Parts {
         PanelJobs& jobs;
+        device::ResetDesk& resets;
         SafetyReporter& reporter;
         std::function<void(std::int32_t token)> refused;
     };
@@ -42,7 +40,7 @@ public:
 
 private:
     void run(const std::stop_token& stop);
-    void handle(PanelJob& job, const std::stop_token& stop);
+    void handle(const PanelJob& job);
     Result<void> upload(std::int32_t token);
     Result<void> checkRemoteControl() const;
     void drain();

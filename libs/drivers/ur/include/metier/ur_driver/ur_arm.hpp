@@ -1,14 +1,13 @@
 #pragma once
 
 #include <atomic>
-#include <future>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 
 #include "metier/device/arm_core.hpp"
 #include "metier/device/notifier.hpp"
+#include "metier/device/reset_desk.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/ur_driver/panel.hpp"
@@ -35,8 +34,8 @@ struct UrArmOptions {
 /// the driver uploads when a source is attached, over RTDE.
 ///
 /// Its cycle is driven by the controller's data packages. It connects, and connects again, by
-/// itself; it never moves by itself. resetFault() waits, at most 500 ms: what takes longer goes on,
-/// and the next resetFault() tells its outcome.
+/// itself; it never moves by itself. resetFault() waits, at most device::kResetWait: what takes
+/// longer goes on, and the next resetFault() tells its outcome.
 ///
 /// Metier observes the controller's safety and obeys it; it is not safety-rated.
 /// Source: docs/protocols/ur.md.
@@ -81,8 +80,7 @@ private:
     ControllerDescription description_;  // of the primary monitor's thread
     ControllerDescription compared_;     // of the primary monitor's thread
 
-    std::mutex reset_mutex_;
-    std::shared_future<Result<void>> reset_;  // shared by all that wait for one reset
+    device::ResetDesk resets_;
 
     // Ended in this order from below: who signals before who is signalled.
     device::Notifier notifier_;

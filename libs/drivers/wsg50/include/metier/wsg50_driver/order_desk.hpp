@@ -1,10 +1,8 @@
 #pragma once
 
 #include <atomic>
-#include <future>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 #include "metier/base/error.hpp"
 #include "metier/device/gripper.hpp"
@@ -20,8 +18,6 @@ public:
     /// Errors: resource_unavailable; what close() was given.
     Result<void> ask(const Motion& motion, device::Gripper::Done done);
     void askStop() noexcept { stop_.store(true); }
-    /// The outcome, once it is known. Errors (in the outcome): connection_lost if the gripper goes.
-    std::future<Result<void>> askReset();
 
     // ---- the talking thread ----
     /// From now on motions are accepted.
@@ -33,11 +29,8 @@ public:
     /// Whether a motion was accepted and not ended.
     bool occupied() const;
     bool takeStop() noexcept { return stop_.exchange(false); }
-    bool takeReset();
     /// Ends the motion that was accepted, if there is one.
     void endMotion(Result<device::GripperOutcome> outcome);
-    /// Answers all who asked for a reset.
-    void endReset(const Result<void>& outcome);
 
     // ---- the notifying thread ----
     /// Tells the outcome to whoever asked for the motion.
@@ -50,8 +43,6 @@ private:
     device::Gripper::Done done_;
     std::optional<Result<device::GripperOutcome>> outcome_;
     std::atomic<bool> stop_{false};
-    bool reset_asked_ = false;
-    std::vector<std::promise<Result<void>>> resets_;
 };
 
 }  // namespace metier::wsg50_driver

@@ -50,7 +50,8 @@ public:
     Result<void> release(const device::GripperRequest& request, Done done) override;
     Result<void> move(const device::GripperRequest& request, Done done) override;
     void stop() noexcept override;
-    /// Waits for the gripper, at most 0.5 s. Errors also: device_fault while it still homes.
+    /// Waits for the gripper, at most device::kResetWait. Errors also: timeout while it still
+    /// homes.
     Result<void> resetFault() override;
     device::Registration onSafetyChange(SafetyCallback callback) override;
 

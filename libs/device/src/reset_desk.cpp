@@ -1,8 +1,8 @@
-#include "metier/edo_driver/reset_desk.hpp"
+#include "metier/device/reset_desk.hpp"
 
 #include <utility>
 
-namespace metier::edo_driver {
+namespace metier::device {
 
 namespace {
 
@@ -14,7 +14,7 @@ SteadyTime now() {
 
 }  // namespace
 
-Result<void> ResetDesk::ask(std::chrono::nanoseconds longest) {
+std::optional<Result<void>> ResetDesk::ask(std::chrono::nanoseconds longest) {
     std::unique_lock lock(mutex_);
     if (!under_way_ && now() < std::exchange(unread_until_, {})) {
         return outcome_;
@@ -27,7 +27,7 @@ Result<void> ResetDesk::ask(std::chrono::nanoseconds longest) {
     ++waiting_;
     const bool answered = answered_.wait_for(lock, longest, [&] { return answers_ != before; });
     --waiting_;
-    return answered ? outcome_ : fail(Errc::timeout, "the reset goes on");
+    return answered ? std::optional(outcome_) : std::nullopt;
 }
 
 void ResetDesk::answer(Result<void> outcome) {
@@ -40,9 +40,10 @@ void ResetDesk::answer(Result<void> outcome) {
         under_way_ = false;
         ++answers_;
         outcome_ = std::move(outcome);
-        unread_until_ = waiting_ == 0 ? now() + kKept : SteadyTime{};
+        // A success shows in the safety state, and must not be taken for the end of a later fault.
+        unread_until_ = waiting_ == 0 && !outcome_ ? now() + kKept : SteadyTime{};
     }
     answered_.notify_all();
 }
 
-}  // namespace metier::edo_driver
+}  // namespace metier::device
