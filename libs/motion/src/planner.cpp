@@ -6,6 +6,7 @@
 
 #include "line_tracker.hpp"
 #include "metier/motion/self_collision.hpp"
+#include "path_layout.hpp"
 #include "plan.hpp"
 #include "request_check.hpp"
 #include "singularity.hpp"
@@ -67,18 +68,6 @@ Trajectory planJointLine(const RobotModel& model, const PtpRequest& request,
     SpeedPlan speed{SpeedMap::constant(v), {1.0, limits.acceleration / v, limits.jerk / v}};
     return makeTrajectory(model, JointLine{request.start, delta}, std::move(speed),
                           flange_from_tool);
-}
-
-Pose absoluteTarget(const Pose& start, const Pose& target, TargetReference reference) {
-    switch (reference) {
-        case TargetReference::relative_base:
-            return {start.translation + target.translation, target.rotation * start.rotation};
-        case TargetReference::relative_tool:
-            return start * target;
-        case TargetReference::base:
-            break;
-    }
-    return {target.translation, target.rotation.normalized()};
 }
 
 /// Refuses a motion in which two links would touch, nearer than they are at its start.
@@ -247,22 +236,15 @@ Planned<Trajectory> Planner::path(const PathRequest& request) const {
     wanted.bounds = lin.axis_bounds;
     wanted.end_arm_angle = lin.redundancy_angle;
     wanted.path.tool_from_flange = tool->flange_from_tool.inverse();
-    Pose before = model_->kinematics().forward(lin.start) * tool->flange_from_tool;
-    for (std::size_t i = 0; i < request.waypoints.size(); ++i) {
-        const Pose target = absoluteTarget(before, request.waypoints[i].target, lin.reference);
-        if (i == 0) {
-            wanted.path.tool = ToolPath(before, target);
-        } else {
-            wanted.path.tool.append(target, request.waypoints[i - 1].blend_radius);
-        }
-        before = target;
+    if (auto refusal = layOut(*model_, request, tool->flange_from_tool, wanted.path.tool)) {
+        return tl::unexpected(*refusal);
     }
     if (wanted.path.tool.isPoint()) {
         return standStill(*model_, lin.start, tool->flange_from_tool);
     }
     auto path = track(wanted, options_);
     if (!path) {
-        return tl::unexpected(path.error());
+        return tl::unexpected(onTheWay(path.error(), wanted.path.tool, request));
     }
     const ScalarLimits limits = addToolBounds(*model_, request, wanted.path.tool, path->bounds);
     if (auto refusal = refuseCrawling(*model_, path->bounds, limits.velocity, options_)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "metier/geometry/rotation.hpp"
 
@@ -50,22 +51,36 @@ ToolPath::ToolPath(const Pose& start, const Pose& target) : end_(start) {
     appendLine(start, target);
 }
 
-void ToolPath::appendLine(const Pose& start, const Pose& target) {
+ToolPath::Piece ToolPath::lineBetween(const Pose& start, const Pose& target) {
     const Vector3d direction = target.translation - start.translation;
     const Vector3d turn = geometry::rotationVectorBetween(start.rotation, target.rotation);
     Piece piece;
-    piece.begin = length_;
     piece.length = std::max(direction.norm(), kLengthPerAngle * turn.norm());
+    piece.whole = piece.length;
     piece.pose = start;
-    piece.line = line_count_++;
     if (piece.length > 0) {
         piece.in = {direction / piece.length, turn / piece.length};
     }
+    return piece;
+}
+
+void ToolPath::appendLine(const Pose& start, const Pose& target) {
+    Piece piece = lineBetween(start, target);
+    piece.begin = length_;
+    piece.line = line_count_++;
     length_ += piece.length;
-    distance_ += direction.norm();
-    angle_ += turn.norm();
+    distance_ += piece.length * piece.in.velocity.norm();
+    angle_ += piece.length * piece.in.spin.norm();
     end_ = target;
     pieces_.push_back(piece);
+}
+
+double ToolPath::blendLimit(const Pose& target) const noexcept {
+    const Piece& from = pieces_.back();
+    const Piece to = lineBetween(end_, target);
+    const double fastest = std::max(from.in.velocity.norm(), to.in.velocity.norm());
+    return from.whole > 0 && fastest > 0 ? 0.5 * std::min(from.whole, to.whole) * fastest
+                                         : std::numeric_limits<double>::infinity();
 }
 
 void ToolPath::append(const Pose& target, double blend_radius) {
@@ -75,7 +90,11 @@ void ToolPath::append(const Pose& target, double blend_radius) {
     Piece& from = pieces_[before];
     Piece& to = pieces_[before + 1];
     const double fastest = std::max({from.in.velocity.norm(), to.in.velocity.norm(), 1e-9});
-    const double half = std::min({blend_radius / fastest, 0.5 * from.length, 0.5 * to.length});
+    const double half = std::min(
+        {blend_radius / fastest, 0.5 * from.whole, 0.5 * to.whole, from.length, to.length});
+    if (half <= 0) {
+        return;
+    }
     Piece corner;
     corner.corner = true;
     corner.begin = from.begin + from.length - half;
@@ -177,22 +196,34 @@ double ToolPath::nearestOn(const Piece& piece, const Pose& pose) const noexcept 
     return clamped((low + high) / 2);
 }
 
+/// A corner is searched, which takes time, only where the place could be nearer than on any line.
 double ToolPath::nearest(const Pose& pose) const noexcept {
     double best = 0;
     double least = -1;
-    for (const Piece& piece : pieces_) {
-        if (piece.length <= 0) {
-            continue;
-        }
-        const double s = nearestOn(piece, pose);
-        const Pose there = at(s);
-        const double off = geometry::distanceBetween(there, pose);
-        if (least < 0 || off < least) {
-            least = off;
-            best = s;
+    for (const bool corners : {false, true}) {
+        for (const Piece& piece : pieces_) {
+            if (piece.corner != corners || piece.length <= 0 ||
+                (least >= 0 && nearestPossible(piece, pose) > least)) {
+                continue;
+            }
+            const double s = nearestOn(piece, pose);
+            const double off = geometry::distanceBetween(at(s), pose);
+            if (least < 0 || off < least) {
+                least = off;
+                best = s;
+            }
         }
     }
     return best;
+}
+
+double ToolPath::nearestPossible(const Piece& piece, const Pose& pose) noexcept {
+    if (!piece.corner) {
+        return 0;
+    }
+    const double reach =
+        0.5 * piece.length * std::max(piece.in.velocity.norm(), piece.out.velocity.norm());
+    return geometry::distanceBetween(piece.pose, pose) - reach;
 }
 
 }  // namespace metier::motion

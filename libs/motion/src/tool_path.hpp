@@ -27,8 +27,12 @@ public:
     ToolPath(const geometry::Pose& start, const geometry::Pose& target);
 
     /// Goes on in a line to `target`, rounding the corner where it leaves the last one.
-    /// \param blend_radius > 0 [m]; less is used where a line is shorter than twice of it
+    /// \param blend_radius > 0 [m]; no more than blendLimit() is used
     void append(const geometry::Pose& target, double blend_radius);
+    /// Largest blend radius of a corner from which a line leads to `target` [m]: half of the
+    /// shorter line, where a turn counts for 0.25 m/rad. Infinite where nothing but the rotation
+    /// changes, or the line before has no length.
+    double blendLimit(const geometry::Pose& target) const noexcept;
 
     bool isPoint() const noexcept { return length_ == 0; }
     bool isLine() const noexcept { return pieces_.size() == 1; }
@@ -59,6 +63,7 @@ private:
     struct Piece {
         double begin = 0;
         double length = 0;
+        double whole = 0;     ///< length of a line with what its corners have taken
         geometry::Pose pose;  ///< at the begin of a line, at the point of a corner
         Motion in;
         Motion out;  ///< of a corner
@@ -67,8 +72,11 @@ private:
     };
 
     const Piece& pieceAt(double length) const noexcept;
+    static Piece lineBetween(const geometry::Pose& start, const geometry::Pose& target);
     void appendLine(const geometry::Pose& start, const geometry::Pose& target);
     double nearestOn(const Piece& piece, const geometry::Pose& pose) const noexcept;
+    /// No place of the piece is nearer than that [m].
+    static double nearestPossible(const Piece& piece, const geometry::Pose& pose) noexcept;
 
     std::vector<Piece> pieces_;
     geometry::Pose end_;

@@ -149,6 +149,79 @@ TEST(BlendedPath, RefusesAWaypointWithoutABlendRadius) {
     EXPECT_FALSE(Planner(model).path(request));
 }
 
+TEST(BlendedPath, RefusesABlendRadiusOverHalfOfTheShorterLine) {
+    const RobotModel model = loadRobot("ur5");
+    PathRequest request = roundedSquare(model);
+    request.waypoints[1].blend_radius = 0.06;
+    const auto plan = Planner(model).path(request);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().reason, RefusalReason::invalid_request);
+    EXPECT_THAT(plan.error().error.message,
+                HasSubstr("waypoint 2: blend radius 0.06 m over 0.0500 m"));
+}
+
+TEST(BlendedPath, TakesCornersThatMeetInTheMiddleOfALine) {
+    const RobotModel model = loadRobot("ur5");
+    PathRequest request = roundedSquare(model);
+    request.waypoints[0].blend_radius = request.waypoints[1].blend_radius = 0.05;
+    const auto plan = Planner(model).path(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    const Eigen::Vector3d start = plan->toolPose(model.home()).translation;
+    const Eigen::Vector3d middle = start + Eigen::Vector3d(0, 0.1, 0.05);
+    double nearest = 1;
+    for (int i = 0; i <= 2000; ++i) {
+        nearest = std::min(nearest, (plan->poseAt(i / 2000.0).translation - middle).norm());
+    }
+    EXPECT_LT(nearest, 1e-4) << "[m]";
+}
+
+TEST(BlendedPath, TellsWhichWaypointIsOutOfReach) {
+    const RobotModel model = loadRobot("ur5");
+    PathRequest request = roundedSquare(model);
+    request.waypoints[1].target.translation.z() += 2.0;
+    const auto plan = Planner(model).path(request);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().reason, RefusalReason::unreachable);
+    EXPECT_THAT(plan.error().error.message, testing::StartsWith("waypoint 2: out of reach: "));
+}
+
+TEST(BlendedPath, TellsTheWaypointThatAWayLeadsTo) {
+    const RobotModel model = loadRobot("ur5");
+    PathRequest request = roundedSquare(model);
+    const auto axis = JointVector::from(std::vector<double>(6, 0.6)).value();
+    request.lin.axis_bounds = {model.home(), model.home()};
+    request.lin.axis_bounds.lower.view() -= axis.view();
+    request.lin.axis_bounds.upper.view() += axis.view();
+    request.waypoints[1].target.rotation = geometry::fromRotationVector({0, 0, 0.8});
+    const auto plan = Planner(model).path(request);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().reason, RefusalReason::joint_limit);
+    EXPECT_THAT(plan.error().error.message, testing::StartsWith("on the way to waypoint 2: axis "));
+}
+
+TEST(BlendedPath, RefusesTheSamePoseTwiceInARowButMayBeginWhereTheArmStands) {
+    const RobotModel model = loadRobot("iiwa7");
+    PathRequest request = roundedSquare(model);
+    request.waypoints.insert(request.waypoints.begin(), PathWaypoint{{}, kRadius});
+    const auto plan = Planner(model).path(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    const auto without = Planner(model).path(roundedSquare(model));
+    EXPECT_NEAR(plan->duration().count(), without->duration().count(), 1e-9);
+    request.waypoints.insert(request.waypoints.begin() + 2, PathWaypoint{{}, kRadius});
+    const auto twice = Planner(model).path(request);
+    ASSERT_FALSE(twice);
+    EXPECT_THAT(twice.error().error.message,
+                HasSubstr("waypoint 2: the next waypoint is the same"));
+}
+
+TEST_P(BlendedPathOf, FindsEachOfItsPlacesAgain) {
+    const auto plan = Planner(model_).path(roundedSquare(model_));
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    for (int i = 0; i <= 100; ++i) {
+        ASSERT_LT(plan->deviation(plan->poseAt(i / 100.0)).distance, 1e-6) << i;
+    }
+}
+
 TEST(Synchronise, GivesEveryMotionTheDurationOfTheSlowest) {
     std::vector<Trajectory> motions;
     for (const std::string robot : {"ur5", "edo"}) {

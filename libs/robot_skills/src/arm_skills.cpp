@@ -22,32 +22,32 @@ Result<Skills> with(Skills skills, MadeSkill made) {
     return skills;
 }
 
-Result<Skills> streamedMoves(device::Arm& arm, const motion::RobotModel& model) {
+Result<Skills> streamedMoves(const StreamedArm& arm) {
     Result<Skills> moves;
     for (auto* make : {makeCartesianPtpMoveSkill, makeCartesianLinearMoveSkill,
                        makeJointPtpMoveSkill, makeJointLinearMoveSkill}) {
         if (moves) {
-            moves = with(std::move(*moves), make(arm, model));
+            moves = with(std::move(*moves), make(arm));
         }
     }
     return moves;
 }
 
-Result<Skills> makeMoves(const ArmFaces& faces, const motion::RobotModel& model,
-                         const Clock& clock) {
-    if (faces.planner != nullptr) {
-        const PlanningArm arm{faces.arm, *faces.planner, model, clock};
-        auto moves = makePlannedMoveSkills(arm);
-        if (!moves) {
-            return moves;
+Result<Skills> makeMoves(const ArmFaces& faces, const StreamedArm& streamed) {
+    const auto& [arm, model, clock] = streamed;
+    if (faces.planner == nullptr) {
+        auto moves = streamedMoves(streamed);
+        if (moves && faces.sensor != nullptr) {
+            moves = with(std::move(*moves), makeForceMoveSkill({arm, *faces.sensor, model, clock}));
         }
-        return with(std::move(*moves), makePlannedForceMoveSkill(arm));
-    }
-    auto moves = streamedMoves(faces.arm, model);
-    if (!moves || faces.sensor == nullptr) {
         return moves;
     }
-    return with(std::move(*moves), makeForceMoveSkill({faces.arm, *faces.sensor, model}));
+    const PlanningArm planning{arm, *faces.planner, model, clock};
+    auto moves = makePlannedMoveSkills(planning);
+    if (!moves) {
+        return moves;
+    }
+    return with(std::move(*moves), makePlannedForceMoveSkill(planning));
 }
 
 }  // namespace
@@ -56,7 +56,11 @@ Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel&
                                 const Clock& clock, const PositionStreamOptions& stream) {
     ArmSkills skills;
     skills.resource = std::make_shared<skill::Resource>("arm " + faces.arm.info().name);
-    auto moves = makeMoves(faces, model, clock);
+    const StreamedArm streamed{faces.arm, model, clock};
+    auto moves = makeMoves(faces, streamed);
+    if (moves) {
+        moves = with(std::move(*moves), makeCartesianPathMoveSkill(streamed));
+    }
     if (!moves) {
         return fail(std::move(moves.error()));
     }

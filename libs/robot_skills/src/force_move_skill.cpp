@@ -56,6 +56,9 @@ MetForce metForce(const RobotModel& model, const MoveResults& results,
 Result<std::unique_ptr<skill::Body>> plannedForceBody(const PlanningArm& arm,
                                                       const Trajectory& trajectory,
                                                       const ForceMoveParameters& parameters) {
+    if (auto at_once = checkNoStartTime(arm.arm, parameters.start_time); !at_once) {
+        return fail(std::move(at_once.error()));
+    }
     auto motion = plannedMotion(arm.model, trajectory, Path::cartesian_line);
     if (!motion) {
         return fail(std::move(motion.error()));
@@ -134,26 +137,27 @@ Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
     if (!limit) {
         return fail(std::move(limit.error()));
     }
-    auto source =
-        std::make_shared<MoveSource>(arm.arm.info(), trajectory, Path::cartesian_line,
-                                     std::make_unique<SensorWatch>(arm, parameters, *limit));
+    auto source = std::make_shared<MoveSource>(
+        MoveSource::Setup{arm.arm.info(), trajectory, Path::cartesian_line,
+                          Timetable(arm.clock, parameters.start_time),
+                          std::make_unique<SensorWatch>(arm, parameters, *limit)});
     return std::make_unique<SourceBody>(arm.arm, std::move(source), toolDistance(trajectory));
 }
 
 }  // namespace
 
 Result<std::unique_ptr<skill::Skill>> makePlannedForceMoveSkill(const PlanningArm& arm) {
-    return makeForceSkill(
-        {arm.arm, arm.model, [arm](const Trajectory& trajectory, const ForceMoveParameters& given) {
-             return plannedForceBody(arm, trajectory, given);
-         }});
+    return makeForceSkill({arm.arm, arm.model, arm.clock,
+                           [arm](const Trajectory& trajectory, const ForceMoveParameters& given) {
+                               return plannedForceBody(arm, trajectory, given);
+                           }});
 }
 
 Result<std::unique_ptr<skill::Skill>> makeForceMoveSkill(const FeelingArm& arm) {
-    return makeForceSkill(
-        {arm.arm, arm.model, [arm](const Trajectory& trajectory, const ForceMoveParameters& given) {
-             return feelingBody(arm, trajectory, given);
-         }});
+    return makeForceSkill({arm.arm, arm.model, arm.clock,
+                           [arm](const Trajectory& trajectory, const ForceMoveParameters& given) {
+                               return feelingBody(arm, trajectory, given);
+                           }});
 }
 
 }  // namespace metier::robot_skills

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "field_member.hpp"
+
 namespace metier::robot_skills {
 
 using skill::Field;
@@ -17,6 +19,8 @@ using skill::Value;
 namespace {
 
 constexpr std::size_t kCartesianDimensions = 6;
+constexpr double kLongestRadius = 10.0;  // [m]
+constexpr double kHighestSpeed = 10.0;   // [m/s]
 
 /// Accepts all zero of any length, else exactly `count` values.
 Result<void> checkMaximum(const std::vector<double>& values, std::size_t count) {
@@ -128,6 +132,36 @@ Field redundancyField() {
     return field;
 }
 
+// Longer motions are rather a mistake of the unit.
+constexpr double kLongestDuration = 3600.0;
+constexpr double kLatestTime = 1e11;  // beyond any clock, and so no range for a person
+
+Field durationField() {
+    Field field{.name = "Duration",
+                .description = "How long the motion takes; not set: as short as the limits allow",
+                .unit = skill::kSecond};
+    field.place = Place::options;
+    field.range = Range{0.0, kLongestDuration};
+    field.extra_check = [](const Value& value) -> Result<void> {
+        if (std::get<double>(value) <= 0.0) {
+            return fail(Errc::out_of_range, "0 s is no duration; leave it unset for the shortest");
+        }
+        return {};
+    };
+    return field;
+}
+
+Field startTimeField() {
+    Field field{.name = "StartTime",
+                .description =
+                    "When the motion begins, by the server's own clock, since "
+                    "1970-01-01 UTC; not set: at once",
+                .unit = skill::kSecond};
+    field.place = Place::options;
+    field.range = Range{0.0, kLatestTime};
+    return field;
+}
+
 Field maxForceField() {
     Field field{.name = "MaxForce",
                 .description =
@@ -154,13 +188,6 @@ Field haltOnForceField() {
     return field;
 }
 
-/// FieldList::add() for a member that Parameters inherits.
-template <typename Parameters, typename Base, typename Member>
-void add(skill::FieldList<Parameters>& fields, Member Base::*member, Field field) {
-    Member Parameters::*own = member;
-    fields.add(own, std::move(field));
-}
-
 template <typename Parameters>
 void addMoveFields(skill::FieldList<Parameters>& fields, const motion::RobotModel& model,
                    MoveKind kind) {
@@ -179,6 +206,8 @@ void addMoveFields(skill::FieldList<Parameters>& fields, const motion::RobotMode
     add(fields, &MoveParameters::blend_radius, blendRadiusField());
     add(fields, &MoveParameters::speed_override, speedOverrideField());
     add(fields, &MoveParameters::redundancy_angle, redundancyField());
+    add(fields, &MoveParameters::duration, durationField());
+    add(fields, &MoveParameters::start_time, startTimeField());
 }
 
 template <typename Parameters>
@@ -203,45 +232,6 @@ void addCartesianFields(skill::FieldList<Parameters>& fields, const motion::Robo
     add(fields, &MoveParameters::relative, relativeField(Relative::tool));
 }
 
-template <typename Results>
-void addMoveResults(skill::FieldList<Results>& list) {
-    add(list, &MoveResults::reached_pose,
-        Field{.name = "ReachedPose",
-              .description = "Measured pose of the tool frame in the base frame",
-              .unit = skill::kMetre});
-    add(list, &MoveResults::reached_joint_position,
-        Field{.name = "ReachedJointPosition",
-              .description = "Measured joint position",
-              .unit = skill::kRadian});
-    add(list, &MoveResults::duration,
-        Field{.name = "Duration",
-              .description = "Time in motion, without the time suspended",
-              .unit = skill::kSecond});
-    add(list, &MoveResults::largest_path_deviation,
-        Field{.name = "LargestPathDeviation",
-              .description = "Largest distance of the measured tool frame from its path",
-              .unit = skill::kMetre});
-}
-
-void addForceResults(skill::FieldList<ForceMoveResults>& list) {
-    list.add(&ForceMoveResults::contact_force,
-             Field{.name = "ContactForce",
-                   .description = "Force at the end of the motion, in the base frame",
-                   .unit = skill::kNewton});
-    list.add(&ForceMoveResults::contact_torque,
-             Field{.name = "ContactTorque",
-                   .description = "Torque at the end of the motion, in the base frame",
-                   .unit = skill::kNewtonMetre});
-    list.add(&ForceMoveResults::forces_exceeded,
-             Field{.name = "ForcesExceeded",
-                   .description = "Force that ended the motion, in the base frame; zero: none did",
-                   .unit = skill::kNewton});
-    list.add(&ForceMoveResults::forces_max,
-             Field{.name = "ForcesMax",
-                   .description = "Largest force along each axis of the base frame",
-                   .unit = skill::kNewton});
-}
-
 }  // namespace
 
 skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::RobotModel& model,
@@ -259,6 +249,35 @@ skill::FieldList<ForceMoveParameters> forceMoveFields(const motion::RobotModel& 
     return fields;
 }
 
+skill::FieldList<PathMoveParameters> pathMoveFields(const motion::RobotModel& model) {
+    skill::FieldList<PathMoveParameters> fields;
+    fields.add(&PathMoveParameters::poses,
+               Field{.name = "Poses",
+                     .description =
+                         "Poses of the tool frame to pass, in the base frame; the last one is the "
+                         "target",
+                     .length = skill::LengthLimit{1, kMostPoses}});
+    fields.add(&PathMoveParameters::blend_radii,
+               Field{.name = "BlendRadii",
+                     .description =
+                         "Largest distance from each pose at which its corner may be cut, over 0; "
+                         "one per pose, the last one is not used",
+                     .unit = skill::kMetre,
+                     .range = Range{0.0, kLongestRadius},
+                     .default_value = std::vector<double>()});
+    fields.add(&PathMoveParameters::speeds,
+               Field{.name = "Speeds",
+                     .description =
+                         "Largest speed on the way to each pose; 0: MaxVelocity; one per pose, or "
+                         "none",
+                     .unit = skill::kMetrePerSecond,
+                     .range = Range{0.0, kHighestSpeed},
+                     .default_value = std::vector<double>()});
+    addMoveFields(fields, model, MoveKind::linear);
+    add(fields, &MoveParameters::relative, relativeField(Relative::tool));
+    return fields;
+}
+
 skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& model,
                                                       MoveKind kind) {
     skill::FieldList<JointMoveParameters> fields;
@@ -270,25 +289,6 @@ skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& 
                      .length = skill::LengthLimit{axes, axes}});
     addMoveFields(fields, model, kind);
     add(fields, &MoveParameters::relative, relativeField(Relative::base));
-    return fields;
-}
-
-const skill::FieldList<MoveResults>& moveResultFields() {
-    static const auto fields = [] {
-        skill::FieldList<MoveResults> list;
-        addMoveResults(list);
-        return list;
-    }();
-    return fields;
-}
-
-const skill::FieldList<ForceMoveResults>& forceMoveResultFields() {
-    static const auto fields = [] {
-        skill::FieldList<ForceMoveResults> list;
-        addMoveResults(list);
-        addForceResults(list);
-        return list;
-    }();
     return fields;
 }
 

@@ -1,6 +1,11 @@
 #include "metier/robot_skills/move_planning.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "conversions.hpp"
 #include "metier/geometry/frame.hpp"
@@ -87,6 +92,34 @@ motion::LinRequest commonLinRequest(const JointVector& start, const MoveParamete
     return commonRequest<motion::LinRequest>(start, parameters, cartesianMaxima);
 }
 
+/// The motion as long as it is asked to be.
+Planned<Trajectory> lasting(Planned<Trajectory> plan, const MoveParameters& parameters) {
+    constexpr double rounding = 1e-6;  // [s]
+    if (!plan || !parameters.duration) {
+        return plan;
+    }
+    const double shortest = plan->duration().count();
+    if (*parameters.duration < shortest - rounding) {
+        motion::Refusal refusal;
+        refusal.error = {Errc::out_of_range,
+                         fmt::format("Duration {} s is shorter than possible: {:.4f} s",
+                                     *parameters.duration, shortest)};
+        return tl::unexpected(std::move(refusal));
+    }
+    return plan->stretchedTo(motion::Seconds(*parameters.duration));
+}
+
+/// One value per pose, or none at all.
+motion::Planned<void> checkCount(std::string_view name, std::size_t count, std::size_t poses) {
+    if (count == 0 || count == poses) {
+        return {};
+    }
+    motion::Refusal refusal;
+    refusal.error = {Errc::out_of_range,
+                     fmt::format("{}: {} values for {} poses", name, count, poses)};
+    return tl::unexpected(std::move(refusal));
+}
+
 }  // namespace
 
 motion::LinRequest linRequest(const JointVector& start, const CartesianMoveParameters& parameters) {
@@ -103,25 +136,46 @@ Planned<Trajectory> planCartesianPtp(const RobotModel& model, const JointVector&
     request.target = geometry::toPose(parameters.target_position);
     request.reference = reference(parameters);
     request.axis_bounds = axisBounds(parameters.axis_bounds);
-    return motion::Planner(model).ptp(request);
+    return lasting(motion::Planner(model).ptp(request), parameters);
 }
 
 Planned<Trajectory> planCartesianLinear(const RobotModel& model, const JointVector& start,
                                         const CartesianMoveParameters& parameters) {
-    return motion::Planner(model).lin(linRequest(start, parameters));
+    return lasting(motion::Planner(model).lin(linRequest(start, parameters)), parameters);
+}
+
+Planned<Trajectory> planCartesianPath(const RobotModel& model, const JointVector& start,
+                                      const PathMoveParameters& parameters) {
+    const auto& [poses, radii, speeds] =
+        std::tie(parameters.poses, parameters.blend_radii, parameters.speeds);
+    for (const auto& checked : {checkCount("BlendRadii", radii.size(), poses.size()),
+                                checkCount("Speeds", speeds.size(), poses.size())}) {
+        if (!checked) {
+            return tl::unexpected(checked.error());
+        }
+    }
+    motion::PathRequest request{commonLinRequest(start, parameters), {}};
+    request.lin.reference = reference(parameters);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        request.waypoints.push_back({.target = geometry::toPose(poses[i]),
+                                     .blend_radius = radii.empty() ? 0.0 : radii[i],
+                                     .max_velocity = speeds.empty() ? 0.0 : speeds[i]});
+    }
+    return lasting(motion::Planner(model).path(request), parameters);
 }
 
 Planned<Trajectory> planJointPtp(const RobotModel& model, const JointVector& start,
                                  const JointMoveParameters& parameters) {
     auto request = ptpRequest(start, parameters);
     request.target = jointTarget(start, parameters);
-    return motion::Planner(model).ptp(request);
+    return lasting(motion::Planner(model).ptp(request), parameters);
 }
 
 Planned<Trajectory> planJointLinear(const RobotModel& model, const JointVector& start,
                                     const JointMoveParameters& parameters) {
-    return motion::Planner(model).jointLinear(
-        {commonLinRequest(start, parameters), jointTarget(start, parameters)});
+    return lasting(motion::Planner(model).jointLinear(
+                       {commonLinRequest(start, parameters), jointTarget(start, parameters)}),
+                   parameters);
 }
 
 }  // namespace metier::robot_skills

@@ -9,6 +9,7 @@
 #include "conversions.hpp"
 #include "metier/skill/typed_skill.hpp"
 #include "move_variant.hpp"
+#include "timetable.hpp"
 
 namespace metier::robot_skills {
 
@@ -32,6 +33,7 @@ public:
     struct Setup {
         device::Arm& arm;
         const motion::RobotModel& model;
+        const Clock& clock;
         MakeBody<Parameters> make_body;
     };
 
@@ -45,7 +47,7 @@ public:
 
 protected:
     Result<std::unique_ptr<skill::Body>> plan(const Parameters& parameters) override {
-        if (auto ready = checkReady(setup_.arm); !ready) {
+        if (auto ready = checkCanStart(parameters); !ready) {
             return fail(std::move(ready.error()));
         }
         auto trajectory = planFromHere(parameters);
@@ -56,7 +58,7 @@ protected:
     }
 
     Result<skill::CheckReport> assess(const Parameters& parameters) override {
-        if (auto ready = checkReady(setup_.arm); !ready) {
+        if (auto ready = checkCanStart(parameters); !ready) {
             return fail(std::move(ready.error()));
         }
         const auto trajectory = planFromHere(parameters);
@@ -69,6 +71,11 @@ protected:
     }
 
 private:
+    Result<void> checkCanStart(const Parameters& parameters) const {
+        auto ready = checkReady(setup_.arm);
+        return ready ? checkStartTime(parameters.start_time, setup_.clock) : ready;
+    }
+
     motion::Planned<motion::Trajectory> planFromHere(const Parameters& parameters) const {
         const auto start = toVector(setup_.arm.state().commanded_position);
         return plan_(setup_.model, start, parameters);

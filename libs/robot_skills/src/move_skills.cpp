@@ -8,45 +8,47 @@
 
 namespace metier::robot_skills {
 
-using motion::RobotModel;
 using motion::Trajectory;
 
 namespace {
 
 /// A move whose set-points the arm's cycle thread takes from the plan.
 template <typename Parameters>
-Result<std::unique_ptr<skill::Skill>> makeStreamed(device::Arm& arm, const RobotModel& model,
+Result<std::unique_ptr<skill::Skill>> makeStreamed(const StreamedArm& streamed,
                                                    MoveVariant<Parameters> variant) {
     const auto make_body =
-        [&arm, path = variant.path](
+        [streamed, path = variant.path](
             const Trajectory& trajectory,
-            const Parameters& /*parameters*/) -> Result<std::unique_ptr<skill::Body>> {
-        auto source = std::make_shared<MoveSource>(arm.info(), trajectory, path);
+            const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
+        auto& arm = streamed.arm;
+        auto source = std::make_shared<MoveSource>(MoveSource::Setup{
+            arm.info(), trajectory, path, Timetable(streamed.clock, parameters.start_time)});
         return std::make_unique<SourceBody>(arm, std::move(source), toolDistance(trajectory));
     };
-    return makeMove<Parameters>({arm, model, make_body}, std::move(variant));
+    return makeMove<Parameters>({streamed.arm, streamed.model, streamed.clock, make_body},
+                                std::move(variant));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<skill::Skill>> makeCartesianPtpMoveSkill(device::Arm& arm,
-                                                                const RobotModel& model) {
-    return makeStreamed(arm, model, cartesianPtp(model));
+Result<std::unique_ptr<skill::Skill>> makeCartesianPtpMoveSkill(const StreamedArm& arm) {
+    return makeStreamed(arm, cartesianPtp(arm.model));
 }
 
-Result<std::unique_ptr<skill::Skill>> makeCartesianLinearMoveSkill(device::Arm& arm,
-                                                                   const RobotModel& model) {
-    return makeStreamed(arm, model, cartesianLinear(model));
+Result<std::unique_ptr<skill::Skill>> makeCartesianLinearMoveSkill(const StreamedArm& arm) {
+    return makeStreamed(arm, cartesianLinear(arm.model));
 }
 
-Result<std::unique_ptr<skill::Skill>> makeJointPtpMoveSkill(device::Arm& arm,
-                                                            const RobotModel& model) {
-    return makeStreamed(arm, model, jointPtp(model));
+Result<std::unique_ptr<skill::Skill>> makeJointPtpMoveSkill(const StreamedArm& arm) {
+    return makeStreamed(arm, jointPtp(arm.model));
 }
 
-Result<std::unique_ptr<skill::Skill>> makeJointLinearMoveSkill(device::Arm& arm,
-                                                               const RobotModel& model) {
-    return makeStreamed(arm, model, jointLinear(model));
+Result<std::unique_ptr<skill::Skill>> makeJointLinearMoveSkill(const StreamedArm& arm) {
+    return makeStreamed(arm, jointLinear(arm.model));
+}
+
+Result<std::unique_ptr<skill::Skill>> makeCartesianPathMoveSkill(const StreamedArm& arm) {
+    return makeStreamed(arm, cartesianPath(arm.model));
 }
 
 }  // namespace metier::robot_skills

@@ -1,5 +1,7 @@
 #include "move_source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -16,13 +18,14 @@ constexpr double kWayBack = 0.2;
 
 }  // namespace
 
-MoveSource::MoveSource(const device::ArmInfo& info, const motion::Trajectory& trajectory,
-                       PathDeviationMeter::Path path, std::unique_ptr<ContactWatch> contact)
-    : cycle_(info.cycleSeconds()),
-      execution_(trajectory),
-      deviation_(trajectory, path),
-      contact_(std::move(contact)),
-      offset_(info.axisCount()),
+MoveSource::MoveSource(Setup setup)
+    : arm_(std::move(setup.info.name)),
+      cycle_(setup.info.cycleSeconds()),
+      execution_(setup.trajectory),
+      timetable_(setup.timetable),
+      deviation_(setup.trajectory, setup.path),
+      contact_(std::move(setup.contact)),
+      offset_(setup.info.axisCount()),
       way_back_(kWayBack) {}
 
 device::JointArray MoveSource::restingPlace() const noexcept {
@@ -38,6 +41,7 @@ void MoveSource::goOnFrom(const device::JointArray& from) {
     stop_asked_ = false;
     outcome_ = Outcome::none;
     settling_.restart();
+    timetable_.restart();
     execution_.resume();
 }
 
@@ -55,8 +59,19 @@ device::SetPointSource::Next MoveSource::next(const device::ArmState& state,
     if (execution_.finished() || (stop_asked_ && execution_.atRest())) {
         return settle(state);
     }
-    in_motion_ += cycle_;
-    set_point = toArray(execution_.next(motion::Seconds(cycle_)).position);
+    set_point = restingPlace();
+    switch (timetable_.look()) {
+        case Timetable::Due::not_yet:
+            return Next::set_point;
+        case Timetable::Due::missed:
+            outcome_ = Outcome::missed;
+            return Next::done;
+        case Timetable::Due::now:
+            break;
+    }
+    const double step = timetable_.step(cycle_);
+    in_motion_ += step;
+    set_point = toArray(execution_.next(motion::Seconds(step)).position);
     return Next::set_point;
 }
 
@@ -122,6 +137,9 @@ MoveResults MoveSource::results() const {
     results.reached_joint_position.assign(reached_.begin(), reached_.end());
     results.duration = in_motion_;
     results.largest_path_deviation = deviation_.largest();
+    results.motion_start_time = timetable_.firstTime();
+    results.motion_end_time = timetable_.lastTime();
+    results.largest_lateness = timetable_.largestLateness();
     return results;
 }
 
@@ -144,6 +162,11 @@ void MoveSource::tellDone(const skill::Execution& tell) {
             return;
         case Outcome::off_target:
             settling_.tellOffTarget(tell);
+            return;
+        case Outcome::missed:
+            tell.fail(skill::Reason::error,
+                      fmt::format("{}: ready to move {:.3f} s after StartTime, limit {} s", arm_,
+                                  timetable_.missedBy(), Timetable::kLatestStart));
             return;
     }
 }

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "execution_source.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "path_deviation.hpp"
 #include "settling.hpp"
+#include "timetable.hpp"
 
 namespace metier::robot_skills {
 
@@ -23,14 +25,21 @@ public:
 /// Gives an arm the set-points of one planned motion, from rest to rest.
 class MoveSource final : public ExecutionSource {
 public:
-    MoveSource(const device::ArmInfo& info, const motion::Trajectory& trajectory,
-               PathDeviationMeter::Path path, std::unique_ptr<ContactWatch> contact = nullptr);
+    struct Setup {
+        device::ArmInfo info;
+        motion::Trajectory trajectory;
+        PathDeviationMeter::Path path;
+        Timetable timetable;
+        std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
+    };
+
+    explicit MoveSource(Setup setup);
 
     Next next(const device::ArmState& state, device::JointArray& set_point) noexcept override;
     device::JointArray restingPlace() const noexcept override;
 
 private:
-    enum class Outcome : std::uint8_t { none, finished, at_rest, in_contact, off_target };
+    enum class Outcome : std::uint8_t { none, finished, at_rest, in_contact, off_target, missed };
 
     void goOnFrom(const device::JointArray& from) override;
     void tellDone(const skill::Execution& tell) override;
@@ -42,11 +51,13 @@ private:
     device::JointArray wayBack() const noexcept;
     MoveResults results() const;
 
+    const std::string arm_;
     const double cycle_;  ///< [s]
     motion::MotionExecution execution_;
+    Timetable timetable_;
     PathDeviationMeter deviation_;
     Settling settling_;
-    std::unique_ptr<ContactWatch> contact_;  ///< nullptr: none is watched for
+    std::unique_ptr<ContactWatch> contact_;
     bool in_contact_ = false;
     device::JointArray offset_;  ///< from the path when the motion went on after a rest
     double way_back_ = 0.0;      ///< time since then [s]

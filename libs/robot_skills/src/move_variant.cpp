@@ -28,6 +28,12 @@ CartesianMoveVariant cartesianLinear(const RobotModel& model) {
             planCartesianLinear};
 }
 
+PathMoveVariant cartesianPath(const RobotModel& model) {
+    return {describeMove("CartesianPathMoveSkill",
+                         "Moves the tool frame on straight lines through poses, corners rounded"),
+            pathMoveFields(model), Path::cartesian_line, MoveEnd::pose, planCartesianPath};
+}
+
 JointMoveVariant jointPtp(const RobotModel& model) {
     return {describeMove("JointPtpMoveSkill", "Moves all axes together to a joint position"),
             jointMoveFields(model, MoveKind::ptp), Path::joint_line, MoveEnd::joints, planJointPtp};

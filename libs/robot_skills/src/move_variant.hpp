@@ -30,11 +30,13 @@ struct MoveVariant {
     MovePlan<Parameters> plan;
 };
 using CartesianMoveVariant = MoveVariant<CartesianMoveParameters>;
+using PathMoveVariant = MoveVariant<PathMoveParameters>;
 using JointMoveVariant = MoveVariant<JointMoveParameters>;
 
 // The moves. `model` must outlive them.
 CartesianMoveVariant cartesianPtp(const motion::RobotModel& model);
 CartesianMoveVariant cartesianLinear(const motion::RobotModel& model);
+PathMoveVariant cartesianPath(const motion::RobotModel& model);
 JointMoveVariant jointPtp(const motion::RobotModel& model);
 JointMoveVariant jointLinear(const motion::RobotModel& model);
 

@@ -7,6 +7,7 @@
 
 #include "conversions.hpp"
 #include "metier/geometry/frame.hpp"
+#include "timetable.hpp"
 
 namespace metier::robot_skills {
 
@@ -35,6 +36,9 @@ void PlannedMove::begin(const skill::Execution& execution) {
     tell_ = execution;
     stop_asked_.store(false);
     begun_ = setup_.clock.now();
+    if (first_begun_ == 0.0) {
+        first_begun_ = toSeconds(setup_.clock.utcNow());
+    }
     in_motion_.store(true);
 }
 
@@ -44,6 +48,7 @@ void PlannedMove::observe(const device::ArmState& state) noexcept {
 
 void PlannedMove::ended(const Result<MotionOutcome>& outcome) {
     moved_ += setup_.clock.now() - begun_;
+    last_ended_ = toSeconds(setup_.clock.utcNow());
     rest_ = setup_.arm.state().position;
     in_motion_.store(false);
     if (!outcome) {
@@ -83,7 +88,9 @@ MoveResults PlannedMove::results(const device::JointArray& reached) const {
     return {.reached_pose = geometry::toFrame(setup_.trajectory.toolPose(toVector(reached))),
             .reached_joint_position = {reached.begin(), reached.end()},
             .duration = moved_.count(),
-            .largest_path_deviation = deviation_.largest()};
+            .largest_path_deviation = deviation_.largest(),
+            .motion_start_time = first_begun_,
+            .motion_end_time = last_ended_};
 }
 
 // ---- the execution

@@ -65,6 +65,8 @@ private:
     skill::Execution tell_;
     device::JointArray rest_;
     SteadyTime begun_{};
+    double first_begun_ = 0.0;                  ///< [s since 1970-01-01 UTC]
+    double last_ended_ = 0.0;                   ///< as first_begun_
     std::chrono::duration<double> moved_{0.0};  ///< before the last begin()
 };
 

@@ -114,6 +114,16 @@ Result<void> checkSameLine(const RobotModel& model, const Trajectory& trajectory
 
 }  // namespace
 
+Result<void> checkNoStartTime(const device::Arm& arm, const std::optional<double>& start_time) {
+    if (!start_time) {
+        return {};
+    }
+    return fail(Errc::not_supported,
+                arm.info().name +
+                    ": StartTime: its controller plans the motion and begins at once; a move over "
+                    "its position stream can wait");
+}
+
 Result<PlannedMotion> plannedMotion(const RobotModel& model, const Trajectory& trajectory,
                                     PathDeviationMeter::Path path) {
     PlannedMotion motion;

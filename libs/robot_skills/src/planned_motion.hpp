@@ -1,11 +1,18 @@
 #pragma once
 
+#include <optional>
+
+#include "metier/device/arm.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/motion/trajectory.hpp"
 #include "path_deviation.hpp"
 
 namespace metier::robot_skills {
+
+/// A controller's planner begins when it is asked to.
+/// Errors: not_supported if there is a start time.
+Result<void> checkNoStartTime(const device::Arm& arm, const std::optional<double>& start_time);
 
 /// What the controller's own planner is asked for so that the arm does what metier has planned, no
 /// faster.

@@ -19,7 +19,10 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
     const auto make_body =
         [arm, path = variant.path, end = variant.end](
             const Trajectory& trajectory,
-            const Parameters& /*parameters*/) -> Result<std::unique_ptr<skill::Body>> {
+            const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
+        if (auto at_once = checkNoStartTime(arm.arm, parameters.start_time); !at_once) {
+            return fail(std::move(at_once.error()));
+        }
         auto motion = plannedMotion(arm.model, trajectory, path);
         if (!motion) {
             return fail(std::move(motion.error()));
@@ -30,7 +33,7 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
                                              std::move(*motion), std::move(move),
                                              toolDistance(trajectory));
     };
-    return makeMove<Parameters>({arm.arm, arm.model, make_body}, std::move(variant));
+    return makeMove<Parameters>({arm.arm, arm.model, arm.clock, make_body}, std::move(variant));
 }
 
 /// Errors: that of the first one that could not be made.

@@ -64,7 +64,8 @@ struct JointLinearRequest {
 /// A place on a path of several lines.
 struct PathWaypoint {
     geometry::Pose target;  ///< of the tool frame
-    /// The corner here may be cut by this much, > 0 [m]; not used for the last one.
+    /// The corner here may be cut by this much, > 0 [m], at most half of the shorter line beside
+    /// it, where a turn counts for 0.25 m/rad; not used for the last one.
     double blend_radius = 0;
     double max_velocity = 0;          ///< on the way here [m/s]; 0: as the whole path
     double max_angular_velocity = 0;  ///< [rad/s]; 0: as the whole path
@@ -75,7 +76,7 @@ struct PathRequest {
     /// Start, tool frame, limits (the least of three bounds the length of the vector), bounds; its
     /// `reference` is that of every waypoint to the one before; `target` is not used.
     LinRequest lin;
-    std::vector<PathWaypoint> waypoints;  ///< at least one
+    std::vector<PathWaypoint> waypoints;  ///< at least one, no two in a row the same
 };
 
 /// Why a motion cannot be planned.

@@ -18,8 +18,8 @@ namespace metier::robot_skills {
 struct ArmSkills {
     /// For the ProgramOptions of every skill of this arm: they exclude each other.
     std::shared_ptr<skill::Resource> resource;
-    /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill; then, if the arm has a
-    /// planner or a sensor of force, CartesianLinearForceMoveSkill.
+    /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill; if the arm has a planner
+    /// or a sensor of force, CartesianLinearForceMoveSkill; CartesianPathMoveSkill.
     std::vector<std::unique_ptr<skill::Skill>> moves;
     std::unique_ptr<skill::Skill> position_stream;
 };
@@ -27,7 +27,8 @@ struct ArmSkills {
 /// What there is of an arm; all must outlive its skills.
 struct ArmFaces {
     device::Arm& arm;
-    /// Runs the moves, if there is one; else the arm takes the set-points of metier's planner.
+    /// Runs the moves but that of several poses, if there is one; else the arm takes the set-points
+    /// of metier's planner.
     device::MotionPlanner* planner = nullptr;
     /// Ends the force move if there is no planner: the planner's own force condition is nearer to
     /// the arm.

@@ -26,6 +26,7 @@ struct FeelingArm {
     device::Arm& arm;
     device::ForceTorqueSensor& sensor;  ///< its axes are those of the flange frame
     const motion::RobotModel& model;
+    const Clock& clock;
 };
 
 /// By any arm and a sensor: the force passes a low-pass of 20 Hz (motion::ForceLimit) and is

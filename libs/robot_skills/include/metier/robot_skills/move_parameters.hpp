@@ -26,6 +26,9 @@ struct MoveParameters {
     double blend_radius = 0.0;                 ///< [m]
     double speed_override = 1.0;               ///< (0, 1]
     std::optional<double> redundancy_angle{};  ///< [rad]
+    std::optional<double> duration{};          ///< of the motion [s]; none: as short as can be
+    /// When it begins, by the clock of whoever runs it [s since 1970-01-01 UTC]; none: at once.
+    std::optional<double> start_time{};
 };
 
 /// A move to a pose.
@@ -40,6 +43,14 @@ struct ForceMoveParameters : CartesianMoveParameters {
     bool halt_on_force = false;  ///< a force over its limit is an error: Halted, not Ready
 };
 
+/// A move along lines through several poses, corners rounded.
+struct PathMoveParameters : MoveParameters {
+    std::vector<skill::Frame> poses{};  ///< of the tool frame, at least one
+    /// How far from its pose each corner may be cut, > 0 [m]; one per pose, the last is not used.
+    std::vector<double> blend_radii{};
+    std::vector<double> speeds{};  ///< largest on the way to each pose [m/s]; 0, or empty: no own
+};
+
 /// A move to a joint position.
 struct JointMoveParameters : MoveParameters {
     std::vector<double> target_joint_position{};  ///< [rad]
@@ -51,6 +62,13 @@ struct MoveResults {
     std::vector<double> reached_joint_position{};  ///< measured [rad]
     double duration = 0.0;                         ///< in motion, without the time suspended [s]
     double largest_path_deviation = 0.0;  ///< measured tool frame from the planned path [m]
+    /// When the first and the last set-point of the motion were given, by the clock of whoever ran
+    /// it [s since 1970-01-01 UTC].
+    double motion_start_time = 0.0;
+    double motion_end_time = 0.0;
+    /// Most that a set-point came before or after its time, counted from StartTime if there was
+    /// one, else from the first set-point [s]; 0 where the controller plans.
+    double largest_lateness = 0.0;
 };
 
 /// What a force move tells when it is done; forces in the base frame.
@@ -60,6 +78,9 @@ struct ForceMoveResults : MoveResults {
     skill::Vector3 forces_exceeded;  ///< that ended the motion [N]; zero if none did
     skill::Vector3 forces_max;       ///< largest along each axis, without sign [N]
 };
+
+/// Most poses of one path: more take too long to plan while a server waits.
+inline constexpr std::size_t kMostPoses = 100;
 
 /// What MaxVelocity and MaxAcceleration bound.
 enum class MoveKind : std::uint8_t {
@@ -74,6 +95,7 @@ enum class MoveKind : std::uint8_t {
 /// clients always send six values.
 skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::RobotModel& model,
                                                               MoveKind kind);
+skill::FieldList<PathMoveParameters> pathMoveFields(const motion::RobotModel& model);
 skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& model,
                                                       MoveKind kind);
 const skill::FieldList<MoveResults>& moveResultFields();

@@ -15,6 +15,9 @@ motion::Planned<motion::Trajectory> planCartesianPtp(const motion::RobotModel& m
 motion::Planned<motion::Trajectory> planCartesianLinear(const motion::RobotModel& model,
                                                         const motion::JointVector& start,
                                                         const CartesianMoveParameters& parameters);
+motion::Planned<motion::Trajectory> planCartesianPath(const motion::RobotModel& model,
+                                                      const motion::JointVector& start,
+                                                      const PathMoveParameters& parameters);
 motion::Planned<motion::Trajectory> planJointPtp(const motion::RobotModel& model,
                                                  const motion::JointVector& start,
                                                  const JointMoveParameters& parameters);

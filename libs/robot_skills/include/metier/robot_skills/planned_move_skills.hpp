@@ -25,7 +25,8 @@ struct PlanningArm {
 /// metier plans each motion, too: what its planner refuses is refused, and the controller may not
 /// be faster than the plan. Refused besides, with not_supported: a line of a tool frame that turns
 /// about anything but the flange, and a line on which the elbow turns. A move to joints must end at
-/// them, else it fails.
+/// them, else it fails. A Duration is the least that the motion takes; a StartTime is refused with
+/// not_supported.
 ///
 /// Suspend and Halt stop the motion as the controller does, and are answered at standstill. Resume
 /// asks for the same target again, from where the arm stands; it is refused as that of the other

@@ -1,0 +1,90 @@
+#include "path_layout.hpp"
+
+#include "metier/geometry/rotation.hpp"
+#include "request_check.hpp"
+
+namespace metier::motion {
+
+using geometry::Pose;
+
+namespace {
+
+Refusal atWaypoint(const PathRequest& request, std::size_t index, Refusal refusal) {
+    refusal.error.message = fmt::format("waypoint {}: {}", index + 1, refusal.error.message);
+    refusal.fraction =
+        static_cast<double>(index + 1) / static_cast<double>(request.waypoints.size());
+    return refusal;
+}
+
+/// Why the path cannot go on to a waypoint that it has a corner before.
+std::optional<Refusal> refuseCorner(const ToolPath& path, const Pose& corner, const Pose& target,
+                                    double radius) {
+    constexpr double rounding = 1e-9;
+    const bool same = geometry::distanceBetween(corner, target) == 0 &&
+                      geometry::rotationAngleBetween(corner.rotation, target.rotation) == 0;
+    if (same) {
+        return refuse(RefusalReason::invalid_request, Errc::invalid_argument,
+                      "the next waypoint is the same pose: no line leads there");
+    }
+    if (const double limit = path.blendLimit(target); radius > limit + rounding) {
+        return refuse(RefusalReason::invalid_request, Errc::out_of_range,
+                      fmt::format("blend radius {} m over {:.4f} m, half of the shorter line "
+                                  "beside it",
+                                  radius, limit));
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Pose absoluteTarget(const Pose& start, const Pose& target, TargetReference reference) {
+    switch (reference) {
+        case TargetReference::relative_base:
+            return {start.translation + target.translation, target.rotation * start.rotation};
+        case TargetReference::relative_tool:
+            return start * target;
+        case TargetReference::base:
+            break;
+    }
+    return {target.translation, target.rotation.normalized()};
+}
+
+std::optional<Refusal> layOut(const RobotModel& model, const PathRequest& request,
+                              const Pose& flange_from_tool, ToolPath& path) {
+    const Pose tool_from_flange = flange_from_tool.inverse();
+    Pose before = model.kinematics().forward(request.lin.start) * flange_from_tool;
+    for (std::size_t i = 0; i < request.waypoints.size(); ++i) {
+        const Pose target =
+            absoluteTarget(before, request.waypoints[i].target, request.lin.reference);
+        const bool named = request.waypoints.size() > 1;
+        const auto miss =
+            model.kinematics().outOfReach(target * tool_from_flange, request.lin.start);
+        if (miss && named) {
+            return atWaypoint(request, i,
+                              refuse(RefusalReason::unreachable, Errc::unreachable,
+                                     "out of reach: " + toString(*miss)));
+        }
+        if (i == 0) {
+            path = ToolPath(before, target);
+        } else {
+            const double radius = request.waypoints[i - 1].blend_radius;
+            if (const auto refusal = refuseCorner(path, before, target, radius)) {
+                return atWaypoint(request, i - 1, *refusal);
+            }
+            path.append(target, radius);
+        }
+        before = target;
+    }
+    return std::nullopt;
+}
+
+Refusal onTheWay(Refusal refusal, const ToolPath& path, const PathRequest& request) {
+    if (request.waypoints.size() > 1) {
+        refusal.error.message =
+            fmt::format("on the way to waypoint {}: {}", path.lineAt(refusal.fraction) + 1,
+                        refusal.error.message);
+    }
+    return refusal;
+}
+
+}  // namespace metier::motion
