@@ -31,6 +31,7 @@ const configuration::DriverChoice* driverOf(const configuration::ServerConfig& s
             return &server.gripper.driver;
         case ServerKind::move:
         case ServerKind::composition:
+        case ServerKind::synchronized:
             break;
     }
     return nullptr;
@@ -60,8 +61,8 @@ Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Port
             }
         }
     }
-    for (const auto kind :
-         {ServerKind::arm, ServerKind::gripper, ServerKind::move, ServerKind::composition}) {
+    for (const auto kind : {ServerKind::arm, ServerKind::gripper, ServerKind::move,
+                            ServerKind::synchronized, ServerKind::composition}) {
         for (const auto& server : cell.servers) {
             if (server.kind != kind) {
                 continue;
@@ -106,7 +107,7 @@ Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
     if (server.kind == ServerKind::move && robot != running_.end()) {
         command.insert(command.end(), {"--robot", robot->url});
     }
-    for (const auto& used : server.composition.servers) {
+    for (const auto& used : server.usedServers()) {
         for (const auto& other : running_) {
             if (other.name == used.name) {
                 command.insert(command.end(), {"--use", used.name + "=" + other.url});

@@ -14,6 +14,7 @@
 #include "move_server.hpp"
 #include "ready_line.hpp"
 #include "stop_signal.hpp"
+#include "synchronized_server.hpp"
 
 namespace metier::app {
 namespace {
@@ -155,12 +156,14 @@ Exit runServe(const ServeOptions& options) {
     if (config->kind == configuration::ServerKind::gripper) {
         return serveUntil(stop, GripperServer::start(*config));
     }
+    if (const auto right = resolveUsed(*cell, options.used, config->usedServers()); !right) {
+        return reportUsage(right.error());
+    }
     if (config->kind == configuration::ServerKind::composition) {
-        if (const auto right = resolveUsed(*cell, options.used, config->composition.servers);
-            !right) {
-            return reportUsage(right.error());
-        }
         return serveUntil(stop, CompositionServer::start(*config));
+    }
+    if (config->kind == configuration::ServerKind::synchronized) {
+        return serveUntil(stop, SynchronizedServer::start(*config));
     }
     resolveRobot(*cell, *config);
     return serveUntil(stop, MoveServer::start(*config));

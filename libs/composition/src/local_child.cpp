@@ -14,6 +14,7 @@ LocalChild::LocalChild(skill::Program& program, std::shared_ptr<skill::Executor>
 }
 
 LocalChild::~LocalChild() {
+    *alive_ = false;
     release();
     program_.detach(*this);
 }
@@ -35,6 +36,24 @@ Result<void> LocalChild::reset(ChildListener& listener) {
         post([](ChildListener& to) { to.onReset({}); });
     }
     return outcome;
+}
+
+template <typename Answer>
+void LocalChild::answer(std::function<void(Result<Answer>)> done, Answer answer) {
+    executor_->post([alive = alive_, done = std::move(done), answer = std::move(answer)]() mutable {
+        if (*alive) {
+            done(std::move(answer));
+        }
+    });
+}
+
+void LocalChild::check(const skill::ValueMap& parameters,
+                       std::function<void(Result<skill::CheckReport>)> done) {
+    answer(std::move(done), program_.check(caller_, parameters));
+}
+
+void LocalChild::compareClocks(std::function<void(Result<ClockOffset>)> done) {
+    answer(std::move(done), ClockOffset{});
 }
 
 void LocalChild::begin(skill::StartRequest request, ChildListener& listener) {

@@ -7,25 +7,9 @@
 #include <utility>
 
 #include "call_activity.hpp"
+#include "metier/composition/execution_id.hpp"
 
 namespace metier::composition {
-
-namespace {
-
-constexpr std::size_t kLongestId = 128;
-// FNV-1a, 64 bit
-constexpr std::uint64_t kHashBegin = 14695981039346656037U;
-constexpr std::uint64_t kHashPrime = 1099511628211U;
-
-std::string hashOf(std::string_view text) {
-    std::uint64_t hash = kHashBegin;
-    for (const char letter : text) {
-        hash = (hash ^ static_cast<unsigned char>(letter)) * kHashPrime;
-    }
-    return fmt::format("{:016x}", hash);
-}
-
-}  // namespace
 
 void StepTimer::start(std::chrono::nanoseconds delay, std::function<void()> due) {
     cancel();
@@ -121,12 +105,7 @@ void Run::finished(const std::string& path, std::chrono::nanoseconds time) {
 }
 
 std::string Run::childExecution(const std::string& step) {
-    const auto own = fmt::format("/{}/{}", step, ++begun_);
-    auto above = fmt::format("{}/{}", setup_.origin, execution_.id());
-    if (above.size() + own.size() > kLongestId) {
-        above = above.substr(0, setup_.origin.size() + 1) + hashOf(above);
-    }
-    return above + own;
+    return childExecutionId({setup_.origin, execution_.id(), step, ++begun_});
 }
 
 void Run::detach(CallActivity& call) {

@@ -14,6 +14,7 @@
 #include "metier/skill/program.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
 #include "metier/skill/testing/recording_observer.hpp"
+#include "scripted_child.hpp"
 
 namespace metier::composition::testing {
 
@@ -50,84 +51,6 @@ inline skill::SkillDescription graspDescription() {
             .results = {{.name = "Width", .type = skill::ValueType::number, .unit = skill::kMetre},
                         {.name = "Held", .type = skill::ValueType::boolean}}};
 }
-
-/// A used skill whose every word is the test's.
-class ScriptedChild final : public Child {
-public:
-    ScriptedChild(std::string name, skill::SkillDescription description)
-        : name_(std::move(name)), description_(std::move(description)) {}
-
-    const std::string& name() const override { return name_; }
-    const skill::SkillDescription& description() const override { return description_; }
-    Result<void> available() const override { return reachable; }
-    skill::State state() const override { return state_now; }
-    std::string reasonText() const override { return reason_text; }
-    Result<void> reset(ChildListener& to) override {
-        calls.emplace_back("reset");
-        listener = &to;
-        return reset_answer;
-    }
-    void begin(skill::StartRequest asked, ChildListener& to) override {
-        calls.emplace_back("begin");
-        request = std::move(asked);
-        listener = &to;
-        state_now = skill::State::running;
-    }
-    Result<void> suspend() override {
-        calls.emplace_back("suspend");
-        return suspend_answer;
-    }
-    Result<void> resume() override {
-        calls.emplace_back("resume");
-        return resume_answer;
-    }
-    void halt() override { calls.emplace_back("halt"); }
-    void release() override { listener = nullptr; }
-
-    // What happens to it.
-    void finish(skill::ValueMap result = {}) {
-        state_now = skill::State::ready;
-        listener->onEnd({ChildEnd::Kind::finished, std::move(result)});
-    }
-    void halted(skill::Reason reason = skill::Reason::by_client, std::string text = {}) {
-        state_now = skill::State::halted;
-        reason_text = text;
-        listener->onEnd({ChildEnd::Kind::halted, {}, reason, std::move(text)});
-    }
-    void refused(std::string text) {
-        state_now = skill::State::ready;
-        listener->onEnd({ChildEnd::Kind::refused, {}, skill::Reason::error, std::move(text)});
-    }
-    void suspended() {
-        state_now = skill::State::suspended;
-        listener->onSuspended();
-    }
-    void resumed() {
-        state_now = skill::State::running;
-        listener->onResumed();
-    }
-    void wasReset(const Result<void>& outcome = {}) {
-        state_now = outcome ? skill::State::ready : skill::State::halted;
-        listener->onReset(outcome);
-    }
-    /// What was called since the last time.
-    std::vector<std::string> heard() { return std::exchange(calls, {}); }
-    bool runs() const { return listener != nullptr; }
-
-    Result<void> reachable{};
-    skill::State state_now = skill::State::ready;
-    std::string reason_text{};
-    Result<void> reset_answer{};
-    Result<void> suspend_answer{};
-    Result<void> resume_answer{};
-    std::vector<std::string> calls{};
-    skill::StartRequest request{};
-    ChildListener* listener = nullptr;
-
-private:
-    std::string name_;
-    skill::SkillDescription description_;
-};
 
 /// The head of a file that uses `a` and `b`, which move, and `grip`.
 inline const std::string kHead = R"(

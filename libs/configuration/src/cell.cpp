@@ -17,6 +17,9 @@ constexpr double kLongestSilence = 2.0;
 // A shorter limit is within what a busy machine lets a thread wait [s].
 constexpr double kShortestStall = 0.1;
 constexpr double kLongestStall = 2.0;
+// Arms are told of a start that is nearer too late, of a later one with more doubt [s].
+constexpr double kShortestStartDelay = 0.05;
+constexpr double kLongestStartDelay = 30.0;
 
 bool isAddress(const std::string& server) {
     return server.starts_with("opc.tcp://");
@@ -114,13 +117,36 @@ GripperServer readGripper(const TomlTable& table) {
     return gripper;
 }
 
+std::vector<UsedServer> readUsedServers(const TomlTable& table) {
+    std::vector<UsedServer> servers;
+    for (const auto& server : table.texts("servers")) {
+        servers.push_back({server, isAddress(server) ? server : ""});
+    }
+    return servers;
+}
+
 CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder) {
     CompositionServer composition;
     composition.files = readFiles(table, "compositions", folder);
-    for (const auto& server : table.texts("servers")) {
-        composition.servers.push_back({server, isAddress(server) ? server : ""});
-    }
+    composition.servers = readUsedServers(table);
     return composition;
+}
+
+SynchronizedServer readSynchronized(const TomlTable& table) {
+    SynchronizedServer synchronized;
+    synchronized.servers = readUsedServers(table);
+    synchronized.start_delay = secondsWithin(table, "start_delay", synchronized.start_delay,
+                                             {kShortestStartDelay, kLongestStartDelay});
+    std::set<std::string> names;
+    for (const auto& server : synchronized.servers) {
+        if (!names.insert(server.name).second) {
+            table.reject("servers", fmt::format("\"{}\" is there twice", server.name));
+        }
+    }
+    if (names.size() < 2) {
+        table.reject("servers", "needs at least two arms");
+    }
+    return synchronized;
 }
 
 VirtualController readVirtual(const TomlTable& table, const std::filesystem::path& folder) {
@@ -161,16 +187,35 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     } else if (kind == "composition") {
         server.kind = ServerKind::composition;
         server.composition = readComposition(table, folder);
+    } else if (kind == "synchronized") {
+        server.kind = ServerKind::synchronized;
+        server.synchronized = readSynchronized(table);
     } else if (!kind.empty()) {
-        table.reject("kind",
-                     fmt::format("\"{}\" is not one of: arm, gripper, move, composition", kind));
+        table.reject(
+            "kind",
+            fmt::format("\"{}\" is not one of: arm, gripper, move, composition, synchronized",
+                        kind));
     }
     return server;
 }
 
+/// Arms that are moved together are behind servers with move skills.
+void checkSynchronized(const CellConfig& cell, const ServerConfig& config, const TomlTable& table) {
+    for (const auto& used : config.synchronized.servers) {
+        const auto* server = cell.find(used.name);
+        const bool moves = server != nullptr &&
+                           (server->kind == ServerKind::arm || server->kind == ServerKind::move);
+        if (used.url.empty() && !moves) {
+            table.reject("servers", fmt::format("\"{}\" is neither a server of kind arm or move in "
+                                                "this file nor an opc.tcp:// address",
+                                                used.name));
+        }
+    }
+}
+
 /// Whoever uses others comes after them, so that they can be started in the order of the file.
 void checkUsedServers(const CellConfig& cell, std::size_t index, const TomlTable& table) {
-    for (const auto& used : cell.servers[index].composition.servers) {
+    for (const auto& used : cell.servers[index].usedServers()) {
         const auto end = cell.servers.begin() + static_cast<std::ptrdiff_t>(index);
         const bool above = std::any_of(cell.servers.begin(), end, [&](const auto& server) {
             return server.name == used.name;
@@ -197,7 +242,11 @@ void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& table
         if (server.port != 0 && !ports.insert(server.port).second) {
             tables[i].reject("port", fmt::format("{} is taken by a server above", server.port));
         }
-        checkUsedServers(cell, i, tables[i]);
+        if (server.kind == ServerKind::synchronized) {
+            checkSynchronized(cell, server, tables[i]);
+        } else {
+            checkUsedServers(cell, i, tables[i]);
+        }
         if (server.kind != ServerKind::move || isAddress(server.move.robot)) {
             continue;
         }

@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "clock_offset.hpp"
+
 namespace metier::remote_skill {
 
 using composition::ChildListener;
@@ -67,6 +69,31 @@ void RemoteChild::lost(const std::string& why) {
     if (!execution_.empty()) {
         end({ChildEnd::Kind::lost, {}, Reason::device_lost, why});
     }
+}
+
+void RemoteChild::check(const skill::ValueMap& parameters,
+                        std::function<void(Result<skill::CheckReport>)> done) {
+    using Report = Result<skill::CheckReport>;
+    const auto told = [link = link_, done = std::move(done)](Report report) {
+        link->post([done, report = std::move(report)](RemoteChild& /*child*/) { done(report); });
+    };
+    const auto sent =
+        skill_ ? skill_->skill.check(parameters,
+                                     [told](const opcua::Answer<skill::CheckReport>& report) {
+                                         told(report ? Report(*report) : fail(report.error()));
+                                     })
+               : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
+    if (!sent) {
+        told(fail(sent.error()));
+    }
+}
+
+void RemoteChild::compareClocks(std::function<void(Result<composition::ClockOffset>)> done) {
+    connection_.run([skill = skill_, link = link_, lost = lost_, done = std::move(done)] {
+        auto offset = skill ? clockOffsetOf(*skill->client)
+                            : Result<composition::ClockOffset>(fail(Errc::connection_lost, lost));
+        link->post([done, offset = std::move(offset)](RemoteChild& /*child*/) { done(offset); });
+    });
 }
 
 void RemoteChild::begin(skill::StartRequest request, ChildListener& listener) {

@@ -29,6 +29,9 @@ public:
     std::string reasonText() const override { return reason_text_; }
     bool leftOver() const override { return left_over_; }
     Result<void> reset(composition::ChildListener& listener) override;
+    void check(const skill::ValueMap& parameters,
+               std::function<void(Result<skill::CheckReport>)> done) override;
+    void compareClocks(std::function<void(Result<composition::ClockOffset>)> done) override;
     void begin(skill::StartRequest request, composition::ChildListener& listener) override;
     Result<void> suspend() override;
     Result<void> resume() override;

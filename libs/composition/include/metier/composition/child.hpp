@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <functional>
 #include <string>
 
 #include "metier/base/error.hpp"
@@ -22,6 +24,12 @@ struct ChildEnd {
     skill::ValueMap result{};  ///< of one that finished
     skill::Reason reason = skill::Reason::none;
     std::string text{};  ///< with value, limit and unit
+};
+
+/// How far the clock of a used skill's server is ahead of this machine's.
+struct ClockOffset {
+    std::chrono::nanoseconds ahead{0};
+    std::chrono::nanoseconds uncertainty{0};  ///< it may be wrong by that much either way
 };
 
 /// Who hears of the execution of a used skill.
@@ -65,6 +73,15 @@ public:
     /// Clears a fault; `listener` hears the outcome.
     /// Errors: it refuses, where that is known at once; then the listener is not called.
     virtual Result<void> reset(ChildListener& listener) = 0;
+    /// Asks what begin() with these parameters would say now; nothing moves.
+    /// \param done called once, in a later turn of the owner's thread, as long as this is there.
+    ///             Errors: connection_lost, timeout, the server's
+    virtual void check(const skill::ValueMap& parameters,
+                       std::function<void(Result<skill::CheckReport>)> done) = 0;
+    /// Compares the clocks of the used skill's server and of this machine.
+    /// \param done as that of check()
+    virtual void compareClocks(std::function<void(Result<ClockOffset>)> done) = 0;
+
     /// Begins; `listener` hears what follows, its end at the latest. What is asked of the execution
     /// right after this waits until it has begun.
     virtual void begin(skill::StartRequest request, ChildListener& listener) = 0;

@@ -29,6 +29,9 @@ public:
     skill::State state() const override { return program_.state(); }
     std::string reasonText() const override { return program_.reasonText(); }
     Result<void> reset(ChildListener& listener) override;
+    void check(const skill::ValueMap& parameters,
+               std::function<void(Result<skill::CheckReport>)> done) override;
+    void compareClocks(std::function<void(Result<ClockOffset>)> done) override;
     void begin(skill::StartRequest request, ChildListener& listener) override;
     Result<void> suspend() override;
     Result<void> resume() override;
@@ -52,6 +55,9 @@ private:
     /// Has `tell` called with the listener, outside of the call that is under way.
     template <typename Tell>
     void post(Tell tell);
+    /// Has `done` called with `answer`, outside of the call that is under way.
+    template <typename Answer>
+    void answer(std::function<void(Result<Answer>)> done, Answer answer);
     void end(ChildEnd end);
     ChildEnd endOf(const skill::TransitionEvent& event) const;
 
@@ -61,6 +67,8 @@ private:
     std::string execution_;  // that was begun here and has not ended
     // Shared with posted work, which may come after this; a new one for each listener.
     std::shared_ptr<Link> link_ = std::make_shared<Link>();
+    // Posted answers ask it whether this is still there.
+    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
 };
 
 }  // namespace metier::composition

@@ -71,7 +71,14 @@ struct CompositionServer {
     std::vector<UsedServer> servers;           ///< where the used skills are
 };
 
-enum class ServerKind { arm, gripper, move, composition };
+/// A skill that moves the arms of several servers together.
+struct SynchronizedServer {
+    std::vector<UsedServer> servers;  ///< one arm with move skills each; at least two, none twice
+    /// From when all is known until the arms begin [s].
+    double start_delay = 0.5;
+};
+
+enum class ServerKind { arm, gripper, move, composition, synchronized };
 
 /// One process of a cell: one OPC UA server.
 struct ServerConfig {
@@ -88,12 +95,21 @@ struct ServerConfig {
     std::filesystem::path state_folder;
     /// Longest time without a sign of life of the server's thread; then its device is stopped [s].
     double stall_limit = 0.25;
-    ArmServer arm;                  ///< for ServerKind::arm
-    GripperServer gripper;          ///< for ServerKind::gripper
-    MoveComponent move;             ///< for ServerKind::move
-    CompositionServer composition;  ///< for ServerKind::composition
+    ArmServer arm;                    ///< for ServerKind::arm
+    GripperServer gripper;            ///< for ServerKind::gripper
+    MoveComponent move;               ///< for ServerKind::move
+    CompositionServer composition;    ///< for ServerKind::composition
+    SynchronizedServer synchronized;  ///< for ServerKind::synchronized
     /// Files with skills made of the server's own; absolute. For ServerKind::arm.
     std::vector<std::filesystem::path> own_compositions;
+
+    /// Those whose skills this one uses; empty for the kinds that use none.
+    const std::vector<UsedServer>& usedServers() const {
+        return kind == ServerKind::synchronized ? synchronized.servers : composition.servers;
+    }
+    std::vector<UsedServer>& usedServers() {
+        return kind == ServerKind::synchronized ? synchronized.servers : composition.servers;
+    }
 };
 
 /// A controller without its device, in a process of its own.

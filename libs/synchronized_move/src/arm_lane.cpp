@@ -1,0 +1,207 @@
+#include "arm_lane.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace metier::synchronized_move {
+
+using composition::ChildEnd;
+using composition::ClockOffset;
+using skill::Reason;
+
+namespace {
+
+double seconds(std::chrono::nanoseconds time) {
+    return std::chrono::duration<double>(time).count();
+}
+
+}  // namespace
+
+ArmLane::~ArmLane() {
+    if (underWay()) {
+        setup_.arm.joint_move->release();
+    }
+}
+
+LaneFailure ArmLane::failure(const std::string& text, Reason reason) const {
+    return {reason, fmt::format("{} {}", name(), text)};
+}
+
+void ArmLane::ask(std::function<void(std::optional<LaneFailure>)> done) {
+    skill::ValueMap parameters{{"ToolFrame", setup_.tool_frame}};
+    const bool first = way_.empty();
+    if (first) {
+        parameters.emplace("TargetPosition", setup_.target);
+    } else {
+        parameters.emplace("TargetJointPosition", way_.back());
+    }
+    auto& skill = first ? *setup_.arm.pose_move : *setup_.arm.joint_move;
+    skill.check(parameters,
+                [this, done = std::move(done)](const auto& report) { done(take(report)); });
+}
+
+std::optional<LaneFailure> ArmLane::take(const Result<skill::CheckReport>& report) {
+    if (!report) {
+        const bool lost =
+            report.error().code == Errc::connection_lost || report.error().code == Errc::timeout;
+        return failure("does not answer: " + report.error().message,
+                       lost ? Reason::device_lost : Reason::error);
+    }
+    if (!report->possible) {
+        return failure("cannot get to its target: " + report->reason);
+    }
+    if (report->joint_path.empty()) {
+        return failure("does not tell the joints of its target");
+    }
+    if (way_.empty()) {
+        way_ = report->joint_path;
+    } else if (const auto off = offWay(way_, report->joint_path.front()); !off.empty()) {
+        return failure("was moved off its way while it was suspended: " + off);
+    }
+    shortest_ = report->planned_duration;
+    return std::nullopt;
+}
+
+void ArmLane::compareClocks(std::function<void(std::optional<LaneFailure>)> done) {
+    setup_.arm.joint_move->compareClocks([this, done = std::move(done)](
+                                             const Result<ClockOffset>& offset) {
+        if (!offset) {
+            done(failure("does not tell its time: " + offset.error().message, Reason::device_lost));
+            return;
+        }
+        offset_ = *offset;
+        done(std::nullopt);
+    });
+}
+
+void ArmLane::begin(const Start& start) {
+    const auto time = start.time.time_since_epoch() + offset_.ahead;
+    skill::StartRequest request{.execution_id = start.execution_id,
+                                .on_owner_loss = skill::OwnerLossAction::halt};
+    request.parameters = {{"TargetJointPosition", way_.back()},
+                          {"ToolFrame", setup_.tool_frame},
+                          {"StartTime", std::chrono::duration<double>(time).count()}};
+    if (hasWay()) {
+        request.parameters.emplace("Duration", start.duration);
+    }
+    stage_ = Stage::runs;
+    rest_asked_ = halt_asked_ = false;
+    setup_.arm.halted_by_us = false;
+    setup_.arm.joint_move->begin(std::move(request), *this);
+}
+
+void ArmLane::suspend() {
+    if (stage_ != Stage::runs || rest_asked_ || halt_asked_) {
+        return;
+    }
+    rest_asked_ = true;
+    if (const auto asked = setup_.arm.joint_move->suspend(); !asked) {
+        owner_.failed(failure("refused Suspend: " + asked.error().message));
+    }
+}
+
+bool ArmLane::needsReset() const {
+    return stage_ == Stage::resting ||
+           (stage_ == Stage::idle && setup_.arm.joint_move->state() == skill::State::halted);
+}
+
+void ArmLane::drop() {
+    stage_ = Stage::dropping;
+    if (const auto asked = setup_.arm.joint_move->reset(*this); !asked) {
+        stage_ = Stage::idle;
+        owner_.failed(failure("refused Reset: " + asked.error().message));
+    }
+}
+
+void ArmLane::halt() {
+    if (!underWay() || halt_asked_) {
+        return;
+    }
+    halt_asked_ = true;
+    setup_.arm.halted_by_us = true;
+    setup_.arm.joint_move->halt();
+}
+
+void ArmLane::onReset(const Result<void>& outcome) {
+    if (stage_ != Stage::dropping) {
+        return;
+    }
+    stage_ = Stage::idle;
+    if (outcome) {
+        owner_.changed();
+    } else {
+        owner_.failed(failure("refused Reset: " + outcome.error().message));
+    }
+}
+
+void ArmLane::onSuspended() {
+    stage_ = Stage::resting;
+    if (rest_asked_) {
+        owner_.changed();
+    } else {
+        owner_.suspendedByOther();
+    }
+}
+
+void ArmLane::onResumed() {
+    stage_ = Stage::runs;
+    rest_asked_ = false;
+    owner_.failed(failure("was resumed alone"));
+}
+
+void ArmLane::onRefused(skill::Method method, const Error& error) {
+    // An arm that ends by itself meanwhile refuses, and tells its end.
+    if (method != skill::Method::suspend) {
+        owner_.failed(failure(fmt::format("refused {}: {}", toString(method), error.message)));
+    }
+}
+
+LaneFailure ArmLane::failureOf(const ChildEnd& end) const {
+    switch (end.kind) {
+        case ChildEnd::Kind::refused:
+            return failure("refused Start: " + end.text);
+        case ChildEnd::Kind::lost:
+            return failure("is lost: " + end.text, Reason::device_lost);
+        default:
+            break;
+    }
+    const bool by_someone = end.reason == Reason::by_client || end.reason == Reason::owner_lost ||
+                            end.reason == Reason::none;
+    return failure(fmt::format("was Halted ({}){}{}", skill::toString(end.reason),
+                               end.text.empty() ? "" : ": ", end.text),
+                   by_someone ? Reason::error : end.reason);
+}
+
+void ArmLane::onEnd(ChildEnd end) {
+    const bool dropped = stage_ == Stage::dropping && end.kind == ChildEnd::Kind::halted &&
+                         setup_.arm.joint_move->state() == skill::State::ready;
+    if (end.kind == ChildEnd::Kind::finished) {
+        stage_ = Stage::arrived;
+        result_ = std::move(end.result);
+        owner_.changed();
+    } else if (dropped) {
+        stage_ = Stage::idle;
+        owner_.changed();
+    } else {
+        stage_ = Stage::over;
+        setup_.arm.halted_by_us = setup_.arm.halted_by_us || end.kind == ChildEnd::Kind::lost;
+        if (halt_asked_) {
+            owner_.changed();
+        } else {
+            owner_.failed(failureOf(end));
+        }
+    }
+}
+
+double ArmLane::number(const std::string& name) const {
+    const auto found = result_.find(name);
+    const auto* value = found == result_.end() ? nullptr : std::get_if<double>(&found->second);
+    return value == nullptr ? 0.0 : *value;
+}
+
+double ArmLane::localTime(const std::string& name) const {
+    return number(name) - seconds(offset_.ahead);
+}
+
+}  // namespace metier::synchronized_move

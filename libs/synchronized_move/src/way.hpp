@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace metier::synchronized_move {
+
+/// The joint positions that an arm passes on its way [rad], one row per place.
+using Way = std::vector<std::vector<double>>;
+
+/// An arm that begins again may stand this far off its way [rad].
+inline constexpr double kOffWay = 2e-3;
+
+/// How the joint position `now` is off the straight lines between the places of `way`: "axis 3 by
+/// 0.0120 rad, limit 0.002 rad", or "" if it is not.
+std::string offWay(const Way& way, const std::vector<double>& now);
+
+}  // namespace metier::synchronized_move
