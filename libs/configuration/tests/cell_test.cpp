@@ -266,5 +266,49 @@ servers = ["inner", "opc.tcp://127.0.0.1:4840"]
         << around.error().message;
 }
 
+Result<CellConfig> cellOfTwo(const std::string& synchronized) {
+    return parseCell(R"(name = "cell"
+[[server]]
+name = "left"
+kind = "move"
+robot = "opc.tcp://127.0.0.1:4840"
+[[server]]
+name = "hand"
+kind = "gripper"
+driver = { type = "wsg50", controller = "10.0.0.7" }
+nodeset = "wsg50"
+skills = ["GraspGripperSkill"]
+[[server]]
+name = "both"
+kind = "synchronized"
+)" + synchronized,
+                     "cell.toml");
+}
+
+TEST(SynchronizedCellFile, DescribesTheArmsThatAreMovedTogether) {
+    const auto cell = cellOfTwo("servers = [\"left\", \"opc.tcp://10.0.0.2:4840\"]\n");
+    ASSERT_TRUE(cell) << cell.error().message;
+    const auto& both = cell->servers[2];
+    EXPECT_EQ(both.kind, ServerKind::synchronized);
+    EXPECT_EQ(both.usedServers()[0].name, "left");
+    EXPECT_EQ(both.usedServers()[1].url, "opc.tcp://10.0.0.2:4840");
+    EXPECT_EQ(both.synchronized.start_delay, 0.5);
+}
+
+TEST(SynchronizedCellFile, NeedsTwoArmsWithMovesAndATimeToTellThem) {
+    const auto text = [](const std::string& keys) {
+        const auto cell = cellOfTwo(keys);
+        return cell ? std::string("accepted") : cell.error().message;
+    };
+    EXPECT_THAT(text("servers = [\"left\"]\n"),
+                HasSubstr("server[2].servers: needs at least two arms"));
+    EXPECT_THAT(text("servers = [\"left\", \"left\"]\n"),
+                HasSubstr("server[2].servers: \"left\" is there twice"));
+    EXPECT_THAT(text("servers = [\"left\", \"hand\"]\n"),
+                HasSubstr("server[2].servers: \"hand\" is neither a server of kind arm or move"));
+    EXPECT_THAT(text("servers = [\"left\", \"opc.tcp://10.0.0.2:4840\"]\nstart_delay = 0.01\n"),
+                HasSubstr("server[2].start_delay: 0.01 is not within 0.05 to 30 s"));
+}
+
 }  // namespace
 }  // namespace metier::configuration
