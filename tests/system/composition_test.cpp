@@ -247,15 +247,10 @@ servers = ["opc.tcp://127.0.0.1:1"]
                           "parameter"));
 }
 
-std::string textOf(const std::filesystem::path& file) {
-    std::ifstream stream(std::filesystem::path(METIER_SOURCE_DIR) / file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST(GuideToCompositions, ShowsTheFilesThatRunHere) {
-    const auto guide = textOf("docs/guide/compose.md");
-    EXPECT_THAT(guide, HasSubstr("```toml\n" + textOf("compositions/visit.toml") + "```"));
-    EXPECT_THAT(guide, HasSubstr("```toml\n" + textOf("cells/visit.toml") + "```"));
+    const auto guide = sourceText("docs/guide/compose.md");
+    EXPECT_THAT(guide, HasSubstr("```toml\n" + sourceText("compositions/visit.toml") + "```"));
+    EXPECT_THAT(guide, HasSubstr("```toml\n" + sourceText("cells/visit.toml") + "```"));
     const auto cell = std::filesystem::path(METIER_SOURCE_DIR) / "cells" / "visit.toml";
     const ServerProcess arm("iiwa", {"--port", "0"}, cell);
     const ServerProcess visit("visit", {"--port", "0", "--use", "iiwa=" + arm.url()}, cell);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "metier/skill_client/kinematics_reader.hpp"
@@ -65,6 +67,11 @@ std::filesystem::path simulatedCell() {
 std::filesystem::path deviceCell(const std::string& name) {
     return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "devices" /
            (name + ".toml");
+}
+
+std::string sourceText(const std::filesystem::path& file) {
+    std::ifstream stream(std::filesystem::path(METIER_SOURCE_DIR) / file);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more,

@@ -39,6 +39,9 @@ std::filesystem::path simulatedCell();
 /// A cell file of tests/system/devices: one device, or few, on virtual controllers.
 std::filesystem::path deviceCell(const std::string& name);
 
+/// A file of the source tree.
+std::string sourceText(const std::filesystem::path& file);
+
 /// One server of the simulated cell in a process of its own.
 class ServerProcess {
 public:

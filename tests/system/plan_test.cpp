@@ -441,7 +441,7 @@ TEST(Check, PlansAPathWithRoundedCorners) {
                                   "--relative", "base",          "--to-pose", "0,0.1,0,0,0,0",
                                   "--to-pose",  "0,0,0.1,0,0,0", "--blend",   "0.03"};
     const auto path = jsonOf(line);
-    EXPECT_EQ(path["move"], "path");
+    EXPECT_EQ(path["move"], "CartesianPathMoveSkill");
     EXPECT_THAT(path["length"].get<double>(), AllOf(Ge(0.15), Le(0.2)));
     line.back() = "0";
     const auto refused = jsonOf(line, kFailed);

@@ -202,5 +202,21 @@ TEST(PathMove, RunsOverThePositionStreamOfAnotherServer) {
     EXPECT_THAT(run.output, HasSubstr("LargestPathDeviation"));
 }
 
+TEST(GuideToSynchronisedArms, ShowsTheCellThatRunsHere) {
+    const auto guide = sourceText("docs/guide/synchronised.md");
+    EXPECT_THAT(guide, HasSubstr("```toml\n" + sourceText("cells/synchronized.toml") + "```"));
+    const auto cell = std::filesystem::path(METIER_SOURCE_DIR) / "cells" / "synchronized.toml";
+    const ServerProcess left("left", {"--port", "0"}, cell);
+    const ServerProcess right("right", {"--port", "0"}, cell);
+    const ServerProcess both(
+        "both", {"--port", "0", "--use", "left=" + left.url(), "--use", "right=" + right.url()},
+        cell);
+    const std::string poses = "TargetPoses=0.5,0,0.4,3.14159,0,3.14159;0.4,-0.3,0.5,3.14,0,1";
+    EXPECT_THAT(guide, HasSubstr("SynchronizedMoveSkill --set \"" + poses + "\""));
+    const auto run = runMetier({"run", both.url(), "SynchronizedMoveSkill", "--set", poses});
+    EXPECT_EQ(run.status, 0) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("SkewAtEnd"));
+}
+
 }  // namespace
 }  // namespace metier::system_tests

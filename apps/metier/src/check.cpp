@@ -28,10 +28,6 @@ struct CheckOptions {
     bool json = false;
 };
 
-std::string nameOf(const PlannedMove& move) {
-    return move.skill.empty() ? "path with rounded corners" : move.skill;
-}
-
 struct QuantityName {
     Quantity quantity;
     const char* name;
@@ -45,7 +41,7 @@ constexpr std::array kQuantities{
 
 void printRefusal(const PlannedMove& move, const motion::Refusal& refusal) {
     fmt::print("refused: {}\n", refusal.error.message);
-    fmt::print("  move          {}\n", nameOf(move));
+    fmt::print("  move          {}\n", move.skill);
     fmt::print("  reason        {}\n", toString(refusal.reason));
     if (refusal.axis) {
         fmt::print("  axis          {}\n", *refusal.axis + 1);
@@ -58,7 +54,7 @@ void printRefusal(const PlannedMove& move, const motion::Refusal& refusal) {
 void printPlan(const RobotModel& model, const PlannedMove& move) {
     const Trajectory& plan = *move.plan;
     fmt::print("possible: takes {:.3f} s\n", plan.duration().count());
-    fmt::print("  move          {}\n", nameOf(move));
+    fmt::print("  move          {}\n", move.skill);
     if (plan.length() > 0 || plan.angle() > 0) {
         fmt::print("  path          {:.4f} m, {:.4f} rad\n", plan.length(), plan.angle());
     }
@@ -106,7 +102,7 @@ ordered_json previewJson(const Feasibility& feasibility) {
 ordered_json jsonOf(const RobotModel& model, const PlannedMove& move, std::size_t points) {
     const auto feasibility = motion::assess(move.plan, points);
     ordered_json json{{"robot", model.name()},
-                      {"move", move.skill.empty() ? "path" : move.skill},
+                      {"move", move.skill},
                       {"possible", !feasibility.refusal.has_value()},
                       {"start", toJson(move.start)}};
     if (feasibility.refusal) {

@@ -157,7 +157,7 @@ Result<PlannedMove> planAlongPoses(const RobotModel& model, const JointVector& s
     if (!parameters) {
         return fail(parameters.error());
     }
-    return PlannedMove{"", start,
+    return PlannedMove{"CartesianPathMoveSkill", start,
                        checkAndPlan(robot_skills::cartesianMoveFields(model, MoveKind::linear),
                                     *parameters, [&](const auto& taken) {
                                         return motion::Planner(model).path(

@@ -27,7 +27,7 @@ struct MoveOptions {
 
 /// A move, and what its skill's Start would answer.
 struct PlannedMove {
-    std::string skill;          ///< "" for a path, which no skill moves along
+    std::string skill;          ///< its name
     motion::JointVector start;  ///< [rad]
     motion::Planned<motion::Trajectory> plan;
 };

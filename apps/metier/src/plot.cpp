@@ -60,9 +60,7 @@ Result<Motion> plannedMotion(const RobotModel& model, const MoveOptions& options
     for (const auto& sample : motion.samples) {
         motion.tool_positions.push_back(move->plan->toolPose(sample.position).translation);
     }
-    motion.note =
-        fmt::format("{}, {:.3f} s", move->skill.empty() ? "path with rounded corners" : move->skill,
-                    move->plan->duration().count());
+    motion.note = fmt::format("{}, {:.3f} s", move->skill, move->plan->duration().count());
     if (move->plan->length() > 0) {
         motion.note += fmt::format(", {:.4f} m", move->plan->length());
     }

@@ -14,6 +14,8 @@ using synchronized_move::Arm;
 
 namespace {
 
+// Arms whose component is gone run on no longer than that, and what it takes to see it.
+constexpr std::chrono::milliseconds kSessionTimeout{2'000};
 constexpr const char* kSkill = "SynchronizedMoveSkill";
 
 std::string originOf(const std::string& component) {
@@ -63,9 +65,11 @@ Result<std::unique_ptr<composition::Child>> SynchronizedServer::use(
 
 Result<Arm> SynchronizedServer::connect(const configuration::UsedServer& used,
                                         const std::string& component) {
-    auto server = remote_skill::RemoteServer::connect(
-        {.url = used.url, .name = used.name, .application_name = "metier " + component},
-        host_->skills().executor());
+    auto server = remote_skill::RemoteServer::connect({.url = used.url,
+                                                       .name = used.name,
+                                                       .application_name = "metier " + component,
+                                                       .session_timeout = kSessionTimeout},
+                                                      host_->skills().executor());
     if (!server) {
         return fail(std::move(server.error()));
     }
