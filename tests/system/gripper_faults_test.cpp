@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "metier/base/queue.hpp"
 #include "metier_program.hpp"
 #include "running_cell.hpp"
 
