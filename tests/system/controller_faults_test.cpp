@@ -15,6 +15,7 @@ namespace {
 
 using skill::Reason;
 using skill::State;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -49,6 +50,11 @@ void atThePendant(ArmBench& arm, const std::string& command) {
     const auto line = command + "\n";
     EXPECT_TRUE(link.send(std::as_bytes(std::span(line)), inAMinute()));
     skipLine();
+}
+
+void popup(ArmBench& arm) {
+    arm.happensNow();
+    atThePendant(arm, "popup Mind the gap");
 }
 
 void pause(ArmBench& arm) {
@@ -145,6 +151,11 @@ INSTANTIATE_TEST_SUITE_P(
                         Reason::error, "safeguard stop", inject("close-safeguard")},
         ControllerFault{"violation", kUr5, When::moving, inject("violation"), Reason::error,
                         "violation: restart the safety system", restartSafety},
+        ControllerFault{"recovery_mode", kUr5, When::moving, inject("recovery-mode"), Reason::error,
+                        "recovery: an axis is outside of its limits; move it back at the pendant",
+                        inject("end-recovery")},
+        ControllerFault{"recovery_mode", kUr5, When::ready, inject("recovery-mode"), Reason::error,
+                        "recovery: an axis is outside of its limits", inject("end-recovery")},
         ControllerFault{"emergency_stop", kUr5, When::ready, inject("emergency-stop"),
                         Reason::error, "emergency stop",
                         [](ArmBench& arm) {
@@ -173,6 +184,12 @@ INSTANTIATE_TEST_SUITE_P(
                         "not ready to move", inject("ready")},
         ControllerFault{"not_ready", kIiwa, When::ready, inject("not-ready"), Reason::error,
                         "not ready to move", inject("ready")},
+        ControllerFault{"T1", kIiwa, When::moving, inject("operating-mode", "T1"), Reason::error,
+                        "not ready to move", inject("operating-mode", "AUT")},
+        ControllerFault{"T2", kIiwa, When::suspended, inject("operating-mode", "T2"), Reason::error,
+                        "not ready to move", inject("operating-mode", "AUT")},
+        ControllerFault{"T1", kIiwa, When::ready, inject("operating-mode", "T1"), Reason::error,
+                        "not ready to move", inject("operating-mode", "AUT")},
         ControllerFault{"limit", kIiwa, When::moving, inject("limit"), Reason::error, "not ready",
                         inject("ready")},
         ControllerFault{"emergency_stop", kIiwa, When::moving, inject("emergency-stop"),
@@ -218,10 +235,11 @@ std::vector<ControllerFault> faultsOfAnEdo() {
 
 INSTANTIATE_TEST_SUITE_P(Edo, FaultOfTheController, ::testing::ValuesIn(faultsOfAnEdo()), nameOf);
 
-/// What happens to a controller whose arm stands, and is no reason to halt anything.
+/// What happens to a controller and is no reason to halt anything.
 struct Harmless {
     const char* name;
     ArmCase arm;
+    When when;
     Act happens;
 };
 
@@ -229,24 +247,46 @@ void PrintTo(const Harmless& event, std::ostream* out) {
     *out << event.name;
 }
 
-class HarmlessWhileSuspended : public ::testing::TestWithParam<Harmless> {
+class HarmlessToASkill : public ::testing::TestWithParam<Harmless> {
 protected:
     ArmBench arm_{GetParam().arm};
 };
 
-TEST_P(HarmlessWhileSuspended, LetsTheSkillGoOnToItsTarget) {
-    ASSERT_NO_FATAL_FAILURE(arm_.bring(When::suspended));
+TEST_P(HarmlessToASkill, WhichGoesOnToItsTarget) {
+    ASSERT_NO_FATAL_FAILURE(arm_.bring(GetParam().when));
     GetParam().happens(arm_);
-    ASSERT_TRUE(arm_.skill().resume()) << arm_.skill().reasonText();
+    if (GetParam().when == When::suspended) {
+        ASSERT_TRUE(arm_.skill().resume()) << arm_.skill().reasonText();
+    }
     const auto ended = arm_.endWithin(std::chrono::seconds(60));
     EXPECT_EQ(ended.to, State::ready) << ended.reason_text;
     EXPECT_NEAR(arm_.position(), arm_.home().front() + GetParam().arm.axis_1, 2e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Devices, HarmlessWhileSuspended,
-    ::testing::Values(Harmless{"failed_motion", kIiwa, inject("protective-stop")}),
-    [](const auto& event) { return std::string(event.param.arm.name) + "_" + event.param.name; });
+INSTANTIATE_TEST_SUITE_P(Devices, HarmlessToASkill,
+                         ::testing::Values(Harmless{"failed_motion", kIiwa, When::suspended,
+                                                    inject("protective-stop")},
+                                           Harmless{"popup", kUr5, When::moving, popup},
+                                           Harmless{"popup", kUr5, When::suspended, popup}),
+                         [](const auto& event) {
+                             return std::string(event.param.arm.name) + "_" + event.param.name +
+                                    "_" + toString(event.param.when);
+                         });
+
+TEST(PopupOfAnotherProgram, HaltsTheSkillAndIsGoneBeforeTheNextMove) {
+    ArmBench arm(kUr5);
+    ASSERT_NO_FATAL_FAILURE(arm.bring(When::moving));
+    sendScript(
+        "def other():\n  popup(\"Is the box empty?\", \"Other\", False, False, True)\nend\n")(arm);
+    const auto halted = arm.haltedAfterInjection();
+    EXPECT_EQ(halted.reason, Reason::error);
+    EXPECT_THAT(halted.reason_text,
+                AnyOf(HasSubstr("the script on the controller took no set-point"),
+                      HasSubstr("someone stopped it")));
+    arm.expectAtRestOnTheWay();
+    arm.awaitState("runtime_state", "stopped");  // by the driver: its own script did not end
+    arm.expectResetAndMove();
+}
 
 TEST(LocalControl, RefusesAMoveUntilSomebodySwitchesToRemoteControl) {
     ArmBench arm({"ur5e", 1.0});

@@ -230,8 +230,20 @@ std::vector<InjectionHelp> IiwaController::injections() const {
         {"limit", "an axis is beyond its limit: the motion fails; not ready until `ready`"},
         {"not-ready", "the enabling signal goes: the motion ends; not ready until `ready`"},
         {"ready", "ends `limit` and `not-ready`"},
+        {"operating-mode", "AUT, T1 or T2: another one ends the motion; ready in AUT only"},
         {"end-application", "the robot application ends, as by the operator's key"},
     };
+}
+
+/// Nobody presses the enabling switch, without which T1 and T2 allow no motion.
+Result<void> IiwaController::selectMode(const std::string& mode) {
+    if (mode != "AUT" && mode != "T1" && mode != "T2") {
+        return fail(Errc::invalid_argument,
+                    fmt::format("operating-mode: \"{}\" is not one of AUT, T1, T2", mode));
+    }
+    cabinet_.automatic = mode == "AUT";
+    cabinet_.arm.brake(Arm::End::cancelled);
+    return {};
 }
 
 Result<void> IiwaController::inject(const virtual_controller::Injection& injection) {
@@ -254,6 +266,8 @@ Result<void> IiwaController::inject(const virtual_controller::Injection& injecti
     } else if (name == "ready") {
         cabinet_.enabled = true;
         cabinet_.limit_violated = false;
+    } else if (name == "operating-mode") {
+        return selectMode(injection.value);
     } else if (name == "end-application") {
         endApplication();
     } else {

@@ -245,6 +245,15 @@ TEST_F(IiwaTest, FailsAMotionByAProtectiveStop) {
     pc_.command({0});
     EXPECT_EQ(pc_.state[36], 0.0F);
     ASSERT_TRUE(controller.inject("ready"));
+    for (const auto* mode : {"T1", "T2"}) {
+        ASSERT_TRUE(controller.inject("operating-mode", mode));
+        pc_.command({0});
+        EXPECT_EQ(pc_.state[36], 0.0F);
+        ASSERT_TRUE(controller.inject("operating-mode", "AUT"));
+        pc_.command({0});
+        EXPECT_EQ(pc_.state[36], 1.0F);
+    }
+    EXPECT_FALSE(controller.inject("operating-mode", "T3"));
     ASSERT_TRUE(controller.inject("not-ready"));
     pc_.command({0});
     EXPECT_EQ(pc_.state[36], 0.0F);

@@ -249,6 +249,11 @@ void Robot::safeguardStop() {
     }
 }
 
+void Robot::enterRecovery() {
+    stopEverything();
+    modes_->recovery();
+}
+
 void Robot::violateSafety() {
     stopEverything();
     modes_->violation();

@@ -27,6 +27,7 @@ constexpr std::uint32_t bit(unsigned number) {
 // Bits of safety_status_bits.
 constexpr std::uint32_t kNormal = bit(0);
 constexpr std::uint32_t kProtective = bit(2);
+constexpr std::uint32_t kRecovery = bit(3);
 constexpr std::uint32_t kSafeguard = bit(4);
 constexpr std::uint32_t kRobotEmergency = bit(6);
 constexpr std::uint32_t kEmergency = bit(7);
@@ -153,10 +154,24 @@ void RobotModes::violation() {
     powerOff();
 }
 
+void RobotModes::recovery() {
+    if (mayRun()) {
+        enter(SafetyMode::recovery);
+    }
+}
+
+void RobotModes::endRecovery() {
+    if (safety_ == SafetyMode::recovery) {
+        enter(SafetyMode::normal);
+    }
+}
+
 std::uint32_t RobotModes::safetyStatusBits() const {
     switch (safety_) {
         case SafetyMode::protective_stop:
             return kProtective | kStopped;
+        case SafetyMode::recovery:
+            return kRecovery;
         case SafetyMode::safeguard_stop:
             return kSafeguard | kStopped;
         case SafetyMode::violation:

@@ -509,6 +509,19 @@ TEST(UrController, InjectionsDoWhatTheySay) {
     }
 }
 
+TEST(UrController, RecoveryModeEndsTheProgramUntilSomebodyMovesTheArmBack) {
+    Cell cell;
+    auto secondary = cell.connect("secondary");
+    send(secondary, "def p():\n  sleep(100)\nend\n");
+    ASSERT_TRUE(cell.stateBecomes("runtime_state", "playing"));
+    ASSERT_TRUE(cell.inject("recovery-mode"));
+    EXPECT_TRUE(cell.stateBecomes("safety_mode", "RECOVERY"));
+    EXPECT_TRUE(cell.stateBecomes("runtime_state", "stopped"));
+    EXPECT_TRUE(cell.stateBecomes("robot_mode", "RUNNING"));
+    ASSERT_TRUE(cell.inject("end-recovery"));
+    EXPECT_TRUE(cell.stateBecomes("safety_mode", "NORMAL"));
+}
+
 TEST(UrController, AProgramIsStoppedAtThePanel) {
     Cell cell;
     auto secondary = cell.connect("secondary");

@@ -13,8 +13,11 @@ struct Cabinet {
     bool emergency_stop = false;
     bool enabled = true;
     bool limit_violated = false;
+    bool automatic = true;  ///< else T1 or T2, with nobody at the enabling switch
 
-    bool ready() const noexcept { return !emergency_stop && enabled && !limit_violated; }
+    bool ready() const noexcept {
+        return !emergency_stop && enabled && !limit_violated && automatic;
+    }
     /// What the outside does to the axes [Nm].
     motion::JointVector externalTorque() const;
 };

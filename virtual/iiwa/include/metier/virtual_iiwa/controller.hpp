@@ -50,6 +50,8 @@ private:
     void takeCommands();
     void answer();
     void endApplication();
+    /// Errors: invalid_argument, no mode of a cabinet.
+    Result<void> selectMode(const std::string& mode);
     void redialLater();
     void cycle();
     void stepArm();

@@ -70,6 +70,9 @@ public:
     /// Someone opens or closes the safeguard: the program is paused.
     void safeguardStop();
     void closeSafeguard() { modes_->closeSafeguard(); }
+    /// An axis is outside of its safety limits, the program ends; or it was moved back.
+    void enterRecovery();
+    void endRecovery() { modes_->endRecovery(); }
     /// The safety system finds something that must not be: power goes off.
     void violateSafety();
     /// \param axis from 0

@@ -43,6 +43,9 @@ public:
     void closeSafeguard();
     /// Until the safety system is restarted.
     void violation();
+    /// An axis is outside of its safety limits; programs may not run until it is moved back.
+    void recovery();
+    void endRecovery();
 
     RobotMode robotMode() const { return robot_; }
     SafetyMode safetyMode() const { return safety_; }
