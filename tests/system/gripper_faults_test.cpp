@@ -111,6 +111,17 @@ TEST_F(GripperOnItsWire, IsHaltedByACutCableAndComesBack) {
     EXPECT_TRUE(release_.run({}, inAMinute()));
 }
 
+TEST_F(GripperOnItsWire, IsHomedByOneResetOfTheCommandLine) {
+    cell_.inject("controller", "restart");
+    ASSERT_TRUE(grasp_.awaitState(State::halted, inAMinute()));
+    Queue<bool> heard{10};
+    const auto watch = watchPartHeld(heard);
+    ASSERT_EQ(heard.popUntil(inAMinute()), false) << "connected again";
+    const auto reset = runMetier({"reset", cell_.url("gripper"), "GraspGripperSkill"});
+    EXPECT_EQ(reset.status, 0) << reset.output;
+    EXPECT_EQ(*grasp_.state(), State::ready);
+}
+
 // ---- parts --------------------------------------------------------------------------------------
 
 TEST_F(GripperOnItsWire, SaysThatAPartIsTooWideOrTooNarrow) {
