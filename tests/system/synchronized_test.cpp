@@ -99,9 +99,11 @@ TEST_F(BothArms, AreHaltedIfSomebodyHaltsOne) {
     EXPECT_EQ(both.reason, Reason::error);
     EXPECT_THAT(both.reason_text, StartsWith("left was Halted (ByClient)"));
     ASSERT_TRUE((*both_)->reset());
-    const auto refused = (*both_)->startWith({"next", poses(3.0)});
+    const auto refused = (*both_)->runWith({"next", poses(3.0)}, inAMinute());
     ASSERT_FALSE(refused) << "a person has halted the arm, and nobody has reset it";
-    EXPECT_THAT(refused.error().message, HasSubstr("left: JointPtpMoveSkill of left is Halted"));
+    EXPECT_THAT(refused.error().message, HasSubstr("left cannot get to its target: "));
+    EXPECT_THAT(refused.error().message, HasSubstr("while Halted"));
+    ASSERT_TRUE((*both_)->reset());
     ASSERT_TRUE((*left_)->reset());
     const auto again = (*both_)->runWith({"again", poses(0.0)}, inAMinute());
     EXPECT_TRUE(again) << "the other is reset by who halted it: " << again.error().message;

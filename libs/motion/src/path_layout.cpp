@@ -60,9 +60,8 @@ std::optional<Refusal> layOut(const RobotModel& model, const PathRequest& reques
         const auto miss =
             model.kinematics().outOfReach(target * tool_from_flange, request.lin.start);
         if (miss && named) {
-            return atWaypoint(request, i,
-                              refuse(RefusalReason::unreachable, Errc::unreachable,
-                                     "out of reach: " + toString(*miss)));
+            return atWaypoint(
+                request, i, refuse(RefusalReason::unreachable, Errc::unreachable, toString(*miss)));
         }
         if (i == 0) {
             path = ToolPath(before, target);

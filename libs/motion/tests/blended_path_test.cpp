@@ -182,7 +182,7 @@ TEST(BlendedPath, TellsWhichWaypointIsOutOfReach) {
     const auto plan = Planner(model).path(request);
     ASSERT_FALSE(plan);
     EXPECT_EQ(plan.error().reason, RefusalReason::unreachable);
-    EXPECT_THAT(plan.error().error.message, testing::StartsWith("waypoint 2: out of reach: "));
+    EXPECT_THAT(plan.error().error.message, testing::StartsWith("waypoint 2: unreachable: "));
 }
 
 TEST(BlendedPath, TellsTheWaypointThatAWayLeadsTo) {

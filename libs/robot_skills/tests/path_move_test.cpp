@@ -111,7 +111,7 @@ TEST(CartesianPathMove, TellsWhichPoseIsOutOfReachAndWhy) {
     Bench bench;
     auto values = upsideDown(0.03);
     std::get<std::vector<Frame>>(values["Poses"])[1].z = 2.0;
-    EXPECT_THAT(refusalOf(bench, values), HasSubstr("waypoint 2: out of reach: "));
+    EXPECT_THAT(refusalOf(bench, values), HasSubstr("waypoint 2: unreachable: "));
 }
 
 TEST(CartesianPathMove, RefusesRadiiThatDoNotFit) {

@@ -8,6 +8,7 @@ namespace metier::synchronized_move {
 
 using composition::ChildEnd;
 using composition::ClockOffset;
+using skill::CheckReport;
 using skill::Reason;
 
 namespace {
@@ -19,6 +20,7 @@ double seconds(std::chrono::nanoseconds time) {
 }  // namespace
 
 ArmLane::~ArmLane() {
+    *alive_ = false;
     if (underWay()) {
         setup_.arm.joint_move->release();
     }
@@ -29,19 +31,39 @@ LaneFailure ArmLane::failure(const std::string& text, Reason reason) const {
 }
 
 void ArmLane::ask(std::function<void(std::optional<LaneFailure>)> done) {
-    skill::ValueMap parameters{{"ToolFrame", setup_.tool_frame}};
-    const bool first = way_.empty();
-    if (first) {
-        parameters.emplace("TargetPosition", setup_.target);
-    } else {
-        parameters.emplace("TargetJointPosition", way_.back());
+    if (!way_.empty()) {
+        askJointMove(std::move(done));
+        return;
     }
-    auto& skill = first ? *setup_.arm.pose_move : *setup_.arm.joint_move;
-    skill.check(parameters,
-                [this, done = std::move(done)](const auto& report) { done(take(report)); });
+    setup_.arm.pose_move->check(
+        {{"TargetPosition", setup_.target}, {"ToolFrame", setup_.tool_frame}},
+        whileAlive<CheckReport>([this, done = std::move(done)](const auto& report) {
+            if (const auto failed = checkPossible(report)) {
+                done(failed);
+                return;
+            }
+            way_ = report->joint_path;
+            askJointMove(done);
+        }));
 }
 
-std::optional<LaneFailure> ArmLane::take(const Result<skill::CheckReport>& report) {
+/// The skill that will move the arm has the last word.
+void ArmLane::askJointMove(Done done) {
+    setup_.arm.joint_move->check(
+        {{"TargetJointPosition", way_.back()}, {"ToolFrame", setup_.tool_frame}},
+        whileAlive<CheckReport>([this, done = std::move(done)](const auto& report) {
+            if (const auto failed = checkPossible(report)) {
+                done(failed);
+                return;
+            }
+            shortest_ = report->planned_duration;
+            const auto off = offWay(way_, report->joint_path.front());
+            done(off.empty() ? std::optional<LaneFailure>()
+                             : failure("was moved off its way: " + off));
+        }));
+}
+
+std::optional<LaneFailure> ArmLane::checkPossible(const Result<CheckReport>& report) const {
     if (!report) {
         const bool lost =
             report.error().code == Errc::connection_lost || report.error().code == Errc::timeout;
@@ -49,17 +71,14 @@ std::optional<LaneFailure> ArmLane::take(const Result<skill::CheckReport>& repor
                        lost ? Reason::device_lost : Reason::error);
     }
     if (!report->possible) {
-        return failure("cannot get to its target: " + report->reason);
+        const auto& move = *setup_.arm.joint_move;
+        const bool halted = move.state() == skill::State::halted && !move.reasonText().empty();
+        return failure(fmt::format("cannot get to its target: {}{}", report->reason,
+                                   halted ? " (" + move.reasonText() + ")" : ""));
     }
     if (report->joint_path.empty()) {
-        return failure("does not tell the joints of its target");
+        return failure("does not tell the joints on its way");
     }
-    if (way_.empty()) {
-        way_ = report->joint_path;
-    } else if (const auto off = offWay(way_, report->joint_path.front()); !off.empty()) {
-        return failure("was moved off its way while it was suspended: " + off);
-    }
-    shortest_ = report->planned_duration;
     return std::nullopt;
 }
 
@@ -102,8 +121,8 @@ void ArmLane::suspend() {
 }
 
 bool ArmLane::needsReset() const {
-    return stage_ == Stage::resting ||
-           (stage_ == Stage::idle && setup_.arm.joint_move->state() == skill::State::halted);
+    return stage_ == Stage::resting || (stage_ == Stage::idle && setup_.arm.mayReset() &&
+                                        setup_.arm.joint_move->state() == skill::State::halted);
 }
 
 void ArmLane::drop() {

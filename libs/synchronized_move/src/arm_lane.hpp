@@ -1,8 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "metier/synchronized_move/synchronized_move_skill.hpp"
 #include "way.hpp"
@@ -59,7 +61,7 @@ public:
     bool begun() const { return setup_.arm.joint_move->state() == skill::State::running; }
     const std::string& name() const noexcept { return setup_.arm.name; }
 
-    /// Asks for the way from where the arm stands: how long it takes at least.
+    /// Asks for the way from where the arm stands: its joints, and how long it takes at least.
     /// \param done in a later turn; nothing, or why not
     void ask(std::function<void(std::optional<LaneFailure>)> done);
     void compareClocks(std::function<void(std::optional<LaneFailure>)> done);
@@ -76,7 +78,7 @@ public:
     void begin(const Start& start);
     /// Asks the arm to come to rest; changed() follows.
     void suspend();
-    /// Whether the arm's move is Suspended or Halted, so that none can begin.
+    /// Whether the arm's move is Suspended, or was Halted here, so that none can begin.
     bool needsReset() const;
     /// Resets the arm's move; changed() follows.
     void drop();
@@ -95,7 +97,19 @@ public:
     void onEnd(composition::ChildEnd end) override;
 
 private:
-    std::optional<LaneFailure> take(const Result<skill::CheckReport>& report);
+    using Done = std::function<void(std::optional<LaneFailure>)>;
+
+    /// What calls `take` with an answer, as long as this is there.
+    template <typename Answer, typename Take>
+    auto whileAlive(Take take) {
+        return [alive = alive_, take = std::move(take)](const Result<Answer>& answer) {
+            if (*alive) {
+                take(answer);
+            }
+        };
+    }
+    void askJointMove(Done done);
+    std::optional<LaneFailure> checkPossible(const Result<skill::CheckReport>& report) const;
     LaneFailure failureOf(const composition::ChildEnd& end) const;
     LaneFailure failure(const std::string& text, skill::Reason reason = skill::Reason::error) const;
     double number(const std::string& name) const;
@@ -110,6 +124,8 @@ private:
     double shortest_ = 0.0;
     composition::ClockOffset offset_;
     skill::ValueMap result_;
+    // Answers that come late ask it whether this is still there.
+    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
 };
 
 }  // namespace metier::synchronized_move

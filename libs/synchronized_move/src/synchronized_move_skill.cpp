@@ -44,28 +44,11 @@ Result<void> checkCounts(const Parameters& parameters) {
     return {};
 }
 
-bool mayReset(const Arm& arm) {
-    return arm.halted_by_us || arm.joint_move->leftOver();
-}
-
-Result<void> checkUsable(const Arm& arm) {
+Result<void> checkReachable(const Arm& arm) {
     for (const auto* move : {arm.pose_move.get(), arm.joint_move.get()}) {
         if (const auto available = move->available(); !available) {
             return fail(available.error().code, fmt::format("{} cannot be reached: {}", arm.name,
                                                             available.error().message));
-        }
-    }
-    for (const auto* move : {arm.pose_move.get(), arm.joint_move.get()}) {
-        const bool ours = move == arm.joint_move.get() && mayReset(arm);
-        if (move->state() == State::halted && !ours) {
-            return fail(Errc::invalid_state,
-                        fmt::format("{}: {} is Halted: {}; reset it first", arm.name, move->name(),
-                                    move->reasonText()));
-        }
-        if (move->state() == State::running || move->state() == State::suspended) {
-            return fail(Errc::resource_unavailable,
-                        fmt::format("{}: {} is {}", arm.name, move->name(),
-                                    skill::toString(move->state())));
         }
     }
     return {};
@@ -117,8 +100,8 @@ Result<std::unique_ptr<skill::Body>> SynchronizedMoveSkill::plan(const Parameter
             return fail(Errc::invalid_argument,
                         fmt::format("Arms: \"{}\" is there twice", parameters.arms[i]));
         }
-        if (auto usable = checkUsable(**arm); !usable) {
-            return fail(std::move(usable.error()));
+        if (auto reachable = checkReachable(**arm); !reachable) {
+            return fail(std::move(reachable.error()));
         }
         setup.arms.push_back(
             {**arm, parameters.target_poses[i],
@@ -130,7 +113,7 @@ Result<std::unique_ptr<skill::Body>> SynchronizedMoveSkill::plan(const Parameter
 Result<void> SynchronizedMoveSkill::reset() {
     for (auto& arm : arms_) {
         auto& move = *arm.joint_move;
-        if (!mayReset(arm) || !move.available() || move.state() != State::halted) {
+        if (!arm.mayReset() || !move.available() || move.state() != State::halted) {
             continue;
         }
         if (const auto asked = move.reset(*unheard_); !asked) {

@@ -74,15 +74,18 @@ public:
         return outcome;
     }
 
-    /// The arm's answer to the last Check: a way of one axis.
+    /// The arm's answers to Check: a way of one axis.
     void answerCheck(const std::string& arm, double duration, double from, double to) {
-        auto& asked = arms_.at(arm);
-        auto& child = asked.joint->check_done ? *asked.joint : *asked.pose;
         skill::CheckReport report;
         report.planned_duration = duration;
         report.joint_path = {{from}, {(from + to) / 2}, {to}};
-        std::exchange(child.check_done, nullptr)(report);
-        run();
+        auto& asked = arms_.at(arm);
+        for (auto* child : {asked.pose, asked.joint}) {
+            if (auto done = std::exchange(child->check_done, nullptr)) {
+                done(report);
+                run();
+            }
+        }
     }
     void refuseCheck(const std::string& arm, const std::string& why) {
         skill::CheckReport report;

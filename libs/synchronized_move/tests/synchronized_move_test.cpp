@@ -18,7 +18,9 @@ TEST(SynchronizedMove, AsksEveryArmBeforeAnyMoves) {
     EXPECT_EQ(bench["right"].pose->checked.at("TargetPosition"),
               skill::Value(skill::Frame{0.5, 0, 0.4}));
     bench.answerCheck("left", 2.0, 0.0, 1.0);
-    EXPECT_THAT(bench["left"].joint->heard(), IsEmpty()) << "the other has not answered";
+    EXPECT_THAT(bench["left"].joint->heard(), ElementsAre("check")) << "the other has not answered";
+    EXPECT_EQ(bench["left"].joint->checked.at("TargetJointPosition"),
+              skill::Value(std::vector<double>{1.0}));
     bench.answerCheck("right", 3.0, 0.0, -1.0);
     EXPECT_THAT(bench["left"].joint->heard(), ElementsAre("compareClocks"));
 }
@@ -95,10 +97,37 @@ TEST(SynchronizedMove, MovesNothingIfOneArmCannotGetThere) {
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_EQ(bench.why(),
               "right cannot get to its target: target: 1.2 m from axis 2, reach 0.8 m");
-    EXPECT_THAT(bench["left"].joint->heard(), IsEmpty());
+    EXPECT_THAT(bench["left"].joint->heard(), ElementsAre("check"));
     EXPECT_THAT(bench["right"].joint->heard(), IsEmpty());
-    ASSERT_TRUE(bench.call(bench.program->reset(kClient)));
-    EXPECT_TRUE(bench.start(Bench::twoPoses())) << "the same id again starts nothing, but is fine";
+}
+
+TEST(SynchronizedMove, MovesNothingIfTheMoveOfAnArmIsHalted) {
+    Bench bench;
+    bench["right"].joint->state_now = skill::State::halted;
+    bench["right"].joint->reason_text = "protective stop";
+    ASSERT_TRUE(bench.start());
+    EXPECT_THAT(bench["right"].joint->heard(), IsEmpty()) << "it was not halted here";
+    bench.answerCheck("left", 2.0, 0.0, 1.0);
+    skill::CheckReport report;
+    report.joint_path = {{0.0}, {-1.0}};
+    std::exchange(bench["right"].pose->check_done, nullptr)(report);
+    report.possible = false;
+    report.reason = "Start is not possible while Halted";
+    std::exchange(bench["right"].joint->check_done, nullptr)(report);
+    bench.run();
+    EXPECT_EQ(bench.why(),
+              "right cannot get to its target: Start is not possible while Halted (protective "
+              "stop)");
+}
+
+TEST(SynchronizedMove, LeavesAnswersThatComeAfterItsEnd) {
+    Bench bench;
+    ASSERT_TRUE(bench.start());
+    bench.refuseCheck("left", "out of reach");
+    EXPECT_EQ(bench.state(), "Halted");
+    bench.answerCheck("right", 3.0, 0.0, -1.0);
+    EXPECT_THAT(bench["right"].joint->heard(), IsEmpty()) << "it was not asked further";
+    EXPECT_EQ(bench.why(), "left cannot get to its target: out of reach");
 }
 
 TEST(SynchronizedMove, FailsIfAnArmDoesNotAnswer) {
@@ -128,12 +157,6 @@ TEST(SynchronizedMove, RefusesWhatDoesNotFitItsArms) {
     parameters = Bench::twoPoses();
     parameters["ToolFrames"] = std::vector<std::string>{"probe"};
     EXPECT_THAT(bench.start(parameters).error().message, HasSubstr("1 names for 2 arms"));
-    bench["right"].joint->state_now = skill::State::halted;
-    bench["right"].joint->reason_text = "protective stop";
-    EXPECT_THAT(bench.start().error().message,
-                HasSubstr("right: JointPtpMoveSkill of right is Halted: protective stop"));
-    bench["right"].joint->state_now = skill::State::running;
-    EXPECT_THAT(bench.start().error().message, HasSubstr("is Running"));
     bench["right"].joint->reachable = fail(Errc::connection_lost, "gone");
     EXPECT_THAT(bench.start().error().message, HasSubstr("right cannot be reached: gone"));
     EXPECT_EQ(bench.state(), "Ready");

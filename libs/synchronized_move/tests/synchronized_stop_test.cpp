@@ -122,18 +122,14 @@ TEST_F(SynchronizedStop, WhatWasHaltedHereIsResetHereAndNothingElse) {
     EXPECT_THAT(right().heard(), ElementsAre("reset"));
     EXPECT_THAT(left().heard(), IsEmpty());
     EXPECT_EQ(bench.state(), "Ready");
-    const auto again = bench.program->startWith(kClient, {"again", Bench::twoPoses()});
-    ASSERT_FALSE(again);
-    EXPECT_THAT(again.error().message, HasSubstr("left: JointPtpMoveSkill of left is Halted"));
-    left().state_now = State::ready;
-    const auto third = bench.program->startWith(kClient, {"again", Bench::twoPoses()});
-    ASSERT_TRUE(third) << third.error().message;
+    ASSERT_TRUE(bench.program->startWith(kClient, {"again", Bench::twoPoses()}));
     run();
     EXPECT_THAT(right().heard(), ElementsAre("reset")) << "it is still Halted";
+    EXPECT_THAT(left().heard(), IsEmpty());
     EXPECT_THAT(bench["left"].pose->heard(), ElementsAre("check")) << "of the first run";
     right().wasReset();
     run();
-    EXPECT_THAT(bench["left"].pose->heard(), ElementsAre("check"));
+    EXPECT_THAT(bench["left"].pose->heard(), ElementsAre("check")) << "it tells that it is Halted";
 }
 
 TEST_F(SynchronizedStop, SuspendReachesBothAndResumeBeginsAnewTogether) {
@@ -163,9 +159,7 @@ TEST_F(SynchronizedStop, ResumeFailsIfAnArmWasMovedOffItsWay) {
     given(right());
     bench.answerCheck("left", 0.5, -0.02, 1.0);
     EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_EQ(bench.why(),
-              "left was moved off its way while it was suspended: axis 1 by 0.0200 rad, limit "
-              "0.002 rad");
+    EXPECT_EQ(bench.why(), "left was moved off its way: axis 1 by 0.0200 rad, limit 0.002 rad");
     EXPECT_THAT(right().heard(), Not(Contains("begin")));
 }
 
@@ -225,7 +219,7 @@ TEST(SynchronizedSuspend, WhileTheArmsAreAskedStopsThereAndGoesOnFromThere) {
     ASSERT_TRUE(bench.call(bench.program->suspend(kClient)));
     EXPECT_EQ(bench.state(), "Suspended");
     bench.answerCheck("right", 3.0, 0.0, -1.0);
-    EXPECT_THAT(bench["left"].joint->heard(), IsEmpty());
+    EXPECT_THAT(bench["left"].joint->heard(), Not(Contains("compareClocks")));
     ASSERT_TRUE(bench.call(bench.program->resume(kClient)));
     bench.answerAll();
     EXPECT_THAT(bench["right"].joint->heard(), Contains("begin"));

@@ -19,7 +19,10 @@ struct Arm {
     std::unique_ptr<composition::Child> pose_move{};
     /// JointPtpMoveSkill: moves the arm.
     std::unique_ptr<composition::Child> joint_move{};
-    bool halted_by_us = false;  ///< the last execution was halted here, so it may be reset here
+    bool halted_by_us = false;  ///< the last execution was halted here
+
+    /// Only what was halted here is reset here.
+    bool mayReset() const { return halted_by_us || joint_move->leftOver(); }
 };
 
 struct Parameters {
@@ -77,7 +80,7 @@ public:
 
 protected:
     /// Errors: invalid_argument (unknown arm, or one twice; counts that differ), connection_lost,
-    ///         invalid_state, resource_unavailable, naming the arm.
+    ///         naming the arm. What state the arms are in, they are asked.
     Result<std::unique_ptr<skill::Body>> plan(const Parameters& parameters) override;
 
 private:
