@@ -11,6 +11,7 @@
 #include "kinematics_conversion.hpp"
 #include "metier/geometry/frame.hpp"
 #include "metier/opcua_skill/gripper_node.hpp"
+#include "metier/opcua_skill/skill_dictionary.hpp"
 
 namespace metier::app {
 namespace {
@@ -100,6 +101,9 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
         return fail(skills.error());
     }
     host->skills_ = std::move(*skills);
+    if (auto published = opcua_skill::publishDictionary(host->nodes()); !published) {
+        return fail(published.error());
+    }
     host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
     if (auto kept = host->keepNames(config); !kept) {
         return fail(kept.error());

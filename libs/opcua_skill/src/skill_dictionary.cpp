@@ -1,0 +1,131 @@
+#include "metier/opcua_skill/skill_dictionary.hpp"
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model_ids.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+using opcua::AddressSpace;
+using opcua::NodeId;
+
+// OPC 10000-19, namespace 0.
+const NodeId kDictionaries{0, 17594U};
+const NodeId kDictionaryFolderType{0, 17591U};
+const NodeId kUriDictionaryEntryType{0, 17600U};
+const NodeId kHasDictionaryEntry{0, 17597U};
+
+constexpr std::string_view kUriHead = "urn:metier:dictionary:";
+
+/// What a task may ask for, and the types that do it.
+struct Term {
+    std::string_view name;
+    std::string_view text;
+    std::vector<std::string_view> types;
+};
+
+const std::vector<Term>& terms() {
+    static const std::vector<Term> kTerms{
+        {"move", "Brings an arm to a place.", {"MoveSkillType"}},
+        {"move-straight", "Moves a tool along a straight line.", {"LinearMoveSkillType"}},
+        {"move-until-contact",
+         "Moves a tool until it meets a force.",
+         {"CartesianLinearForceMoveSkillType"}},
+        {"move-along-path", "Moves a tool through several poses.", {"CartesianPathMoveSkillType"}},
+        {"move-together",
+         "Moves several arms so that they begin and arrive together.",
+         {"SynchronizedMoveSkillType"}},
+        {"stream",
+         "Follows positions that are given one by one.",
+         {"StreamSkillType", "PositionStreamSkillType"}},
+        {"grasp", "Holds a part.", {"GraspGripperSkill"}},
+        {"release", "Lets a part go.", {"ReleaseGripperSkill"}},
+        {"hold", "Watches that a part is held.", {"HoldGripperSkillType"}},
+        {"pick-and-place",
+         "Takes a part from one place and puts it at another.",
+         {"PickPlaceSkillType"}},
+        {"sequence", "Runs other skills.", {"SequenceSkillType"}},
+    };
+    return kTerms;
+}
+
+/// All types below `base`, by name.
+Result<void> collectTypes(const AddressSpace& nodes, const NodeId& base,
+                          std::map<std::string, NodeId, std::less<>>& types) {
+    const auto subtypes = nodes.browse(base, {opcua::ids::kHasSubtype});
+    if (!subtypes) {
+        return fail(subtypes.error());
+    }
+    for (const auto& subtype : *subtypes) {
+        types.emplace(subtype.browse_name.name, subtype.target);
+        if (auto collected = collectTypes(nodes, subtype.target, types); !collected) {
+            return collected;
+        }
+    }
+    return {};
+}
+
+Result<NodeId> addFolder(AddressSpace& nodes, std::uint16_t metier) {
+    opcua::ObjectSpec folder;
+    folder.node.id = NodeId(metier, std::string("urn:metier:dictionary"));
+    folder.node.parent = kDictionaries;
+    folder.node.browse_name = {metier, "metier"};
+    folder.node.description = {"en", "What skill types are for."};
+    folder.type = kDictionaryFolderType;
+    return nodes.addObject(folder);
+}
+
+Result<NodeId> addEntry(AddressSpace& nodes, const NodeId& folder, const Term& term) {
+    const auto uri = std::string(kUriHead) + std::string(term.name);
+    opcua::ObjectSpec entry;
+    entry.node.id = NodeId(folder.namespaceIndex(), uri);
+    entry.node.parent = folder;
+    entry.node.browse_name = {folder.namespaceIndex(), uri};
+    entry.node.display_name = {"en", std::string(term.name)};
+    entry.node.description = {"en", std::string(term.text)};
+    entry.type = kUriDictionaryEntryType;
+    return nodes.addObject(entry);
+}
+
+}  // namespace
+
+Result<void> publishDictionary(AddressSpace& nodes) {
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    const auto device = nodes.namespaceIndex(kDeviceUri);
+    if (!metier || !device) {
+        return fail(metier ? device.error() : metier.error());
+    }
+    std::map<std::string, NodeId, std::less<>> types;
+    if (auto collected = collectTypes(nodes, NodeId(*device, kSkillTypeId), types); !collected) {
+        return collected;
+    }
+    const auto folder = addFolder(nodes, *metier);
+    if (!folder) {
+        return fail(folder.error());
+    }
+    for (const auto& term : terms()) {
+        const auto entry = addEntry(nodes, *folder, term);
+        if (!entry) {
+            return fail(entry.error());
+        }
+        for (const auto name : term.types) {
+            const auto type = types.find(name);
+            if (type == types.end()) {
+                continue;
+            }
+            if (auto added = nodes.addReference(type->second, kHasDictionaryEntry, *entry);
+                !added) {
+                return added;
+            }
+        }
+    }
+    return {};
+}
+
+}  // namespace metier::opcua_skill
