@@ -103,4 +103,14 @@ std::vector<double> jointPosition(opcua::Client& client, const skill_client::Ski
     return orThrow(skill_client::readJointPosition(client, nodes));
 }
 
+void awaitMotion(opcua::Client& client, const skill_client::SkillHandle& skill,
+                 const std::vector<double>& from) {
+    const auto deadline = inAMinute();
+    while (jointPosition(client, skill) == from) {
+        if (std::chrono::steady_clock::now() > deadline) {
+            throw std::runtime_error(skill.address().name + ": the arm does not move");
+        }
+    }
+}
+
 }  // namespace metier::system_tests

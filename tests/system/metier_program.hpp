@@ -68,5 +68,8 @@ std::unique_ptr<opcua::Client> connectTo(const std::string& url);
 skill_client::SkillHandle openSkill(opcua::Client& client, const std::string& name);
 /// Measured joint positions [rad] of the arm that a skill moves.
 std::vector<double> jointPosition(opcua::Client& client, const skill_client::SkillHandle& skill);
+/// Waits until that arm is elsewhere. Throws if it stays there for a minute.
+void awaitMotion(opcua::Client& client, const skill_client::SkillHandle& skill,
+                 const std::vector<double>& from);
 
 }  // namespace metier::system_tests

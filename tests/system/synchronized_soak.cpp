@@ -71,28 +71,52 @@ void soakMoves(Cell& cell, int moves) {
     }
 }
 
-/// From the Halted of one arm to that of the other, which has to brake before.
+struct Watches {
+    explicit Watches(Cell& cell)
+        : left(cell.left.url(), "JointPtpMoveSkill"),
+          right(cell.right.url(), "JointPtpMoveSkill"),
+          both(cell.both.url(), "SynchronizedMoveSkill") {}
+
+    Watched left;
+    Watched right;
+    Watched both;
+};
+
+/// From the Halted of one arm to that of the other, which has to brake before [s].
+double haltOne(Watches& arms, int round) {
+    const auto from = jointPosition(arms.left.client(), *arms.left);
+    const auto started = arms.both->startWith({fmt::format("halt-{}", round), target(round, 20.0)});
+    if (!started) {
+        throw std::runtime_error(started.error().message);
+    }
+    arms.left.awaitEvent(State::running);
+    arms.right.awaitEvent(State::running);
+    awaitMotion(arms.left.client(), *arms.left, from);
+    if (const auto asked = arms.left->halt(); !asked) {
+        throw std::runtime_error(asked.error().message);
+    }
+    const auto halted = arms.left.awaitEvent(State::halted).time;
+    const auto followed = arms.right.awaitEvent(State::halted).time;
+    arms.both.awaitEvent(State::halted);
+    static_cast<void>(arms.both->reset());
+    static_cast<void>(arms.left->reset());
+    arms.left.awaitEvent(State::ready);
+    arms.right.awaitEvent(State::ready);
+    return std::chrono::duration<double>(followed - halted).count();
+}
+
 void soakHalts(Cell& cell, int halts) {
-    Watched left(cell.left.url(), "JointPtpMoveSkill");
-    Watched right(cell.right.url(), "JointPtpMoveSkill");
-    Watched both(cell.both.url(), "SynchronizedMoveSkill");
+    Watches arms(cell);
     std::vector<double> figures;
     for (int i = 0; i < halts; ++i) {
-        const auto started = both->startWith({fmt::format("halt-{}", i), target(i, 20.0)});
-        if (!started) {
-            throw std::runtime_error(started.error().message);
+        try {
+            figures.push_back(haltOne(arms, i));
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(fmt::format("halt {}: {}; left {}, right {}, both {}", i,
+                                                 error.what(), toString(arms.left->state().value()),
+                                                 toString(arms.right->state().value()),
+                                                 arms.both.awaitEvent(State::halted).reason_text));
         }
-        left.awaitEvent(State::running);
-        right.awaitEvent(State::running);
-        static_cast<void>(left->halt());
-        const auto halted = left.awaitEvent(State::halted).time;
-        const auto followed = right.awaitEvent(State::halted).time;
-        figures.push_back(std::chrono::duration<double>(followed - halted).count());
-        both.awaitEvent(State::halted);
-        static_cast<void>(both->reset());
-        static_cast<void>(left->reset());
-        left.awaitEvent(State::ready);
-        right.awaitEvent(State::ready);
     }
     print("Halted to Halted", figures);
 }

@@ -35,12 +35,15 @@ protected:
                                                           {0.4, -0.3, 0.5, 3.14, 0, 1}}},
                 {"Duration", duration}};
     }
-    /// A move of half a minute; both arms have begun.
+    /// A move of half a minute; both arms move.
     void startSlowly() {
+        const auto from = positions();
         const auto started = (*both_)->startWith({"slow", poses(30.0)});
         ASSERT_TRUE(started) << started.error().message;
         left_->awaitEvent(State::running);
         right_->awaitEvent(State::running);
+        awaitMotion(left_->client(), **left_, from[0]);
+        awaitMotion(right_->client(), **right_, from[1]);
     }
     std::vector<std::vector<double>> positions() {
         return {jointPosition(left_->client(), **left_), jointPosition(right_->client(), **right_)};
@@ -127,10 +130,12 @@ TEST_F(BothArms, AreHaltedIfTheComponentDies) {
 }
 
 TEST_F(BothArms, AreSuspendedAndResumedTogether) {
+    const auto from = positions();
     const auto started = (*both_)->startWith({"paused", poses(4.0)});
     ASSERT_TRUE(started) << started.error().message;
     left_->awaitEvent(State::running);
     right_->awaitEvent(State::running);
+    awaitMotion(right_->client(), **right_, from[1]);
     ASSERT_TRUE((*both_)->suspend());
     const auto left = left_->awaitEvent(State::suspended);
     const auto right = right_->awaitEvent(State::suspended);

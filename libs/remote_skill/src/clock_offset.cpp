@@ -20,7 +20,7 @@ Result<ClockOffset> ask(opcua::Client& client) {
     const auto answer = client.read(kCurrentTime);
     const auto half = duration_cast<nanoseconds>(std::chrono::steady_clock::now() - sent) / 2;
     if (!answer) {
-        return fail(answer.error());
+        return fail(answer.error().code, answer.error().message);
     }
     const auto time = answer->as<UtcTime>();
     if (!time) {

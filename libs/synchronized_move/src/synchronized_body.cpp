@@ -43,10 +43,6 @@ SynchronizedBody::SynchronizedBody(Setup setup)
     }
 }
 
-SynchronizedBody::~SynchronizedBody() {
-    *alive_ = false;
-}
-
 bool SynchronizedBody::all(bool (*holds)(const ArmLane&)) const {
     return std::all_of(lanes_.begin(), lanes_.end(),
                        [holds](const auto& lane) { return holds(*lane); });
@@ -79,8 +75,8 @@ void SynchronizedBody::askAll(Ask ask, void (SynchronizedBody::*then)()) {
             continue;
         }
         ++pending_;
-        (*lane.*ask)([this, alive = alive_, round, then](const Answer& failure) {
-            if (!*alive || round != round_ || phase_ != Phase::asking) {
+        (*lane.*ask)([this, round, then](const Answer& failure) {
+            if (round != round_ || phase_ != Phase::asking) {
                 return;
             }
             if (failure) {

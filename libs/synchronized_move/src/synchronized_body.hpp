@@ -25,7 +25,7 @@ public:
     };
 
     explicit SynchronizedBody(Setup setup);
-    ~SynchronizedBody() override;
+    ~SynchronizedBody() override = default;
     SynchronizedBody(const SynchronizedBody&) = delete;
     SynchronizedBody& operator=(const SynchronizedBody&) = delete;
 
@@ -78,8 +78,6 @@ private:
     std::size_t pending_ = 0;
     std::uint64_t begun_ = 0;
     skill::Timer timer_;
-    // Posted answers ask it whether this is still there.
-    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
 };
 
 /// What the arms' results say together.
