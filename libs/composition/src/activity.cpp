@@ -81,7 +81,9 @@ private:
                                            std::chrono::duration<double>(*step_.timeout).count())};
         }
         const auto further = step_.retry ? step_.retry->times : 0U;
-        if (!outcome || outcome->kind != StepFailure::Kind::failed || attempt_ > further) {
+        const bool retries = outcome && outcome->kind == StepFailure::Kind::failed &&
+                             attempt_ <= further && !halting_;
+        if (!retries) {
             if (outcome && further > 0) {
                 outcome->text += fmt::format(" (attempt {} of {})", attempt_, further + 1);
             }

@@ -122,6 +122,45 @@ TEST(FailureOfAStep, WhileItIsHaltedStaysHaltedByTheClient) {
     EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
 }
 
+TEST(FailureOfAStep, WhileItIsHaltedIsNotTriedAgain) {
+    // The arm once moved again after Halt: the step that was lost meanwhile had a retry.
+    Bench bench(kHead +
+                "[[step]]\nname = \"first\"\nrun = \"a\"\nretry = 3\n"
+                "[[step]]\nname = \"second\"\nrun = \"b\"\n");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["a"].listener->onEnd({ChildEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
+    bench.advance(0ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
+}
+
+TEST(FailureOfAStep, OfWhichAnotherHasFailedAtTheSameMomentIsNotTriedAgain) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "both"
+[[step.parallel]]
+name = "left"
+fail = "left is wrong"
+[[step.parallel]]
+name = "right"
+retry = 3
+pause = 5
+[[step.parallel.sequence]]
+name = "wrong"
+fail = "right is wrong"
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "second"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step both/left: left is wrong");
+}
+
 TEST(FailureOfAStep, IsAResetOfASkillThatWasSuspended) {
     Bench bench(kHead +
                 "[[step]]\nname = \"first\"\nrun = \"a\"\n"
