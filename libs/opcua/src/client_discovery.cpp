@@ -6,6 +6,7 @@
 
 #include "client_core.hpp"
 #include "convert.hpp"
+#include "metier/opcua/discovery.hpp"
 
 namespace metier::opcua {
 
@@ -29,6 +30,7 @@ ServerDescription fromNative(const UA_ApplicationDescription& native) {
     ServerDescription server{textFrom(native.applicationUri),
                              textFrom(native.productUri),
                              fromNative(native.applicationName),
+                             static_cast<ApplicationType>(native.applicationType),
                              {}};
     for (std::size_t i = 0; i < native.discoveryUrlsSize; ++i) {
         server.discovery_urls.push_back(textFrom(native.discoveryUrls[i]));
@@ -41,11 +43,13 @@ template <typename Request, typename T>
 class Question {
 public:
     using Response = typename Service<Request>::Response;
-    using Convert = std::function<T(const Response&)>;
+    using Fill = std::function<void(Request&)>;
+    using Convert = std::function<Answer<T>(const Response&)>;
 
-    Question(std::string url, std::chrono::milliseconds timeout, Convert convert)
+    Question(std::string url, std::chrono::milliseconds timeout, Fill fill, Convert convert)
         : url_(std::move(url)),
           deadline_(Deadline::in(timeout)),
+          fill_(std::move(fill)),
           convert_(std::move(convert)),
           core_(optionsFor(timeout), ClientPurpose::discovery) {}
 
@@ -64,10 +68,9 @@ private:
     }
 
     void send() {
-        Request request{};
-        const std::string_view url = url_;
-        request.endpointUrl = viewOf(url);
-        core_.send(request, {"asking " + url_, deadline_},
+        Owned<Request> request(UA_TYPES[Service<Request>::kRequest]);
+        fill_(*request);
+        core_.send(*request, {"asking " + url_, deadline_},
                    [this](Answer<Response*> response) { take(std::move(response)); });
     }
 
@@ -84,6 +87,7 @@ private:
 
     const std::string url_;
     const Deadline deadline_;
+    const Fill fill_;
     const Convert convert_;
     std::optional<Answer<T>> answer_;  // the client's thread, until connect() has returned
     ClientCore core_;
@@ -98,13 +102,61 @@ std::vector<T> listFrom(const Native* first, std::size_t count) {
     return list;
 }
 
+template <typename Native>
+Native* arrayOf(std::size_t count, const UA_DataType& type) {
+    auto* array = static_cast<Native*>(UA_Array_new(count, &type));
+    checkAllocated(array == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
+    return array;
+}
+
+void fill(const std::vector<std::string>& texts, UA_String*& array, std::size_t& size) {
+    array = arrayOf<UA_String>(texts.size(), UA_TYPES[UA_TYPES_STRING]);
+    size = texts.size();
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        toNative(texts[i], array[i]);
+    }
+}
+
+void fill(const ServerRegistration& registration, UA_RegisteredServer& target) {
+    toNative(registration.application_uri, target.serverUri);
+    toNative(registration.product_uri, target.productUri);
+    target.serverNames = arrayOf<UA_LocalizedText>(1, UA_TYPES[UA_TYPES_LOCALIZEDTEXT]);
+    target.serverNamesSize = 1;
+    toNative(LocalizedText{"", registration.name}, target.serverNames[0]);
+    target.serverType = UA_APPLICATIONTYPE_SERVER;
+    fill(registration.discovery_urls, target.discoveryUrls, target.discoveryUrlsSize);
+    target.isOnline = registration.presence == ServerRegistration::Presence::online;
+}
+
+void fillMdns(const ServerRegistration& registration, UA_RegisterServer2Request& request) {
+    auto* mdns = UA_MdnsDiscoveryConfiguration_new();
+    checkAllocated(mdns == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
+    request.discoveryConfiguration =
+        arrayOf<UA_ExtensionObject>(1, UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);
+    request.discoveryConfigurationSize = 1;
+    UA_ExtensionObject_setValue(request.discoveryConfiguration, mdns,
+                                &UA_TYPES[UA_TYPES_MDNSDISCOVERYCONFIGURATION]);
+    toNative(registration.name, mdns->mdnsServerName);
+    fill(registration.capabilities, mdns->serverCapabilities, mdns->serverCapabilitiesSize);
+}
+
+/// Tells it by one of the two services, which both answer no more than that it went well.
+template <typename Request>
+Answer<> tell(const std::string& url, std::chrono::milliseconds timeout,
+              std::function<void(Request&)> prepare) {
+    Question<Request, void> question(url, timeout, std::move(prepare),
+                                     [](const auto& /*response*/) { return Answer<>(); });
+    return question.ask();
+}
+
 }  // namespace
 
 Answer<std::vector<EndpointDescription>> getEndpoints(const std::string& url,
                                                       std::chrono::milliseconds timeout) {
     using List = std::vector<EndpointDescription>;
     Question<UA_GetEndpointsRequest, List> question(
-        url, timeout, [](const UA_GetEndpointsResponse& response) {
+        url, timeout, [&url](auto& request) { toNative(url, request.endpointUrl); },
+        [](const UA_GetEndpointsResponse& response) {
             return listFrom<EndpointDescription>(response.endpoints, response.endpointsSize);
         });
     return question.ask();
@@ -113,11 +165,27 @@ Answer<std::vector<EndpointDescription>> getEndpoints(const std::string& url,
 Answer<std::vector<ServerDescription>> findServers(const std::string& url,
                                                    std::chrono::milliseconds timeout) {
     using List = std::vector<ServerDescription>;
+    // No EndpointUrl: a discovery server on open62541 1.4 would tell it as the address of all that
+    // registered there.
     Question<UA_FindServersRequest, List> question(
-        url, timeout, [](const UA_FindServersResponse& response) {
+        url, timeout, [](auto& /*request*/) {},
+        [](const UA_FindServersResponse& response) {
             return listFrom<ServerDescription>(response.servers, response.serversSize);
         });
     return question.ask();
+}
+
+Answer<> registerServer(const std::string& url, const ServerRegistration& registration,
+                        std::chrono::milliseconds timeout) {
+    auto told = tell<UA_RegisterServer2Request>(url, timeout, [&](auto& request) {
+        fill(registration, request.server);
+        fillMdns(registration, request);
+    });
+    if (told || told.error().status != status::kBadServiceUnsupported) {
+        return told;
+    }
+    return tell<UA_RegisterServerRequest>(
+        url, timeout, [&](auto& request) { fill(registration, request.server); });
 }
 
 }  // namespace metier::opcua

@@ -64,6 +64,14 @@ template <>
 struct Service<UA_FindServersRequest>
     : ServiceTypes<UA_FindServersResponse, UA_TYPES_FINDSERVERSREQUEST,
                    UA_TYPES_FINDSERVERSRESPONSE> {};
+template <>
+struct Service<UA_RegisterServerRequest>
+    : ServiceTypes<UA_RegisterServerResponse, UA_TYPES_REGISTERSERVERREQUEST,
+                   UA_TYPES_REGISTERSERVERRESPONSE> {};
+template <>
+struct Service<UA_RegisterServer2Request>
+    : ServiceTypes<UA_RegisterServer2Response, UA_TYPES_REGISTERSERVER2REQUEST,
+                   UA_TYPES_REGISTERSERVER2RESPONSE> {};
 
 /// Hears the response to a request; what the pointer leads to is gone when it returns.
 template <typename Request>

@@ -41,6 +41,11 @@ void setDescription(const ServerOptions& options, UA_ServerConfig& config) {
     replace(config.buildInfo.productName, "metier");
 }
 
+void setDiscovery(const DiscoveryService& discovery, UA_ServerConfig& config) {
+    config.applicationDescription.applicationType = UA_APPLICATIONTYPE_DISCOVERYSERVER;
+    config.discoveryCleanupTimeout = static_cast<UA_UInt32>(discovery.forget_after.count());
+}
+
 void setAddresses(const ServerOptions& options, UA_ServerConfig& config) {
     UA_Array_delete(config.serverUrls, config.serverUrlsSize, &UA_TYPES[UA_TYPES_STRING]);
     config.serverUrls = nullptr;
@@ -114,6 +119,9 @@ Result<> checkOptions(const ServerOptions& options) {
         return fail(Errc::invalid_argument,
                     "a free port (0) can be taken on one address only, not on several");
     }
+    if (options.discovery && options.discovery->forget_after.count() < 1) {
+        return fail(Errc::invalid_argument, "registrations of less than 1 s");
+    }
     const auto& limits = options.limits;
     if (limits.sessions == 0 || limits.secure_channels < limits.sessions) {
         return fail(Errc::invalid_argument,
@@ -137,6 +145,9 @@ Result<> applyOptions(const ServerOptions& options, UA_ServerConfig& config) {
         return fail(errorFrom(StatusCode(code), "configure the server"));
     }
     setDescription(options, config);
+    if (options.discovery) {
+        setDiscovery(*options.discovery, config);
+    }
     setAddresses(options, config);
     setSessionLimits(options.limits, config);
     setSubscriptionLimits(options.limits, config);

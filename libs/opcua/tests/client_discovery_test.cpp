@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "client_bare_server.hpp"
+#include "metier/opcua/discovery.hpp"
 
 namespace metier::opcua::testing {
 namespace {

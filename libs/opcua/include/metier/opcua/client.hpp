@@ -301,33 +301,4 @@ private:
     std::shared_ptr<ClientCore> core_;  // with its Subscriptions, which may end later
 };
 
-/// One way to reach a server (OPC 10000-4, 7.14).
-struct EndpointDescription {
-    enum class SecurityMode { invalid = 0, none = 1, sign = 2, sign_and_encrypt = 3 };
-    enum class TokenType { anonymous = 0, user_name = 1, certificate = 2, issued_token = 3 };
-
-    std::string url;
-    SecurityMode security_mode = SecurityMode::invalid;
-    std::string security_policy_uri;
-    std::vector<TokenType> tokens;  ///< how a user may identify
-    std::uint8_t security_level = 0;
-};
-
-/// A server that a server knows of, itself included (OPC 10000-4, 7.2).
-struct ServerDescription {
-    std::string application_uri;
-    std::string product_uri;
-    LocalizedText application_name;
-    std::vector<std::string> discovery_urls;
-};
-
-/// Asks a server how it may be reached; opens a connection for it and no session. All text is
-/// as it came. Errors: as Client::connect().
-/// Threads: any; waits, at most `timeout` and about a second for closing.
-Answer<std::vector<EndpointDescription>> getEndpoints(
-    const std::string& url, std::chrono::milliseconds timeout = std::chrono::seconds(5));
-/// Asks a server, or a discovery server, which servers it knows. As getEndpoints().
-Answer<std::vector<ServerDescription>> findServers(
-    const std::string& url, std::chrono::milliseconds timeout = std::chrono::seconds(5));
-
 }  // namespace metier::opcua

@@ -10,6 +10,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -59,6 +60,13 @@ struct UserPassword {
     std::string password;
 };
 
+/// What makes a server a Local Discovery Server (OPC 10000-12).
+struct DiscoveryService {
+    /// A server that did not renew its registration for so long is forgotten, within a second or
+    /// two; whole seconds, at least one.
+    std::chrono::seconds forget_after{75};
+};
+
 struct ServerOptions {
     std::string application_name = "metier";
     std::string application_uri = "urn:metier:server";
@@ -74,6 +82,8 @@ struct ServerOptions {
     /// Users besides the anonymous one.
     std::vector<UserPassword> users;
     EventPublishing event_publishing = EventPublishing::at_once;
+    /// Others may register, and are told of by FindServers.
+    std::optional<DiscoveryService> discovery{};
     ServerLimits limits;
     /// Shared with its other users, as spdlog does; null: spdlog's default logger.
     std::shared_ptr<spdlog::logger> logger;

@@ -37,6 +37,7 @@ inline constexpr StatusCode kBadOutOfMemory{0x80030000};
 inline constexpr StatusCode kBadResourceUnavailable{0x80040000};
 inline constexpr StatusCode kBadCommunicationError{0x80050000};
 inline constexpr StatusCode kBadTimeout{0x800A0000};
+inline constexpr StatusCode kBadServiceUnsupported{0x800B0000};
 inline constexpr StatusCode kBadShutdown{0x800C0000};
 inline constexpr StatusCode kBadServerNotConnected{0x800D0000};
 inline constexpr StatusCode kBadUserAccessDenied{0x801F0000};
