@@ -291,7 +291,7 @@ void ClientSubscriptions::published(const Answer<UA_PublishResponse*>& answer) {
 }
 
 void ClientSubscriptions::publishFailed(const Failure& failure) {
-    if (core_.reconnects() && (resting_ || failure.code == Errc::connection_lost)) {
+    if (failure.code == Errc::connection_lost || (core_.reconnects() && resting_)) {
         return;  // the loss of the connection is told, or will be
     }
     if (failure.status == status::kBadTimeout) {  // the server let it run out unused

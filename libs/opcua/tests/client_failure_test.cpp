@@ -127,6 +127,23 @@ TEST(ClientFailure, GivesUpAServerThatHangsBeforeTheSessionTimesOut) {
     EXPECT_EQ(client->state(), Client::State::lost);
 }
 
+TEST(ClientFailure, DoesNotAskForNotificationsAgainOfAServerThatIsGivenUp) {
+    BareServer server;
+    const auto client = connected(server.url(), {.session_timeout = 1'500ms});
+    std::promise<StatusCode> ended;
+    const auto subscription = client->subscribeData(kNumber, {}, [&](const DataValue& value) {
+        if (value.status.isBad()) {
+            ended.set_value(value.status);
+        }
+    });
+    ASSERT_TRUE(subscription);
+    server.pause();
+    auto outcome = ended.get_future();
+    ASSERT_EQ(outcome.wait_for(6s), std::future_status::ready);
+    EXPECT_EQ(outcome.get(), status::kBadTimeout);
+    EXPECT_EQ(client->state(), Client::State::lost);
+}
+
 TEST(ClientFailure, KeepsAnIdleSessionAlive) {
     BareServer server;
     const auto client = connected(server.url(), {.session_timeout = 2s});
