@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cell_reading.hpp"
 #include "metier/configuration/toml_file.hpp"
 
 namespace metier::configuration {
@@ -20,10 +21,10 @@ constexpr double kLongestStall = 2.0;
 // Arms are told of a start that is nearer too late, of a later one with more doubt [s].
 constexpr double kShortestStartDelay = 0.05;
 constexpr double kLongestStartDelay = 30.0;
-
-bool isAddress(const std::string& server) {
-    return server.starts_with("opc.tcp://");
-}
+// A shorter absence is that of a server that is started again [s].
+constexpr double kShortestAbsence = 0.5;
+constexpr double kLongestAbsence = 3'600.0;
+constexpr const char* kDiscover = "discover";
 
 std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
                              const std::filesystem::path& folder) {
@@ -37,21 +38,6 @@ std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
         table.reject(key, fmt::format("no such file: {}", path.string()));
     }
     return path;
-}
-
-struct Bounds {
-    double least;
-    double most;
-};
-
-double secondsWithin(const TomlTable& table, std::string_view key, double preset,
-                     const Bounds& bounds) {
-    const double value = table.numberOr(key, preset);
-    if (!(value >= bounds.least && value <= bounds.most)) {
-        table.reject(key,
-                     fmt::format("{} is not within {} to {} s", value, bounds.least, bounds.most));
-    }
-    return value;
 }
 
 DriverChoice readDriver(const TomlTable& table) {
@@ -104,6 +90,11 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     for (const auto& tool : table.tables("tool")) {
         arm.tools.push_back(readTool(tool));
     }
+    constexpr double kHeaviest = 10'000.0;
+    arm.payload = table.numberOr("payload", arm.payload);
+    if (!(arm.payload >= 0 && arm.payload <= kHeaviest)) {
+        table.reject("payload", fmt::format("{} is not within 0 to {} kg", arm.payload, kHeaviest));
+    }
     arm.stream_silence = secondsWithin(table, "stream_silence", arm.stream_silence,
                                        {kShortestSilence, kLongestSilence});
     return arm;
@@ -128,7 +119,15 @@ std::vector<UsedServer> readUsedServers(const TomlTable& table) {
 CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder) {
     CompositionServer composition;
     composition.files = readFiles(table, "compositions", folder);
-    composition.servers = readUsedServers(table);
+    for (const auto& server : textOrTexts(table, "servers")) {
+        if (server == kDiscover) {
+            composition.discover = true;
+        } else {
+            composition.servers.push_back({server, isAddress(server) ? server : ""});
+        }
+    }
+    composition.rebind_after = secondsWithin(table, "rebind_after", composition.rebind_after,
+                                             {kShortestAbsence, kLongestAbsence});
     return composition;
 }
 
@@ -163,7 +162,8 @@ VirtualController readVirtual(const TomlTable& table, const std::filesystem::pat
     return controller;
 }
 
-ServerConfig readServer(const TomlTable& table, const std::filesystem::path& folder) {
+ServerConfig readServer(const TomlTable& table, const std::filesystem::path& folder,
+                        const Discovery& of_cell) {
     ServerConfig server;
     server.name = table.text("name");
     server.port = static_cast<std::uint16_t>(table.integerOr("port", 0, 0, kMaxPort));
@@ -171,6 +171,7 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     server.publish_at_once = table.flagOr("publish_at_once", true);
     server.stall_limit =
         secondsWithin(table, "stall_limit", server.stall_limit, {kShortestStall, kLongestStall});
+    server.discovery = readDiscovery(table, of_cell);
     const auto kind = table.text("kind");
     if (kind == "arm") {
         server.kind = ServerKind::arm;
@@ -187,6 +188,10 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     } else if (kind == "composition") {
         server.kind = ServerKind::composition;
         server.composition = readComposition(table, folder);
+        if (server.composition.discover && !server.discovery.enabled()) {
+            table.reject("servers",
+                         "\"discover\" needs discovery = \"opc.tcp://...\" or mdns = true");
+        }
     } else if (kind == "synchronized") {
         server.kind = ServerKind::synchronized;
         server.synchronized = readSynchronized(table);
@@ -238,6 +243,9 @@ void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& table
         const auto& server = cell.servers[i];
         if (!server.name.empty() && !names.insert(server.name).second) {
             tables[i].reject("name", fmt::format("\"{}\" is taken by a server above", server.name));
+        }
+        if (server.name == kDiscover) {
+            tables[i].reject("name", "\"discover\" means any server that is found");
         }
         if (server.port != 0 && !ports.insert(server.port).second) {
             tables[i].reject("port", fmt::format("{} is taken by a server above", server.port));
@@ -304,9 +312,10 @@ Result<CellConfig> readCell(const TomlFile& toml, const std::filesystem::path& f
     CellConfig cell;
     cell.file = std::filesystem::absolute(file);
     cell.name = root.text("name");
+    const auto discovery = readDiscovery(root, {});
     const auto tables = root.tables("server");
     for (const auto& table : tables) {
-        cell.servers.push_back(readServer(table, cell.file.parent_path()));
+        cell.servers.push_back(readServer(table, cell.file.parent_path(), discovery));
     }
     const auto virtual_tables = root.tables("virtual");
     for (const auto& table : virtual_tables) {

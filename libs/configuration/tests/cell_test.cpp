@@ -310,5 +310,98 @@ TEST(SynchronizedCellFile, NeedsTwoArmsWithMovesAndATimeToTellThem) {
                 HasSubstr("server[2].start_delay: 0.01 is not within 0.05 to 30 s"));
 }
 
+TEST_F(CellFile, SaysWhereItsServersRegister) {
+    const auto cell = load(R"(
+name = "demo"
+discovery = "opc.tcp://lds:4840"
+discovery_period = 5
+[[server]]
+name = "near"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+[[server]]
+name = "far"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+discovery = ["opc.tcp://a:4840", "opc.tcp://b:4840"]
+discovery_period = 60
+announce_as = "robots.example"
+mdns = true
+[[server]]
+name = "hidden"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+discovery = []
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    const auto& near = cell->find("near")->discovery;
+    EXPECT_THAT(near.servers, ElementsAre("opc.tcp://lds:4840"));
+    EXPECT_EQ(near.period, 5.0);
+    EXPECT_FALSE(near.mdns);
+    const auto& far = cell->find("far")->discovery;
+    EXPECT_THAT(far.servers, ElementsAre("opc.tcp://a:4840", "opc.tcp://b:4840"));
+    EXPECT_EQ(far.period, 60.0);
+    EXPECT_TRUE(far.mdns);
+    EXPECT_EQ(far.announce_as, "robots.example");
+    EXPECT_FALSE(cell->find("hidden")->discovery.enabled());
+}
+
+TEST_F(CellFile, TellsWhatIsWrongWithItsDiscovery) {
+    const auto cell = load(R"(
+name = "demo"
+discovery = "lds:4840"
+discovery_period = 1000
+announce_as = "opc.tcp://host:1"
+[[server]]
+name = "discover"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr(":3: discovery: \"lds:4840\" is no opc.tcp://"));
+    EXPECT_THAT(cell.error().message, HasSubstr(":4: discovery_period: 1000 is not within"));
+    EXPECT_THAT(cell.error().message, HasSubstr(":5: announce_as: "));
+    EXPECT_THAT(cell.error().message, HasSubstr("server[0].name: \"discover\" means"));
+}
+
+TEST_F(CellFile, LetsACompositionUseWhateverItFinds) {
+    std::ofstream(folder_ / "skill.toml") << "\n";
+    const auto cell = load(R"(
+name = "demo"
+discovery = "opc.tcp://lds:4840"
+[[server]]
+name = "found"
+kind = "composition"
+compositions = ["skill.toml"]
+servers = "discover"
+rebind_after = 3
+[[server]]
+name = "both"
+kind = "composition"
+compositions = ["skill.toml"]
+servers = ["found", "discover"]
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    EXPECT_TRUE(cell->servers[0].composition.discover);
+    EXPECT_TRUE(cell->servers[0].composition.servers.empty());
+    EXPECT_EQ(cell->servers[0].composition.rebind_after, 3.0);
+    EXPECT_TRUE(cell->servers[1].composition.discover);
+    EXPECT_EQ(cell->servers[1].composition.servers.size(), 1U);
+}
+
+TEST_F(CellFile, RefusesToDiscoverWithoutAnybodyToAsk) {
+    std::ofstream(folder_ / "skill.toml") << "\n";
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "found"
+kind = "composition"
+compositions = ["skill.toml"]
+servers = "discover"
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr("server[0].servers: \"discover\" needs"));
+}
+
 }  // namespace
 }  // namespace metier::configuration

@@ -43,6 +43,7 @@ struct ArmServer {
     std::vector<Tool> tools;  ///< besides those of the model
     /// Silence of a moving stream that ends it [s].
     double stream_silence = 0.15;
+    double payload = 0.0;  ///< what it may carry at its flange [kg]; 0: nobody says
 };
 
 /// A gripper behind its own OPC UA server.
@@ -69,6 +70,22 @@ struct UsedServer {
 struct CompositionServer {
     std::vector<std::filesystem::path> files;  ///< absolute
     std::vector<UsedServer> servers;           ///< where the used skills are
+    bool discover = false;                     ///< also at whatever servers discovery tells of
+    /// How long a server that was found may be away before another one is used instead [s].
+    double rebind_after = 10.0;
+};
+
+/// How others find a server without being told its address.
+struct Discovery {
+    std::vector<std::string> servers;  ///< addresses of Local Discovery Servers
+    double period = 30.0;              ///< between its registrations there [s]
+    bool mdns = false;                 ///< announced, and others sought, by mDNS
+    /// Host by which others reach the server where that is not its listening address, as behind a
+    /// forwarded port; empty: its address.
+    std::string announce_as;
+
+    /// Whether there is anybody to ask for other servers.
+    bool enabled() const noexcept { return mdns || !servers.empty(); }
 };
 
 /// A skill that moves the arms of several servers together.
@@ -95,6 +112,7 @@ struct ServerConfig {
     std::filesystem::path state_folder;
     /// Longest time without a sign of life of the server's thread; then its device is stopped [s].
     double stall_limit = 0.25;
+    Discovery discovery;
     ArmServer arm;                    ///< for ServerKind::arm
     GripperServer gripper;            ///< for ServerKind::gripper
     MoveComponent move;               ///< for ServerKind::move

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/configuration/cell.hpp"
+#include "metier/configuration/toml_file.hpp"
+
+namespace metier::configuration {
+
+// What several parts of a cell file have in common. What is wrong is noted in the table.
+
+/// Whether it is an address of a server, and not its name.
+bool isAddress(const std::string& server);
+
+struct Bounds {
+    double least;
+    double most;
+};
+
+/// A time [s] within bounds.
+double secondsWithin(const TomlTable& table, std::string_view key, double preset,
+                     const Bounds& bounds);
+
+/// One text, or a list of them.
+std::vector<std::string> textOrTexts(const TomlTable& table, std::string_view key);
+
+/// How others find a server.
+/// \param preset what the cell says, for a server
+Discovery readDiscovery(const TomlTable& table, Discovery preset);
+
+}  // namespace metier::configuration
