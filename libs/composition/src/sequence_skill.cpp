@@ -15,8 +15,9 @@ using skill::State;
 
 class SequenceBody final : public skill::Body {
 public:
-    SequenceBody(RunSetup setup, const skill::ValueMap& parameters)
-        : run_(std::move(setup), parameters) {}
+    SequenceBody(RunSetup setup, const skill::ValueMap& parameters,
+                 std::shared_ptr<const char> counted)
+        : run_(std::move(setup), parameters), counted_(std::move(counted)) {}
 
     void start(skill::Execution execution) override { run_.start(std::move(execution)); }
     Result<void> suspend() override {
@@ -29,6 +30,7 @@ public:
 
 private:
     Run run_;
+    std::shared_ptr<const char> counted_;
 };
 
 /// The aliases of the calls that every execution comes by.
@@ -105,7 +107,40 @@ Result<std::unique_ptr<skill::Body>> SequenceSkill::prepare(const skill::ValueMa
         }
     }
     return std::make_unique<SequenceBody>(RunSetup{composition_, used_, executor_, clock_, origin_},
-                                          snapshot);
+                                          snapshot, body_count_);
+}
+
+Descriptions SequenceSkill::descriptionsWith(
+    const std::map<std::string, std::unique_ptr<Child>>& children) const {
+    Descriptions descriptions;
+    for (const auto& [alias, used] : used_) {
+        const auto other = children.find(alias);
+        const auto& child = other == children.end() ? *used.child : *other->second;
+        descriptions.emplace(alias, child.description());
+    }
+    return descriptions;
+}
+
+Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<Child>>& children) {
+    if (underWay()) {
+        return fail(Errc::invalid_state, "an execution is under way");
+    }
+    for (const auto& [alias, child] : children) {
+        if (used_.find(alias) == used_.end()) {
+            return fail(Errc::not_found, fmt::format("no use {}", alias));
+        }
+    }
+    auto composed = compose(composition_.definition, descriptionsWith(children));
+    if (!composed) {
+        return fail(std::move(composed.error()));
+    }
+    composition_ = std::move(*composed);
+    for (auto& [alias, child] : children) {
+        auto& used = used_.find(alias)->second;
+        std::swap(used.child, child);
+        used.halted_by_us = false;
+    }
+    return {};
 }
 
 Result<void> SequenceSkill::reset() {

@@ -93,11 +93,13 @@ public:
         if (!composition) {
             throw std::invalid_argument(composition.error().message);
         }
-        program = std::make_unique<skill::Program>(
-            skill::ProgramOptions{.rest_deadline = deadline},
+        auto sequence =
             std::make_unique<SequenceSkill>(std::move(*composition), std::move(children), executor,
-                                            executor->clock(), "here.TestSkill"),
-            executor, executor->clock());
+                                            executor->clock(), "here.TestSkill");
+        skill = sequence.get();
+        program =
+            std::make_unique<skill::Program>(skill::ProgramOptions{.rest_deadline = deadline},
+                                             std::move(sequence), executor, executor->clock());
         program->attach(observer);
     }
 
@@ -123,6 +125,7 @@ public:
         std::make_shared<skill::testing::ManualExecutor>();
     skill::testing::RecordingObserver observer;
     std::unique_ptr<skill::Program> program;
+    SequenceSkill* skill = nullptr;  // the program's
 
 private:
     Result<void> command(skill::Method method) {

@@ -151,6 +151,16 @@ void wireState(KinematicsNodes& kinematics, const ReadState& state) {
     kinematics.live("MissedCycles", [state] { return Value::of(state().missed_cycles); });
 }
 
+Result<void> setPayload(AddressSpace& nodes, const NodeId& device, double payload) {
+    const auto robotics = nodes.namespaceIndex(kOpcRoboticsUri);
+    if (!robotics) {
+        return fail(robotics.error());
+    }
+    const std::array path{QualifiedName{*robotics, "FlangeLoad"}, QualifiedName{*robotics, "Mass"}};
+    const auto mass = nodes.find(device, path);
+    return mass ? nodes.write(*mass, Value::of(payload)) : Result<void>(fail(mass.error()));
+}
+
 /// ActualPosition of the AxisType objects, as far as the motion device has them.
 Result<void> wireAxes(AddressSpace& nodes, KinematicsNodes& kinematics, const NodeId& device,
                       const ReadState& state) {
@@ -204,6 +214,11 @@ Result<void> publishKinematics(AddressSpace& nodes, const MotionDeviceSystem& sy
     wireState(kinematics, state);
     if (!kinematics.outcome()) {
         return kinematics.outcome();
+    }
+    if (data.payload > 0) {
+        if (auto set = setPayload(nodes, system.motion_device, data.payload); !set) {
+            return set;
+        }
     }
     return wireAxes(nodes, kinematics, system.motion_device, state);
 }

@@ -84,7 +84,7 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
     opcua::ObjectSpec spec;
     spec.node.parent = *folder;
     spec.node.browse_name = {folder->namespaceIndex(), used.alias};
-    spec.node.description = {"en", used.name + " at " + used.endpoint_url};
+    spec.node.description = {"en", "Where the skill is that it calls " + used.alias + "."};
     spec.type = *type;
     const auto object = nodes.addObject(spec);
     if (!object) {
@@ -94,6 +94,19 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
         return set;
     }
     return publishUse(nodes, user, *object);
+}
+
+Result<void> updateUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    const auto folder = nodes.find(user, {*metier, kFolder});
+    if (!folder) {
+        return fail(folder.error());
+    }
+    const auto object = nodes.find(*folder, {folder->namespaceIndex(), used.alias});
+    return object ? setProperties(nodes, *object, *metier, used) : fail(object.error());
 }
 
 Result<NodeId> findSkillObject(const AddressSpace& nodes, const NodeId& skills,

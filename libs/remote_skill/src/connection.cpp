@@ -47,6 +47,9 @@ void Connection::watch(opcua::Client& client) {
         {
             const std::lock_guard lock(mutex_);
             lost_ = failure.message.empty() ? "the connection is lost" : failure.message;
+            if (!away_since_) {
+                away_since_ = std::chrono::steady_clock::now();
+            }
         }
         changed_.notify_all();
     });
@@ -54,7 +57,8 @@ void Connection::watch(opcua::Client& client) {
 
 Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
                                                     const std::shared_ptr<ChildLink>& link) {
-    auto skill = AsyncSkill::open(*client_, address, [link](const skill::TransitionEvent& event) {
+    const auto client = present();
+    auto skill = AsyncSkill::open(*client, address, [link](const skill::TransitionEvent& event) {
         link->post([event](RemoteChild& child) { child.onTransition(event); });
     });
     if (!skill) {
@@ -68,7 +72,12 @@ Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
     if (!known) {
         uses_.push_back({std::move(name), link});
     }
-    return std::make_shared<OpenSkill>(OpenSkill{client_, std::move(*skill)});
+    return std::make_shared<OpenSkill>(OpenSkill{client, std::move(*skill)});
+}
+
+std::shared_ptr<opcua::Client> Connection::present() const {
+    const std::lock_guard lock(mutex_);
+    return client_;
 }
 
 void Connection::run(std::function<void()> job) {
@@ -77,6 +86,11 @@ void Connection::run(std::function<void()> job) {
         jobs_.push_back(std::move(job));
     }
     changed_.notify_all();
+}
+
+std::optional<SteadyTime> Connection::awaySince() const {
+    const std::lock_guard lock(mutex_);
+    return away_since_;
 }
 
 void Connection::work(const std::stop_token& stop) {
@@ -126,13 +140,15 @@ bool Connection::reconnect() {
     if (!client) {
         return false;
     }
-    client_ = std::move(*client);
-    watch(*client_);
+    watch(**client);
+    std::shared_ptr<opcua::Client> former = std::move(*client);
     std::vector<Use> uses;
     {
         const std::lock_guard lock(mutex_);
+        client_.swap(former);
         uses = uses_;
     }
+    former.reset();  // without the lock: its thread may still tell of a loss
     for (const auto& use : uses) {
         const auto address = skill_client::findSkill(*client_, use.skill);
         auto skill = address ? open(*address, use.link)
@@ -148,6 +164,10 @@ bool Connection::reconnect() {
         });
     }
     spdlog::info("{}: connected again", options_.url);
+    const std::lock_guard lock(mutex_);
+    if (lost_.empty()) {
+        away_since_.reset();
+    }
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -60,6 +61,8 @@ public:
                                             const std::shared_ptr<ChildLink>& link);
     /// Runs `job` on this thread; jobs may wait.
     void run(std::function<void()> job);
+    /// As RemoteServer::awaySince().
+    std::optional<SteadyTime> awaySince() const;
 
     static opcua::Answer<std::unique_ptr<opcua::Client>> connect(
         const RemoteServerOptions& options);
@@ -70,12 +73,15 @@ private:
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();
+    std::shared_ptr<opcua::Client> present() const;
 
     const RemoteServerOptions options_;
-    std::shared_ptr<opcua::Client> client_;  // with its OpenSkills, whichever ends last
-    std::vector<Use> uses_;                  // guarded by mutex_
+    // Both guarded by mutex_; the client with its OpenSkills, whichever ends last.
+    std::shared_ptr<opcua::Client> client_;
+    std::vector<Use> uses_;
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
+    std::optional<SteadyTime> away_since_;  // guarded by mutex_
     std::condition_variable_any changed_;
     std::vector<std::function<void()>> jobs_;
     std::string lost_;  // why; empty while connected

@@ -60,6 +60,14 @@ void RemoteChild::adopt(std::shared_ptr<OpenSkill> skill,
     }
 }
 
+/// What was read while nothing runs from here; all else is told by events.
+void RemoteChild::refresh(const skill_client::AsyncSkill::Now& now) {
+    if (skill_ && execution_.empty() && !resetting_ && !left_over_) {
+        state_ = now.state;
+        reason_text_ = now.reason_text;
+    }
+}
+
 void RemoteChild::lost(const std::string& why) {
     drop();
     lost_ = why;

@@ -40,6 +40,7 @@ public:
 
     // What the connection tells.
     void adopt(std::shared_ptr<OpenSkill> skill, const skill_client::AsyncSkill::Now& now);
+    void refresh(const skill_client::AsyncSkill::Now& now);
     void lost(const std::string& why);
     void onTransition(const skill::TransitionEvent& event);
 

@@ -45,6 +45,10 @@ const std::string& RemoteServer::name() const noexcept {
     return worker_->connection.options().name;
 }
 
+std::optional<SteadyTime> RemoteServer::awaySince() const {
+    return worker_->connection.awaySince();
+}
+
 opcua::Client& RemoteServer::client() {
     return worker_->connection.client();
 }
@@ -57,11 +61,14 @@ Result<std::vector<skill_client::SkillAddress>> RemoteServer::skills() {
 
 Result<std::unique_ptr<composition::Child>> RemoteServer::use(
     const skill_client::SkillAddress& skill, std::string origin) {
-    auto& connection = worker_->connection;
+    auto opened = open(skill, std::move(origin));
+    return opened ? child(std::move(*opened))
+                  : Result<std::unique_ptr<composition::Child>>(fail(std::move(opened.error())));
+}
+
+Result<PendingUse> RemoteServer::open(const skill_client::SkillAddress& skill, std::string origin) {
     const auto link = std::make_shared<ChildLink>(worker_->executor);
-    auto child = std::make_unique<RemoteChild>(
-        connection, link, fmt::format("{} of {}", skill.name, name()), std::move(origin));
-    auto open = connection.open(skill, link);
+    auto open = worker_->connection.open(skill, link);
     if (!open) {
         return fail(std::move(open.error()));
     }
@@ -73,7 +80,20 @@ Result<std::unique_ptr<composition::Child>> RemoteServer::use(
         return fail(Errc::not_supported,
                     fmt::format("{}: {} has no StartWith and GetExecution", url(), skill.name));
     }
-    child->adopt(std::move(*open), *now);
+    return PendingUse{link, std::move(*open), *now, fmt::format("{} of {}", skill.name, name()),
+                      std::move(origin)};
+}
+
+std::unique_ptr<composition::Child> RemoteServer::child(PendingUse use) {
+    auto child = std::make_unique<RemoteChild>(worker_->connection, use.link, std::move(use.name),
+                                               std::move(use.origin));
+    child->adopt(use.skill, use.now);
+    // What happened since it was opened has reached no child.
+    worker_->connection.run([skill = std::move(use.skill), link = std::move(use.link)] {
+        if (const auto now = skill->skill.now()) {
+            link->post([now = *now](RemoteChild& other) { other.refresh(now); });
+        }
+    });
     return child;
 }
 

@@ -71,6 +71,7 @@ protected:
 
 TEST_F(RemoteChildTest, RunsToItsResult) {
     EXPECT_EQ(child_->name(), "JointPtpMoveSkill of other");
+    EXPECT_FALSE(remote_->awaySince());
     beginAndAwait("here.Test/1/move/1");
     EXPECT_EQ(move_.hand->execution().id(), "here.Test/1/move/1");
     EXPECT_EQ(move_.hand->snapshot().at("TargetJointPosition"),
@@ -155,6 +156,8 @@ TEST_F(RemoteChildTest, IsLostWithItsServer) {
     EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
     EXPECT_EQ(listener_.end->reason, Reason::device_lost);
     EXPECT_FALSE(child_->available());
+    ASSERT_TRUE(remote_->awaySince());
+    EXPECT_LE(*remote_->awaySince(), std::chrono::steady_clock::now());
 }
 
 TEST_F(RemoteChildTest, HaltsWhatIsLeftOverOfItsOwnAndNothingElse) {

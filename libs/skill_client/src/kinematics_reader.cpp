@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -93,12 +94,13 @@ Answer<> checkLengths(const KinematicsData& data) {
     return {};
 }
 
-Answer<KinematicsNodes> nodesOf(Client& client, std::string device_name, const NodeId& object) {
+Answer<KinematicsNodes> nodesOf(Client& client, const Children::value_type& device,
+                                const NodeId& object) {
     const auto children = childrenByName(client, object);
     if (!children) {
         return tl::unexpected(children.error());
     }
-    KinematicsNodes nodes{std::move(device_name), object, {}, {}, {}};
+    KinematicsNodes nodes{device.first, device.second, object, {}, {}, {}};
     const std::array<std::pair<std::string_view, NodeId*>, 3> wanted{
         {{"ActualJointPosition", &nodes.actual_joint_position},
          {"SafetyState", &nodes.safety_state},
@@ -113,19 +115,38 @@ Answer<KinematicsNodes> nodesOf(Client& client, std::string device_name, const N
     return nodes;
 }
 
+/// FlangeLoad/Mass of the motion device [kg]; 0 if it says nothing of use.
+Answer<double> readPayload(Client& client, const NodeId& device) {
+    NodeId node = device;
+    for (const auto* name : {"FlangeLoad", "Mass"}) {
+        const auto children = childrenByName(client, node);
+        if (!children) {
+            return tl::unexpected(children.error());
+        }
+        const auto found = children->find(name);
+        if (found == children->end()) {
+            return 0.0;
+        }
+        node = found->second;
+    }
+    const auto mass = client.read(node);
+    const auto number = mass ? mass->as<double>() : Result<double>(0.0);
+    return number && std::isfinite(*number) && *number > 0 ? *number : 0.0;
+}
+
 /// The Kinematics object below a folder `MotionDevices`; nothing if no device has one.
 Answer<std::optional<KinematicsNodes>> searchDevices(Client& client, const NodeId& folder) {
     const auto devices = childrenByName(client, folder);
     if (!devices) {
         return tl::unexpected(devices.error());
     }
-    for (const auto& [name, device] : *devices) {
-        const auto parts = childrenByName(client, device);
+    for (const auto& device : *devices) {
+        const auto parts = childrenByName(client, device.second);
         if (!parts) {
             return tl::unexpected(parts.error());
         }
         if (const auto found = parts->find("Kinematics"); found != parts->end()) {
-            auto nodes = nodesOf(client, name, found->second);
+            auto nodes = nodesOf(client, device, found->second);
             if (!nodes) {
                 return tl::unexpected(nodes.error());
             }
@@ -185,6 +206,11 @@ Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nod
     if (auto checked = checkLengths(data); !checked) {
         return tl::unexpected(checked.error());
     }
+    const auto payload = readPayload(client, nodes.device);
+    if (!payload) {
+        return tl::unexpected(payload.error());
+    }
+    data.payload = *payload;
     return data;
 }
 

@@ -142,6 +142,25 @@ Answer<std::vector<SkillAddress>> findSkills(Client& client) {
     return std::move(walk.found);
 }
 
+Answer<std::vector<std::string>> typeNames(Client& client, const SkillAddress& skill) {
+    std::vector<std::string> names{skill.type_name};
+    for (auto type = skill.type; names.size() <= kMaxDepth;) {
+        const auto parents = client.browse({.node = type,
+                                            .reference_type = opcua::ids::kHasSubtype,
+                                            .direction = BrowseQuery::Direction::inverse,
+                                            .node_classes = {}});
+        if (!parents) {
+            return tl::unexpected(parents.error());
+        }
+        if (parents->empty() || parents->front().target == opcua::ids::kProgramStateMachineType) {
+            break;
+        }
+        type = parents->front().target;
+        names.push_back(parents->front().browse_name.name);
+    }
+    return names;
+}
+
 Answer<SkillAddress> findSkill(Client& client, std::string_view name) {
     auto skills = findSkills(client);
     if (!skills) {

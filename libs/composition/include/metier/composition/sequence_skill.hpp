@@ -45,6 +45,12 @@ public:
     /// Errors: invalid_state, connection_lost, naming a used skill that is certainly needed and
     ///         cannot begin.
     Result<std::unique_ptr<skill::Body>> prepare(const skill::ValueMap& snapshot) override;
+    bool underWay() const noexcept { return body_count_.use_count() > 1; }
+    /// Uses other skills from the next execution on.
+    /// \param children by alias; those that were used so far, once this has succeeded
+    /// Errors: invalid_state (an execution is under way), invalid_argument (a binding does not fit
+    ///         them), not_found (an alias); then nothing has changed.
+    Result<void> rebind(std::map<std::string, std::unique_ptr<Child>>& children);
     /// Resets the used skills that are Halted, as far as they may be.
     /// Errors: what a skill of the same process refuses with. Of others, the next Start tells.
     Result<void> reset() override;
@@ -52,6 +58,8 @@ public:
 private:
     class Unheard;
     Result<void> checkUsable(const std::string& alias) const;
+    Descriptions descriptionsWith(
+        const std::map<std::string, std::unique_ptr<Child>>& children) const;
 
     Composition composition_;
     UsedSkills used_;
@@ -60,6 +68,8 @@ private:
     std::string origin_;
     std::vector<std::string> needed_;  // aliases that every execution runs
     std::unique_ptr<Unheard> unheard_;
+    // Shared by the bodies: as many as there are of these, one more than there are bodies.
+    std::shared_ptr<const char> body_count_ = std::make_shared<const char>();
 };
 
 /// The deadline to come to rest that a Program of this skill needs: its used skills have theirs

@@ -26,6 +26,8 @@ struct KinematicsData {
     std::vector<double> max_cartesian_jerk;          ///< [m/s³], [rad/s³]
     double cycle_time = 0;                           ///< of the controller [s]
     std::vector<std::string> tool_frames;            ///< names that ToolFrame may hold
+    /// Greatest mass at the flange [kg], which OPC 40010-1 has in FlangeLoad; 0: unknown.
+    double payload = 0;
 
     std::size_t axisCount() const noexcept { return joint_axes.size(); }
 };

@@ -27,6 +27,10 @@ Result<void> publishUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
 Result<void> publishUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
                         const RemoteSkill& used);
 
+/// Tells that another skill is used by an alias that was published before.
+Result<void> updateUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
+                       const RemoteSkill& used);
+
 /// The skill object of that name below a folder of skills.
 Result<opcua::NodeId> findSkillObject(const opcua::AddressSpace& nodes, const opcua::NodeId& skills,
                                       const std::string& name);

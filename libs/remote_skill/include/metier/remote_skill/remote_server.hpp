@@ -2,12 +2,15 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/composition/child.hpp"
 #include "metier/skill/executor.hpp"
+#include "metier/skill_client/async_skill.hpp"
 #include "metier/skill_client/skill_finder.hpp"
 
 namespace metier::remote_skill {
@@ -20,6 +23,18 @@ struct RemoteServerOptions {
     /// told with its start; at least 2 s.
     std::chrono::milliseconds session_timeout{5'000};
     std::chrono::milliseconds retry_interval{500};  ///< between attempts to connect again
+};
+
+struct OpenSkill;
+class ChildLink;
+
+/// A skill that was opened and has no child yet.
+struct PendingUse {
+    std::shared_ptr<ChildLink> link;   // shared with what is on its way to the child
+    std::shared_ptr<OpenSkill> skill;  // shared with the work that waits for the server
+    skill_client::AsyncSkill::Now now;
+    std::string name;
+    std::string origin;
 };
 
 /// Another server whose skills a component uses. After a loss it connects again by itself.
@@ -39,6 +54,9 @@ public:
 
     const std::string& url() const noexcept;
     const std::string& name() const noexcept;
+    /// Since when there is no connection with all used skills; nothing while there is one. Any
+    /// thread.
+    std::optional<SteadyTime> awaySince() const;
 
     /// For further questions before the first use().
     opcua::Client& client();
@@ -50,6 +68,11 @@ public:
     /// Errors: not_supported, if it lacks StartWith or GetExecution; the server's.
     Result<std::unique_ptr<composition::Child>> use(const skill_client::SkillAddress& skill,
                                                     std::string origin);
+
+    /// The same in two parts, for an executor that is at work: open() waits, on any thread but the
+    /// executor's; child() does not, on the executor's thread and nowhere else.
+    Result<PendingUse> open(const skill_client::SkillAddress& skill, std::string origin);
+    std::unique_ptr<composition::Child> child(PendingUse use);
 
 private:
     class Worker;

@@ -14,6 +14,7 @@ namespace metier::skill_client {
 /// The Kinematics object of the arm that a skill moves.
 struct KinematicsNodes {
     std::string device_name;  ///< BrowseName of the motion device
+    opcua::NodeId device;
     opcua::NodeId object;
     opcua::NodeId actual_joint_position;
     opcua::NodeId safety_state;
@@ -24,7 +25,7 @@ struct KinematicsNodes {
 /// Errors: not_found, for a skill that moves no published arm.
 opcua::Answer<KinematicsNodes> findKinematics(opcua::Client& client, const SkillAddress& skill);
 
-/// Reads the chain and the limits.
+/// Reads the chain, the limits, and the payload where the server tells it.
 /// Errors: not_found, type_mismatch, with the name of what is missing or wrong;
 ///         invalid_argument if lists have different lengths.
 opcua::Answer<opcua_skill::KinematicsData> readKinematics(opcua::Client& client,
