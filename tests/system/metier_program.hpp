@@ -56,6 +56,7 @@ public:
     std::string port() const { return url_.substr(url_.rfind(':') + 1); }
     /// Ends it as a crash does.
     void kill();
+    void signal(int number) { process_.signal(number); }
 
 private:
     process::ChildProcess process_;

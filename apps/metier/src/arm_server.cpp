@@ -137,7 +137,7 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
             return shown;
         }
     }
-    return host_->publishArm(*system, *device_.arm, model_);
+    return host_->publishArm(*system, {*device_.arm, model_, config.arm.payload});
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,

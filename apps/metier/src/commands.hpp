@@ -31,6 +31,8 @@ void addRun(CLI::App& app, Exit& exit);
 void addWatch(CLI::App& app, Exit& exit);
 void addHalt(CLI::App& app, Exit& exit);
 void addPickPlace(CLI::App& app, Exit& exit);
+void addFind(CLI::App& app, Exit& exit);
+void addDiscovery(CLI::App& app, Exit& exit);
 void addSquare(CLI::App& app, Exit& exit);
 void addDemo(CLI::App& app, Exit& exit);
 void addFk(CLI::App& app, Exit& exit);

@@ -1,12 +1,14 @@
 #include "composition_server.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <map>
+#include <thread>
 #include <utility>
 
-#include "arm_reach.hpp"
+#include "arm_figures.hpp"
 #include "composition_files.hpp"
 #include "metier/composition/composition.hpp"
 #include "metier/composition/local_child.hpp"
@@ -17,6 +19,13 @@
 namespace metier::app {
 
 using composition::Definition;
+
+namespace {
+
+constexpr std::chrono::seconds kLongestSearch{20};
+constexpr std::chrono::milliseconds kSearchPause{200};
+
+}  // namespace
 
 /// Finds the children of one definition and what to publish of them.
 class CompositionServer::Cast {
@@ -38,7 +47,16 @@ public:
                                 definition_.file, use.line, use.alias, found.error().message);
             }
         }
-        return problems.empty() ? Result<void>{} : fail(Errc::invalid_argument, problems);
+        return problems.empty() ? discover() : fail(Errc::invalid_argument, problems);
+    }
+
+    /// What was found by discovery, to be kept bound.
+    void keepBonds(composition::SequenceSkill& skill, const opcua::NodeId& node) {
+        for (auto& bond : bonds_) {
+            bond.skill = &skill;
+            bond.node = node;
+            server_.bonds_.push_back(std::move(bond));
+        }
     }
 
     composition::Descriptions descriptions() const {
@@ -102,6 +120,11 @@ private:
 
     Result<void> findRemote(const composition::Use& use) {
         auto offered = choose(use, server_.offered_);
+        if (!offered && offered.error().code == Errc::not_found &&
+            server_.config_.composition.discover) {
+            sought_.push_back(use);
+            return {};
+        }
         if (!offered) {
             return fail(std::move(offered.error()));
         }
@@ -111,8 +134,52 @@ private:
             return fail(std::move(child.error()));
         }
         children_.emplace(use.alias, std::move(*child));
-        remote_.push_back({use.alias, remote.url(), offered->address.name,
-                           offered->address.type_name, offered->address.controllerName()});
+        note(use.alias, remote, offered->address);
+        return {};
+    }
+
+    void note(const std::string& alias, const remote_skill::RemoteServer& remote,
+              const skill_client::SkillAddress& skill) {
+        remote_.push_back(
+            {alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
+    }
+
+    /// Others may be starting at this moment.
+    Result<void> discover() {
+        const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
+        while (!sought_.empty()) {
+            const auto servers = discoverServers(server_.config_.discovery, {});
+            const auto assigned = assign(sought_, servers);
+            if (assigned) {
+                return useAll(*assigned);
+            }
+            if (std::chrono::steady_clock::now() > deadline) {
+                return fail(Errc::not_found,
+                            fmt::format("{}: {}", definition_.file, assigned.error().message));
+            }
+            std::this_thread::sleep_for(kSearchPause);
+        }
+        return {};
+    }
+
+    Result<void> useAll(const std::vector<Assignment>& assignments) {
+        for (const auto& [server, uses] : assignments) {
+            const auto chosen = chooseAll(uses, *server);
+            auto remote = chosen ? server_.connectFound(*server) : fail(chosen.error());
+            if (!remote) {
+                return fail(std::move(remote.error()));
+            }
+            for (const auto& [alias, skill] : *chosen) {
+                auto child = (*remote)->use(skill.address, origin_);
+                if (!child) {
+                    return fail(std::move(child.error()));
+                }
+                children_.emplace(alias, std::move(*child));
+                note(alias, **remote, skill.address);
+            }
+            spdlog::info("{} uses {} ({})", definition_.name, (*remote)->name(), (*remote)->url());
+            bonds_.push_back({definition_.name, nullptr, {}, origin_, uses, *remote});
+        }
         return {};
     }
 
@@ -121,7 +188,9 @@ private:
     std::string origin_;
     std::map<std::string, std::unique_ptr<composition::Child>> children_;
     std::vector<opcua_skill::RemoteSkill> remote_;
-    std::vector<std::string> local_;  // names of used skills of this server
+    std::vector<std::string> local_;        // names of used skills of this server
+    std::vector<composition::Use> sought_;  // that no server of the list offers
+    std::vector<Bond> bonds_;
 };
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
@@ -134,7 +203,7 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     if (!host) {
         return fail(host.error());
     }
-    std::unique_ptr<CompositionServer> server(new CompositionServer(config.name, std::move(*host)));
+    std::unique_ptr<CompositionServer> server(new CompositionServer(config, std::move(*host)));
     if (auto connected = server->connect(config.composition.servers); !connected) {
         return fail(std::move(connected.error()));
     }
@@ -144,13 +213,51 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     if (auto started = server->host_->start(); !started) {
         return fail(started.error());
     }
+    server->keepBound();
     return server;
 }
 
-CompositionServer::CompositionServer(std::string name, std::unique_ptr<SkillHost> host)
-    : name_(std::move(name)), life_(newLife()), host_(std::move(host)) {}
+CompositionServer::CompositionServer(const configuration::ServerConfig& config,
+                                     std::unique_ptr<SkillHost> host)
+    : config_(config), name_(config.name), life_(newLife()), host_(std::move(host)) {}
 
-CompositionServer::~CompositionServer() = default;
+CompositionServer::~CompositionServer() {
+    if (rebinder_) {
+        rebinder_->stop();
+    }
+}
+
+void CompositionServer::keepBound() {
+    if (bonds_.empty()) {
+        return;
+    }
+    rebinder_ = std::make_unique<Rebinder>(
+        Rebinder::Setup{
+            .discovery = config_.discovery,
+            .own_url = host_->announcedUrl(),
+            .application_name = "metier " + name_,
+            .rebind_after = std::chrono::duration<double>(config_.composition.rebind_after),
+            .executor = host_->skills().executor(),
+            .nodes = host_->nodes()},
+        std::move(bonds_));
+}
+
+Result<std::shared_ptr<remote_skill::RemoteServer>> CompositionServer::connectFound(
+    const DiscoveredServer& found) {
+    for (const auto& known : found_) {
+        if (known->url() == found.found.url) {
+            return known;
+        }
+    }
+    auto server = remote_skill::RemoteServer::connect(
+        {.url = found.found.url, .name = found.found.name, .application_name = "metier " + name_},
+        host_->skills().executor());
+    if (!server) {
+        return fail(std::move(server.error()));
+    }
+    found_.emplace_back(std::move(*server));
+    return found_.back();
+}
 
 Result<void> CompositionServer::connect(const std::vector<configuration::UsedServer>& servers) {
     for (const auto& used : servers) {
@@ -165,7 +272,7 @@ Result<void> CompositionServer::connect(const std::vector<configuration::UsedSer
             return fail(std::move(skills.error()));
         }
         for (auto& skill : *skills) {
-            const auto reach = reachOf((*server)->client(), skill);
+            const auto reach = figuresOfArm((*server)->client(), skill).reach;
             offered_.push_back({used.name, servers_.size(), std::move(skill), reach});
         }
         servers_.push_back(std::move(*server));
@@ -201,15 +308,19 @@ Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& pla
     const skill::ProgramOptions options{.control = host_->control(),
                                         .names = host_->names(),
                                         .rest_deadline = composition::restDeadlineOf(definition)};
-    const auto published = host_->skills().publish(
-        place.skills,
-        std::make_unique<composition::SequenceSkill>(std::move(*composed), cast.takeChildren(),
-                                                     host_->skills().executor(), host_->clock(),
-                                                     cast.origin() + "~" + life_),
-        options);
+    auto sequence = std::make_unique<composition::SequenceSkill>(
+        std::move(*composed), cast.takeChildren(), host_->skills().executor(), host_->clock(),
+        cast.origin() + "~" + life_);
+    auto& skill = *sequence;
+    const auto published = host_->skills().publish(place.skills, std::move(sequence), options);
     if (!published) {
         return fail(published.error());
     }
+    const auto node = opcua_skill::findSkillObject(host_->nodes(), place.skills, name);
+    if (!node) {
+        return fail(node.error());
+    }
+    cast.keepBonds(skill, *node);
     return cast.publish(place.skills, name);
 }
 

@@ -9,6 +9,7 @@
 #include "metier/configuration/cell.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/remote_skill/remote_server.hpp"
+#include "rebinder.hpp"
 #include "skill_host.hpp"
 #include "skill_matching.hpp"
 
@@ -19,8 +20,9 @@ namespace metier::app {
 /// Threading: one thread starts and ends it.
 class CompositionServer {
 public:
+    /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
     /// Errors: what is wrong with the files; a used server that cannot be reached; a used skill
-    ///         that nobody or more than one server offers; the port.
+    ///         that nobody or, unless discovered, more than one server offers; the port.
     static Result<std::unique_ptr<CompositionServer>> start(
         const configuration::ServerConfig& config);
 
@@ -32,17 +34,25 @@ public:
 
 private:
     class Cast;
-    CompositionServer(std::string name, std::unique_ptr<SkillHost> host);
+    CompositionServer(const configuration::ServerConfig& config, std::unique_ptr<SkillHost> host);
     Result<void> connect(const std::vector<configuration::UsedServer>& servers);
     Result<void> offer(std::vector<composition::Definition> definitions);
     Result<void> offerOne(const opcua_skill::SkillController& place,
                           composition::Definition definition);
 
+    Result<std::shared_ptr<remote_skill::RemoteServer>> connectFound(const DiscoveredServer& found);
+    void keepBound();
+
+    const configuration::ServerConfig config_;
     std::string name_;
     std::string life_;  // part of the ids of executions
     std::vector<std::unique_ptr<remote_skill::RemoteServer>> servers_;
     std::vector<OfferedSkill> offered_;  // of all of them
-    std::unique_ptr<SkillHost> host_;    // ends before the servers that its skills use
+    // Those that were found, shared by the skills that use them.
+    std::vector<std::shared_ptr<remote_skill::RemoteServer>> found_;
+    std::vector<Bond> bonds_;
+    std::unique_ptr<Rebinder> rebinder_;
+    std::unique_ptr<SkillHost> host_;  // ends before the servers that its skills use
 };
 
 }  // namespace metier::app

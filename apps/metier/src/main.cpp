@@ -33,6 +33,8 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addHalt(app, exit);
     metier::app::addSkillCommands(app, exit);
     metier::app::addOwn(app, exit);
+    metier::app::addFind(app, exit);
+    metier::app::addDiscovery(app, exit);
     metier::app::addSquare(app, exit);
     metier::app::addPickPlace(app, exit);
     metier::app::addFk(app, exit);

@@ -89,7 +89,7 @@ Result<void> MoveServer::offer(const std::string& name) {
         return offered;
     }
     host_->haltOnLossOf(*arm_);
-    return host_->publishArm(*system, *arm_, model_);
+    return host_->publishArm(*system, {*arm_, model_, arm_->kinematics().payload});
 }
 
 }  // namespace metier::app

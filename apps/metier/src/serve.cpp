@@ -28,6 +28,8 @@ struct ServeOptions {
     std::string sensor;
     std::vector<std::string> used;
     std::string state;
+    std::vector<std::string> discovery;
+    std::string announce_as;
 };
 
 /// Of this user; empty if nobody says where that is.
@@ -87,6 +89,12 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
     config.state_folder = stateFolder(options, config.port);
     if (!options.robot.empty()) {
         config.move.robot = options.robot;
+    }
+    if (!options.discovery.empty()) {
+        config.discovery.servers = options.discovery;
+    }
+    if (!options.announce_as.empty()) {
+        config.discovery.announce_as = options.announce_as;
     }
     for (auto* driver : {&config.arm.driver, &config.gripper.driver}) {
         resolveController(cell, options.controller, *driver);
@@ -187,6 +195,10 @@ void addServe(CLI::App& app, Exit& exit) {
                         "Another address of the force-torque sensor than the file's");
     command->add_option("--use", options->used,
                         "Another address of a used server than the file's, as NAME=opc.tcp://...");
+    command->add_option("--discovery", options->discovery,
+                        "Other discovery servers than the file's, as opc.tcp://host:4840");
+    command->add_option("--announce-as", options->announce_as,
+                        "Host by which others reach the server, instead of the file's");
     command->add_option("--state", options->state,
                         "Folder for what outlives the server: the names of executions. Else that "
                         "of the user, and none with --port 0");

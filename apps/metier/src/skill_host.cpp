@@ -83,18 +83,19 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
     }
     opcua::ServerOptions options;
     options.application_name = "metier " + config.name;
-    options.application_uri = "urn:metier:" + config.name;
+    options.application_uri = applicationUriOf(config);
     options.port = config.port;
     options.bind_addresses = {config.address};
     options.nodesets = std::move(nodesets);
     options.nodesets.insert(options.nodesets.begin(), {"device", "robotics", "metier"});
     options.event_publishing = config.publish_at_once ? opcua::EventPublishing::at_once
                                                       : opcua::EventPublishing::at_interval;
+    auto uri = options.application_uri;
     auto server = opcua::Server::create(std::move(options));
     if (!server) {
         return fail(server.error());
     }
-    std::unique_ptr<SkillHost> host(new SkillHost(config, std::move(*server)));
+    std::unique_ptr<SkillHost> host(new SkillHost(config, std::move(uri), std::move(*server)));
     host->port_lock_ = std::move(*port_lock);
     auto skills = opcua_skill::SkillServer::create(*host->server_, host->clock_);
     if (!skills) {
@@ -127,17 +128,20 @@ Result<void> SkillHost::keepNames(const configuration::ServerConfig& config) {
     return {};
 }
 
-SkillHost::SkillHost(const configuration::ServerConfig& config,
+SkillHost::SkillHost(configuration::ServerConfig config, std::string application_uri,
                      std::unique_ptr<opcua::Server> server)
-    : name_(config.name), stall_limit_(config.stall_limit), server_(std::move(server)) {}
+    : config_(std::move(config)),
+      application_uri_(std::move(application_uri)),
+      server_(std::move(server)) {}
 
 SkillHost::~SkillHost() = default;
 
 Result<void> SkillHost::start() {
+    const std::chrono::duration<double> stall_limit(config_.stall_limit);
     stall_watch_.emplace(
         robot_skills::StallWatch::Setup{
-            .name = name_,
-            .limit = std::chrono::duration_cast<std::chrono::nanoseconds>(stall_limit_),
+            .name = config_.name,
+            .limit = std::chrono::duration_cast<std::chrono::nanoseconds>(stall_limit),
             .stop =
                 [this] {
                     for (const auto& stop : stops_) {
@@ -146,13 +150,20 @@ Result<void> SkillHost::start() {
                 },
             .log = [](const std::string& line) { spdlog::error("{}", line); }},
         skills_->executor(), skills_->programs(), clock_);
-    return server_->start();
+    auto started = server_->start();
+    if (started) {
+        announcement_.emplace(config_, application_uri_, url());
+    }
+    return started;
 }
 
 Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system,
-                                   const device::Arm& arm, const motion::RobotModel& model) {
-    return opcua_skill::publishKinematics(server_->nodes(), system, toKinematicsData(model),
-                                          [&arm, &model] { return stateOf(arm, model); });
+                                   const ShownArm& shown) {
+    auto data = toKinematicsData(shown.model);
+    data.payload = shown.payload;
+    return opcua_skill::publishKinematics(
+        server_->nodes(), system, data,
+        [&arm = shown.arm, &model = shown.model] { return stateOf(arm, model); });
 }
 
 Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "announcement.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/configuration/cell.hpp"
@@ -47,10 +48,17 @@ public:
     opcua::AddressSpace& nodes() { return server_->nodes(); }
     opcua_skill::SkillServer& skills() { return *skills_; }
     std::string url() const { return server_->endpointUrl(); }
+    /// As others are told.
+    std::string announcedUrl() const { return app::announcedUrl(config_.discovery, url()); }
 
-    /// Shows what is known of the arm, and its live state. `arm` and `model` must outlive this.
-    Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const device::Arm& arm,
-                            const motion::RobotModel& model);
+    /// What is shown of an arm; arm and model must outlive this.
+    struct ShownArm {
+        const device::Arm& arm;
+        const motion::RobotModel& model;
+        double payload = 0;  ///< [kg]; 0: unknown
+    };
+    /// Shows what is known of the arm, and its live state.
+    Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const ShownArm& shown);
     /// Shows at `parent` whether the gripper holds a part. `gripper` must outlive this.
     Result<void> publishGripper(const opcua::NodeId& parent, const device::Gripper& gripper);
     /// Lets clients take control of the skills below `controller`, by lease or lock.
@@ -78,15 +86,17 @@ public:
     void stopOnStall(Device& device) {
         stops_.emplace_back([&device] { device.stop(); });
     }
+    /// Serves, and tells others of it.
     Result<void> start();
 
 private:
-    SkillHost(const configuration::ServerConfig& config, std::unique_ptr<opcua::Server> server);
+    SkillHost(configuration::ServerConfig config, std::string application_uri,
+              std::unique_ptr<opcua::Server> server);
     Result<void> keepNames(const configuration::ServerConfig& config);
 
     std::optional<process::NameLock> port_lock_;  // until the server is gone
-    const std::string name_;
-    const std::chrono::duration<double> stall_limit_;
+    const configuration::ServerConfig config_;
+    const std::string application_uri_;
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
@@ -95,6 +105,7 @@ private:
     std::optional<robot_skills::DeviceWatch> device_watch_;
     std::vector<std::function<void()>> stops_;
     std::optional<robot_skills::StallWatch> stall_watch_;
+    std::optional<Announcement> announcement_;  // ends first
 };
 
 }  // namespace metier::app

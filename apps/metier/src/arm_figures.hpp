@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+#include "metier/opcua/client.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::app {
+
+/// What a server tells of an arm, as far as it does.
+struct ArmFigures {
+    std::optional<double> reach{};    ///< farthest the flange can be from axis 2 [m]
+    std::optional<double> payload{};  ///< greatest mass at the flange [kg]
+};
+
+/// Of the arm that a skill moves; nothing if it moves none. Waits for the server.
+ArmFigures figuresOfArm(opcua::Client& client, const skill_client::SkillAddress& skill);
+
+}  // namespace metier::app

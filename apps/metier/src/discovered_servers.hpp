@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/composition/definition.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/discovery/search.hpp"
+#include "skill_matching.hpp"
+
+namespace metier::app {
+
+/// A server that was found, and what it offers.
+struct DiscoveredServer {
+    discovery::FoundServer found;
+    std::vector<OfferedSkill> offered;
+};
+
+/// Whoever discovery tells of now and answers within 2 s, by name and address.
+/// \param but addresses to leave out
+/// Threads: any; waits, some seconds.
+std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& discovery,
+                                              const std::vector<std::string>& but);
+
+/// Which skill of a server serves each of these uses, by alias.
+/// Errors: those of choose(), of the first use that it cannot serve.
+Result<std::map<std::string, OfferedSkill>> chooseAll(const std::vector<composition::Use>& uses,
+                                                      const DiscoveredServer& server);
+
+/// How uses are spread over servers: who can serve most of them comes first, as the skills of one
+/// arm belong together; then by the order of the servers.
+struct Assignment {
+    const DiscoveredServer* server = nullptr;
+    std::vector<composition::Use> uses;
+};
+
+/// Errors: not_found, with a line "uses.ALIAS: why" for each use that nobody serves.
+Result<std::vector<Assignment>> assign(const std::vector<composition::Use>& uses,
+                                       const std::vector<DiscoveredServer>& servers);
+
+}  // namespace metier::app

@@ -1,0 +1,36 @@
+#include "candidate.hpp"
+
+#include <gmock/gmock.h>
+
+namespace metier::app {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(Candidate, FitsIfNothingIsWished) {
+    const auto verdict = judge({}, std::nullopt, std::nullopt);
+    EXPECT_TRUE(verdict.fits);
+    EXPECT_THAT(verdict.reasons, IsEmpty());
+}
+
+TEST(Candidate, SaysWhyItFits) {
+    const auto verdict = judge({.reach = 0.5, .payload = 3.0}, 0.85, 3.0);
+    EXPECT_TRUE(verdict.fits);
+    EXPECT_THAT(verdict.reasons, ElementsAre("reach 0.85 m >= 0.5 m", "payload 3 kg >= 3 kg"));
+}
+
+TEST(Candidate, SaysWhyItDoesNotFit) {
+    const auto verdict = judge({.reach = 0.9, .payload = 3.0}, 0.85, 5.0);
+    EXPECT_FALSE(verdict.fits);
+    EXPECT_THAT(verdict.reasons, ElementsAre("reach 0.85 m < 0.9 m", "payload 5 kg >= 3 kg"));
+}
+
+TEST(Candidate, DoesNotFitWhereNobodyKnows) {
+    const auto verdict = judge({.reach = 0.5, .payload = 1.0}, 0.85, std::nullopt);
+    EXPECT_FALSE(verdict.fits);
+    EXPECT_THAT(verdict.reasons, ElementsAre("reach 0.85 m >= 0.5 m", "payload unknown"));
+}
+
+}  // namespace
+}  // namespace metier::app

@@ -1,0 +1,169 @@
+// Servers and a discovery server in processes of their own.
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "discovered_cell.hpp"
+
+namespace metier::system_tests {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// Moves the first axis a little and tells whether that went well.
+void moveOn(const std::string& url) {
+    const auto client = connectTo(url);
+    auto skill = openSkill(*client, "JointPtpMoveSkill");
+    auto target = jointPosition(*client, skill);
+    target.front() += 0.1;
+    const auto moved = skill.run({{"TargetJointPosition", target}}, inAMinute());
+    ASSERT_TRUE(moved) << moved.error().message;
+    EXPECT_NEAR(jointPosition(*client, skill).front(), target.front(), 1e-3);
+}
+
+TEST(DiscoveryOfServers, KnowsAServerFromItsStartToItsEnd) {
+    const DiscoveryProcess lds;
+    {
+        const auto arm = serveDiscovered("iiwa-a", lds.url());
+        EXPECT_TRUE(lds.awaitKnown("iiwa-a"));
+        const auto servers = opcua::findServers(lds.url()).value();
+        for (const auto& server : servers) {
+            if (server.application_name.text == "iiwa-a") {
+                EXPECT_THAT(server.discovery_urls, ElementsAre(arm.url()));
+                EXPECT_THAT(server.application_uri, HasSubstr(":metier:iiwa-a:"));
+            }
+        }
+    }
+    EXPECT_THAT(lds.names(), IsEmpty()) << "it has taken itself out before it ended";
+}
+
+TEST(DiscoveryOfServers, ForgetsAServerThatWasKilled) {
+    const DiscoveryProcess lds(2);
+    auto dead = serveDiscovered("iiwa-a", lds.url());
+    const auto alive = serveDiscovered("iiwa-b", lds.url());
+    ASSERT_TRUE(lds.awaitKnown("iiwa-a"));
+    ASSERT_TRUE(lds.awaitKnown("iiwa-b"));
+    dead.kill();
+    EXPECT_TRUE(lds.awaitForgotten("iiwa-a"));
+    EXPECT_TRUE(lds.awaitKnown("iiwa-b")) << "it renews";
+}
+
+TEST(DiscoveryOfServers, IsFilledAgainAfterItWasKilledAndStartedAgain) {
+    std::optional<DiscoveryProcess> lds(std::in_place);
+    const auto url = lds->url();
+    const auto port = lds->port();
+    const auto arm = serveDiscovered("iiwa-a", url);
+    ASSERT_TRUE(lds->awaitKnown("iiwa-a"));
+    lds->kill();
+    moveOn(arm.url());
+    lds.emplace(3'600, port);
+    EXPECT_TRUE(lds->awaitKnown("iiwa-a"));
+}
+
+TEST(DiscoveryOfServers, DoesNotHoldUpStartMotionAndEndOfAServerWhenItHangs) {
+    DiscoveryProcess lds;
+    lds.signal(SIGSTOP);
+    {
+        const auto arm = serveDiscovered("iiwa-a", lds.url());  // ready without an answer from it
+        moveOn(arm.url());
+    }
+    const auto next = serveDiscovered("iiwa-b", lds.url());
+    moveOn(next.url());
+    lds.signal(SIGCONT);
+    EXPECT_TRUE(lds.awaitKnown("iiwa-b")) << "registration comes by itself";
+}
+
+TEST(DiscoveryOfServers, DoesNotHoldUpAServerWhenItIsNotThere) {
+    const auto arm = serveDiscovered("iiwa-a", "opc.tcp://127.0.0.1:1");
+    moveOn(arm.url());
+}
+
+class Find : public ::testing::Test {
+protected:
+    Finished find(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), "find");
+        arguments.insert(arguments.end(), {"--discovery", lds_.url()});
+        return runMetier(arguments);
+    }
+
+    DiscoveryProcess lds_;
+    ServerProcess strong_ = serveDiscovered("iiwa-a", lds_.url());
+    ServerProcess unknown_ = serveDiscovered("iiwa-b", lds_.url());
+    bool known_ = lds_.awaitKnown("iiwa-a") && lds_.awaitKnown("iiwa-b");
+};
+
+TEST_F(Find, SaysWhatFitsAndWhy) {
+    ASSERT_TRUE(known_);
+    const auto found = find({"JointPtpMoveSkillType", "--reach", "0.5", "--payload", "5"});
+    EXPECT_EQ(found.status, 0);
+    EXPECT_THAT(found.output, HasSubstr(strong_.url()));
+    EXPECT_THAT(found.output, HasSubstr("IiwaController/JointPtpMoveSkill fits: type "
+                                        "JointPtpMoveSkillType < PtpMoveSkillType < "
+                                        "MoveSkillType < SkillType, reach "));
+    EXPECT_THAT(found.output, HasSubstr(" m >= 0.5 m, payload 7 kg >= 5 kg"));
+    EXPECT_THAT(found.output, HasSubstr(unknown_.url()));
+    EXPECT_THAT(found.output, HasSubstr("does not fit: "));
+    EXPECT_THAT(found.output, HasSubstr("payload unknown"));
+}
+
+TEST_F(Find, EndsWithStatusOneIfNothingFits) {
+    ASSERT_TRUE(known_);
+    const auto too_far = find({"MoveSkillType", "--reach", "5"});
+    EXPECT_EQ(too_far.status, 1);
+    EXPECT_THAT(too_far.output, HasSubstr(" m < 5 m"));
+    const auto none = find({"GraspGripperSkillType"});
+    EXPECT_EQ(none.status, 1);
+    EXPECT_THAT(none.output, HasSubstr("nothing fits"));
+}
+
+TEST_F(Find, ListsEverySkillOfADerivedTypeInJson) {
+    ASSERT_TRUE(known_);
+    const auto found = find({"MoveSkill", "--json"});
+    EXPECT_EQ(found.status, 0);
+    const auto json = nlohmann::json::parse(found.output);
+    EXPECT_EQ(json.at("candidates").size(), 8U) << "four moves of either arm";
+    EXPECT_TRUE(json.at("silent").empty());
+    for (const auto& candidate : json.at("candidates")) {
+        EXPECT_TRUE(candidate.at("fits").get<bool>());
+        EXPECT_EQ(candidate.at("told_by"), lds_.url());
+        EXPECT_GT(candidate.at("reach").get<double>(), 0.5);
+    }
+}
+
+TEST_F(Find, ListsWhoeverDoesNotAnswerAsSuch) {
+    ASSERT_TRUE(known_);
+    strong_.signal(SIGSTOP);
+    const auto found = find({"JointPtpMoveSkillType"});
+    strong_.signal(SIGCONT);
+    EXPECT_EQ(found.status, 0);
+    EXPECT_THAT(found.output, HasSubstr(strong_.url()));
+    EXPECT_THAT(found.output, HasSubstr("does not answer: "));
+    EXPECT_THAT(found.output, HasSubstr("fits"));
+}
+
+TEST(FindWithoutDiscovery, AsksTheServersThatAreNamed) {
+    const auto arm = serveDiscovered("iiwa-a", "opc.tcp://127.0.0.1:1");
+    const auto found = runMetier({"find", "JointPtpMoveSkillType", "--at", arm.url()});
+    EXPECT_EQ(found.status, 0);
+    EXPECT_THAT(found.output, HasSubstr(arm.url()));
+    const auto nobody =
+        runMetier({"find", "JointPtpMoveSkillType", "--at", "opc.tcp://127.0.0.1:1"});
+    EXPECT_EQ(nobody.status, 1);
+    EXPECT_THAT(nobody.output, HasSubstr("does not answer"));
+}
+
+TEST(FindWithoutDiscovery, SaysThatADiscoveryServerIsDown) {
+    const auto found =
+        runMetier({"find", "JointPtpMoveSkillType", "--discovery", "opc.tcp://127.0.0.1:1"});
+    EXPECT_EQ(found.status, 1);
+    EXPECT_THAT(found.output, HasSubstr("discovery server opc.tcp://127.0.0.1:1: "));
+}
+
+}  // namespace
+}  // namespace metier::system_tests
