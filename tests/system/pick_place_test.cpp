@@ -2,6 +2,7 @@
 // that offers the same skill by itself. Parts that are missing, slip or are too wide.
 #include <gmock/gmock.h>
 
+#include <future>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -120,6 +121,24 @@ TEST_F(PickingCell, IsOfferedByARobotItselfToTheSameClientAlsoUnderALease) {
     const auto placed = own.runWith({"", parameters}, inAMinute());
     ASSERT_TRUE(placed) << placed.error().message;
     EXPECT_NEAR(coordinate("edo-cube", 1), 0.08, 2e-3);
+}
+
+TEST_F(PickingCell, IsLeftAloneByTheCommandOnceSomebodyElseHaltsIt) {
+    // The command once reset the skill and moved the arm again, 70 ms after the Halt.
+    auto command = std::async(std::launch::async, [this] {
+        return runMetier({"pick-place", cell_.url("component"), "--parts", "3", "--pick",
+                          "0.45,0,0.015,3.14159,0,0", "--place", "0.45,-0.1,0.015,3.14159,0,0"});
+    });
+    const auto deadline = inAMinute();
+    while (*skill_.state() != State::running) {
+        ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the command begins nothing";
+    }
+    ASSERT_TRUE(skill_.halt());
+    const auto ended = command.get();
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_THAT(ended.output, HasSubstr("part 1: PickPlaceSkill was halted (ByClient)"));
+    EXPECT_THAT(ended.output, ::testing::Not(HasSubstr("part 2:")));
+    EXPECT_EQ(*skill_.state(), State::halted);
 }
 
 TEST(PickPlaceCommand, SaysWhatIsWrong) {

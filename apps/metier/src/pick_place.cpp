@@ -93,7 +93,7 @@ public:
 
     Tally run() {
         const auto begun = std::chrono::steady_clock::now();
-        for (int part = 0; part < settings_.parts && ready(part); ++part) {
+        for (int part = 0; part < settings_.parts && !overruled_ && ready(part); ++part) {
             tell_(static_cast<double>(part) / settings_.parts,
                   fmt::format("part {} of {}", part + 1, settings_.parts));
             move(part);
@@ -133,6 +133,7 @@ private:
             ++tally_.placed;
         } else {
             note(part, result.error().message);
+            overruled_ = result.error().code == Errc::cancelled;
         }
     }
 
@@ -140,6 +141,7 @@ private:
     const PickPlaceSettings& settings_;
     const std::function<void(double, std::string)> tell_;
     Tally tally_;
+    bool overruled_ = false;  // somebody else has halted it, so it is not begun again
 };
 
 /// All components at the same time, one thread each; this one shows how it goes.
@@ -276,6 +278,7 @@ void addPickPlace(CLI::App& app, Exit& exit) {
         "pick-place", "Have every PickPlaceSkill of some servers move a row of parts");
     command->footer(
         "A part that fails is told with the reason; the skill is Reset and takes the next.\n"
+        "A skill that somebody else halts is left alone, with the parts that remain.\n"
         "Exit status 1 if a part was not placed.");
     addServerChoice(*command, options->servers);
     addPickPlaceOptions(*command, options->settings);
