@@ -61,6 +61,7 @@ Result<std::map<std::string, OfferedSkill>> chooseAll(const std::vector<composit
 Result<std::vector<Assignment>> assign(const std::vector<composition::Use>& uses,
                                        const std::vector<DiscoveredServer>& servers) {
     std::vector<Assignment> assignments;
+    assignments.reserve(servers.size());
     for (const auto& server : servers) {
         assignments.push_back({&server, {}});
     }

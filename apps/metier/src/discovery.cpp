@@ -14,6 +14,8 @@
 namespace metier::app {
 namespace {
 
+constexpr std::uint32_t kLongest = 86'400;  // to remember a server [s]
+
 struct DiscoveryOptions {
     std::uint16_t port = 4840;  // as OPC 10000-12 has it
     std::string address = "127.0.0.1";
@@ -52,7 +54,6 @@ void addDiscovery(CLI::App& app, Exit& exit) {
     command->add_option("--port", options->port, "TCP port; 0: a free one")->capture_default_str();
     command->add_option("--address", options->address, "Loopback address to listen on")
         ->capture_default_str();
-    constexpr std::uint32_t kLongest = 86'400;
     command
         ->add_option("--forget-after", options->forget_after,
                      "Forget servers that did not renew for so long [s]")

@@ -96,7 +96,7 @@ private:
         fitting_ += verdict.fits ? 1 : 0;
         say(server, fmt::format("{} {}: {}", nameOf(skill), verdict.fits ? "fits" : "does not fit",
                                 fmt::join(reasons, ", ")));
-        const auto orNull = [](const std::optional<double>& number) {
+        const auto or_null = [](const std::optional<double>& number) {
             return number ? nlohmann::json(*number) : nlohmann::json();
         };
         candidates_.push_back({{"url", server.url},
@@ -105,8 +105,8 @@ private:
                                {"controller", skill.address.controllerName()},
                                {"skill", skill.address.name},
                                {"types", skill.types},
-                               {"reach", orNull(skill.arm.reach)},
-                               {"payload", orNull(skill.arm.payload)},
+                               {"reach", or_null(skill.arm.reach)},
+                               {"payload", or_null(skill.arm.payload)},
                                {"fits", verdict.fits},
                                {"reasons", reasons}});
     }

@@ -118,17 +118,7 @@ public:
     }
 
     std::vector<SurveyedServer> take(std::chrono::steady_clock::time_point deadline) {
-        std::vector<std::jthread> cutters;
-        {
-            std::unique_lock lock(mutex_);
-            ended_.wait_until(lock, deadline, [this] { return open_ == 0; });
-            for (std::size_t i = 0; i < servers_.size(); ++i) {
-                if (!answers_[i]) {
-                    cutters.emplace_back([this, i] { interviews_[i].cut(); });
-                }
-            }
-        }
-        cutters.clear();
+        await(deadline);
         threads_.clear();  // all end now
         std::vector<SurveyedServer> result;
         for (std::size_t i = 0; i < servers_.size(); ++i) {
@@ -138,6 +128,20 @@ public:
     }
 
 private:
+    /// At the deadline those that are left are cut short, all at the same time.
+    void await(std::chrono::steady_clock::time_point deadline) {
+        std::vector<std::jthread> cutters;
+        std::unique_lock lock(mutex_);
+        ended_.wait_until(lock, deadline, [this] { return open_ == 0; });
+        for (std::size_t i = 0; i < servers_.size(); ++i) {
+            if (!answers_[i]) {
+                cutters.emplace_back([this, i] { interviews_[i].cut(); });
+            }
+        }
+        lock.unlock();
+        cutters.clear();
+    }
+
     std::vector<discovery::FoundServer> servers_;
     std::vector<Interview> interviews_;
     std::vector<std::optional<Result<std::vector<SurveyedSkill>>>> answers_;

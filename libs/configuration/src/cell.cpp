@@ -25,6 +25,7 @@ constexpr double kLongestStartDelay = 30.0;
 constexpr double kShortestAbsence = 0.5;
 constexpr double kLongestAbsence = 3'600.0;
 constexpr const char* kDiscover = "discover";
+constexpr double kHeaviest = 10'000.0;  // payload [kg]
 
 std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
                              const std::filesystem::path& folder) {
@@ -90,7 +91,6 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     for (const auto& tool : table.tables("tool")) {
         arm.tools.push_back(readTool(tool));
     }
-    constexpr double kHeaviest = 10'000.0;
     arm.payload = table.numberOr("payload", arm.payload);
     if (!(arm.payload >= 0 && arm.payload <= kHeaviest)) {
         table.reject("payload", fmt::format("{} is not within 0 to {} kg", arm.payload, kHeaviest));
