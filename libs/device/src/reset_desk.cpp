@@ -30,6 +30,11 @@ std::optional<Result<void>> ResetDesk::ask(std::chrono::nanoseconds longest) {
     return answered ? std::optional(outcome_) : std::nullopt;
 }
 
+bool ResetDesk::underWay() const {
+    const std::lock_guard lock(mutex_);
+    return under_way_;
+}
+
 void ResetDesk::answer(Result<void> outcome) {
     {
         const std::lock_guard lock(mutex_);

@@ -28,6 +28,7 @@ TEST(ResetDesk, TellsAFailureThatNobodyHeardToWhoAsksNextAndOnce) {
     EXPECT_FALSE(desk.ask(0s));
     ASSERT_TRUE(desk.taken());
     EXPECT_FALSE(desk.ask(0s)) << "still under way";
+    EXPECT_TRUE(desk.underWay());
     EXPECT_FALSE(desk.taken());
     desk.answer(fail(Errc::device_fault, "too hot"));
     EXPECT_EQ(desk.ask(0s).value().error().message, "too hot");
@@ -40,6 +41,7 @@ TEST(ResetDesk, DoesNotTakeASuccessThatNobodyHeardForTheEndOfALaterFault) {
     EXPECT_FALSE(desk.ask(0s));
     ASSERT_TRUE(desk.taken());
     desk.answer({});
+    EXPECT_FALSE(desk.underWay());
     EXPECT_FALSE(desk.ask(0s)) << "a new fault, a new reset";
     EXPECT_TRUE(desk.taken());
 }

@@ -22,13 +22,12 @@ constexpr auto kSlice = 5ms;  // how soon a new job or the end is seen
 
 }  // namespace
 
-Panel::Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script,
-             std::function<Observation()> newest)
+Panel::Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script)
     : parts_(std::move(parts)),
       peer_(std::move(peer)),
       settings_(settings),
       script_(script),
-      recovery_(peer_, settings, std::move(newest), parts_.reporter),
+      recovery_(peer_, settings, parts_.newest, parts_.reporter),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void Panel::run(const std::stop_token& stop) {

@@ -80,9 +80,9 @@ UrArm::UrArm(UrArmOptions options)
       streamer_(core_, streamOptions(options_), firstToken()),
       notifier_([this] { notify(); }),
       panel_(
-          {jobs_, resets_, reporter_, [this](std::int32_t token) { streamer_.refuseStart(token); }},
-          {options_.name, options_.host}, options_.settings, scriptOptions(options_.settings),
-          [this] { return observed_.read(); }),
+          {jobs_, resets_, reporter_, [this](std::int32_t token) { streamer_.refuseStart(token); },
+           [this] { return observed_.read(); }},
+          {options_.name, options_.host}, options_.settings, scriptOptions(options_.settings)),
       primary_(options_.host, options_.settings.primary_port,
                [this](const primary::Package& package) { hear(package); }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -110,7 +110,8 @@ Result<void> UrArm::attach(std::shared_ptr<device::SetPointSource> source) {
 }
 
 Result<void> UrArm::resetFault() {
-    if (core_.safetyState() == SafetyState::normal) {
+    // The safety state is normal before the paused program is ended.
+    if (core_.safetyState() == SafetyState::normal && !resets_.underWay()) {
         return {};
     }
     if (core_.safetyState() == SafetyState::disconnected) {

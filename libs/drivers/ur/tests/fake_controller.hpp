@@ -107,7 +107,6 @@ private:
     Knobs knobs_;
     std::array<std::unique_ptr<link::TcpListener>, kPorts> listeners_;
     std::array<std::uint16_t, kPorts> ports_{};
-    std::vector<std::jthread> threads_;
     std::uint64_t generation_ = 0;  // a new one breaks every connection
     std::uint64_t rtde_generation_ = 0;
 
@@ -129,6 +128,8 @@ private:
     std::vector<std::byte> last_input_;
     std::vector<std::vector<std::byte>> to_say_;
     std::vector<std::string> commands_;
+
+    std::vector<std::jthread> threads_;  // end before what they use
 };
 
 }  // namespace metier::ur_driver

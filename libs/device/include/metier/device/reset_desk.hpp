@@ -22,6 +22,8 @@ public:
     /// nobody waited for it any more, that failure is the answer.
     /// \return nothing if it is still under way after `longest`
     std::optional<Result<void>> ask(std::chrono::nanoseconds longest = kResetWait);
+    /// Whether a reset that somebody asked for has not ended.
+    bool underWay() const;
 
     // ---- for the thread that resets ----
     /// Whether someone asked since the last call. Neither locks nor allocates.
@@ -31,7 +33,7 @@ public:
 
 private:
     std::atomic<bool> wanted_{false};
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable answered_;
     bool under_way_ = false;
     int waiting_ = 0;

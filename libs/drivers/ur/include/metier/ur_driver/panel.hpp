@@ -28,15 +28,16 @@ class Panel {
 public:
     /// \param refused called with the token of a script that could not be uploaded, after the
     ///                reporter was told why
+    /// \param newest  what the controller told last
     struct Parts {
         PanelJobs& jobs;
         device::ResetDesk& resets;
         SafetyReporter& reporter;
         std::function<void(std::int32_t token)> refused;
+        std::function<Observation()> newest;
     };
 
-    Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script,
-          std::function<Observation()> newest);
+    Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script);
 
 private:
     void run(const std::stop_token& stop);
