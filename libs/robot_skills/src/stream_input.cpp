@@ -35,7 +35,9 @@ motion::Seconds StreamTimes::next(std::optional<UtcTime> meant_for) noexcept {
         return last_;
     }
     if (!sender_start_) {
-        sender_start_ = *meant_for - std::chrono::duration_cast<UtcTime::duration>(arrival);
+        // What came before without a time is not followed at once: no axis can.
+        const auto begin = first ? arrival : std::max(arrival, last_ + cycle_);
+        sender_start_ = *meant_for - std::chrono::duration_cast<UtcTime::duration>(begin);
     }
     last_ = *meant_for - *sender_start_;
     return last_;

@@ -293,6 +293,17 @@ TEST(StreamTimes, GiveTheSendersTimeSinceTheFirst) {
     EXPECT_EQ(times.next({}).count(), 0.0);
 }
 
+// A value that was written before Start is the first set-point, the client's own begin right after.
+TEST(StreamTimes, BeginTheSendersTimeACycleAfterASetPointWithoutOne) {
+    ManualClock clock;
+    StreamTimes times(clock, kCycle);
+    EXPECT_EQ(times.next({}).count(), 0.0);
+    clock.advance(std::chrono::microseconds(10));
+    const UtcTime elsewhere{std::chrono::hours(1000)};
+    EXPECT_DOUBLE_EQ(times.next(elsewhere).count(), 0.008);
+    EXPECT_DOUBLE_EQ(times.next(elsewhere + std::chrono::milliseconds(8)).count(), 0.016);
+}
+
 TEST(StreamQueue, HoldsSoManyAndNoMore) {
     StreamQueue queue;
     EXPECT_EQ(queue.size(), 0U);
