@@ -5,6 +5,8 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -376,21 +378,42 @@ std::uint32_t TomlTable::line() const {
     return impl_->table == nullptr ? 1 : impl_->table->source().begin.line;
 }
 
+namespace {
+
+/// toml++ goes as deep as a key has dots, and a key is within a line.
+Result<void> checkLines(std::string_view text, const std::string& name) {
+    constexpr std::size_t kLongestLine = 20'000;
+    for (std::size_t line = 1; !text.empty(); ++line) {
+        const auto length = std::min(text.find('\n'), text.size());
+        if (length > kLongestLine) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("{}:{}: the line has {} characters, limit {}", name, line,
+                                    length, kLongestLine));
+        }
+        text.remove_prefix(std::min(length + 1, text.size()));
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<TomlFile> TomlFile::load(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
         return fail(Errc::not_found, fmt::format("{}: no such file", path.string()));
     }
-    try {
-        return TomlFile(std::make_unique<Impl>(path.string(), toml::parse_file(path.string())));
-    } catch (const toml::parse_error& problem) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("{}:{}:{}: {}", path.string(), problem.source().begin.line,
-                                problem.source().begin.column, problem.description()));
+    std::ifstream stream(path, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (!stream) {
+        return fail(Errc::not_found, fmt::format("{}: cannot be read", path.string()));
     }
+    return parse(text, path.string());
 }
 
 Result<TomlFile> TomlFile::parse(std::string_view text, std::string name) {
+    if (auto right = checkLines(text, name); !right) {
+        return fail(std::move(right.error()));
+    }
     try {
         return TomlFile(std::make_unique<Impl>(name, toml::parse(text)));
     } catch (const toml::parse_error& problem) {

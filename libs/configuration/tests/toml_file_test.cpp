@@ -129,5 +129,15 @@ TEST(TomlFile, SortsWhatItsReaderNotesAmongItsOwn) {
     EXPECT_THAT(finished.error().message, HasSubstr("a.toml:2: y[0]: is not finite"));
 }
 
+TEST(TomlFile, RefusesALineThatIsTooLongForAnybodyToHaveWritten) {
+    std::string deep = "x = 1\ny";
+    for (int level = 0; level < 400'000; ++level) {
+        deep += ".y";
+    }
+    const auto file = TomlFile::parse(deep + " = 1\n", "a.toml");
+    ASSERT_FALSE(file);
+    EXPECT_EQ(file.error().message, "a.toml:2: the line has 800005 characters, limit 20000");
+}
+
 }  // namespace
 }  // namespace metier::configuration
