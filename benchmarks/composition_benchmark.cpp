@@ -55,8 +55,8 @@ public:
     }
     /// A composed skill whose only used skill is that of `below`.
     void serveAbove(OneSkillServer& below, const std::string& text) {
-        below_ =
-            orThrow(remote_skill::RemoteServer::connect({.url = below.url()}, skills_->executor()));
+        below_ = orThrow(remote_skill::RemoteServer::connect({.url = below.url(), .name = "below"},
+                                                             skills_->executor()));
         auto child = orThrow(below_->use(orThrow(below_->skills()).front(), name_));
         auto composed = orThrow(composition::compose(
             orThrow(composition::parseDefinition(text, name_)), {{"inner", child->description()}}));
@@ -68,10 +68,16 @@ public:
     std::string url() const { return server_->endpointUrl(); }
 
 private:
+    static opcua::ServerOptions serverOptions() {
+        opcua::ServerOptions options;
+        options.port = 0;
+        options.nodesets = {"device", "robotics", "metier"};
+        return options;
+    }
+
     std::string name_;
     SystemClock clock_;
-    std::unique_ptr<opcua::Server> server_ =
-        orThrow(opcua::Server::create({.port = 0, .nodesets = {"device", "robotics", "metier"}}));
+    std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(serverOptions()));
     std::unique_ptr<remote_skill::RemoteServer> below_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;  // ends before what it uses
     opcua_skill::SkillController place_;
