@@ -149,6 +149,8 @@ bool Connection::reconnect() {
         uses = uses_;
     }
     former.reset();  // without the lock: its thread may still tell of a loss
+    // All or none: a child that was told would begin, and be told again in the next attempt.
+    std::vector<std::function<void()>> adoptions;
     for (const auto& use : uses) {
         const auto address = skill_client::findSkill(*client_, use.skill);
         auto skill = address ? open(*address, use.link)
@@ -159,9 +161,12 @@ bool Connection::reconnect() {
                          skill ? now.error().message : skill.error().message);
             return false;
         }
-        use.link->post([skill = std::move(*skill), now = *now](RemoteChild& child) {
-            child.adopt(skill, now);
+        adoptions.emplace_back([link = use.link, skill = std::move(*skill), now = *now] {
+            link->post([skill, now](RemoteChild& child) { child.adopt(skill, now); });
         });
+    }
+    for (const auto& adopt : adoptions) {
+        adopt();
     }
     spdlog::info("{}: connected again", options_.url);
     const std::lock_guard lock(mutex_);
