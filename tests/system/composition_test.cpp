@@ -212,6 +212,37 @@ TEST_F(ComposedArm, ShowsWhatItIsMadeOfAndWhereItIs) {
     EXPECT_EQ(url.value().as<std::string>(), arm_server_.url());
 }
 
+TEST(ArmsOwnComposition, RefusesWishesThatNobodyLooksAt) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "own_composition";
+    std::filesystem::create_directories(folder);
+    const auto model = std::filesystem::path(METIER_SOURCE_DIR) / "models" / "iiwa7.toml";
+    std::ofstream(folder / "cell.toml") << fmt::format(R"(name = "cell"
+[[server]]
+name = "arm"
+kind = "arm"
+driver = {{ type = "simulator" }}
+model = "{}"
+skills = ["JointPtpMoveSkill"]
+compositions = ["own.toml"]
+)",
+                                                       model.string());
+    for (const auto* wish : {"server = \"other\"", "controller = \"Arm\"", "reach = 9.0"}) {
+        std::ofstream(folder / "own.toml") << fmt::format(R"(name = "OwnSkill"
+[uses.arm]
+type = "JointPtpMoveSkillType"
+{}
+[[step]]
+name = "move"
+run = "arm"
+with.TargetJointPosition = [0, 0, 0, 0, 0, 0, 0]
+)",
+                                                          wish);
+        const auto refused = runMetier({"serve", (folder / "cell.toml").string()});
+        EXPECT_NE(refused.status, 0) << wish;
+        EXPECT_THAT(refused.output, HasSubstr("own.toml:2: uses.arm: ")) << wish;
+    }
+}
+
 TEST(CompositionServer, TellsWhatIsWrongWithItsFilesBeforeAnythingStarts) {
     const auto folder = std::filesystem::path(::testing::TempDir()) / "wrong_composition";
     std::filesystem::create_directories(folder);

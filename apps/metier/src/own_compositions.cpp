@@ -18,6 +18,22 @@ namespace {
 
 using composition::Definition;
 
+/// Errors: a wish that only skills of other servers can be asked for.
+Result<void> checkWishes(const composition::Use& use, const std::string& server) {
+    if (!use.server.empty() && use.server != server) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("server \"{}\" is not this one, \"{}\"; skills of others are for a "
+                                "server of kind composition",
+                                use.server, server));
+    }
+    if (!use.controller.empty() || use.reach) {
+        return fail(Errc::invalid_argument,
+                    "controller and reach choose among skills of other servers; a server has one "
+                    "skill of a type");
+    }
+    return {};
+}
+
 /// Errors: none of that type, or several; those that there are.
 Result<skill::Program*> choose(const composition::Use& use,
                                const std::vector<skill::Program*>& programs) {
@@ -42,11 +58,14 @@ Result<skill::Program*> choose(const composition::Use& use,
 }
 
 Result<std::map<std::string, skill::Program*>> chooseAll(
-    const Definition& definition, const std::vector<skill::Program*>& programs) {
+    const Definition& definition, const std::vector<skill::Program*>& programs,
+    const std::string& server) {
     std::map<std::string, skill::Program*> chosen;
     std::string problems;
     for (const auto& use : definition.uses) {
-        if (const auto program = choose(use, programs)) {
+        const auto program =
+            checkWishes(use, server).and_then([&] { return choose(use, programs); });
+        if (program) {
             chosen.emplace(use.alias, *program);
         } else {
             problems += fmt::format("{}{}:{}: uses.{}: {}", problems.empty() ? "" : "\n",
@@ -79,9 +98,9 @@ Result<void> publishUses(SkillHost& host, const opcua::NodeId& skills, const std
 }
 
 Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition definition,
-                      const std::string& origin) {
+                      const std::string& server) {
     const auto name = definition.name;
-    const auto chosen = chooseAll(definition, host.skills().programs());
+    const auto chosen = chooseAll(definition, host.skills().programs(), server);
     if (!chosen) {
         return fail(chosen.error());
     }
@@ -103,10 +122,11 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
     const skill::ProgramOptions options{.control = host.control(),
                                         .names = host.names(),
                                         .rest_deadline = composition::restDeadlineOf(definition)};
+    auto origin = fmt::format("{}.{}~{}", server, name, newLife());
     const auto published = host.skills().publish(
         skills,
         std::make_unique<composition::SequenceSkill>(std::move(*composed), std::move(children),
-                                                     executor, host.clock(), origin),
+                                                     executor, host.clock(), std::move(origin)),
         options);
     return published ? publishUses(host, skills, name, *chosen) : fail(published.error());
 }
@@ -119,10 +139,8 @@ Result<void> offerOwnCompositions(SkillHost& host, const opcua::NodeId& skills,
     if (!definitions) {
         return fail(std::move(definitions.error()));
     }
-    const auto life = newLife();
     for (auto& definition : *definitions) {
-        const auto origin = fmt::format("{}.{}~{}", config.name, definition.name, life);
-        if (auto offered = offerOne(host, skills, std::move(definition), origin); !offered) {
+        if (auto offered = offerOne(host, skills, std::move(definition), config.name); !offered) {
             return offered;
         }
     }
