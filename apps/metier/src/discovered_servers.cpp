@@ -44,7 +44,7 @@ std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& di
         DiscoveredServer server{surveyed.server, {}};
         const auto& name = surveyed.server.name.empty() ? server.found.url : server.found.name;
         for (auto& skill : *surveyed.skills) {
-            server.offered.push_back({name, 0, std::move(skill.address), skill.arm.reach});
+            server.offered.push_back({name, 0, std::move(skill.address), skill.arm});
         }
         servers.push_back(std::move(server));
     }

@@ -20,21 +20,20 @@ constexpr auto kLookEvery = 500ms;
 constexpr auto kPause = 2s;  // after an attempt that changed nothing
 constexpr const char* kStream = "PositionStreamSkillType";
 
-bool hasStreamFor(const SurveyedServer& server, std::optional<double> reach) {
+bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {
     return server.skills &&
-           std::any_of(server.skills->begin(), server.skills->end(), [&](const auto& skill) {
-               return !reach || skill.arm.reach.value_or(0.0) >= *reach;
-           });
+           std::any_of(server.skills->begin(), server.skills->end(),
+                       [&](const auto& skill) { return isAtLeast(least, skill.arm); });
 }
 
-/// Addresses of servers with a position stream and reach enough.
+/// Addresses of servers with a position stream, and reach and payload enough.
 std::vector<std::string> findRobots(const configuration::ServerConfig& config,
                                     const std::vector<std::string>& but) {
     const auto surveyed = survey(announcedServers(config.discovery, but),
                                  [](const SurveyedSkill& skill) { return isA(skill, kStream); });
     std::vector<std::string> urls;
     for (const auto& server : surveyed) {
-        if (hasStreamFor(server, config.move.reach)) {
+        if (hasStreamFor(server, {config.move.reach, config.move.payload})) {
             urls.push_back(server.server.url);
         }
     }
@@ -42,10 +41,8 @@ std::vector<std::string> findRobots(const configuration::ServerConfig& config,
 }
 
 Error noneFound(const configuration::ServerConfig& config) {
-    const auto& reach = config.move.reach;
-    return {Errc::not_found,
-            fmt::format("no server with a PositionStreamSkill{} is found",
-                        reach ? fmt::format(" and a reach of {} m", *reach) : std::string())};
+    return {Errc::not_found, fmt::format("no server with a PositionStreamSkill{} is found",
+                                         textOf({config.move.reach, config.move.payload}))};
 }
 
 Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Error& if_none) {

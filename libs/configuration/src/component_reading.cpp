@@ -38,12 +38,8 @@ MoveComponent readMove(const TomlTable& table) {
     }
     move.robot.clear();
     move.discover = true;
-    if (table.has("reach")) {
-        move.reach = table.number("reach");
-        if (*move.reach < 0) {
-            table.reject("reach", fmt::format("{} m is under 0 m", *move.reach));
-        }
-    }
+    move.reach = table.amount("reach", "m");
+    move.payload = table.amount("payload", "kg");
     move.rebind_after = readRebindAfter(table, move.rebind_after);
     return move;
 }

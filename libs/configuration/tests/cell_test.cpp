@@ -398,6 +398,7 @@ name = "any"
 kind = "move"
 robot = "discover"
 reach = 0.6
+payload = 1.0
 rebind_after = 3
 )");
     ASSERT_TRUE(cell) << cell.error().message;
@@ -405,6 +406,7 @@ rebind_after = 3
     EXPECT_TRUE(move.discover);
     EXPECT_EQ(move.robot, "");
     EXPECT_EQ(move.reach, 0.6);
+    EXPECT_EQ(move.payload, 1.0);
     EXPECT_EQ(move.rebind_after, 3.0);
 }
 
