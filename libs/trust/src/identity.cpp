@@ -64,7 +64,7 @@ bool addExtension(X509* certificate, int kind, const std::string& value) {
 /// What OPC 10000-6, 6.2.2 wants of the certificate of an application.
 bool addExtensions(X509* certificate, const std::string& names) {
     return addExtension(certificate, NID_subject_key_identifier, "hash") &&
-           addExtension(certificate, NID_authority_key_identifier, "keyid") &&
+           addExtension(certificate, NID_authority_key_identifier, "keyid:always") &&
            addExtension(certificate, NID_basic_constraints, "critical,CA:FALSE") &&
            addExtension(certificate, NID_key_usage,
                         "critical,digitalSignature,nonRepudiation,keyEncipherment,"
