@@ -5,7 +5,6 @@
 #include <openssl/pem.h>
 #include <openssl/rand.h>
 #include <openssl/rsa.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,6 @@ constexpr int kSerialBytes = 16;
 constexpr auto kClockDifference = std::chrono::hours(1);
 constexpr const char* kIdentityFile = "identity.pem";
 constexpr const char* kCertificateFile = "certificate.der";
-constexpr mode_t kOthers = 077;
 
 tl::unexpected<Error> libraryFailed(const char* what) {
     std::array<char, 256> text{};
@@ -117,19 +115,6 @@ std::string keyPem(const std::string& der) {
     return textOf(out.get());
 }
 
-Result<void> checkReaders(const std::filesystem::path& file) {
-    struct stat found {};
-    if (::stat(file.c_str(), &found) != 0) {
-        return fail(Errc::not_found, fmt::format("no such file: {}", file.string()));
-    }
-    if ((found.st_mode & kOthers) != 0) {
-        return fail(Errc::access_denied,
-                    fmt::format("{} may be read by others (mode {:03o}, must be 600)",
-                                file.string(), found.st_mode & 0777U));
-    }
-    return {};
-}
-
 }  // namespace
 
 Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
@@ -167,12 +152,12 @@ Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
 
 Result<Identity> loadIdentity(const std::filesystem::path& folder) {
     const auto file = folder / kIdentityFile;
-    if (auto right = checkReaders(file); !right) {
-        return fail(right.error());
+    const auto text = readPrivate(file);
+    if (!text) {
+        return fail(text.error());
     }
-    const auto text = readFile(file.string());
-    const KeyPtr key(PEM_read_bio_PrivateKey(reading(text).get(), nullptr, nullptr, nullptr));
-    const auto parsed = parsePemOrDer(text);
+    const KeyPtr key(PEM_read_bio_PrivateKey(reading(*text).get(), nullptr, nullptr, nullptr));
+    const auto parsed = parsePemOrDer(*text);
     if (!key || !parsed || X509_check_private_key(parsed.get(), key.get()) != 1) {
         ERR_clear_error();
         return fail(Errc::invalid_argument,

@@ -8,11 +8,14 @@
 #include <cerrno>
 #include <system_error>
 
+#include "openssl.hpp"
+
 namespace metier::trust {
 namespace {
 
 constexpr mode_t kOwnerOnly = 0600;
 constexpr mode_t kEverybody = 0644;
+constexpr mode_t kOthers = 077;
 
 tl::unexpected<Error> failed(const std::filesystem::path& file, int error) {
     return fail(Errc::resource_unavailable,
@@ -59,6 +62,19 @@ Result<void> makeFolder(const std::filesystem::path& folder) {
     return error ? failed(folder, error.value()) : Result<void>();
 }
 
+Result<void> checkReaders(const std::filesystem::path& file) {
+    struct stat found {};
+    if (::stat(file.c_str(), &found) != 0) {
+        return fail(Errc::not_found, fmt::format("no such file: {}", file.string()));
+    }
+    if ((found.st_mode & kOthers) != 0) {
+        return fail(Errc::access_denied,
+                    fmt::format("{} may be read by others (mode {:03o}, must be 600)",
+                                file.string(), found.st_mode & 0777U));
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
@@ -80,6 +96,13 @@ Result<void> writeWhole(const std::filesystem::path& file, std::string_view cont
         return failed(file, error);
     }
     return {};
+}
+
+Result<std::string> readPrivate(const std::filesystem::path& file) {
+    if (auto right = checkReaders(file); !right) {
+        return fail(right.error());
+    }
+    return readFile(file.string());
 }
 
 }  // namespace metier::trust

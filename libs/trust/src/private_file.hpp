@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "metier/base/error.hpp"
@@ -14,5 +15,9 @@ enum class Readers { owner, everybody };
 /// Errors: resource_unavailable.
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
                         Readers readers);
+
+/// The content of a file, up to 64 kB, that its owner alone may read.
+/// Errors: not_found; access_denied (others may read it).
+Result<std::string> readPrivate(const std::filesystem::path& file);
 
 }  // namespace metier::trust

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/trust/users.hpp"
+
+namespace metier::trust {
+
+/// Lets users in by name and password, and makes whoever guesses wait.
+///
+/// After five wrong passwords for one user from one application each further attempt is refused for
+/// a while, which doubles from one second to a minute, without a look at the password. Counted for
+/// each application by itself: somebody who guesses cannot lock others out.
+/// The file of users is read again when it has changed.
+/// Threading: one thread.
+class LoginGuard {
+public:
+    /// \param clock must outlive this
+    /// Errors: those of UserTable::load().
+    static Result<LoginGuard> open(std::filesystem::path file, const Clock& clock);
+
+    /// \param thumbprint of the certificate of the application
+    /// Errors: access_denied: a wrong name or password, not told apart; too many attempts, with how
+    ///         long to wait.
+    Result<Role> check(const std::string& user, const std::string& password,
+                       const std::string& thumbprint);
+
+private:
+    struct Failures {
+        int count = 0;
+        SteadyTime barred_until{};
+    };
+    using Who = std::pair<std::string, std::string>;
+
+    LoginGuard(std::filesystem::path file, const Clock& clock, UserTable users);
+    void reload();
+    void noteFailure(const Who& who);
+
+    std::filesystem::path file_;
+    const Clock* clock_;
+    UserTable users_;
+    std::filesystem::file_time_type read_;
+    std::map<Who, Failures> failures_;
+};
+
+}  // namespace metier::trust

@@ -1,0 +1,98 @@
+#include "metier/trust/login_guard.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace metier::trust {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kFreeAttempts = 5;
+constexpr auto kFirstPause = 1s;
+constexpr auto kLongestPause = 60s;
+constexpr std::size_t kMostRemembered = 200;
+constexpr std::size_t kLongestName = 64;
+
+std::filesystem::file_time_type changeOf(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(file, error);
+    return error ? std::filesystem::file_time_type::min() : time;
+}
+
+/// For names that nobody has: the answer takes as long.
+const std::string& hashOfNobody() {
+    static const auto hash = hashPassword("nobody's").value_or("");
+    return hash;
+}
+
+}  // namespace
+
+Result<LoginGuard> LoginGuard::open(std::filesystem::path file, const Clock& clock) {
+    auto users = UserTable::load(file);
+    if (!users) {
+        return fail(users.error());
+    }
+    return LoginGuard(std::move(file), clock, std::move(*users));
+}
+
+LoginGuard::LoginGuard(std::filesystem::path file, const Clock& clock, UserTable users)
+    : file_(std::move(file)), clock_(&clock), users_(std::move(users)), read_(changeOf(file_)) {}
+
+void LoginGuard::reload() {
+    const auto changed = changeOf(file_);
+    if (changed == read_) {
+        return;
+    }
+    read_ = changed;
+    auto users = UserTable::load(file_);
+    if (users) {
+        users_ = std::move(*users);
+    } else {
+        spdlog::error("the users of before stay: {}", users.error().message);
+    }
+}
+
+Result<Role> LoginGuard::check(const std::string& user, const std::string& password,
+                               const std::string& thumbprint) {
+    reload();
+    const Who who{user.substr(0, kLongestName), thumbprint};
+    const auto failures = failures_.find(who);
+    const auto now = clock_->now();
+    if (failures != failures_.end() && now < failures->second.barred_until) {
+        const std::chrono::duration<double> wait = failures->second.barred_until - now;
+        return fail(Errc::access_denied, fmt::format("too many wrong passwords: wait {:.0f} s",
+                                                     std::ceil(wait.count())));
+    }
+    const auto* known = users_.find(user);
+    const bool right = isPassword(password, known ? known->password_hash : hashOfNobody());
+    if (known == nullptr || !right) {
+        noteFailure(who);
+        return fail(Errc::access_denied, "unknown user or wrong password");
+    }
+    failures_.erase(who);
+    return known->role;
+}
+
+void LoginGuard::noteFailure(const Who& who) {
+    if (failures_.size() >= kMostRemembered && failures_.find(who) == failures_.end()) {
+        failures_.erase(
+            std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) {
+                return a.second.barred_until < b.second.barred_until;
+            }));
+    }
+    auto& failures = failures_[who];
+    ++failures.count;
+    if (failures.count >= kFreeAttempts) {
+        const int doubled = std::min(failures.count - kFreeAttempts, 6);
+        const auto pause =
+            std::min<std::chrono::seconds>(kFirstPause * (1 << doubled), kLongestPause);
+        failures.barred_until = clock_->now() + pause;
+    }
+}
+
+}  // namespace metier::trust
