@@ -1,0 +1,95 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+
+namespace metier::audit {
+
+/// Something that somebody did, or was not let do.
+struct Entry {
+    UtcTime time;
+    std::string event;  ///< "Start", "Halt", "LoginRefused"
+    /// Who, where, what came of it; in this order in the file. Text that is not UTF-8 is made so.
+    std::vector<std::pair<std::string, std::string>> fields;
+};
+
+/// What the file of a log can be in.
+enum class Health {
+    writing,
+    failing,  ///< nothing can be written: entries are kept, and some may be lost
+};
+
+/// A file that only grows: a JSON object in each line, chained to the one before by SHA-256.
+///
+/// Whoever changes, removes or inserts a line breaks the chain, which verify() tells. Only lines
+/// cut off at the end do not show, unless the last chain value is known from elsewhere. What is
+/// appended is in the file a second later at most; a slow or full disk delays nobody but the log's
+/// own thread. Beyond 10,000 waiting entries new ones are lost, and their number is written once
+/// that is possible. Threading: any thread may append.
+class AuditLog {
+public:
+    struct Options {
+        std::filesystem::path file;
+        /// On the log's thread, at each change; with the reason. May be empty.
+        std::function<void(Health, const std::string& why)> on_health;
+    };
+
+    /// Goes on where the file ends. A last line that is not whole, as after a loss of power, is
+    /// dropped, which an entry tells.
+    /// Errors: resource_unavailable (the file); invalid_argument (it is no audit log).
+    static Result<std::unique_ptr<AuditLog>> open(Options options);
+    /// Writes what is waiting, unless the disk refuses it.
+    ~AuditLog();
+    AuditLog(const AuditLog&) = delete;
+    AuditLog& operator=(const AuditLog&) = delete;
+
+    /// Returns at once.
+    void append(Entry entry);
+    /// Waits until all that was appended before is in the file; false at the deadline.
+    bool flush(SteadyTime deadline);
+
+private:
+    class File;
+    AuditLog(Options options, std::unique_ptr<File> file);
+    void run(const std::stop_token& stop);
+    bool write(const std::vector<Entry>& entries, std::uint64_t lost);
+    void tell(Health health, const std::string& why);
+
+    const Options options_;
+    std::unique_ptr<File> file_;  // of the thread
+    Health health_ = Health::writing;
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::deque<Entry> waiting_;
+    std::uint64_t lost_ = 0;
+    std::uint64_t appended_ = 0;
+    std::uint64_t written_ = 0;
+    std::jthread thread_;
+};
+
+/// What a log that was not tampered with holds.
+struct Verified {
+    std::uint64_t entries = 0;
+    std::string first_time;  ///< empty if there is no entry
+    std::string last_time;
+    std::string last_chain;  ///< 64 hexadecimal digits
+};
+
+/// Reads the whole file.
+/// Errors: not_found; invalid_argument, naming the first line that is not as it was written.
+Result<Verified> verify(const std::filesystem::path& file);
+
+}  // namespace metier::audit

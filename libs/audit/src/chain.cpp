@@ -1,0 +1,78 @@
+#include "chain.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace metier::audit {
+namespace {
+
+constexpr std::string_view kChainKey = ",\"chain\":\"";
+constexpr std::string_view kEnd = "\"}";
+
+std::string sha256(std::string_view text) {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int size = 0;
+    EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr);
+    std::string hex;
+    for (unsigned int i = 0; i < size; ++i) {
+        hex += fmt::format("{:02x}", digest.at(i));
+    }
+    return hex;
+}
+
+std::string timeText(UtcTime time) {
+    using std::chrono::system_clock;
+    const auto milliseconds =
+        std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch()).count();
+    const auto rest = ((milliseconds % 1000) + 1000) % 1000;
+    return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(time)), rest);
+}
+
+/// Of the line without its chain, which begins behind a comma.
+std::string chainOf(std::string_view body, std::string_view chain_before) {
+    return sha256(fmt::format("{}\n{}", chain_before, body));
+}
+
+}  // namespace
+
+ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view chain_before) {
+    nlohmann::ordered_json json;
+    json["n"] = number;
+    json["time"] = timeText(entry.time);
+    json["event"] = entry.event;
+    for (const auto& [name, value] : entry.fields) {
+        json[name] = value;
+    }
+    auto body = json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+    body.pop_back();  // the brace
+    auto chain = chainOf(body, chain_before);
+    return {fmt::format("{}{}{}{}", body, kChainKey, chain, kEnd), std::move(chain)};
+}
+
+std::optional<ReadLine> readLastLine(std::string_view text) {
+    const auto at = text.rfind(kChainKey);
+    if (at == std::string_view::npos || !text.ends_with(kEnd)) {
+        return {};
+    }
+    const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
+    if (!json.is_object() || !json.contains("n") || !json["n"].is_number_unsigned() ||
+        !json.contains("time") || !json["time"].is_string() || !json["chain"].is_string()) {
+        return {};
+    }
+    ReadLine line{json["n"].get<std::uint64_t>(), json["time"].get<std::string>(),
+                  json["chain"].get<std::string>()};
+    return line.chain.size() == kNoChain.size() ? std::optional(std::move(line)) : std::nullopt;
+}
+
+std::optional<ReadLine> readLine(std::string_view text, std::string_view chain_before) {
+    auto line = readLastLine(text);
+    const bool right =
+        line && line->chain == chainOf(text.substr(0, text.rfind(kChainKey)), chain_before);
+    return right ? line : std::nullopt;
+}
+
+}  // namespace metier::audit

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "metier/audit/audit_log.hpp"
+
+namespace metier::audit {
+
+/// What the first line is chained to.
+inline constexpr std::string_view kNoChain =
+    "0000000000000000000000000000000000000000000000000000000000000000";
+
+/// A line without its end, and what the next is chained to.
+struct ChainedLine {
+    std::string text;
+    std::string chain;
+};
+
+ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view chain_before);
+
+struct ReadLine {
+    std::uint64_t number = 0;
+    std::string time;
+    std::string chain;
+};
+/// Nothing unless it is just as chainLine() wrote it after that one.
+std::optional<ReadLine> readLine(std::string_view text, std::string_view chain_before);
+/// The same, without a look at the line before.
+std::optional<ReadLine> readLastLine(std::string_view text);
+
+}  // namespace metier::audit

@@ -1,0 +1,57 @@
+#include "chain.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+
+namespace metier::audit {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+Entry entryOf(std::string event) {
+    const auto time =
+        UtcTime{} + std::chrono::seconds(1'700'000'000) + std::chrono::milliseconds(42);
+    return {time, std::move(event), {{"user", "anna"}, {"skill", "JointPtpMoveSkill"}}};
+}
+
+TEST(Chain, IsALineOfJson) {
+    const auto line = chainLine(entryOf("Start"), 7, kNoChain);
+    EXPECT_THAT(line.text, StartsWith(R"({"n":7,"time":"2023-11-14T22:13:20.042Z","event":"Start",)"
+                                      R"("user":"anna","skill":"JointPtpMoveSkill","chain":")"));
+    EXPECT_EQ(line.chain.size(), 64U);
+    const auto read = readLine(line.text, kNoChain);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->number, 7U);
+    EXPECT_EQ(read->chain, line.chain);
+}
+
+TEST(Chain, IsBrokenByEachChange) {
+    const auto first = chainLine(entryOf("Start"), 1, kNoChain);
+    const auto second = chainLine(entryOf("Halt"), 2, first.chain);
+    EXPECT_TRUE(readLine(second.text, first.chain));
+    EXPECT_FALSE(readLine(second.text, kNoChain)) << "another line before";
+    auto changed = second.text;
+    changed.replace(changed.find("anna"), 4, "bert");
+    EXPECT_FALSE(readLine(changed, first.chain));
+    EXPECT_FALSE(readLine(second.text + " ", first.chain));
+    EXPECT_FALSE(readLine("", first.chain));
+    EXPECT_FALSE(readLine("{}", first.chain));
+}
+
+TEST(Chain, HoldsWhateverAPeerIsCalled) {
+    auto entry = entryOf("Login");
+    entry.fields = {{"user", "a\"},\n\"chain\":\"x\"}"}, {"name", "\xff\xfe\x01"}};
+    const auto line = chainLine(entry, 1, kNoChain);
+    EXPECT_EQ(line.text.find('\n'), std::string::npos);
+    EXPECT_TRUE(std::all_of(line.text.begin(), line.text.end(),
+                            [](char c) { return c >= ' ' && c <= '~'; }));
+    EXPECT_TRUE(readLine(line.text, kNoChain));
+    entry.fields = {{"chain", "mine"}, {"n", "0"}};
+    EXPECT_FALSE(readLine(chainLine(entry, 1, kNoChain).text, kNoChain))
+        << "nobody but the log writes these";
+}
+
+}  // namespace
+}  // namespace metier::audit
