@@ -398,12 +398,13 @@ Result<> AddressSpace::setAccess(const NodeId& variable, Access access) {
                    "set the access of", variable);
 }
 
-Result<> AddressSpace::setMethod(const NodeId& method, MethodHandler handler) {
+Result<> AddressSpace::setMethod(const NodeId& method, MethodHandler handler, MethodEffect effect) {
     auto hooks = core_.hooks().of(core_.native(), method);
     if (!hooks) {
         return fail(hooks.error());
     }
     (*hooks)->methodHooks().handler = std::move(handler);
+    (*hooks)->methodHooks().effect = effect;
     return outcome(UA_Server_setMethodNodeCallback(core_.native(), viewOf(method), callMethod),
                    "give work to", method);
 }

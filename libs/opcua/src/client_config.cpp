@@ -36,6 +36,17 @@ void setTimes(const ClientOptions& options, UA_ClientConfig& config) {
     config.timeout = static_cast<UA_UInt32>(std::min(options.connect_timeout, check).count());
 }
 
+/// Discovery needs no Endpoint of its own: a closed server has none without security. The stack
+/// looks for none if it is told of one.
+void setDiscoveryEndpoint(const std::string& url, UA_ClientConfig& config) {
+    auto& endpoint = config.endpoint;
+    toNative(url, endpoint.endpointUrl);
+    toNative(kNoSecurity, endpoint.securityPolicyUri);
+    endpoint.securityMode = UA_MESSAGESECURITYMODE_NONE;
+    config.userTokenPolicy.tokenType = UA_USERTOKENTYPE_ANONYMOUS;
+    toNative("anonymous", config.userTokenPolicy.policyId);
+}
+
 }  // namespace
 
 ClientComplaints::ClientComplaints() noexcept : logger_{&log, this, nullptr} {}
@@ -78,6 +89,9 @@ Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPur
     }
     toNative(kNoSecurity, config.securityPolicyUri);
     config.securityMode = UA_MESSAGESECURITYMODE_NONE;
+    if (purpose == ClientPurpose::discovery) {
+        setDiscoveryEndpoint(plugins.url, config);
+    }
     checkAllocated(UA_ClientConfig_setDefault(&config));
     return config;
 }

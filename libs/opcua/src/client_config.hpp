@@ -40,6 +40,7 @@ struct ClientPlugins {
     UA_EventLoop* loop = nullptr;
     UA_Logger* logger = nullptr;
     PeerCheck* peers = nullptr;  ///< for a session with security
+    std::string url{};           ///< where to connect to
 };
 
 /// The stack's configuration for one client. Who calls owns it, until it is handed to

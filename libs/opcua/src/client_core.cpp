@@ -197,7 +197,7 @@ void ClientCore::connectNow() {
         auto* loop = loop_.handle();
         loop->start(loop);  // a client of the stack stops it when it ends
         auto config =
-            makeClientConfig(options_, purpose_, {loop, complaints_.logger(), peers_.get()});
+            makeClientConfig(options_, purpose_, {loop, complaints_.logger(), peers_.get(), url_});
         if (!config) {
             settle(failed(status::kBadInvalidArgument, config.error().message));
             return;

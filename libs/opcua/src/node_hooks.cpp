@@ -1,5 +1,8 @@
 #include "node_hooks.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "convert.hpp"
 #include "guard.hpp"
 #include "metier/opcua/text.hpp"
@@ -119,10 +122,18 @@ UA_StatusCode writeSource(UA_Server* /*server*/, const UA_NodeId* /*session_id*/
     });
 }
 
+/// Methods of OPC UA that tell of, or change, only what the own session has subscribed.
+bool isOfOwnSession(const UA_NodeId& method) noexcept {
+    constexpr std::array kMethods{UA_NS0ID_SERVER_GETMONITOREDITEMS, UA_NS0ID_SERVER_RESENDDATA};
+    return method.namespaceIndex == 0 && method.identifierType == UA_NODEIDTYPE_NUMERIC &&
+           std::find(kMethods.begin(), kMethods.end(),
+                     static_cast<int>(method.identifier.numeric)) != kMethods.end();
+}
+
 }  // namespace
 
-UA_StatusCode callMethod(UA_Server* /*server*/, const UA_NodeId* /*session_id*/,
-                         void* session_context, const UA_NodeId* method_id, void* method_context,
+UA_StatusCode callMethod(UA_Server* server, const UA_NodeId* /*session_id*/, void* session_context,
+                         const UA_NodeId* method_id, void* method_context,
                          const UA_NodeId* object_id, void* /*object_context*/,
                          std::size_t input_size, const UA_Variant* input, std::size_t output_size,
                          UA_Variant* output) noexcept {
@@ -132,6 +143,10 @@ UA_StatusCode callMethod(UA_Server* /*server*/, const UA_NodeId* /*session_id*/,
         const auto arguments = lendAll(input, input_size);
         const CallContext context{hooks.core->sessions().of(session_context),
                                   fromNative(*object_id), fromNative(*method_id)};
+        if (!mayCall(server, session_context, *method_id, method_context)) {
+            hooks.core->tellDenial(context);
+            return UA_STATUSCODE_BADUSERACCESSDENIED;
+        }
         auto results = method.handler(context, arguments);
         if (!results) {
             hooks.core->log().info("call of {} on {} refused: {}", context.method.toString(),
@@ -150,10 +165,25 @@ UA_DataSource slotCallbacks() noexcept {
     return {readSlot, writeSlot};
 }
 
+bool mayCall(UA_Server* server, const void* session_context, const UA_NodeId& method_id,
+             const void* method_context) noexcept {
+    auto& core = ServerCore::of(server);
+    if (session_context == nullptr || mayCommand(core.sessions().of(session_context).role) ||
+        isOfOwnSession(method_id)) {
+        return true;
+    }
+    const auto* hooks = core.hooks().at(method_context);
+    const auto* method = hooks == nullptr ? nullptr : std::get_if<MethodHooks>(&hooks->work);
+    return method != nullptr && method->effect == MethodEffect::tells;
+}
+
 UA_Boolean userExecutable(UA_Server* server, UA_AccessControl* /*control*/,
                           const UA_NodeId* /*session_id*/, void* session_context,
-                          const UA_NodeId* /*method_id*/, void* method_context) noexcept {
-    bool executable = true;
+                          const UA_NodeId* method_id, void* method_context) noexcept {
+    bool executable = mayCall(server, session_context, *method_id, method_context);
+    if (!executable) {
+        return false;
+    }
     guarded([&]() -> UA_StatusCode {
         auto& core = ServerCore::of(server);
         const auto* hooks = core.hooks().at(method_context);

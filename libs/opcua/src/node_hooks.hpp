@@ -16,6 +16,7 @@ class ServerCore;
 struct MethodHooks {
     MethodHandler handler;
     std::function<bool(const Session&)> executable;
+    MethodEffect effect = MethodEffect::commands;
 };
 
 /// What a node does beyond holding values: the stack keeps a pointer to it as the node's context.
@@ -56,6 +57,9 @@ UA_StatusCode callMethod(UA_Server* server, const UA_NodeId* session_id, void* s
 UA_DataSource dataSourceCallbacks() noexcept;
 /// The callbacks of a Variable whose context is a VariableSlot.
 UA_DataSource slotCallbacks() noexcept;
+/// Whether the role of a session allows a Method.
+bool mayCall(UA_Server* server, const void* session_context, const UA_NodeId& method_id,
+             const void* method_context) noexcept;
 /// What clients read as UserExecutable.
 UA_Boolean userExecutable(UA_Server* server, UA_AccessControl* control, const UA_NodeId* session_id,
                           void* session_context, const UA_NodeId* method_id,

@@ -6,6 +6,7 @@
 
 #include "convert.hpp"
 #include "guard.hpp"
+#include "metier/opcua/text.hpp"
 #include "nodesets.hpp"
 #include "server_config.hpp"
 
@@ -189,6 +190,15 @@ Result<> ServerCore::open() {
     port_ = loop_.listening().at(0).port;
     tellSecurity();
     return {};
+}
+
+void ServerCore::tellDenial(const CallContext& context) {
+    log().info("{} on {} denied to {}, who is {}", context.method.toString(),
+               context.object.toString(), sanitise(context.session.user),
+               trust::toString(context.session.role));
+    if (options_.security && options_.security->on_denied) {
+        options_.security->on_denied({context.session, context.object, context.method});
+    }
 }
 
 void ServerCore::tellSecurity() {

@@ -5,12 +5,14 @@
 #include "convert.hpp"
 #include "guard.hpp"
 #include "metier/trust/certificate.hpp"
+#include "server_core.hpp"
 
 namespace metier::opcua {
 
 namespace {
 
 constexpr std::uint8_t kAllAccess = 0xFF;
+constexpr std::uint8_t kReadAccess = UA_ACCESSLEVELMASK_READ | UA_ACCESSLEVELMASK_HISTORYREAD;
 
 /// Takes the same time wherever the first difference is.
 bool samePassword(std::string_view left, std::string_view right) noexcept {
@@ -89,6 +91,21 @@ struct Sessions::Callbacks {
             return UA_STATUSCODE_GOOD;
         });
     }
+    static UA_Byte accessLevel(UA_Server* /*server*/, UA_AccessControl* control,
+                               const UA_NodeId* /*session_id*/, void* context,
+                               const UA_NodeId* /*node*/, void* /*node_context*/) noexcept {
+        return context == nullptr || mayCommand(owner(control).of(context).role) ? kAllAccess
+                                                                                 : kReadAccess;
+    }
+    /// Methods of ours answer for themselves, with the StatusCode that the stack has not.
+    static UA_Boolean executableOnObject(UA_Server* server, UA_AccessControl* /*control*/,
+                                         const UA_NodeId* /*session_id*/, void* context,
+                                         const UA_NodeId* method, void* method_context,
+                                         const UA_NodeId* /*object*/,
+                                         void* /*object_context*/) noexcept {
+        return ServerCore::of(server).hooks().at(method_context) != nullptr ||
+               mayCall(server, context, *method, method_context);
+    }
     static void clear(UA_AccessControl* control) noexcept {
         UA_Array_delete(control->userTokenPolicies, control->userTokenPoliciesSize,
                         &UA_TYPES[UA_TYPES_USERTOKENPOLICY]);
@@ -115,8 +132,8 @@ void Sessions::install(UA_ServerConfig& config) {
     control.closeSession = Callbacks::close;
     control.allowTransferSubscription = Callbacks::sameUser;
     control.getUserRightsMask = [](auto...) -> UA_UInt32 { return 0; };
-    control.getUserAccessLevel = [](auto...) -> UA_Byte { return kAllAccess; };
-    control.getUserExecutableOnObject = [](auto...) -> UA_Boolean { return true; };
+    control.getUserAccessLevel = Callbacks::accessLevel;
+    control.getUserExecutableOnObject = Callbacks::executableOnObject;
     control.allowBrowseNode = [](auto...) -> UA_Boolean { return true; };
     control.allowAddNode = [](auto...) -> UA_Boolean { return false; };
     control.allowAddReference = [](auto...) -> UA_Boolean { return false; };
@@ -124,9 +141,7 @@ void Sessions::install(UA_ServerConfig& config) {
     control.allowDeleteReference = [](auto...) -> UA_Boolean { return false; };
     control.allowHistoryUpdateUpdateData = [](auto...) -> UA_Boolean { return false; };
     control.allowHistoryUpdateDeleteRawModified = [](auto...) -> UA_Boolean { return false; };
-    if (!options_.security) {
-        addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
-    }
+    addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
     if (options_.security || !options_.users.empty()) {
         addTokenPolicy(control, UA_USERTOKENTYPE_USERNAME, "username");
         config.allowNonePolicyPassword = !options_.security;
@@ -137,24 +152,24 @@ const Session& Sessions::of(const void* context) const noexcept {
     return context == nullptr ? server_session_ : *static_cast<const Session*>(context);
 }
 
-Result<std::string> Sessions::userOf(const Presented& presented) const {
+Result<Admission> Sessions::admit(const Presented& presented) const {
     const auto& token = presented.token;
     if (isAbsent(token) || decodedAs<UA_AnonymousIdentityToken>(
                                token, UA_TYPES[UA_TYPES_ANONYMOUSIDENTITYTOKEN]) != nullptr) {
-        return options_.security ? fail(Errc::access_denied, "nobody is let in without a name")
-                                 : Result<std::string>("");
+        return options_.security ? options_.security->authenticate({"", "", presented.thumbprint})
+                                 : Result<Admission>(Admission{"", trust::Role::engineer});
     }
     const auto* named =
         decodedAs<UA_UserNameIdentityToken>(token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
     if (named == nullptr) {
         return fail(Errc::not_supported, "a kind of identity this server does not know");
     }
-    const Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint};
-    const auto known = authenticate(login);
-    return known ? Result<std::string>(login.user) : fail(known.error());
+    Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint};
+    return login.user.empty() ? fail(Errc::access_denied, "a user without a name")
+                              : authenticate(login);
 }
 
-Result<void> Sessions::authenticate(const Login& login) const {
+Result<Admission> Sessions::authenticate(const Login& login) const {
     if (options_.security) {
         return options_.security->authenticate(login);
     }
@@ -162,15 +177,16 @@ Result<void> Sessions::authenticate(const Login& login) const {
     const bool known = std::any_of(users.begin(), users.end(), [&](const UserPassword& entry) {
         return entry.user == login.user && samePassword(entry.password, login.password);
     });
-    return known ? Result<void>() : fail(Errc::access_denied, "unknown user or wrong password");
+    return known ? Result<Admission>(Admission{login.user, trust::Role::engineer})
+                 : fail(Errc::access_denied, "unknown user or wrong password");
 }
 
 StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                               void** context) {
-    const auto user = userOf(presented);
-    if (!user) {
-        return user.error().code == Errc::not_supported ? status::kBadIdentityTokenInvalid
-                                                        : status::kBadUserAccessDenied;
+    const auto admission = admit(presented);
+    if (!admission) {
+        return admission.error().code == Errc::not_supported ? status::kBadIdentityTokenInvalid
+                                                             : status::kBadUserAccessDenied;
     }
     auto& session = sessions_[fromNative(id)];
     if (!session) {
@@ -178,7 +194,8 @@ StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Pres
         session->id = fromNative(id);
     }
     describe(server, *session);
-    session->user = *user;
+    session->user = admission->user;
+    session->role = admission->role;
     session->thumbprint = presented.thumbprint;
     *context = session.get();
     if (activated_) {

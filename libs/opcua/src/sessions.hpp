@@ -13,7 +13,8 @@ namespace metier::opcua {
 
 /// Who is logged in; decides who may. Installed as the stack's access control.
 ///
-/// Clients may read, write, call and browse; nodes and references only the server itself changes.
+/// Clients may read and browse; those whose role commands may also write and call. Nodes and
+/// references only the server itself changes.
 /// Threading: the server's thread.
 class Sessions {
 public:
@@ -44,8 +45,8 @@ private:
     StatusCode activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                         void** context);
     void close(const UA_NodeId& id);
-    Result<std::string> userOf(const Presented& presented) const;
-    Result<void> authenticate(const Login& login) const;
+    Result<Admission> admit(const Presented& presented) const;
+    Result<Admission> authenticate(const Login& login) const;
 
     const ServerOptions& options_;
     std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;

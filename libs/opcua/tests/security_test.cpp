@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <map>
 #include <mutex>
 
 #include "metier/opcua/client.hpp"
@@ -55,20 +56,19 @@ protected:
         ServerOptions options;
         options.application_uri = kServerUri;
         options.port = 0;
-        options.security = ServerSecurity{.credentials = {serverIdentity(), folder_ / "server"},
-                                          .authenticate =
-                                              [](const Login& login) {
-                                                  return login.user == "operator" &&
-                                                                 login.password == "secret" &&
-                                                                 !login.thumbprint.empty()
-                                                             ? Result<void>()
-                                                             : fail(Errc::access_denied, "wrong");
-                                              },
-                                          .on_refused =
-                                              [this](const RefusedPeer& peer) {
-                                                  const std::lock_guard lock(mutex_);
-                                                  refused_.push_back(peer.refusal);
-                                              }};
+        options.security =
+            ServerSecurity{.credentials = {serverIdentity(), folder_ / "server"},
+                           .authenticate = [this](const Login& login) { return admit(login); },
+                           .on_refused =
+                               [this](const RefusedPeer& peer) {
+                                   const std::lock_guard lock(mutex_);
+                                   refused_.push_back(peer.refusal);
+                               },
+                           .on_denied =
+                               [this](const Denial& denial) {
+                                   const std::lock_guard lock(mutex_);
+                                   denials_.push_back(denial);
+                               }};
         auto server = Server::create(std::move(options));
         ASSERT_TRUE(server) << server.error().message;
         server_ = std::move(*server);
@@ -76,6 +76,13 @@ protected:
         ASSERT_TRUE(started) << started.error().message;
     }
 
+    Result<Admission> admit(const Login& login) const {
+        const auto user = users_.find(login.user);
+        if (user == users_.end() || login.password != "secret" || login.thumbprint.empty()) {
+            return fail(Errc::access_denied, "wrong");
+        }
+        return Admission{login.user, user->second};
+    }
     ClientOptions options(const trust::Identity& identity = clientIdentity()) const {
         ClientOptions options;
         options.security = Credentials{identity, folder_ / "client"};
@@ -85,6 +92,26 @@ protected:
     Answer<std::unique_ptr<Client>> connect(const ClientOptions& options) const {
         return Client::connect(server_->endpointUrl(), options);
     }
+    void addMethod(const NodeId& id, MethodEffect effect, Session* caller = nullptr) {
+        const auto added = server_->call([&]() -> Result<void> {
+            auto& nodes = server_->nodes();
+            const auto handler = [caller](const CallContext& context,
+                                          std::span<const Value>) -> Result<std::vector<Value>> {
+                if (caller != nullptr) {
+                    *caller = context.session;
+                }
+                return std::vector<Value>();
+            };
+            const auto name = id.toString();
+            const auto node =
+                nodes.addMethod({.node = {id, ids::kObjectsFolder, ids::kHasComponent, {1, name}},
+                                 .inputs = {},
+                                 .outputs = {},
+                                 .handler = handler});
+            return node ? nodes.setMethod(id, handler, effect) : fail(node.error());
+        });
+        ASSERT_TRUE(added) << added.error().message;
+    }
     trust::RefusalKind lastRefusal() {
         const std::lock_guard lock(mutex_);
         return refused_.back().kind;
@@ -93,6 +120,11 @@ protected:
     const std::filesystem::path folder_ = emptyFolder();
     std::mutex mutex_;
     std::vector<trust::CertificateRefusal> refused_;
+    std::map<std::string, trust::Role> users_{{"observer", trust::Role::observer},
+                                              {"operator", trust::Role::operator_},
+                                              {"engineer", trust::Role::engineer},
+                                              {"admin", trust::Role::security_admin}};
+    std::vector<Denial> denials_;
     std::unique_ptr<Server> server_;
 };
 
@@ -106,25 +138,63 @@ TEST_F(ClosedServer, ServesWhomItTrustsAndKnows) {
 TEST_F(ClosedServer, KnowsItsClientsByTheirCertificates) {
     const NodeId who(1, "who");
     Session seen;
-    const auto added = server_->call([&] {
-        return server_->nodes().addMethod(
-            {.node = {who, ids::kObjectsFolder, ids::kHasComponent, {1, "who"}},
-             .inputs = {},
-             .outputs = {},
-             .handler = [&](const CallContext& context,
-                            std::span<const Value>) -> Result<std::vector<Value>> {
-                 seen = context.session;
-                 return std::vector<Value>();
-             }});
-    });
-    ASSERT_TRUE(added) << added.error().message;
+    addMethod(who, MethodEffect::commands, &seen);
     const auto client = connect(options());
     ASSERT_TRUE(client) << client.error().message;
     ASSERT_TRUE((*client)->call(ids::kObjectsFolder, who));
     EXPECT_EQ(seen.user, "operator");
+    EXPECT_EQ(seen.role, trust::Role::operator_);
     EXPECT_EQ(seen.thumbprint, clientIdentity().certificate.thumbprint());
     EXPECT_EQ(seen.application_uri, "urn:test:client");
 }
+
+struct Allowed {
+    const char* user;
+    bool commands;
+};
+class ClosedServerFor : public ClosedServer, public ::testing::WithParamInterface<Allowed> {};
+
+// Everybody who is let in reads, browses and asks; operators and engineers also write and command.
+TEST_P(ClosedServerFor, AllowsWhatARoleMayDo) {
+    const NodeId command(1, "command");
+    const NodeId question(1, "question");
+    const NodeId variable(1, "variable");
+    addMethod(command, MethodEffect::commands);
+    addMethod(question, MethodEffect::tells);
+    ASSERT_TRUE(server_->call([&] {
+        VariableSpec spec;
+        spec.node = {variable, ids::kObjectsFolder, ids::kHasComponent, {1, "variable"}};
+        spec.data_type = ids::kDouble;
+        spec.value = Value::of(1.0);
+        spec.access = Access::read_write;
+        return server_->nodes().addVariable(spec);
+    }));
+    auto mine = options();
+    mine.user->name = GetParam().user;
+    const auto client = connect(mine);
+    ASSERT_TRUE(client) << client.error().message;
+
+    EXPECT_TRUE((*client)->read(variable));
+    EXPECT_TRUE((*client)->browse({.node = ids::kObjectsFolder}));
+    EXPECT_TRUE((*client)->call(ids::kObjectsFolder, question));
+    const auto expected = GetParam().commands ? status::kGood : status::kBadUserAccessDenied;
+    const auto written = (*client)->write(variable, Value::of(2.0));
+    EXPECT_EQ(written ? status::kGood : written.error().status, expected);
+    const auto called = (*client)->call(ids::kObjectsFolder, command);
+    EXPECT_EQ(called ? status::kGood : called.error().status, expected);
+    EXPECT_EQ((*client)->readUserExecutable(command), GetParam().commands);
+    const std::lock_guard lock(mutex_);
+    ASSERT_EQ(denials_.size(), GetParam().commands ? 0U : 1U);
+    if (!denials_.empty()) {
+        EXPECT_EQ(denials_.front().session.user, GetParam().user);
+        EXPECT_EQ(denials_.front().method, command);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, ClosedServerFor,
+                         ::testing::Values(Allowed{"observer", false}, Allowed{"operator", true},
+                                           Allowed{"engineer", true}, Allowed{"admin", false}),
+                         [](const auto& of) { return std::string(of.param.user); });
 
 TEST_F(ClosedServer, LetsNobodyInWithoutSecurity) {
     ClientOptions open;
@@ -200,8 +270,7 @@ TEST(ServerSecurityOptions, NeedACertificateOfTheServer) {
     options.port = 0;
     options.security =
         ServerSecurity{.credentials = {serverIdentity(), ::testing::TempDir() + "trust"},
-                       .authenticate = [](const Login&) { return Result<void>(); },
-                       .on_refused = {}};
+                       .authenticate = [](const Login&) { return Result<Admission>({}); }};
     const auto refused = Server::create(options);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("is of \"urn:test:server\", not of"));

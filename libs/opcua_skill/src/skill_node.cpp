@@ -105,8 +105,12 @@ Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
                 return check(context.session, inputs);
             });
         case Role::get_execution:
-            return nodes.setMethod(node, [this](const opcua::CallContext& /*context*/,
-                                                auto inputs) { return getExecution(inputs); });
+            return nodes.setMethod(
+                node,
+                [this](const opcua::CallContext& /*context*/, auto inputs) {
+                    return getExecution(inputs);
+                },
+                opcua::MethodEffect::tells);
         case Role::parameter_unit:
         case Role::result_unit:
             return nodes.write(node, unitOf(fieldOf(*program_, purpose)));

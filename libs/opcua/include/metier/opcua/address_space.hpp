@@ -84,6 +84,12 @@ struct CallContext {
 using MethodHandler =
     std::function<Result<std::vector<Value>>(const CallContext&, std::span<const Value>)>;
 
+/// Who may call a Method of a closed server.
+enum class MethodEffect {
+    commands,  ///< whose role commands
+    tells,     ///< everybody
+};
+
 struct MethodSpec {
     NodeSpec node;
     std::vector<Argument> inputs;
@@ -186,7 +192,8 @@ public:
     Result<> setHandler(const NodeId& variable, VariableSlot& slot);
     Result<> setAccess(const NodeId& variable, Access access);
     /// Gives a Method its work; for a shared Method node the context tells the Object.
-    Result<> setMethod(const NodeId& method, MethodHandler handler);
+    Result<> setMethod(const NodeId& method, MethodHandler handler,
+                       MethodEffect effect = MethodEffect::commands);
     /// What clients read as UserExecutable. It forbids nothing: the handler answers why not.
     Result<> setExecutable(const NodeId& method, std::function<bool(const Session&)> predicate);
     Result<> setEventNotifier(const NodeId& object, EventNotifier notifier);

@@ -5,8 +5,10 @@
 #include <string>
 
 #include "metier/base/error.hpp"
+#include "metier/opcua/session.hpp"
 #include "metier/trust/identity.hpp"
 #include "metier/trust/trust_store.hpp"
+#include "metier/trust/users.hpp"
 
 namespace metier::opcua {
 
@@ -20,9 +22,22 @@ struct Credentials {
 
 /// Somebody who wants to log in, over a connection that is encrypted or signed.
 struct Login {
-    std::string user;
+    std::string user;  ///< empty: it is the application itself
     std::string password;
     std::string thumbprint;  ///< of the application's certificate, which is trusted
+};
+
+/// As whom somebody was let in.
+struct Admission {
+    std::string user;
+    trust::Role role = trust::Role::observer;
+};
+
+/// Something that a session wanted to do and may not in its role.
+struct Denial {
+    Session session;
+    NodeId object;
+    NodeId method;
 };
 
 /// A peer whose certificate was refused. All text came from the peer, printable.
@@ -36,10 +51,12 @@ struct RefusedPeer {
 /// security it answers FindServers and GetEndpoints only.
 struct ServerSecurity {
     Credentials credentials;
-    /// Whether a user may log in; the server's thread, so it must not wait.
-    std::function<Result<void>(const Login&)> authenticate;
-    /// Told of each refusal on the server's thread; may be empty.
-    std::function<void(const RefusedPeer&)> on_refused;
+    /// As whom somebody may log in. This and the others on the server's thread: they must not wait.
+    std::function<Result<Admission>(const Login&)> authenticate;
+    /// Told of each peer that is refused; may be empty.
+    std::function<void(const RefusedPeer&)> on_refused{};
+    /// Told of each Method that a session may not call; may be empty.
+    std::function<void(const Denial&)> on_denied{};
 };
 
 }  // namespace metier::opcua

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "metier/opcua/node_id.hpp"
+#include "metier/trust/users.hpp"
 
 namespace metier::opcua {
 
@@ -15,6 +16,13 @@ struct Session {
     std::string application_name;
     std::string user;          ///< empty: anonymous
     std::string thumbprint{};  ///< of the trusted certificate of its application; empty: none
+    /// In a lab everybody may do everything.
+    trust::Role role = trust::Role::engineer;
 };
+
+/// Whether a role may change anything: write Variables and call Methods that do more than tell.
+constexpr bool mayCommand(trust::Role role) noexcept {
+    return role == trust::Role::operator_ || role == trust::Role::engineer;
+}
 
 }  // namespace metier::opcua
