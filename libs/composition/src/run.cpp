@@ -24,6 +24,7 @@ void StepTimer::start(std::chrono::nanoseconds delay, std::function<void()> due)
 void StepTimer::cancel() {
     timer_.cancel();
     running_ = false;
+    due_ = nullptr;
     std::erase(run_.timers_, this);
 }
 

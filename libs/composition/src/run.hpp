@@ -30,6 +30,8 @@ public:
 
     void start(std::chrono::nanoseconds delay, std::function<void()> due);
     void cancel();
+    /// Whether it is still to come due.
+    bool running() const noexcept { return due_ != nullptr; }
 
 private:
     friend class Run;

@@ -15,6 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kHead;
+using testing::kOneThatIsReset;
 
 const std::string kTwoSteps = kHead + R"(
 [[step]]
@@ -306,6 +307,34 @@ run = "a"
     bench.run();
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+}
+
+TEST(HaltOfASequence, EndsAtOnceBetweenTwoAttemptsToReset) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    bench["b"].reset_answer = fail(Errc::timeout, "not yet");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    EXPECT_EQ(bench.state(), "Halted");
+    bench.advance(1s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+}
+
+TEST(SuspendOfASequence, BetweenTwoAttemptsToResetAsksAgainOnceItGoesOn) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    bench["b"].reset_answer = fail(Errc::timeout, "not yet");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::suspend));
+    EXPECT_EQ(bench.state(), "Suspended");
+    bench.advance(60s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].reset_answer = {};
+    ASSERT_TRUE(bench.call(Method::resume));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].wasReset();
+    bench.advance(1s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
 }
 
 TEST(HaltOfASequence, TellsOfAStepThatDoesNotEnd) {

@@ -149,6 +149,52 @@ TEST_F(RemoteChildTest, TellsTheServersWordsWhenResumeIsRefusedToIt) {
     EXPECT_THAT(listener_.refusal, HasSubstr("Resume: Resume is not possible while Running"));
 }
 
+TEST_F(RemoteChildTest, TellsNobodyTheAnswerToAResetThatIsGivenUp) {
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    move_.hand->refuseReset({Errc::device_fault, "the emergency stop is pressed"});
+    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(move_.hand->await("reset"));
+    child_->release();
+    move_.hand->allowReset();
+    Listener next;
+    ASSERT_TRUE(child_->reset(next));
+    ASSERT_TRUE(move_.hand->await("reset")) << "the next one is sent, too";
+    ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
+    EXPECT_TRUE(*next.reset) << "the answer to its own Reset, not to the one before";
+    EXPECT_FALSE(listener_.reset);
+}
+
+TEST_F(RemoteChildTest, TakesASkillThatIsReadyMeanwhileForReset) {
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(move_.hand->await("reset"));
+    Listener next;  // whose Reset comes to a skill that is Ready
+    ASSERT_TRUE(child_->reset(next));
+    ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
+    EXPECT_TRUE(*next.reset);
+    EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, TellsARefusalToNoOtherExecution) {
+    // A Resume that was refused when its execution had just ended made the next one fail.
+    beginAndAwait("here.Test/1/move/1");
+    const auto before = executor_->posts();
+    ASSERT_TRUE(child_->resume()) << "it is Running: refused";
+    ASSERT_TRUE(executor_->awaitPosts(before + 1));
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(executor_->awaitPosts(before + 2)) << "the end, right behind the refusal";
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    listener_ = {};
+    begin("here.Test/2/move/1");  // it is Halted: refused, later than the Resume
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::refused);
+    EXPECT_EQ(listener_.refusal, "");
+}
+
 TEST_F(RemoteChildTest, IsLostWithItsServer) {
     beginAndAwait("here.Test/1/move/1");
     shutDown();
