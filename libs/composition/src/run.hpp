@@ -14,6 +14,7 @@
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/skill/execution.hpp"
 #include "metier/skill/executor.hpp"
+#include "reset_round.hpp"
 #include "scope.hpp"
 
 namespace metier::composition {
@@ -106,6 +107,7 @@ private:
     void checkRest();
     void restTimePassed();
     void ended(Outcome outcome);
+    void tidyUp();
     void finish();
 
     RunSetup setup_;
@@ -117,6 +119,7 @@ private:
     bool suspending_ = false;
     bool halting_ = false;
     bool over_ = false;
+    bool tidying_ = false;                // over, but for what it has halted itself
     std::optional<StepFailure> gave_up_;  // because something did not come to rest
     std::uint64_t begun_ = 0;
     std::vector<std::string> finished_;  // paths
@@ -127,6 +130,7 @@ private:
     std::vector<StepTimer*> timers_;
     skill::Timer rest_timer_;
     std::unique_ptr<Activity> root_;
+    ResetRound resets_{*this, [this] { finish(); }};
     // Posted work asks it whether this is still there.
     std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
 };
