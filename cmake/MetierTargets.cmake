@@ -61,7 +61,10 @@ endfunction()
 
 option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)
 if(METIER_FUZZ)
-    target_compile_options(metier_warnings INTERFACE
+    # Which edges an input takes guides the search. To note the operands of comparisons as well takes a
+    # third of the time, and finds no more: 8,393 features instead of 8,428 after 150,000 inputs of
+    # edo_session_fuzz, 16,075 instead of 15,930 of urscript_run_fuzz.
+    target_compile_options(metier_warnings INTERFACE -fno-sanitize-coverage=trace-cmp
         -fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/tests/fuzz/without_coverage.txt)
 endif()
 

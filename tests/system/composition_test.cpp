@@ -226,7 +226,8 @@ skills = ["JointPtpMoveSkill"]
 compositions = ["own.toml"]
 )",
                                                        model.string());
-    for (const auto* wish : {"server = \"other\"", "controller = \"Arm\"", "reach = 9.0"}) {
+    for (const auto* wish :
+         {"server = \"other\"", "controller = \"Arm\"", "reach = 9.0", "payload = 1.0"}) {
         std::ofstream(folder / "own.toml") << fmt::format(R"(name = "OwnSkill"
 [uses.arm]
 type = "JointPtpMoveSkillType"

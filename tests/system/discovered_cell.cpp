@@ -63,12 +63,14 @@ bool DiscoveryProcess::awaitForgotten(const std::string& name) const {
     return holdsSoon([&] { return !contains(names(), name); });
 }
 
+std::filesystem::path discoveredCell() {
+    return std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "discovered.toml";
+}
+
 ServerProcess serveDiscovered(const std::string& name, const std::string& discovery_url,
                               std::vector<std::string> more) {
     more.insert(more.end(), {"--port", "0", "--discovery", discovery_url});
-    return ServerProcess(
-        name, more,
-        std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "discovered.toml");
+    return ServerProcess(name, more, discoveredCell());
 }
 
 bool holdsSoon(const std::function<bool()>& holds) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -32,7 +33,10 @@ private:
     std::string url_;
 };
 
-/// A server of discovered.toml that registers there.
+/// discovered.toml.
+std::filesystem::path discoveredCell();
+
+/// A server of it that registers there.
 ServerProcess serveDiscovered(const std::string& name, const std::string& discovery_url,
                               std::vector<std::string> more = {});
 

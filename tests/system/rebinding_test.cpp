@@ -170,10 +170,8 @@ TEST(DiscoveryOnTheNetwork, FindsArmsAndBindsToTheOneThatIsThere) {
     EXPECT_THAT(readUntil(find, " fits: "), HasSubstr(Cable::addressOf(a.url())));
     EXPECT_EQ(find.waitUntil(inAMinute()), 0);
 
-    const auto cell =
-        std::filesystem::path(METIER_SOURCE_DIR) / "tests" / "system" / "discovered.toml";
-    auto component = far({"--log", "info", "serve", cell.string(), "--server", "swing", "--port",
-                          "0", "--discovery", lds_url});
+    auto component = far({"--log", "info", "serve", discoveredCell().string(), "--server", "swing",
+                          "--port", "0", "--discovery", lds_url});
     EXPECT_THAT(readUntil(component, "SwingSkill uses "), HasSubstr(Cable::addressOf(a.url())));
     const auto url = readUntil(component, "ready opc").substr(std::string("ready ").size());
     const auto swingBy = [&](const std::string& target) {

@@ -1,5 +1,7 @@
 #include "arm_figures.hpp"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "kinematics_conversion.hpp"
@@ -33,6 +35,21 @@ ArmFigures figuresOfArm(opcua::Client& client, const skill_client::SkillAddress&
         return {};
     }
     return {reachOf(*data), data->payload > 0 ? std::optional(data->payload) : std::nullopt};
+}
+
+bool isAtLeast(const ArmFigures& wanted, const ArmFigures& there) {
+    const auto enough = [](const std::optional<double>& least, const std::optional<double>& has) {
+        return !least || (has && *has >= *least);
+    };
+    return enough(wanted.reach, there.reach) && enough(wanted.payload, there.payload);
+}
+
+std::string textOf(const ArmFigures& wanted) {
+    const auto reach =
+        wanted.reach ? fmt::format(" with a reach of {} m", *wanted.reach) : std::string();
+    return wanted.payload ? fmt::format("{} {} a payload of {} kg", reach,
+                                        wanted.reach ? "and" : "with", *wanted.payload)
+                          : reach;
 }
 
 }  // namespace metier::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "metier/opcua/client.hpp"
 #include "metier/skill_client/skill_finder.hpp"
@@ -15,5 +16,11 @@ struct ArmFigures {
 
 /// Of the arm that a skill moves; nothing if it moves none. Waits for the server.
 ArmFigures figuresOfArm(opcua::Client& client, const skill_client::SkillAddress& skill);
+
+/// Whether an arm has at least the figures that are wanted; what is unknown is not enough.
+bool isAtLeast(const ArmFigures& wanted, const ArmFigures& there);
+
+/// What is wanted, as " with a reach of 0.5 m and a payload of 3 kg"; empty if nothing is.
+std::string textOf(const ArmFigures& wanted);
 
 }  // namespace metier::app

@@ -272,8 +272,8 @@ Result<void> CompositionServer::connect(const std::vector<configuration::UsedSer
             return fail(std::move(skills.error()));
         }
         for (auto& skill : *skills) {
-            const auto reach = figuresOfArm((*server)->client(), skill).reach;
-            offered_.push_back({used.name, servers_.size(), std::move(skill), reach});
+            const auto arm = figuresOfArm((*server)->client(), skill);
+            offered_.push_back({used.name, servers_.size(), std::move(skill), arm});
         }
         servers_.push_back(std::move(*server));
     }

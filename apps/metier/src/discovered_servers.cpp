@@ -19,8 +19,8 @@ std::size_t servedBy(const DiscoveredServer& server, const std::vector<compositi
 
 }  // namespace
 
-std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& discovery,
-                                              const std::vector<std::string>& but) {
+std::vector<discovery::FoundServer> announcedServers(const configuration::Discovery& discovery,
+                                                     const std::vector<std::string>& but) {
     auto sighting = discovery::searchServers(
         discovery.servers, discovery.mdns ? discovery::Mdns::asked : discovery::Mdns::left_out);
     for (const auto& problem : sighting.problems) {
@@ -29,8 +29,14 @@ std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& di
     std::erase_if(sighting.servers, [&](const discovery::FoundServer& server) {
         return std::find(but.begin(), but.end(), server.url) != but.end();
     });
+    return std::move(sighting.servers);
+}
+
+std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& discovery,
+                                              const std::vector<std::string>& but) {
+    const auto announced = announcedServers(discovery, but);
     std::vector<DiscoveredServer> servers;
-    for (auto& surveyed : survey(sighting.servers, [](const auto& /*skill*/) { return true; })) {
+    for (auto& surveyed : survey(announced, [](const auto& /*skill*/) { return true; })) {
         if (!surveyed.skills) {
             spdlog::debug("{}: {}", surveyed.server.url, surveyed.skills.error().message);
             continue;
@@ -38,7 +44,7 @@ std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& di
         DiscoveredServer server{surveyed.server, {}};
         const auto& name = surveyed.server.name.empty() ? server.found.url : server.found.name;
         for (auto& skill : *surveyed.skills) {
-            server.offered.push_back({name, 0, std::move(skill.address), skill.arm.reach});
+            server.offered.push_back({name, 0, std::move(skill.address), skill.arm});
         }
         servers.push_back(std::move(server));
     }

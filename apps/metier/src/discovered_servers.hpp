@@ -18,7 +18,13 @@ struct DiscoveredServer {
     std::vector<OfferedSkill> offered;
 };
 
-/// Whoever discovery tells of now and answers within 2 s, by name and address.
+/// Whoever discovery tells of now; nobody has asked them yet.
+/// \param but addresses to leave out
+/// Threads: any; waits, some seconds.
+std::vector<discovery::FoundServer> announcedServers(const configuration::Discovery& discovery,
+                                                     const std::vector<std::string>& but);
+
+/// Those that answer within 2 s, by name and address, with what they offer.
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
 std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& discovery,

@@ -1,95 +1,177 @@
 #include "move_server.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
-#include "kinematics_conversion.hpp"
+#include "discovered_servers.hpp"
+#include "skill_survey.hpp"
 
 namespace metier::app {
 namespace {
 
-// What a motion leaves of velocity and acceleration, so that the arm can follow its stream exactly.
-constexpr double kShare = 0.98;
+using namespace std::chrono_literals;
 
-Result<motion::RobotModel> modelOf(const remote_arm::RemoteArm& arm) {
-    const auto position = arm.state().position;
-    const std::vector<double> current(position.begin(), position.end());
-    auto chain = toChain(arm.kinematics(), current);
-    if (!chain) {
-        return fail(chain.error());
-    }
-    for (auto& joint : chain->joints) {
-        joint.limits.velocity *= kShare;
-        joint.limits.acceleration *= kShare;
-    }
-    return motion::RobotModel::fromChain(std::move(*chain));
+constexpr auto kLongestSearch = 20s;
+constexpr auto kLookEvery = 500ms;
+constexpr auto kPause = 2s;  // after an attempt that changed nothing
+constexpr const char* kStream = "PositionStreamSkillType";
+
+bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {
+    return server.skills &&
+           std::any_of(server.skills->begin(), server.skills->end(),
+                       [&](const auto& skill) { return isAtLeast(least, skill.arm); });
 }
 
-opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device::ArmInfo& arm) {
-    opcua_skill::MotionDeviceSystemSpec spec;
-    spec.name = arm.name;
-    spec.description = fmt::format("Move skills of {} over its position stream", arm.name);
-    spec.manufacturer = "metier";
-    spec.model = name;
-    spec.axis_names = arm.axis_names;
-    return spec;
+/// Addresses of servers with a position stream, and reach and payload enough.
+std::vector<std::string> findRobots(const configuration::ServerConfig& config,
+                                    const std::vector<std::string>& but) {
+    const auto surveyed = survey(announcedServers(config.discovery, but),
+                                 [](const SurveyedSkill& skill) { return isA(skill, kStream); });
+    std::vector<std::string> urls;
+    for (const auto& server : surveyed) {
+        if (hasStreamFor(server, {config.move.reach, config.move.payload})) {
+            urls.push_back(server.server.url);
+        }
+    }
+    return urls;
+}
+
+Error noneFound(const configuration::ServerConfig& config) {
+    return {Errc::not_found, fmt::format("no server with a PositionStreamSkill{} is found",
+                                         textOf({config.move.reach, config.move.payload}))};
+}
+
+Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Error& if_none) {
+    Result<ConnectedRobot> robot = fail(if_none);
+    for (const auto& url : urls) {
+        robot = connectRobot(url);
+        if (robot) {
+            break;
+        }
+    }
+    return robot;
+}
+
+Result<ConnectedRobot> firstRobot(const configuration::ServerConfig& config,
+                                  const StopSignal& stop) {
+    if (!config.move.discover) {
+        return connectRobot(config.move.robot);
+    }
+    spdlog::info("{} seeks a robot", config.name);
+    const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
+    while (true) {
+        auto robot = connectAny(findRobots(config, {}), noneFound(config));
+        if (robot || std::chrono::steady_clock::now() > deadline) {
+            return robot;
+        }
+        if (stop.waitUntil(std::chrono::steady_clock::now() + kLookEvery)) {
+            return fail(Errc::cancelled, "stopped before a robot was found");
+        }
+    }
 }
 
 }  // namespace
 
-Result<std::unique_ptr<MoveServer>> MoveServer::start(const configuration::ServerConfig& config) {
-    auto arm = remote_arm::RemoteArm::connect({.url = config.move.robot});
-    if (!arm) {
-        return fail(arm.error().code,
-                    fmt::format("{}: {}", config.move.robot, arm.error().message));
+Result<std::unique_ptr<MoveServer>> MoveServer::start(const configuration::ServerConfig& config,
+                                                      const StopSignal& stop) {
+    auto robot = firstRobot(config, stop);
+    if (!robot) {
+        return fail(std::move(robot.error()));
     }
-    auto model = modelOf(**arm);
-    if (!model) {
-        return fail(model.error());
+    spdlog::info("{} moves {} ({})", config.name, robot->arm->info().name, robot->url);
+    auto moves = RobotMoves::serve(config, std::move(*robot), nullptr);
+    if (!moves) {
+        return fail(std::move(moves.error()));
     }
-    auto host = SkillHost::create(config, {});
-    if (!host) {
-        return fail(host.error());
-    }
-    std::unique_ptr<MoveServer> server(
-        new MoveServer(std::move(*model), std::move(*arm), std::move(*host)));
-    if (auto offered = server->offer(config.name); !offered) {
-        return fail(offered.error());
-    }
-    if (auto started = server->host_->start(); !started) {
-        return fail(started.error());
-    }
-    return server;
+    return std::unique_ptr<MoveServer>(new MoveServer(config, std::move(*moves)));
 }
 
-MoveServer::MoveServer(motion::RobotModel model, std::unique_ptr<remote_arm::RemoteArm> arm,
-                       std::unique_ptr<SkillHost> host)
-    : model_(std::move(model)), arm_(std::move(arm)), host_(std::move(host)) {}
+MoveServer::MoveServer(configuration::ServerConfig config, std::unique_ptr<RobotMoves> moves)
+    : config_(std::move(config)),
+      url_(moves->url()),
+      announced_url_(moves->announcedUrl()),
+      moves_(std::move(moves)),
+      names_(moves_->names()),
+      robot_url_(moves_->robot().url) {
+    config_.port = moves_->port();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
 
-Result<void> MoveServer::offer(const std::string& name) {
-    const auto system =
-        opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(name, arm_->info()));
-    if (!system) {
-        return fail(system.error());
-    }
-    auto arm_skills = robot_skills::makeArmSkills(*arm_, model_, host_->clock());
-    if (!arm_skills) {
-        return fail(arm_skills.error());
-    }
-    for (auto& move : arm_skills->moves) {
-        const auto published = host_->skills().publish(
-            system->skills, std::move(move),
-            {.resource = arm_skills->resource, .control = host_->control()});
-        if (!published) {
-            return fail(published.error());
+MoveServer::~MoveServer() {
+    thread_.request_stop();
+    thread_ = {};
+}
+
+void MoveServer::run(const std::stop_token& stop) {
+    while (awaitNext(stop)) {
+        if (std::chrono::steady_clock::now() < next_try_) {
+            continue;
+        }
+        for (const auto& url : candidates()) {
+            const auto exchanged = exchange(url);
+            if (exchanged || stop.stop_requested()) {
+                break;
+            }
+            tell(exchanged.error());
+            next_try_ = std::chrono::steady_clock::now() + kPause;
         }
     }
-    if (auto offered = host_->offerControl(system->controller); !offered) {
-        return offered;
+}
+
+bool MoveServer::awaitNext(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, stop, kLookEvery, [] { return false; });
+    return !stop.stop_requested();
+}
+
+std::vector<std::string> MoveServer::candidates() const {
+    if (moves_ == nullptr) {
+        return config_.move.discover ? findRobots(config_, {announced_url_})
+                                     : std::vector{robot_url_};
     }
-    host_->haltOnLossOf(*arm_);
-    return host_->publishArm(*system, {*arm_, model_, arm_->kinematics().payload});
+    const auto absence = moves_->robot().arm->absence();
+    if (!absence) {
+        return {};
+    }
+    if (absence->replaced) {
+        return {robot_url_};
+    }
+    const std::chrono::duration<double> away = std::chrono::steady_clock::now() - absence->since;
+    return config_.move.discover && away.count() > config_.move.rebind_after
+               ? findRobots(config_, {announced_url_, robot_url_})
+               : std::vector<std::string>();
+}
+
+/// Nothing moves now: what ran when the robot was lost is Halted.
+Result<void> MoveServer::exchange(const std::string& robot_url) {
+    auto robot = connectRobot(robot_url);
+    if (!robot) {
+        return fail(std::move(robot.error()));
+    }
+    const auto name = robot->arm->info().name;
+    moves_.reset();  // lets go of the port
+    auto moves = RobotMoves::serve(config_, std::move(*robot), names_);
+    if (!moves) {
+        return fail(std::move(moves.error()));
+    }
+    moves_ = std::move(*moves);
+    spdlog::warn("{} moves {} ({}) from now on: {}", config_.name, name, robot_url,
+                 robot_url == robot_url_ ? "another arm, or other limits, at the same address"
+                                         : robot_url_ + " is away");
+    robot_url_ = robot_url;
+    told_.clear();
+    return {};
+}
+
+void MoveServer::tell(const Error& error) {
+    if (error.message != told_) {
+        spdlog::warn("{}: {} cannot be exchanged: {}", config_.name, robot_url_, error.message);
+        told_ = error.message;
+    }
 }
 
 }  // namespace metier::app

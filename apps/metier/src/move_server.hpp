@@ -1,34 +1,64 @@
 #pragma once
 
+#include <condition_variable>
 #include <memory>
+#include <mutex>
+#include <stop_token>
 #include <string>
+#include <thread>
+#include <vector>
 
+#include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/configuration/cell.hpp"
-#include "metier/motion/robot_model.hpp"
-#include "metier/remote_arm/remote_arm.hpp"
-#include "skill_host.hpp"
+#include "robot_moves.hpp"
+#include "stop_signal.hpp"
 
 namespace metier::app {
 
-/// The four move skills over the position stream of another server, whatever its robot is.
+/// The move skills over the position stream of another server, whatever its robot is.
 ///
-/// Threading: one thread starts and ends it.
+/// A robot that was found by discovery and stays away is exchanged for another one; a server that
+/// comes back with another arm, or other limits, is taken as a new one. As each robot has axes,
+/// ranges and limits of its own, the OPC UA server ends then and starts again at the same address.
+/// Threading: one thread starts and ends it; it waits some seconds for a thread that exchanges.
 class MoveServer {
 public:
-    /// Errors: the robot's server cannot be reached or does not tell enough, or the port is taken.
-    static Result<std::unique_ptr<MoveServer>> start(const configuration::ServerConfig& config);
+    /// Waits until a robot is found, 20 s at most, if one is to be found.
+    /// Errors: the robot's server cannot be reached or does not tell enough, or the port is taken;
+    ///         cancelled (a stop was asked for).
+    static Result<std::unique_ptr<MoveServer>> start(const configuration::ServerConfig& config,
+                                                     const StopSignal& stop);
+    ~MoveServer();
+    MoveServer(const MoveServer&) = delete;
+    MoveServer& operator=(const MoveServer&) = delete;
 
-    std::string url() const { return host_->url(); }
+    /// Stays the same.
+    const std::string& url() const noexcept { return url_; }
 
 private:
-    MoveServer(motion::RobotModel model, std::unique_ptr<remote_arm::RemoteArm> arm,
-               std::unique_ptr<SkillHost> host);
-    Result<void> offer(const std::string& name);
+    MoveServer(configuration::ServerConfig config, std::unique_ptr<RobotMoves> moves);
 
-    motion::RobotModel model_;
-    std::unique_ptr<remote_arm::RemoteArm> arm_;
-    std::unique_ptr<SkillHost> host_;
+    void run(const std::stop_token& stop);
+    bool awaitNext(const std::stop_token& stop);
+    /// Where another robot may be; nowhere while the present one stays.
+    std::vector<std::string> candidates() const;
+    Result<void> exchange(const std::string& robot_url);
+    void tell(const Error& error);
+
+    configuration::ServerConfig config_;  // with the port that the server has
+    const std::string url_;
+    const std::string announced_url_;
+    // Of the thread, once it runs.
+    std::unique_ptr<RobotMoves> moves_;             // null after an exchange that failed
+    std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs of each robot
+    std::string robot_url_;                         // of the present robot, or the last one
+    SteadyTime next_try_{};
+    std::string told_;  // the last complaint, which is not repeated
+
+    std::mutex mutex_;  // for the wait
+    std::condition_variable_any wake_;
+    std::jthread thread_;
 };
 
 }  // namespace metier::app

@@ -26,10 +26,10 @@ Result<void> checkWishes(const composition::Use& use, const std::string& server)
                                 "server of kind composition",
                                 use.server, server));
     }
-    if (!use.controller.empty() || use.reach) {
+    if (!use.controller.empty() || use.reach || use.payload) {
         return fail(Errc::invalid_argument,
-                    "controller and reach choose among skills of other servers; a server has one "
-                    "skill of a type");
+                    "controller, reach and payload choose among skills of other servers; a server "
+                    "has one skill of a type");
     }
     return {};
 }

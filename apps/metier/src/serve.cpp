@@ -89,6 +89,7 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
     config.state_folder = stateFolder(options, config.port);
     if (!options.robot.empty()) {
         config.move.robot = options.robot;
+        config.move.discover = false;
     }
     if (!options.discovery.empty()) {
         config.discovery.servers = options.discovery;
@@ -174,7 +175,7 @@ Exit runServe(const ServeOptions& options) {
         return serveUntil(stop, SynchronizedServer::start(*config));
     }
     resolveRobot(*cell, *config);
-    return serveUntil(stop, MoveServer::start(*config));
+    return serveUntil(stop, MoveServer::start(*config, stop));
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ Result<std::optional<process::NameLock>> lockPort(const configuration::ServerCon
 }  // namespace
 
 Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::ServerConfig& config,
-                                                     std::vector<std::string> nodesets) {
+                                                     std::vector<std::string> nodesets,
+                                                     std::shared_ptr<skill::ExecutionNames> names) {
     auto port_lock = lockPort(config);
     if (!port_lock) {
         return fail(port_lock.error());
@@ -106,6 +107,10 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
         return fail(published.error());
     }
     host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
+    host->names_ = std::move(names);
+    if (host->names_ != nullptr) {
+        return host;
+    }
     if (auto kept = host->keepNames(config); !kept) {
         return fail(kept.error());
     }

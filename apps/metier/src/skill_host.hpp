@@ -34,12 +34,15 @@ std::vector<DeviceSkill> sharing(const std::shared_ptr<skill::Resource>& resourc
 
 /// An OPC UA server with the skills of one arm: what all servers of arms have in common.
 ///
-/// Threading: one thread makes, starts and ends it.
+/// Threading: one thread at a time makes, starts and ends it.
 class SkillHost {
 public:
     /// \param nodesets besides those that every skill needs
-    static Result<std::unique_ptr<SkillHost>> create(const configuration::ServerConfig& config,
-                                                     std::vector<std::string> nodesets);
+    /// \param names of a server before this one in the same place, shared with the Programs; null:
+    ///              those of the state folder
+    static Result<std::unique_ptr<SkillHost>> create(
+        const configuration::ServerConfig& config, std::vector<std::string> nodesets,
+        std::shared_ptr<skill::ExecutionNames> names = nullptr);
     ~SkillHost();
     SkillHost(const SkillHost&) = delete;
     SkillHost& operator=(const SkillHost&) = delete;
@@ -48,6 +51,7 @@ public:
     opcua::AddressSpace& nodes() { return server_->nodes(); }
     opcua_skill::SkillServer& skills() { return *skills_; }
     std::string url() const { return server_->endpointUrl(); }
+    std::uint16_t port() const { return server_->port(); }
     /// As others are told.
     std::string announcedUrl() const { return app::announcedUrl(config_.discovery, url()); }
 

@@ -11,15 +11,17 @@ namespace {
 
 std::string nameOf(const OfferedSkill& skill) {
     const auto controller = skill.address.controllerName();
-    return fmt::format("{} ({}{}{}{})", skill.address.name, skill.server,
+    const auto& [reach, payload] = skill.arm;
+    return fmt::format("{} ({}{}{}{}{})", skill.address.name, skill.server,
                        controller.empty() ? "" : ", ", controller,
-                       skill.reach ? fmt::format(", reach {:.3f} m", *skill.reach) : "");
+                       reach ? fmt::format(", reach {:.3f} m", *reach) : "",
+                       payload ? fmt::format(", payload {} kg", *payload) : "");
 }
 
 std::string wishesOf(const composition::Use& use) {
     return fmt::format("{}{}{}{}{}", use.server.empty() ? "" : " of server ", use.server,
                        use.controller.empty() ? "" : " of controller ", use.controller,
-                       use.reach ? fmt::format(" with a reach of {} m", *use.reach) : "");
+                       textOf({use.reach, use.payload}));
 }
 
 std::string namesOf(const std::vector<OfferedSkill>& skills) {
@@ -44,7 +46,7 @@ Result<OfferedSkill> choose(const composition::Use& use, const std::vector<Offer
         of_type.begin(), of_type.end(), std::back_inserter(fitting), [&](const auto& skill) {
             return (use.server.empty() || skill.server == use.server) &&
                    (use.controller.empty() || skill.address.controllerName() == use.controller) &&
-                   (!use.reach || skill.reach.value_or(0.0) >= *use.reach);
+                   isAtLeast({use.reach, use.payload}, skill.arm);
         });
     if (fitting.empty()) {
         return fail(Errc::not_found,

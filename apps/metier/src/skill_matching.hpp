@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "arm_figures.hpp"
 #include "metier/base/error.hpp"
 #include "metier/composition/definition.hpp"
 #include "metier/skill_client/skill_finder.hpp"
@@ -15,7 +15,7 @@ struct OfferedSkill {
     std::string server;     ///< its name in the cell file, or its address
     std::size_t index = 0;  ///< of the server
     skill_client::SkillAddress address;
-    std::optional<double> reach{};  ///< of the arm that it moves [m]
+    ArmFigures arm{};  ///< that it moves
 };
 
 /// Whether a skill is of that type: by the BrowseName of its type, or, for composed skills, which

@@ -16,7 +16,7 @@ DiscoveredServer server(const std::string& name, const std::vector<std::string>&
         skill_client::SkillAddress address;
         address.name = skill;
         address.type_name = skill + "Type";
-        result.offered.push_back({name, 0, std::move(address), 0.8});
+        result.offered.push_back({name, 0, std::move(address), {0.9, 3.0}});
     }
     return result;
 }
@@ -75,6 +75,18 @@ TEST(DiscoveredServers, MustReachFarEnough) {
     EXPECT_FALSE(chooseAll({far}, server("a", {"Ptp"})));
     far.reach = 0.5;
     EXPECT_TRUE(chooseAll({far}, server("a", {"Ptp"})));
+}
+
+TEST(DiscoveredServers, MustCarryEnough) {
+    auto strong = use("ptp", "PtpType");
+    strong.payload = 4.0;
+    const auto refused = chooseAll({strong}, server("a", {"Ptp"}));
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message,
+                HasSubstr("no skill of type PtpType with a payload of 4 kg; of that type there "
+                          "are: Ptp (a, reach 0.900 m, payload 3 kg)"));
+    strong.payload = 3.0;
+    EXPECT_TRUE(chooseAll({strong}, server("a", {"Ptp"})));
 }
 
 }  // namespace

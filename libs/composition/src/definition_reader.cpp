@@ -147,12 +147,8 @@ Use readUse(const TomlTable& table, const std::string& alias) {
             .type = table.text("type"),
             .server = table.textOr("server", ""),
             .controller = table.textOr("controller", "")};
-    if (table.has("reach")) {
-        use.reach = table.number("reach");
-        if (*use.reach < 0) {
-            table.reject("reach", fmt::format("{} m is under 0 m", *use.reach));
-        }
-    }
+    use.reach = table.amount("reach", "m");
+    use.payload = table.amount("payload", "kg");
     use.reset = table.flagOr("reset", false);
     return use;
 }

@@ -54,12 +54,14 @@ TEST(CompositionFile, KnowsWishesOfUsedSkills) {
 server = "arm"
 controller = "UrArm"
 reach = 0.6
+payload = 1.5
 )" + kTwoSteps,
                                             "c.toml");
     ASSERT_TRUE(definition) << definition.error().message;
     EXPECT_EQ(definition->uses[1].server, "arm");
     EXPECT_EQ(definition->uses[1].controller, "UrArm");
     EXPECT_EQ(definition->uses[1].reach, 0.6);
+    EXPECT_EQ(definition->uses[1].payload, 1.5);
 }
 
 TEST(CompositionFile, TellsEverythingThatIsWrongAtOnceWithItsLine) {
@@ -86,7 +88,7 @@ timeout = -1
               "c.toml:4: parameters.Speed.unit: \"m/h\" is none of: \"\", \"m\", \"rad\", \"s\", "
               "\"N\", \"N m\", \"m/s\", \"rad/s\", \"m/s²\", \"rad/s²\", \"kg\"\n"
               "c.toml:5: uses.a: no step runs it\n"
-              "c.toml:7: uses.a.resett: unknown key; known here: controller, reach, "
+              "c.toml:7: uses.a.resett: unknown key; known here: controller, payload, reach, "
               "reset, server, type\n"
               "c.toml:8: step[0].run: \"b\" is not among [uses]: a\n"
               "c.toml:11: step[0].with.Target: there is no parameter \"Sped\"; there are: Speed\n"

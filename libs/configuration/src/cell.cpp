@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cell_reading.hpp"
+#include "component_reading.hpp"
 #include "metier/configuration/toml_file.hpp"
 
 namespace metier::configuration {
@@ -18,28 +19,7 @@ constexpr double kLongestSilence = 2.0;
 // A shorter limit is within what a busy machine lets a thread wait [s].
 constexpr double kShortestStall = 0.1;
 constexpr double kLongestStall = 2.0;
-// Arms are told of a start that is nearer too late, of a later one with more doubt [s].
-constexpr double kShortestStartDelay = 0.05;
-constexpr double kLongestStartDelay = 30.0;
-// A shorter absence is that of a server that is started again [s].
-constexpr double kShortestAbsence = 0.5;
-constexpr double kLongestAbsence = 3'600.0;
-constexpr const char* kDiscover = "discover";
 constexpr double kHeaviest = 10'000.0;  // payload [kg]
-
-std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
-                             const std::filesystem::path& folder) {
-    const auto text = table.text(key);
-    if (text.empty()) {
-        return {};
-    }
-    auto path = std::filesystem::absolute(folder / text).lexically_normal();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) {
-        table.reject(key, fmt::format("no such file: {}", path.string()));
-    }
-    return path;
-}
 
 DriverChoice readDriver(const TomlTable& table) {
     DriverChoice driver;
@@ -61,22 +41,6 @@ Tool readTool(const TomlTable& table) {
                                           frame.size()));
     }
     return tool;
-}
-
-std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char* key,
-                                             const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
-    for (const auto& file : table.texts(key)) {
-        files.push_back(std::filesystem::absolute(folder / file).lexically_normal());
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(files.back(), error)) {
-            table.reject(key, fmt::format("no such file: {}", files.back().string()));
-        }
-    }
-    if (files.empty()) {
-        table.reject(key, "needs at least one file");
-    }
-    return files;
 }
 
 ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
@@ -108,46 +72,6 @@ GripperServer readGripper(const TomlTable& table) {
     return gripper;
 }
 
-std::vector<UsedServer> readUsedServers(const TomlTable& table) {
-    std::vector<UsedServer> servers;
-    for (const auto& server : table.texts("servers")) {
-        servers.push_back({server, isAddress(server) ? server : ""});
-    }
-    return servers;
-}
-
-CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder) {
-    CompositionServer composition;
-    composition.files = readFiles(table, "compositions", folder);
-    for (const auto& server : textOrTexts(table, "servers")) {
-        if (server == kDiscover) {
-            composition.discover = true;
-        } else {
-            composition.servers.push_back({server, isAddress(server) ? server : ""});
-        }
-    }
-    composition.rebind_after = secondsWithin(table, "rebind_after", composition.rebind_after,
-                                             {kShortestAbsence, kLongestAbsence});
-    return composition;
-}
-
-SynchronizedServer readSynchronized(const TomlTable& table) {
-    SynchronizedServer synchronized;
-    synchronized.servers = readUsedServers(table);
-    synchronized.start_delay = secondsWithin(table, "start_delay", synchronized.start_delay,
-                                             {kShortestStartDelay, kLongestStartDelay});
-    std::set<std::string> names;
-    for (const auto& server : synchronized.servers) {
-        if (!names.insert(server.name).second) {
-            table.reject("servers", fmt::format("\"{}\" is there twice", server.name));
-        }
-    }
-    if (names.size() < 2) {
-        table.reject("servers", "needs at least two arms");
-    }
-    return synchronized;
-}
-
 VirtualController readVirtual(const TomlTable& table, const std::filesystem::path& folder) {
     VirtualController controller;
     controller.name = table.text("name");
@@ -160,6 +84,13 @@ VirtualController readVirtual(const TomlTable& table, const std::filesystem::pat
     }
     controller.settings = table.settings({"name", "type", "address", "control_port", "model"});
     return controller;
+}
+
+void checkDiscovers(bool wanted, const char* key, const Discovery& discovery,
+                    const TomlTable& table) {
+    if (wanted && !discovery.enabled()) {
+        table.reject(key, "\"discover\" needs discovery = \"opc.tcp://...\" or mdns = true");
+    }
 }
 
 ServerConfig readServer(const TomlTable& table, const std::filesystem::path& folder,
@@ -184,14 +115,12 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
         server.gripper = readGripper(table);
     } else if (kind == "move") {
         server.kind = ServerKind::move;
-        server.move.robot = table.text("robot");
+        server.move = readMove(table);
+        checkDiscovers(server.move.discover, "robot", server.discovery, table);
     } else if (kind == "composition") {
         server.kind = ServerKind::composition;
         server.composition = readComposition(table, folder);
-        if (server.composition.discover && !server.discovery.enabled()) {
-            table.reject("servers",
-                         "\"discover\" needs discovery = \"opc.tcp://...\" or mdns = true");
-        }
+        checkDiscovers(server.composition.discover, "servers", server.discovery, table);
     } else if (kind == "synchronized") {
         server.kind = ServerKind::synchronized;
         server.synchronized = readSynchronized(table);
@@ -255,7 +184,8 @@ void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& table
         } else {
             checkUsedServers(cell, i, tables[i]);
         }
-        if (server.kind != ServerKind::move || isAddress(server.move.robot)) {
+        if (server.kind != ServerKind::move || server.move.discover ||
+            isAddress(server.move.robot)) {
             continue;
         }
         const auto* robot = cell.find(server.move.robot);

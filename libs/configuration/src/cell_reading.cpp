@@ -17,6 +17,36 @@ bool isAddress(const std::string& server) {
     return server.starts_with("opc.tcp://");
 }
 
+std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
+                             const std::filesystem::path& folder) {
+    const auto text = table.text(key);
+    if (text.empty()) {
+        return {};
+    }
+    auto path = std::filesystem::absolute(folder / text).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        table.reject(key, fmt::format("no such file: {}", path.string()));
+    }
+    return path;
+}
+
+std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char* key,
+                                             const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& file : table.texts(key)) {
+        files.push_back(std::filesystem::absolute(folder / file).lexically_normal());
+        std::error_code error;
+        if (!std::filesystem::is_regular_file(files.back(), error)) {
+            table.reject(key, fmt::format("no such file: {}", files.back().string()));
+        }
+    }
+    if (files.empty()) {
+        table.reject(key, "needs at least one file");
+    }
+    return files;
+}
+
 double secondsWithin(const TomlTable& table, std::string_view key, double preset,
                      const Bounds& bounds) {
     const double value = table.numberOr(key, preset);

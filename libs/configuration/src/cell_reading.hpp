@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,16 @@ namespace metier::configuration {
 
 /// Whether it is an address of a server, and not its name.
 bool isAddress(const std::string& server);
+
+/// What "discover" means instead of a server: any that is found.
+constexpr const char* kDiscover = "discover";
+
+/// A file below `folder`, absolute.
+std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
+                             const std::filesystem::path& folder);
+/// One file or several, at least one.
+std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char* key,
+                                             const std::filesystem::path& folder);
 
 struct Bounds {
     double least;

@@ -276,6 +276,17 @@ std::string TomlTable::textOr(std::string_view key, std::string fallback) const 
     return has(key) ? text(key) : std::move(fallback);
 }
 
+std::optional<double> TomlTable::amount(std::string_view key, std::string_view unit) const {
+    if (!has(key)) {
+        return {};
+    }
+    const double value = number(key);
+    if (value < 0) {
+        reject(key, fmt::format("{} {} is under 0 {}", value, unit, unit));
+    }
+    return value;
+}
+
 double TomlTable::numberOr(std::string_view key, double fallback) const {
     return has(key) ? number(key) : fallback;
 }

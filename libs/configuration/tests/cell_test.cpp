@@ -389,6 +389,47 @@ servers = ["found", "discover"]
     EXPECT_EQ(cell->servers[1].composition.servers.size(), 1U);
 }
 
+TEST_F(CellFile, LetsAMoveComponentMoveWhateverRobotItFinds) {
+    const auto cell = load(R"(
+name = "demo"
+discovery = "opc.tcp://lds:4840"
+[[server]]
+name = "any"
+kind = "move"
+robot = "discover"
+reach = 0.6
+payload = 1.0
+rebind_after = 3
+)");
+    ASSERT_TRUE(cell) << cell.error().message;
+    const auto& move = cell->servers[0].move;
+    EXPECT_TRUE(move.discover);
+    EXPECT_EQ(move.robot, "");
+    EXPECT_EQ(move.reach, 0.6);
+    EXPECT_EQ(move.payload, 1.0);
+    EXPECT_EQ(move.rebind_after, 3.0);
+}
+
+TEST_F(CellFile, TakesWishesForARobotOnlyWhereItIsSought) {
+    const auto cell = load(R"(
+name = "demo"
+[[server]]
+name = "fixed"
+kind = "move"
+robot = "opc.tcp://arm:4840"
+reach = 0.6
+[[server]]
+name = "any"
+kind = "move"
+robot = "discover"
+reach = -1.0
+)");
+    ASSERT_FALSE(cell);
+    EXPECT_THAT(cell.error().message, HasSubstr("server[0].reach: unknown key"));
+    EXPECT_THAT(cell.error().message, HasSubstr("server[1].robot: \"discover\" needs"));
+    EXPECT_THAT(cell.error().message, HasSubstr("server[1].reach: -1 m is under 0 m"));
+}
+
 TEST_F(CellFile, RefusesToDiscoverWithoutAnybodyToAsk) {
     std::ofstream(folder_ / "skill.toml") << "\n";
     const auto cell = load(R"(

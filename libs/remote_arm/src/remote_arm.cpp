@@ -25,6 +25,10 @@ const opcua_skill::KinematicsData& RemoteArm::kinematics() const noexcept {
     return worker_->kinematics();
 }
 
+std::optional<RemoteArm::Absence> RemoteArm::absence() const {
+    return worker_->absence();
+}
+
 const device::ArmInfo& RemoteArm::info() const noexcept {
     return worker_->info();
 }

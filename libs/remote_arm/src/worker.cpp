@@ -66,6 +66,11 @@ Safety RemoteArm::Worker::safety() const {
     return safety_;
 }
 
+std::optional<RemoteArm::Absence> RemoteArm::Worker::absence() const {
+    const std::lock_guard lock(mutex_);
+    return absence_;
+}
+
 Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> source) {
     {
         const std::lock_guard lock(mutex_);
@@ -146,10 +151,36 @@ void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
         bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
         return;
     }
+    if (const auto change = changeIn(**session); !change.empty()) {
+        session->reset();  // without its stream nothing of it moves
+        noteAbsence(Absence{absence_->since, true});
+        enter({SafetyState::disconnected, fmt::format("{}: {}", info_.name, change)});
+        bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
+        return;
+    }
+    noteAbsence({});
     session_ = std::move(*session);
     fault_.clear();
     fault_is_limit_ = false;
     halted_by_stop_ = false;
+}
+
+std::string RemoteArm::Worker::changeIn(const StreamSession& session) const {
+    if (session.deviceName() != info_.name) {
+        return fmt::format("{} has another arm now, {}", options_.url, session.deviceName());
+    }
+    if (session.kinematics().axisCount() != kinematics_.axisCount()) {
+        return fmt::format("{} has another arm now, with {} axes instead of {}", options_.url,
+                           session.kinematics().axisCount(), kinematics_.axisCount());
+    }
+    return session.kinematics() == kinematics_
+               ? ""
+               : fmt::format("{} tells of other kinematics or limits than before", options_.url);
+}
+
+void RemoteArm::Worker::noteAbsence(std::optional<Absence> absence) {
+    const std::lock_guard lock(mutex_);
+    absence_ = absence;
 }
 
 void RemoteArm::Worker::observe() {
@@ -159,6 +190,7 @@ void RemoteArm::Worker::observe() {
     enter(judge(seen));
     if (!seen.broken.empty()) {
         stream_ = Stream::none;
+        noteAbsence(Absence{std::chrono::steady_clock::now()});
         letGo(EndCause::disconnected);
         session_.reset();
         return;

@@ -29,6 +29,7 @@ public:
     const device::ArmInfo& info() const noexcept { return info_; }
     device::ArmState state() const noexcept { return published_.read(); }
     device::Safety safety() const;
+    std::optional<Absence> absence() const;
     Result<void> attach(std::shared_ptr<device::SetPointSource> source);
     void stop() noexcept;
     Result<void> resetFault();
@@ -47,6 +48,9 @@ private:
 
     void run(const std::stop_token& stop);
     void reconnect(const std::stop_token& stop);
+    /// Empty, or in which way what a server tells now is not the arm that it was.
+    std::string changeIn(const StreamSession& session) const;
+    void noteAbsence(std::optional<Absence> absence);
     void observe();
     void observeStream(const StreamSession::Observed& seen);
     void observeArm(const StreamSession::Observed& seen);
@@ -80,6 +84,7 @@ private:
     std::shared_ptr<device::SetPointSource> pending_;
     std::optional<PendingReset> asked_reset_;
     device::Safety safety_;
+    std::optional<Absence> absence_;
     struct Listener {
         device::Arm::SafetyCallback callback;
     };

@@ -87,8 +87,9 @@ private:
     std::string text_;
 };
 
-/// Waits until the arm is in that safety state; false after 10 s.
-bool awaitSafety(RemoteArm& arm, SafetyState wanted) {
+/// Waits until what the arm says of its safety fits; false after 10 s.
+template <typename Fits>
+bool awaitSaying(RemoteArm& arm, Fits fits) {
     std::mutex mutex;
     std::condition_variable changed;
     const auto watch = arm.onSafetyChange([&](const device::Safety&) {
@@ -96,7 +97,16 @@ bool awaitSafety(RemoteArm& arm, SafetyState wanted) {
         changed.notify_all();
     });
     std::unique_lock lock(mutex);
-    return changed.wait_until(lock, soon(), [&] { return arm.safety().state == wanted; });
+    return changed.wait_until(lock, soon(), [&] { return fits(arm.safety()); });
+}
+
+bool awaitSafety(RemoteArm& arm, SafetyState wanted) {
+    return awaitSaying(arm, [&](const device::Safety& said) { return said.state == wanted; });
+}
+
+bool awaitText(RemoteArm& arm, const std::string& part) {
+    return awaitSaying(
+        arm, [&](const device::Safety& said) { return said.text.find(part) != std::string::npos; });
 }
 
 TEST(RemoteArm, ReadsWhatTheArmIsLikeFromItsServer) {
@@ -193,6 +203,28 @@ TEST(RemoteArm, TellsThatItsServerIsGoneAndFindsItAgain) {
     const auto again = std::make_shared<SmoothMove>(0.1, 60);
     ASSERT_TRUE(arm->attach(again));
     EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+TEST(RemoteArm, StaysAwayFromAnotherArmAtTheAddressOfTheFormer) {
+    auto served = std::make_unique<ServedArm>();
+    const auto port = served->port();
+    const auto arm = RemoteArm::connect({.url = served->url(), .retry_interval = 20ms}).value();
+    EXPECT_FALSE(arm->absence());
+    served.reset();
+    ASSERT_TRUE(awaitSafety(*arm, SafetyState::disconnected));
+    ASSERT_TRUE(arm->absence());
+    EXPECT_FALSE(arm->absence()->replaced);
+    served = std::make_unique<ServedArm>(port, 0.5);
+    ASSERT_TRUE(awaitText(*arm, "tells of other kinematics or limits than before"));
+    EXPECT_TRUE(arm->absence()->replaced);
+    const auto move = std::make_shared<SmoothMove>(0.1, 60);
+    const auto refused = arm->attach(move);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("other kinematics"));
+    served.reset();
+    served = std::make_unique<ServedArm>(port);
+    ASSERT_TRUE(awaitSafety(*arm, SafetyState::normal)) << "the former arm is welcome";
+    EXPECT_FALSE(arm->absence());
 }
 
 TEST(RemoteArm, StopsTheStreamOfItsServer) {

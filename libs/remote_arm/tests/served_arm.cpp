@@ -36,7 +36,7 @@ opcua::ThreeDFrame frameOf(const geometry::Pose& pose) {
     return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
 }
 
-opcua_skill::KinematicsData dataOf(const motion::RobotModel& model) {
+opcua_skill::KinematicsData dataOf(const motion::RobotModel& model, double fastest) {
     const auto& chain = model.chain();
     opcua_skill::KinematicsData data;
     data.base_from_first_joint = frameOf(chain.joints.front().parent_from_joint);
@@ -47,7 +47,7 @@ opcua_skill::KinematicsData dataOf(const motion::RobotModel& model) {
         data.joint_axes.push_back({joint.axis.x(), joint.axis.y(), joint.axis.z()});
         data.min_joint_position.push_back(joint.limits.lower);
         data.max_joint_position.push_back(joint.limits.upper);
-        data.max_joint_velocity.push_back(joint.limits.velocity);
+        data.max_joint_velocity.push_back(joint.limits.velocity * fastest);
         data.max_joint_acceleration.push_back(joint.limits.acceleration);
         data.max_joint_jerk.push_back(joint.limits.jerk);
     }
@@ -70,7 +70,7 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm) {
 
 }  // namespace
 
-ServedArm::ServedArm(std::uint16_t port) : model_(loadModel()) {
+ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
     arm_ = virtual_robots::JointSimulator::create(simulatorOptions(model_)).value();
     opcua::ServerOptions options;
     options.port = port;
@@ -82,8 +82,8 @@ ServedArm::ServedArm(std::uint16_t port) : model_(loadModel()) {
     const auto node = server_->nodes().browse(system.skills).value().front().target;
     auto* program = skills_->bind(node, std::move(skills.position_stream)).value();
     program->attach(*this);
-    const auto published = opcua_skill::publishKinematics(server_->nodes(), system, dataOf(model_),
-                                                          [this] { return stateOf(*arm_); });
+    const auto published = opcua_skill::publishKinematics(
+        server_->nodes(), system, dataOf(model_, fastest), [this] { return stateOf(*arm_); });
     EXPECT_TRUE(published);
     drive_ = std::make_unique<virtual_robots::SimulatorDrive>(*arm_);
     const auto started = server_->start();

@@ -19,7 +19,8 @@ namespace metier::remote_arm {
 class ServedArm : private skill::ProgramObserver {
 public:
     /// \param port 0: a free one
-    explicit ServedArm(std::uint16_t port = 0);
+    /// \param fastest of the greatest joint velocities that it tells of, a factor
+    explicit ServedArm(std::uint16_t port = 0, double fastest = 1.0);
     ~ServedArm() override;
     ServedArm(const ServedArm&) = delete;
     ServedArm& operator=(const ServedArm&) = delete;

@@ -112,10 +112,11 @@ struct Step {
 struct Use {
     std::uint32_t line = 0;
     std::string alias{};
-    std::string type{};             ///< BrowseName of its type, as "GraspGripperSkillType"
-    std::string server{};           ///< name of its server; empty: any
-    std::string controller{};       ///< name of its controller; empty: any
-    std::optional<double> reach{};  ///< least reach of the arm that it moves [m]
+    std::string type{};               ///< BrowseName of its type, as "GraspGripperSkillType"
+    std::string server{};             ///< name of its server; empty: any
+    std::string controller{};         ///< name of its controller; empty: any
+    std::optional<double> reach{};    ///< least reach of the arm that it moves [m]
+    std::optional<double> payload{};  ///< least mass that the arm may carry [kg]
     /// Whether it may be reset although it was not halted by the composed skill.
     bool reset = false;
 };

@@ -58,6 +58,12 @@ struct MoveComponent {
     /// Name of a server of the same file, or an `opc.tcp://` address.
     /// The component reads the arm's kinematic chain and limits from there.
     std::string robot;
+    /// Instead, whatever robot discovery tells of, and another one when that is gone.
+    bool discover = false;
+    std::optional<double> reach{};    ///< least of a robot that is found [m]
+    std::optional<double> payload{};  ///< least of a robot that is found [kg]
+    /// How long a robot that was found may be away before another one is used instead [s].
+    double rebind_after = 10.0;
 };
 
 /// A server that another one uses.

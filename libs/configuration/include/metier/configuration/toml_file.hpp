@@ -68,6 +68,8 @@ public:
 
     /// Values with a default. Noted if present and of another type.
     std::string textOr(std::string_view key, std::string fallback) const;
+    /// Nothing if there is no such key; under 0 is wrong.
+    std::optional<double> amount(std::string_view key, std::string_view unit) const;
     double numberOr(std::string_view key, double fallback) const;
 
     /// Whole number within [low, high].

@@ -30,6 +30,7 @@ struct KinematicsData {
     double payload = 0;
 
     std::size_t axisCount() const noexcept { return joint_axes.size(); }
+    friend bool operator==(const KinematicsData&, const KinematicsData&) = default;
 };
 
 /// What the Kinematics object tells about the arm right now.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "metier/device/arm.hpp"
@@ -22,7 +23,8 @@ struct RemoteArmOptions {
 /// The stream is started with the first motion and kept, at rest, for half a second after the
 /// last one, so that motions in close succession share it. Its loss, a lost connection, and every
 /// safety state but normal end the motion; the server's arm brakes by itself then. A lost server
-/// is sought again until it is back.
+/// is sought again until it is back. Should it tell of another arm then, or of other limits, the
+/// arm stays disconnected: whoever has planned for the former must begin anew.
 ///
 /// Threading: as device::Arm. One thread of its own is the cycle; it sends messages, so unlike
 /// that of a driver it may allocate. resetFault() waits, at most 500 ms.
@@ -36,8 +38,16 @@ public:
     RemoteArm(const RemoteArm&) = delete;
     RemoteArm& operator=(const RemoteArm&) = delete;
 
-    /// Chain and limits, as the server publishes them.
+    /// Chain and limits, as the server published them at connect().
     const opcua_skill::KinematicsData& kinematics() const noexcept;
+
+    /// Why the arm cannot be used, though its server may be.
+    struct Absence {
+        SteadyTime since;
+        bool replaced = false;  ///< its server is there again, with another arm or other limits
+    };
+    /// Nothing while the arm is there. Threads: any.
+    std::optional<Absence> absence() const;
 
     const device::ArmInfo& info() const noexcept override;
     device::ArmState state() const noexcept override;
