@@ -107,8 +107,7 @@ private:
         const bool own = use.server.empty() || use.server == server_.name_;
         for (auto* program : server_.host_->skills().programs()) {
             if (own && program->description().type == use.type) {
-                useLocal(use, *program);
-                return {};
+                return checkOwn(use).map([&] { useLocal(use, *program); });
             }
         }
         return findRemote(use);
