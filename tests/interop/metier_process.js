@@ -1,24 +1,35 @@
-// Starts a metier server as a user would, and ends it with the test.
+// Starts processes as a user would, and ends them with the test.
 'use strict';
 
-const { spawn } = require('node:child_process');
+const { execFile, spawn } = require('node:child_process');
 const readline = require('node:readline');
 
 const kReadyTimeoutMs = 30000;
+const kRunTimeoutMs = 30000;
 
-/**
- * @param {string[]} args of the metier command
- * @returns {Promise<{url: string, stop: () => Promise<void>}>} once clients may connect
- */
-function startServer(args) {
+function metierProgram() {
   const program = process.env.METIER;
   if (!program) {
     throw new Error('METIER must name the metier program');
   }
+  return program;
+}
+
+/**
+ * @typedef {{url: string, stop: () => Promise<void>, kill: () => Promise<void>}} Running stop() lets
+ *     it end in order, kill() does not; both wait until it has ended
+ */
+
+/**
+ * @param {string} program that prints "ready URL"
+ * @param {string[]} args
+ * @returns {Promise<Running>} once clients may connect
+ */
+function startProcess(program, args) {
   const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'inherit'] });
   const ended = new Promise((resolve) => child.once('exit', resolve));
-  const stop = async () => {
-    child.kill('SIGTERM');
+  const end = (signal) => async () => {
+    child.kill(signal);
     await ended;
   };
   return new Promise((resolve, reject) => {
@@ -29,11 +40,34 @@ function startServer(args) {
     readline.createInterface({ input: child.stdout }).once('line', (line) => {
       clearTimeout(timer);
       const match = /^ready (opc\.tcp:\S+)$/.exec(line);
-      return match ? resolve({ url: match[1], stop }) : reject(new Error(`unexpected: ${line}`));
+      return match
+        ? resolve({ url: match[1], stop: end('SIGTERM'), kill: end('SIGKILL') })
+        : reject(new Error(`unexpected: ${line}`));
     });
     child.once('error', reject);
     child.once('exit', (status) => reject(new Error(`ended with status ${status}`)));
   });
 }
 
-module.exports = { startServer };
+/** @param {string[]} args of the metier command @returns {Promise<Running>} */
+function startServer(args) {
+  return startProcess(metierProgram(), args);
+}
+
+/**
+ * @param {string[]} args of a metier command that ends by itself
+ * @returns {Promise<{status: number, output: string}>} what it printed and its exit status
+ */
+function runMetier(args) {
+  return new Promise((resolve, reject) => {
+    execFile(metierProgram(), args, { timeout: kRunTimeoutMs }, (error, output) => {
+      if (error && typeof error.code !== 'number') {
+        reject(error);
+        return;
+      }
+      resolve({ status: error ? error.code : 0, output });
+    });
+  });
+}
+
+module.exports = { runMetier, startProcess, startServer };

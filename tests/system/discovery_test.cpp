@@ -136,6 +136,24 @@ TEST_F(Find, ListsEverySkillOfADerivedTypeInJson) {
     }
 }
 
+TEST_F(Find, KnowsAComponentByItsTaskAndByTheArmThatItUses) {
+    ASSERT_TRUE(known_);
+    const auto component = serveDiscovered("swing", lds_.url());
+    ASSERT_TRUE(lds_.awaitKnown("swing"));
+    const auto found = find({"Sequence", "--reach", "0.6", "--payload", "5"});
+    EXPECT_EQ(found.status, 0);
+    const auto of_arm = " (of iiwa-a, " + strong_.url() + ")";
+    EXPECT_THAT(found.output, HasSubstr(component.url()));
+    EXPECT_THAT(found.output, HasSubstr("SwingSkill fits: term urn:metier:dictionary:sequence, "));
+    EXPECT_THAT(found.output, HasSubstr(" m >= 0.6 m" + of_arm));
+    EXPECT_THAT(found.output, HasSubstr("payload 7 kg >= 5 kg" + of_arm));
+    EXPECT_THAT(found.output,
+                HasSubstr("does not fit: no Sequence, its terms: urn:metier:dictionary:move"));
+    const auto too_far = find({"Sequence", "--reach", "5"});
+    EXPECT_EQ(too_far.status, 1);
+    EXPECT_THAT(too_far.output, HasSubstr(" m < 5 m" + of_arm));
+}
+
 TEST_F(Find, ListsWhoeverDoesNotAnswerAsSuch) {
     ASSERT_TRUE(known_);
     strong_.signal(SIGSTOP);

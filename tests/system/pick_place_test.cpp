@@ -60,6 +60,30 @@ protected:
     skill_client::SkillHandle skill_ = openSkill(*client_, kSkill);
 };
 
+TEST_F(PickingCell, IsFoundByItsTaskWithWhatItsArmCanDo) {
+    std::vector<std::string> arguments{"find",      "pick-place", "--reach", "0.6",
+                                       "--payload", "1",          "--json"};
+    for (const auto& [name, url] : cell_.urls()) {
+        arguments.insert(arguments.end(), {"--at", url});
+    }
+    const auto found = runMetier(arguments);
+    EXPECT_EQ(found.status, 0);
+    const auto json = nlohmann::json::parse(found.output);
+    std::map<std::string, nlohmann::json> by_url;
+    for (const auto& candidate : json.at("candidates")) {
+        by_url[candidate.at("url")] = candidate;
+    }
+    ASSERT_EQ(by_url.size(), 2U) << found.output;
+    const auto& composed = by_url[cell_.url("component")];
+    EXPECT_TRUE(composed.at("fits").get<bool>());
+    EXPECT_EQ(composed.at("term"), "urn:metier:dictionary:pick-and-place");
+    EXPECT_EQ(composed.at("payload"), 7.0);
+    EXPECT_EQ(composed.at("reach_note"), "of " + cell_.url("arm"));
+    const auto& own = by_url[cell_.url("edo")];
+    EXPECT_FALSE(own.at("fits").get<bool>());
+    EXPECT_THAT(own.at("reasons"), Contains("payload unknown"));
+}
+
 TEST_F(PickingCell, PlacesAPartAndTellsWhatItDid) {
     EXPECT_EQ(skill_.address().type_name, "PickPlaceSkillType");
     const auto placed = pick(partFrom(above(0.45, 0.0), 0.03));

@@ -12,12 +12,25 @@ struct ArmWishes {
     std::optional<double> payload{};  ///< at least [kg]
 };
 
-struct Verdict {
-    bool fits = true;
-    std::vector<std::string> reasons;  ///< one for each wish: "reach 0.85 m >= 0.5 m"
+/// A figure of an arm, and how it is known.
+struct ToldFigure {
+    std::optional<double> value{};
+    /// Who told it, or why nobody does: "of iiwa, opc.tcp://..."; empty: the skill's own server.
+    std::string note;
 };
 
-/// Whether an arm of that reach [m] and payload [kg] is as wished. What is unknown does not fit.
-Verdict judge(const ArmWishes& wishes, std::optional<double> reach, std::optional<double> payload);
+struct ToldFigures {
+    ToldFigure reach;    ///< [m]
+    ToldFigure payload;  ///< [kg]
+};
+
+struct Verdict {
+    bool fits = true;
+    /// One for each wish: "reach 0.85 m >= 0.5 m", with the note in brackets.
+    std::vector<std::string> reasons;
+};
+
+/// Whether an arm is as wished. What is unknown does not fit.
+Verdict judge(const ArmWishes& wishes, const ToldFigures& figures);
 
 }  // namespace metier::app

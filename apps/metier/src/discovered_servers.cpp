@@ -36,7 +36,7 @@ std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& di
                                               const std::vector<std::string>& but) {
     const auto announced = announcedServers(discovery, but);
     std::vector<DiscoveredServer> servers;
-    for (auto& surveyed : survey(announced, [](const auto& /*skill*/) { return true; })) {
+    for (auto& surveyed : survey(announced)) {
         if (!surveyed.skills) {
             spdlog::debug("{}: {}", surveyed.server.url, surveyed.skills.error().message);
             continue;

@@ -3,11 +3,15 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "candidate.hpp"
 #include "commands.hpp"
 #include "metier/discovery/search.hpp"
+#include "metier/opcua/text.hpp"
 #include "skill_survey.hpp"
+#include "used_arms.hpp"
 
 namespace metier::app {
 namespace {
@@ -16,7 +20,7 @@ namespace {
 constexpr const char* kLocalDiscovery = "opc.tcp://127.0.0.1:4840";
 
 struct FindOptions {
-    std::string type;
+    std::string task;  // a type or a term
     ArmWishes wishes;
     std::vector<std::string> at;
     std::vector<std::string> discovery;
@@ -44,27 +48,44 @@ std::string nameOf(const SurveyedSkill& skill) {
     return controller.empty() ? skill.address.name : controller + "/" + skill.address.name;
 }
 
-std::vector<std::string> reasonsOf(const SurveyedSkill& skill, const Verdict& verdict) {
-    auto reasons = verdict.reasons;
-    reasons.insert(reasons.begin(), fmt::format("type {}", fmt::join(skill.types, " < ")));
+/// Why a skill is a candidate, and how it is as to each wish.
+std::vector<std::string> reasonsOf(const SurveyedSkill& skill,
+                                   const std::optional<std::string>& term, const Verdict& verdict) {
+    std::vector<std::string> reasons;
+    if (term) {
+        reasons.push_back(fmt::format("term {}", *term));
+    }
+    reasons.push_back(fmt::format("type {}", fmt::join(skill.types, " < ")));
+    reasons.insert(reasons.end(), verdict.reasons.begin(), verdict.reasons.end());
     return reasons;
+}
+
+/// What the skills of a server are for, each term once.
+std::vector<std::string> termsOf(const std::vector<SurveyedSkill>& skills) {
+    std::set<std::string> terms;
+    for (const auto& skill : skills) {
+        terms.insert(skill.terms.begin(), skill.terms.end());
+    }
+    return {terms.begin(), terms.end()};
+}
+
+nlohmann::json orNull(const std::optional<double>& number) {
+    return number ? nlohmann::json(*number) : nlohmann::json();
 }
 
 /// Prints what was found; counts what fits.
 class Findings {
 public:
-    explicit Findings(const FindOptions& options) : options_(options) {}
+    Findings(const FindOptions& options, const std::vector<SurveyedServer>& servers)
+        : options_(options), servers_(servers) {}
 
-    void add(const SurveyedServer& server) {
-        if (!server.skills) {
-            silent_.push_back({{"url", server.server.url},
-                               {"name", server.server.name},
-                               {"error", server.skills.error().message}});
-            say(server.server, fmt::format("does not answer: {}", server.skills.error().message));
-            return;
-        }
-        for (const auto& skill : *server.skills) {
-            add(server.server, skill);
+    void addServers() {
+        for (std::size_t server = 0; server < servers_.size(); ++server) {
+            if (servers_[server].skills) {
+                addAnswer(server);
+            } else {
+                addSilent(servers_[server].server, servers_[server].skills.error().message);
+            }
         }
     }
     void addProblem(const Error& error) {
@@ -74,8 +95,10 @@ public:
 
     Exit finish() const {
         if (options_.json) {
-            const nlohmann::json all{
-                {"candidates", candidates_}, {"silent", silent_}, {"problems", problems_}};
+            const nlohmann::json all{{"candidates", candidates_},
+                                     {"others", others_},
+                                     {"silent", silent_},
+                                     {"problems", problems_}};
             fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
         } else if (fitting_ == 0) {
             fmt::print("nothing fits\n");
@@ -86,49 +109,80 @@ public:
 private:
     void say(const discovery::FoundServer& server, const std::string& text) const {
         if (!options_.json) {
-            fmt::print("{:<28} {:<12} {}\n", server.url, server.name, text);
+            fmt::print("{:<28} {:<12} {}\n", server.url, server.name, opcua::sanitise(text));
         }
     }
 
-    void add(const discovery::FoundServer& server, const SurveyedSkill& skill) {
-        const auto verdict = judge(options_.wishes, skill.arm.reach, skill.arm.payload);
-        const auto reasons = reasonsOf(skill, verdict);
+    void addSilent(const discovery::FoundServer& server, const std::string& error) {
+        silent_.push_back({{"url", server.url}, {"name", server.name}, {"error", error}});
+        say(server, fmt::format("does not answer: {}", error));
+    }
+
+    void addAnswer(std::size_t server) {
+        const auto& skills = *servers_[server].skills;
+        bool any = false;
+        for (std::size_t skill = 0; skill < skills.size(); ++skill) {
+            auto term = termOf(skills[skill], options_.task);
+            if (term || isA(skills[skill], options_.task)) {
+                addCandidate(server, skill, term);
+                any = true;
+            }
+        }
+        if (!any) {
+            addOther(servers_[server].server, termsOf(skills));
+        }
+    }
+
+    void addOther(const discovery::FoundServer& server, const std::vector<std::string>& terms) {
+        others_.push_back({{"url", server.url}, {"name", server.name}, {"terms", terms}});
+        say(server,
+            fmt::format("does not fit: no {}, its terms: {}", options_.task,
+                        terms.empty() ? "none" : fmt::format("{}", fmt::join(terms, ", "))));
+    }
+
+    void addCandidate(std::size_t index, std::size_t skill_index,
+                      const std::optional<std::string>& term) {
+        const auto& server = servers_[index].server;
+        const auto& skill = (*servers_[index].skills)[skill_index];
+        const auto figures = figuresOf(servers_, index, skill_index);
+        const auto verdict = judge(options_.wishes, figures);
+        const auto reasons = reasonsOf(skill, term, verdict);
         fitting_ += verdict.fits ? 1 : 0;
         say(server, fmt::format("{} {}: {}", nameOf(skill), verdict.fits ? "fits" : "does not fit",
                                 fmt::join(reasons, ", ")));
-        const auto or_null = [](const std::optional<double>& number) {
-            return number ? nlohmann::json(*number) : nlohmann::json();
-        };
         candidates_.push_back({{"url", server.url},
                                {"server", server.name},
                                {"told_by", server.told_by},
                                {"controller", skill.address.controllerName()},
                                {"skill", skill.address.name},
                                {"types", skill.types},
-                               {"reach", or_null(skill.arm.reach)},
-                               {"payload", or_null(skill.arm.payload)},
+                               {"terms", skill.terms},
+                               {"term", term ? nlohmann::json(*term) : nlohmann::json()},
+                               {"reach", orNull(figures.reach.value)},
+                               {"reach_note", figures.reach.note},
+                               {"payload", orNull(figures.payload.value)},
+                               {"payload_note", figures.payload.note},
                                {"fits", verdict.fits},
                                {"reasons", reasons}});
     }
 
     const FindOptions& options_;
+    const std::vector<SurveyedServer>& servers_;
     int fitting_ = 0;
     nlohmann::json candidates_ = nlohmann::json::array();
+    nlohmann::json others_ = nlohmann::json::array();
     nlohmann::json silent_ = nlohmann::json::array();
     nlohmann::json problems_ = nlohmann::json::array();
 };
 
 Exit runFind(const FindOptions& options) {
-    Findings findings(options);
     const auto sighting = searchFor(options);
+    const auto servers = survey(sighting.servers);
+    Findings findings(options, servers);
     for (const auto& problem : sighting.problems) {
         findings.addProblem(problem);
     }
-    for (const auto& server : survey(sighting.servers, [&](const SurveyedSkill& skill) {
-             return isA(skill, options.type);
-         })) {
-        findings.add(server);
-    }
+    findings.addServers();
     return findings.finish();
 }
 
@@ -138,11 +192,11 @@ void addFind(CLI::App& app, Exit& exit) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<FindOptions>();
     auto* command = app.add_subcommand(
-        "find", "Find skills of a type over the network, and say what fits and why");
+        "find", "Find skills for a task over the network, and say what fits and why");
     command
-        ->add_option("type", options->type,
-                     "Type of the skill, such as JointPtpMoveSkillType or, for all moves, "
-                     "MoveSkillType")
+        ->add_option("task", options->task,
+                     "What the skill is for, by a dictionary entry, such as pick-and-place, or its "
+                     "type, such as JointPtpMoveSkillType or, for all moves, MoveSkillType")
         ->required();
     command->add_option("--reach", options->wishes.reach, "Least reach of the arm [m]")
         ->check(CLI::PositiveNumber);

@@ -22,17 +22,16 @@ constexpr const char* kStream = "PositionStreamSkillType";
 
 bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {
     return server.skills &&
-           std::any_of(server.skills->begin(), server.skills->end(),
-                       [&](const auto& skill) { return isAtLeast(least, skill.arm); });
+           std::any_of(server.skills->begin(), server.skills->end(), [&](const auto& skill) {
+               return isA(skill, kStream) && isAtLeast(least, skill.arm);
+           });
 }
 
 /// Addresses of servers with a position stream, and reach and payload enough.
 std::vector<std::string> findRobots(const configuration::ServerConfig& config,
                                     const std::vector<std::string>& but) {
-    const auto surveyed = survey(announcedServers(config.discovery, but),
-                                 [](const SurveyedSkill& skill) { return isA(skill, kStream); });
     std::vector<std::string> urls;
-    for (const auto& server : surveyed) {
+    for (const auto& server : survey(announcedServers(config.discovery, but))) {
         if (hasStreamFor(server, {config.move.reach, config.move.payload})) {
             urls.push_back(server.server.url);
         }

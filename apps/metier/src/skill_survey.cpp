@@ -24,31 +24,85 @@ opcua::ClientOptions optionsFor(std::chrono::milliseconds limit) {
     return options;
 }
 
-opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client,
-                                                    const IsWanted& is_wanted) {
-    auto found = skill_client::findSkills(client);
-    if (!found) {
-        return tl::unexpected(std::move(found.error()));
-    }
-    std::vector<SurveyedSkill> skills;
-    std::map<opcua::NodeId, ArmFigures> arms;  // by controller
-    for (auto& address : *found) {
-        auto types = skill_client::typeNames(client, address);
-        if (!types) {
-            return tl::unexpected(std::move(types.error()));
+/// What is asked about the skills of one server; about types and arms once each.
+class Questions {
+public:
+    Questions(opcua::Client& client, const skill_client::ReferenceReader& references)
+        : client_(client), references_(references) {}
+
+    opcua::Answer<SurveyedSkill> ask(skill_client::SkillAddress address) {
+        auto own = references_.read(address.node);
+        const auto purpose = own ? purposeOf(address) : tl::unexpected(own.error());
+        if (!purpose) {
+            return tl::unexpected(purpose.error());
         }
-        SurveyedSkill skill{std::move(address), std::move(*types)};
-        if (!is_wanted(skill)) {
-            continue;
-        }
+        SurveyedSkill skill{std::move(address), (*purpose)->types, std::move(own->terms),
+                            std::move(own->uses)};
+        append(skill.terms, (*purpose)->terms);
         if (const auto* controller = skill.address.controller()) {
-            const auto [arm, is_new] = arms.try_emplace(controller->node);
+            const auto [arm, is_new] = arms_.try_emplace(controller->node);
             if (is_new) {
-                arm->second = figuresOfArm(client, skill.address);
+                arm->second = figuresOfArm(client_, skill.address);
             }
             skill.arm = arm->second;
         }
-        skills.push_back(std::move(skill));
+        return skill;
+    }
+
+private:
+    /// What a type and all that it is derived from tell.
+    struct Purpose {
+        std::vector<std::string> types;
+        std::vector<std::string> terms;
+    };
+
+    static void append(std::vector<std::string>& terms, const std::vector<std::string>& more) {
+        std::copy_if(more.begin(), more.end(), std::back_inserter(terms), [&](const auto& term) {
+            return std::find(terms.begin(), terms.end(), term) == terms.end();
+        });
+    }
+
+    opcua::Answer<const Purpose*> purposeOf(const skill_client::SkillAddress& address) {
+        const auto [purpose, is_new] = purposes_.try_emplace(address.type);
+        if (!is_new) {
+            return &purpose->second;
+        }
+        const auto types = skill_client::typeChain(client_, address);
+        if (!types) {
+            return tl::unexpected(types.error());
+        }
+        for (const auto& type : *types) {
+            const auto references = references_.read(type.node);
+            if (!references) {
+                return tl::unexpected(references.error());
+            }
+            purpose->second.types.push_back(type.name);
+            append(purpose->second.terms, references->terms);
+        }
+        return &purpose->second;
+    }
+
+    opcua::Client& client_;
+    const skill_client::ReferenceReader& references_;
+    std::map<opcua::NodeId, Purpose> purposes_;  // by type
+    std::map<opcua::NodeId, ArmFigures> arms_;   // by controller
+};
+
+opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client) {
+    auto found = skill_client::findSkills(client);
+    const auto references = found ? skill_client::ReferenceReader::create(client)
+                                  : tl::unexpected(std::move(found.error()));
+    if (!references) {
+        return tl::unexpected(references.error());
+    }
+    Questions questions(client, *references);
+    std::vector<SurveyedSkill> skills;
+    for (auto& address : *found) {
+        auto skill = questions.ask(std::move(address));
+        if (!skill) {
+            return tl::unexpected(std::move(skill.error()));
+        }
+        skills.push_back(std::move(*skill));
     }
     return skills;
 }
@@ -56,7 +110,7 @@ opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client,
 /// The questions to one server, which another thread may cut short.
 class Interview {
 public:
-    Result<std::vector<SurveyedSkill>> ask(const std::string& url, const IsWanted& is_wanted,
+    Result<std::vector<SurveyedSkill>> ask(const std::string& url,
                                            std::chrono::milliseconds limit) {
         auto client = opcua::Client::connect(url, optionsFor(limit));
         if (!client) {
@@ -69,7 +123,7 @@ public:
             }
             client_ = std::move(*client);
         }
-        auto skills = askSkills(*client_, is_wanted);
+        auto skills = askSkills(*client_);
         const std::lock_guard lock(mutex_);
         if (skills && !cut_) {
             return std::move(*skills);
@@ -100,15 +154,14 @@ private:
 /// Servers that are asked at the same time, each by a thread of its own.
 class Round {
 public:
-    Round(std::vector<discovery::FoundServer> servers, const IsWanted& is_wanted,
-          std::chrono::milliseconds limit)
+    Round(std::vector<discovery::FoundServer> servers, std::chrono::milliseconds limit)
         : servers_(std::move(servers)),
           interviews_(servers_.size()),
           answers_(servers_.size()),
           open_(servers_.size()) {
         for (std::size_t i = 0; i < servers_.size(); ++i) {
-            threads_.emplace_back([this, i, &is_wanted, limit] {
-                auto answer = interviews_[i].ask(servers_[i].url, is_wanted, limit);
+            threads_.emplace_back([this, i, limit] {
+                auto answer = interviews_[i].ask(servers_[i].url, limit);
                 const std::lock_guard lock(mutex_);
                 answers_[i] = std::move(answer);
                 --open_;
@@ -154,16 +207,58 @@ private:
 }  // namespace
 
 std::vector<SurveyedServer> survey(const std::vector<discovery::FoundServer>& servers,
-                                   const IsWanted& is_wanted, std::chrono::milliseconds limit) {
+                                   std::chrono::milliseconds limit) {
     std::vector<SurveyedServer> result;
     for (std::size_t begin = 0; begin < servers.size(); begin += kAtOnce) {
         const auto first = servers.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto count = std::min(kAtOnce, servers.size() - begin);
-        Round round({first, first + static_cast<std::ptrdiff_t>(count)}, is_wanted, limit);
+        Round round({first, first + static_cast<std::ptrdiff_t>(count)}, limit);
         auto answers = round.take(std::chrono::steady_clock::now() + limit);
         std::move(answers.begin(), answers.end(), std::back_inserter(result));
     }
     return result;
+}
+
+namespace {
+
+char lower(char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char letter) { return lower(letter); });
+    return text;
+}
+
+/// Its words without "and", each followed by a "-".
+std::string plain(std::string_view text) {
+    std::string result;
+    std::string word;
+    for (const char letter : std::string(text) + " ") {
+        if (letter != '-' && letter != '_' && letter != ' ') {
+            word += lower(letter);
+            continue;
+        }
+        if (!word.empty() && word != "and") {
+            result += word + "-";
+        }
+        word.clear();
+    }
+    return result;
+}
+
+}  // namespace
+
+std::optional<std::string> termOf(const SurveyedSkill& skill, const std::string& wish) {
+    const auto names = [&wish](const std::string& term) {
+        const auto end = term.find_last_of(":/#");
+        const auto last =
+            plain(std::string_view(term).substr(end == std::string::npos ? 0 : end + 1));
+        return lower(term) == lower(wish) || (!last.empty() && last == plain(wish));
+    };
+    const auto found = std::find_if(skill.terms.begin(), skill.terms.end(), names);
+    return found == skill.terms.end() ? std::nullopt : std::optional(*found);
 }
 
 bool isA(const SurveyedSkill& skill, const std::string& type) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +9,7 @@
 #include "metier/base/error.hpp"
 #include "metier/discovery/search.hpp"
 #include "metier/skill_client/skill_finder.hpp"
+#include "metier/skill_client/skill_references.hpp"
 
 namespace metier::app {
 
@@ -16,26 +17,30 @@ namespace metier::app {
 struct SurveyedSkill {
     skill_client::SkillAddress address;
     std::vector<std::string> types;  ///< its own, and those that it is derived from
-    ArmFigures arm{};                ///< that it moves
+    /// What it is for: identifiers of dictionary entries, its own, then those of its types.
+    std::vector<std::string> terms{};
+    std::vector<skill_client::UsedSkill> uses{};
+    ArmFigures arm{};  ///< of what it moves; of nothing that it uses
 };
 
 struct SurveyedServer {
     discovery::FoundServer server;
-    Result<std::vector<SurveyedSkill>> skills;  ///< those that were wanted
+    Result<std::vector<SurveyedSkill>> skills;
 };
-
-/// Whether anything but its address and types is to be asked about a skill. Any thread.
-using IsWanted = std::function<bool(const SurveyedSkill&)>;
 
 /// Asks servers for their skills, many at the same time. Whoever has not answered everything
 /// within `limit` has an error instead.
 /// Threads: any; waits, about a second longer than `limit` for each 32 servers at most.
 std::vector<SurveyedServer> survey(const std::vector<discovery::FoundServer>& servers,
-                                   const IsWanted& is_wanted,
                                    std::chrono::milliseconds limit = std::chrono::seconds(2));
 
 /// Whether a skill is of a type, with or without its ending "Type", or of one derived from it; or
 /// a composed skill of that name.
 bool isA(const SurveyedSkill& skill, const std::string& type);
+
+/// The term of a skill that a wish names: by its whole identifier, "urn:metier:dictionary:grasp",
+/// or by the last part of it. Capitals do not matter, in the last part neither do "-", "_", spaces
+/// and the word "and": "Pick place" is "pick-and-place". Nothing if there is none.
+std::optional<std::string> termOf(const SurveyedSkill& skill, const std::string& wish);
 
 }  // namespace metier::app

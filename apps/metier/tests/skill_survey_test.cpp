@@ -5,14 +5,17 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "metier/opcua/server.hpp"
+#include "metier/opcua_skill/skill_dictionary.hpp"
 
 namespace metier::app {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -22,6 +25,7 @@ std::unique_ptr<opcua::Server> serveIiwa() {
     options.port = 0;
     options.nodesets = {"device", "robotics", "metier", "iiwa"};
     auto server = opcua::Server::create(std::move(options)).value();
+    EXPECT_TRUE(opcua_skill::publishDictionary(server->nodes()));
     EXPECT_TRUE(server->start());
     return server;
 }
@@ -54,8 +58,7 @@ private:
 
 TEST(SkillSurvey, TellsTypesWithAllThatTheyAreDerivedFrom) {
     const auto server = serveIiwa();
-    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}},
-                                [](const auto& skill) { return isA(skill, "MoveSkillType"); });
+    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}});
     ASSERT_THAT(servers, SizeIs(1));
     ASSERT_TRUE(servers[0].skills) << servers[0].skills.error().message;
     EXPECT_FALSE(servers[0].skills->empty());
@@ -72,12 +75,11 @@ TEST(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
     const Mute first;
     const Mute second;
     const auto begin = std::chrono::steady_clock::now();
-    const auto servers = survey(
-        {{first.url(), "", ""},
-         {server->endpointUrl(), "", ""},
-         {second.url(), "", ""},
-         {"opc.tcp://127.0.0.1:1", "", ""}},
-        [](const auto& /*skill*/) { return true; }, 3s);
+    const auto servers = survey({{first.url(), "", ""},
+                                 {server->endpointUrl(), "", ""},
+                                 {second.url(), "", ""},
+                                 {"opc.tcp://127.0.0.1:1", "", ""}},
+                                3s);
     const auto took = std::chrono::steady_clock::now() - begin;
     ASSERT_THAT(servers, SizeIs(4));
     EXPECT_FALSE(servers[0].skills);
@@ -89,7 +91,7 @@ TEST(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
 }
 
 TEST(SkillSurvey, OfNobodyIsEmpty) {
-    EXPECT_THAT(survey({}, [](const auto& /*skill*/) { return true; }), IsEmpty());
+    EXPECT_THAT(survey({}), IsEmpty());
 }
 
 TEST(SkillSurvey, KnowsComposedSkillsByTheirName) {
@@ -99,6 +101,46 @@ TEST(SkillSurvey, KnowsComposedSkillsByTheirName) {
     EXPECT_TRUE(isA(skill, "VisitSkillType"));
     EXPECT_TRUE(isA(skill, "VisitSkill"));
     EXPECT_FALSE(isA(skill, "Visit"));
+}
+
+TEST(SkillSurvey, TellsWhatSkillsAreForByTheirTypes) {
+    const auto server = serveIiwa();
+    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}});
+    ASSERT_TRUE(servers[0].skills) << servers[0].skills.error().message;
+    const auto& skills = *servers[0].skills;
+    const auto line = std::find_if(skills.begin(), skills.end(), [](const auto& skill) {
+        return skill.address.name == "CartesianLinearMoveSkill";
+    });
+    ASSERT_NE(line, skills.end());
+    EXPECT_THAT(line->terms,
+                ElementsAre("urn:metier:dictionary:move-straight", "urn:metier:dictionary:move"));
+}
+
+SurveyedSkill picker() {
+    SurveyedSkill skill;
+    skill.terms = {"urn:metier:dictionary:pick-and-place", "http://maker.com/terms#Stack_Parts",
+                   "0112/2///61987#ABA565#009"};
+    return skill;
+}
+
+TEST(TermOfASkill, IsNamedByItsWholeIdentifier) {
+    EXPECT_EQ(termOf(picker(), "urn:metier:dictionary:pick-and-place"), picker().terms[0]);
+    EXPECT_EQ(termOf(picker(), "URN:metier:dictionary:Pick-And-Place"), picker().terms[0]);
+    EXPECT_EQ(termOf(picker(), "0112/2///61987#aba565#009"), picker().terms[2]);
+}
+
+TEST(TermOfASkill, IsNamedByItsLastPart) {
+    for (const auto* wish : {"pick-and-place", "pick-place", "Pick_Place", "PICK AND PLACE"}) {
+        EXPECT_EQ(termOf(picker(), wish), picker().terms[0]) << wish;
+    }
+    EXPECT_EQ(termOf(picker(), "stack-parts"), picker().terms[1]);
+}
+
+TEST(TermOfASkill, IsNotNamedByLess) {
+    for (const auto* wish : {"", "-", "and", "pick", "place", "pickplace", "place-pick", "metier",
+                             "dictionary:pick-place", "urn:other:pick-and-place"}) {
+        EXPECT_EQ(termOf(picker(), wish), std::nullopt) << wish;
+    }
 }
 
 }  // namespace

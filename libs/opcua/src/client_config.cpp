@@ -9,6 +9,7 @@
 
 #include "convert.hpp"
 #include "metier/opcua/text.hpp"
+#include "security_config.hpp"
 
 namespace metier::opcua {
 
@@ -50,23 +51,33 @@ void ClientComplaints::log(void* context, UA_LogLevel level, UA_LogCategory /*ca
     static_cast<ClientComplaints*>(context)->last_ = sanitise(text.data());
 }
 
-UA_ClientConfig makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
-                                 ClientPlugins plugins) {
+Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
+                                         ClientPlugins plugins) {
     UA_ClientConfig config{};
     config.eventLoop = plugins.loop;
     config.externalEventLoop = false;
     config.logging = plugins.logger;
-    toNative(options.application_uri, config.clientDescription.applicationUri);
+    const auto& uri = plugins.peers != nullptr
+                          ? options.security->identity.certificate.applicationUri()
+                          : options.application_uri;
+    toNative(uri, config.clientDescription.applicationUri);
     toNative(options.application_name, config.clientDescription.applicationName.text);
     toNative(options.application_name, config.sessionName);
-    toNative(kNoSecurity, config.securityPolicyUri);
-    config.securityMode = UA_MESSAGESECURITYMODE_NONE;
     config.noSession = purpose == ClientPurpose::discovery;
     config.noNewSession = true;
     setTimes(options, config);
     if (options.user) {
         setUser(*options.user, config);
     }
+    if (plugins.peers != nullptr) {
+        if (auto secured = addSecurity(*options.security, *plugins.peers, config); !secured) {
+            UA_ClientConfig_clear(&config);
+            return fail(secured.error());
+        }
+        return config;
+    }
+    toNative(kNoSecurity, config.securityPolicyUri);
+    config.securityMode = UA_MESSAGESECURITYMODE_NONE;
     checkAllocated(UA_ClientConfig_setDefault(&config));
     return config;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "metier/opcua/client.hpp"
+#include "peer_check.hpp"
 
 namespace metier::opcua {
 
@@ -38,11 +39,13 @@ enum class ClientPurpose {
 struct ClientPlugins {
     UA_EventLoop* loop = nullptr;
     UA_Logger* logger = nullptr;
+    PeerCheck* peers = nullptr;  ///< for a session with security
 };
 
-/// The stack's configuration for one client without security. Who calls owns it, until it is
-/// handed to UA_Client_newWithConfig().
-UA_ClientConfig makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
-                                 ClientPlugins plugins);
+/// The stack's configuration for one client. Who calls owns it, until it is handed to
+/// UA_Client_newWithConfig().
+/// Errors: invalid_argument (the own certificate).
+Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
+                                         ClientPlugins plugins);
 
 }  // namespace metier::opcua

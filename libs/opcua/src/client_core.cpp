@@ -70,6 +70,13 @@ ClientCore::~ClientCore() {
 
 Answer<> ClientCore::connect(const std::string& url) {
     url_ = url;
+    if (options_.security && purpose_ == ClientPurpose::session) {
+        auto peers = PeerCheck::create(options_.security->trust_folder, {});
+        if (!peers) {
+            return failed(status::kBadResourceUnavailable, peers.error().message);
+        }
+        peers_ = std::move(*peers);
+    }
     auto outcome = connected_.get_future();
     thread_ = std::jthread([this] { run(); });
     const auto deadline = Deadline::in(options_.connect_timeout + kGoodbye);
@@ -184,21 +191,26 @@ void ClientCore::run() {
 
 /// Lets the stack connect, with the client that it has or a new one.
 void ClientCore::connectNow() {
+    connecting_ = &calls_.add(steady_clock::now() + options_.connect_timeout,
+                              [this](const ClientCalls::Ending& ending) { refuse(ending.status); });
     if (!client_) {
         auto* loop = loop_.handle();
         loop->start(loop);  // a client of the stack stops it when it ends
-        auto config = makeClientConfig(options_, purpose_, {loop, complaints_.logger()});
-        config.clientContext = this;
-        config.stateCallback = &onState;
-        config.inactivityCallback = &onInactivity;
-        client_.reset(UA_Client_newWithConfig(&config));
+        auto config =
+            makeClientConfig(options_, purpose_, {loop, complaints_.logger(), peers_.get()});
+        if (!config) {
+            settle(failed(status::kBadInvalidArgument, config.error().message));
+            return;
+        }
+        config->clientContext = this;
+        config->stateCallback = &onState;
+        config->inactivityCallback = &onInactivity;
+        client_.reset(UA_Client_newWithConfig(&*config));
     }
     UA_Client_getConfig(client_.get())->noReconnect = false;
     channel_ = UA_SECURECHANNELSTATE_CLOSED;
     attempts_ = 0;
     identifying_ = false;
-    connecting_ = &calls_.add(steady_clock::now() + options_.connect_timeout,
-                              [this](const ClientCalls::Ending& ending) { refuse(ending.status); });
     const StatusCode status(purpose_ == ClientPurpose::session
                                 ? UA_Client_connectAsync(client_.get(), url_.c_str())
                                 : UA_Client_connectSecureChannelAsync(client_.get(), url_.c_str()));
@@ -320,8 +332,10 @@ void ClientCore::settle(Answer<> outcome) {
 void ClientCore::refuse(StatusCode status) {
     Failure failure{
         errorFrom(status, "connecting to " + url_), status, {}, Failure::Delivery::not_sent};
-    if (!complaints_.last().empty()) {
-        failure.message += fmt::format(" ({})", complaints_.last());
+    const auto& why = peers_ != nullptr && !peers_->lastRefusal().empty() ? peers_->lastRefusal()
+                                                                          : complaints_.last();
+    if (!why.empty()) {
+        failure.message += fmt::format(" ({})", why);
     }
     settle(tl::unexpected(std::move(failure)));
 }

@@ -148,6 +148,7 @@ private:
     std::mutex joining_;
 
     // The own thread's, once it runs.
+    std::unique_ptr<PeerCheck> peers_;  // of a session with security
     ClientComplaints complaints_;
     AsioEventLoop loop_;
     ClientCalls calls_;

@@ -37,6 +37,12 @@ UA_Byte* stackPointer(const void* data) noexcept {
 
 }  // namespace
 
+std::string_view bytesOf(const UA_ByteString& bytes) noexcept {
+    return {
+        reinterpret_cast<const char*>(bytes.data),  // NOLINT(*-reinterpret-cast): the same bytes
+        bytes.length};
+}
+
 UA_String viewOf(std::string_view text) noexcept {
     return UA_String{text.size(), stackPointer(text.data())};
 }

@@ -43,6 +43,8 @@ inline void checkAllocated(UA_StatusCode code) {
 
 /// The stack's view of our text or id; valid as long as what it was made from.
 UA_String viewOf(std::string_view text) noexcept;
+/// As they are; valid as long as the bytes.
+std::string_view bytesOf(const UA_ByteString& bytes) noexcept;
 UA_NodeId viewOf(const NodeId& id) noexcept;
 UA_QualifiedName viewOf(const QualifiedName& name) noexcept;
 UA_LocalizedText viewOf(const LocalizedText& text) noexcept;

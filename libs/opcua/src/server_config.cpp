@@ -8,6 +8,7 @@
 
 #include "convert.hpp"
 #include "nodesets.hpp"
+#include "security_config.hpp"
 
 namespace metier::opcua {
 
@@ -96,6 +97,22 @@ void setSubscriptionLimits(const ServerLimits& limits, UA_ServerConfig& config) 
     config.maxRetransmissionQueueSize = limits.retransmission_queue;
 }
 
+Result<> checkSecurity(const ServerOptions& options) {
+    if (!options.security) {
+        return {};
+    }
+    const auto& certificate = options.security->credentials.identity.certificate;
+    if (certificate.applicationUri() != options.application_uri) {
+        return fail(
+            Errc::invalid_argument,
+            fmt::format("the certificate {} is of \"{}\", not of \"{}\"", certificate.thumbprint(),
+                        certificate.applicationUri(), options.application_uri));
+    }
+    return options.security->authenticate
+               ? Result<>()
+               : fail(Errc::invalid_argument, "a closed server needs to know its users");
+}
+
 }  // namespace
 
 std::string endpointUrlOf(const std::string& address, std::uint16_t port) {
@@ -108,7 +125,7 @@ Result<> checkOptions(const ServerOptions& options) {
         return fail(Errc::invalid_argument, "no address to bind to");
     }
     for (const auto& address : options.bind_addresses) {
-        if (!isLoopback(address)) {
+        if (!options.security && !isLoopback(address)) {
             return fail(Errc::invalid_argument,
                         fmt::format("'{}' is not a loopback address; a server without security "
                                     "is not offered to a network",
@@ -122,6 +139,9 @@ Result<> checkOptions(const ServerOptions& options) {
     if (options.discovery && options.discovery->forget_after.count() < 1) {
         return fail(Errc::invalid_argument, "registrations of less than 1 s");
     }
+    if (auto right = checkSecurity(options); !right) {
+        return right;
+    }
     const auto& limits = options.limits;
     if (limits.sessions == 0 || limits.secure_channels < limits.sessions) {
         return fail(Errc::invalid_argument,
@@ -131,18 +151,15 @@ Result<> checkOptions(const ServerOptions& options) {
     return checkNodesets(options.nodesets);
 }
 
-Result<> applyOptions(const ServerOptions& options, UA_ServerConfig& config) {
-    auto code = UA_ServerConfig_setBasics_withPort(&config, options.port);
-    if (code == UA_STATUSCODE_GOOD) {
-        code = UA_ServerConfig_addSecurityPolicyNone(&config, nullptr);
-    }
-    if (code == UA_STATUSCODE_GOOD) {
-        code = UA_ServerConfig_addEndpoint(
-            &config, viewOf("http://opcfoundation.org/UA/SecurityPolicy#None"),
-            UA_MESSAGESECURITYMODE_NONE);
-    }
+Result<> applyOptions(const ServerOptions& options, PeerCheck* peers, UA_ServerConfig& config) {
+    const auto code = UA_ServerConfig_setBasics_withPort(&config, options.port);
     if (code != UA_STATUSCODE_GOOD) {
         return fail(errorFrom(StatusCode(code), "configure the server"));
+    }
+    auto secured = options.security ? addSecurity(options.security->credentials, *peers, config)
+                                    : addNoSecurity(config);
+    if (!secured) {
+        return secured;
     }
     setDescription(options, config);
     if (options.discovery) {

@@ -3,6 +3,7 @@
 #include <open62541/server.h>
 
 #include "metier/opcua/server.hpp"
+#include "peer_check.hpp"
 
 namespace metier::opcua {
 
@@ -10,8 +11,9 @@ namespace metier::opcua {
 Result<> checkOptions(const ServerOptions& options);
 
 /// Sets what the options say. The logger and the event loop must be set already.
-/// Errors: internal (the stack).
-Result<> applyOptions(const ServerOptions& options, UA_ServerConfig& config);
+/// \param peers for a closed server; must outlive it
+/// Errors: internal (the stack); invalid_argument (the identity).
+Result<> applyOptions(const ServerOptions& options, PeerCheck* peers, UA_ServerConfig& config);
 
 /// The URL a client on this machine uses. \param port the real one
 std::string endpointUrlOf(const std::string& address, std::uint16_t port);

@@ -92,7 +92,7 @@ ServerCore::ServerCore(ServerOptions options)
     : options_(std::move(options)),
       log_(options_.logger),
       loop_(loopOptions(options_, log_.handle())),
-      sessions_(options_.users),
+      sessions_(options_),
       hooks_(*this),
       nodes_(*this) {}
 
@@ -110,7 +110,15 @@ Result<> ServerCore::build() {
     config.logging = log_.handle();
     config.eventLoop = loop_.handle();
     config.context = this;
-    if (auto applied = applyOptions(options_, config); !applied) {
+    if (options_.security) {
+        auto peers = PeerCheck::create(options_.security->credentials.trust_folder,
+                                       options_.security->on_refused);
+        if (!peers) {
+            return fail(peers.error());
+        }
+        peers_ = std::move(*peers);
+    }
+    if (auto applied = applyOptions(options_, peers_.get(), config); !applied) {
         return applied;
     }
     sessions_.install(config);
@@ -179,9 +187,19 @@ Result<> ServerCore::open() {
         return fail(errorFrom(StatusCode(code), "start the server"));
     }
     port_ = loop_.listening().at(0).port;
-    log().warn("INSECURE LAB: {} at {} has no encryption and lets anonymous users in",
-               options_.application_name, endpointUrlOf(options_.bind_addresses.at(0), port_));
+    tellSecurity();
     return {};
+}
+
+void ServerCore::tellSecurity() {
+    const auto url = endpointUrlOf(options_.bind_addresses.at(0), port_);
+    if (options_.security) {
+        log().info("{} at {} has the certificate {}", options_.application_name, url,
+                   options_.security->credentials.identity.certificate.thumbprint());
+    } else {
+        log().warn("INSECURE LAB: {} at {} has no encryption and lets anonymous users in",
+                   options_.application_name, url);
+    }
 }
 
 void ServerCore::close() {

@@ -16,6 +16,7 @@
 #include "log_bridge.hpp"
 #include "metier/opcua/server.hpp"
 #include "node_hooks.hpp"
+#include "peer_check.hpp"
 #include "pending_timers.hpp"
 #include "sessions.hpp"
 #include "work_queue.hpp"
@@ -67,6 +68,7 @@ private:
     Result<> build();
     void run(const std::stop_token& stop, std::promise<Result<>>& opened);
     Result<> open();
+    void tellSecurity();
     void close();
     void runGuarded(const std::function<void()>& work) noexcept;
     const std::vector<NodeId>& notifiersAbove(const NodeId& source);
@@ -75,6 +77,7 @@ private:
     LogBridge log_;
     AsioEventLoop loop_;
     Sessions sessions_;
+    std::unique_ptr<PeerCheck> peers_;  ///< of a closed server
     EventWatch watch_;
     HookRegistry hooks_;
     AddressSpace nodes_;

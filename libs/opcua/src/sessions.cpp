@@ -4,6 +4,7 @@
 
 #include "convert.hpp"
 #include "guard.hpp"
+#include "metier/trust/certificate.hpp"
 
 namespace metier::opcua {
 
@@ -72,10 +73,14 @@ struct Sessions::Callbacks {
     }
     static UA_StatusCode activate(UA_Server* server, UA_AccessControl* control,
                                   const UA_EndpointDescription* /*endpoint*/,
-                                  const UA_ByteString* /*certificate*/, const UA_NodeId* id,
+                                  const UA_ByteString* certificate, const UA_NodeId* id,
                                   const UA_ExtensionObject* token, void** context) noexcept {
-        return guarded(
-            [&] { return owner(control).activate(server, *id, *token, context).value(); });
+        return guarded([&] {
+            const auto thumbprint = certificate == nullptr || certificate->length == 0
+                                        ? std::string()
+                                        : trust::thumbprintOf(bytesOf(*certificate));
+            return owner(control).activate(server, *id, {*token, thumbprint}, context).value();
+        });
     }
     static void close(UA_Server* /*server*/, UA_AccessControl* control, const UA_NodeId* id,
                       void* /*context*/) noexcept {
@@ -100,7 +105,7 @@ struct Sessions::Callbacks {
     }
 };
 
-Sessions::Sessions(std::vector<UserPassword> users) : users_(std::move(users)) {}
+Sessions::Sessions(const ServerOptions& options) : options_(options) {}
 
 void Sessions::install(UA_ServerConfig& config) {
     UA_AccessControl& control = config.accessControl;
@@ -119,10 +124,12 @@ void Sessions::install(UA_ServerConfig& config) {
     control.allowDeleteReference = [](auto...) -> UA_Boolean { return false; };
     control.allowHistoryUpdateUpdateData = [](auto...) -> UA_Boolean { return false; };
     control.allowHistoryUpdateDeleteRawModified = [](auto...) -> UA_Boolean { return false; };
-    addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
-    if (!users_.empty()) {
+    if (!options_.security) {
+        addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
+    }
+    if (options_.security || !options_.users.empty()) {
         addTokenPolicy(control, UA_USERTOKENTYPE_USERNAME, "username");
-        config.allowNonePolicyPassword = true;
+        config.allowNonePolicyPassword = !options_.security;
     }
 }
 
@@ -130,30 +137,37 @@ const Session& Sessions::of(const void* context) const noexcept {
     return context == nullptr ? server_session_ : *static_cast<const Session*>(context);
 }
 
-Result<std::string> Sessions::userOf(const UA_ExtensionObject& token) const {
+Result<std::string> Sessions::userOf(const Presented& presented) const {
+    const auto& token = presented.token;
     if (isAbsent(token) || decodedAs<UA_AnonymousIdentityToken>(
                                token, UA_TYPES[UA_TYPES_ANONYMOUSIDENTITYTOKEN]) != nullptr) {
-        return {};
+        return options_.security ? fail(Errc::access_denied, "nobody is let in without a name")
+                                 : Result<std::string>("");
     }
     const auto* named =
         decodedAs<UA_UserNameIdentityToken>(token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
     if (named == nullptr) {
         return fail(Errc::not_supported, "a kind of identity this server does not know");
     }
-    const std::string user = textFrom(named->userName);
-    const std::string password = textFrom(named->password);
-    const bool known = std::any_of(users_.begin(), users_.end(), [&](const UserPassword& entry) {
-        return entry.user == user && samePassword(entry.password, password);
-    });
-    if (!known) {
-        return fail(Errc::access_denied, "unknown user or wrong password");
-    }
-    return user;
+    const Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint};
+    const auto known = authenticate(login);
+    return known ? Result<std::string>(login.user) : fail(known.error());
 }
 
-StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id,
-                              const UA_ExtensionObject& token, void** context) {
-    const auto user = userOf(token);
+Result<void> Sessions::authenticate(const Login& login) const {
+    if (options_.security) {
+        return options_.security->authenticate(login);
+    }
+    const auto& users = options_.users;
+    const bool known = std::any_of(users.begin(), users.end(), [&](const UserPassword& entry) {
+        return entry.user == login.user && samePassword(entry.password, login.password);
+    });
+    return known ? Result<void>() : fail(Errc::access_denied, "unknown user or wrong password");
+}
+
+StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
+                              void** context) {
+    const auto user = userOf(presented);
     if (!user) {
         return user.error().code == Errc::not_supported ? status::kBadIdentityTokenInvalid
                                                         : status::kBadUserAccessDenied;
@@ -165,6 +179,7 @@ StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id,
     }
     describe(server, *session);
     session->user = *user;
+    session->thumbprint = presented.thumbprint;
     *context = session.get();
     if (activated_) {
         activated_(*session);

@@ -19,7 +19,8 @@ class Sessions {
 public:
     using Handler = std::function<void(const Session&)>;
 
-    explicit Sessions(std::vector<UserPassword> users);
+    /// \param options must outlive this
+    explicit Sessions(const ServerOptions& options);
     Sessions(const Sessions&) = delete;
     Sessions& operator=(const Sessions&) = delete;
 
@@ -35,12 +36,18 @@ public:
 private:
     struct Callbacks;
 
-    StatusCode activate(UA_Server* server, const UA_NodeId& id, const UA_ExtensionObject& token,
+    /// What a client presents to be let in.
+    struct Presented {
+        const UA_ExtensionObject& token;
+        std::string thumbprint;  ///< empty without security
+    };
+    StatusCode activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                         void** context);
     void close(const UA_NodeId& id);
-    Result<std::string> userOf(const UA_ExtensionObject& token) const;
+    Result<std::string> userOf(const Presented& presented) const;
+    Result<void> authenticate(const Login& login) const;
 
-    std::vector<UserPassword> users_;
+    const ServerOptions& options_;
     std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;
     Session server_session_{{}, "server", {}, {}, {}};
     Handler activated_;

@@ -142,10 +142,10 @@ Answer<std::vector<SkillAddress>> findSkills(Client& client) {
     return std::move(walk.found);
 }
 
-Answer<std::vector<std::string>> typeNames(Client& client, const SkillAddress& skill) {
-    std::vector<std::string> names{skill.type_name};
-    for (auto type = skill.type; names.size() <= kMaxDepth;) {
-        const auto parents = client.browse({.node = type,
+Answer<std::vector<SkillType>> typeChain(Client& client, const SkillAddress& skill) {
+    std::vector<SkillType> types{{skill.type_name, skill.type}};
+    while (types.size() <= kMaxDepth) {
+        const auto parents = client.browse({.node = types.back().node,
                                             .reference_type = opcua::ids::kHasSubtype,
                                             .direction = BrowseQuery::Direction::inverse,
                                             .node_classes = {}});
@@ -155,10 +155,9 @@ Answer<std::vector<std::string>> typeNames(Client& client, const SkillAddress& s
         if (parents->empty() || parents->front().target == opcua::ids::kProgramStateMachineType) {
             break;
         }
-        type = parents->front().target;
-        names.push_back(parents->front().browse_name.name);
+        types.push_back({parents->front().browse_name.name, parents->front().target});
     }
-    return names;
+    return types;
 }
 
 Answer<SkillAddress> findSkill(Client& client, std::string_view name) {

@@ -13,6 +13,7 @@
 #include "metier/opcua/answer.hpp"
 #include "metier/opcua/connection.hpp"
 #include "metier/opcua/node_id.hpp"
+#include "metier/opcua/security.hpp"
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/types.hpp"
 #include "metier/opcua/value.hpp"
@@ -32,6 +33,9 @@ struct ClientOptions {
     std::string application_name = "metier client";
     std::string application_uri = "urn:metier:client";
     std::optional<UserName> user{};  ///< none: anonymous
+    /// None: without security. Else everything is signed and encrypted, the server's certificate
+    /// must be trusted, and application_uri is that of the own certificate.
+    std::optional<Credentials> security{};
     std::chrono::milliseconds connect_timeout{5'000};
     /// Silence after which the server may forget this client; it is asked for something, and
     /// given up if it does not answer, well before that. At least 2 s.

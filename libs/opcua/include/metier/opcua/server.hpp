@@ -20,6 +20,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/address_space.hpp"
+#include "metier/opcua/security.hpp"
 #include "metier/opcua/session.hpp"
 
 namespace metier::opcua {
@@ -71,15 +72,17 @@ struct ServerOptions {
     std::string application_name = "metier";
     std::string application_uri = "urn:metier:server";
     std::uint16_t port = 4840;  ///< 0: a free one
-    /// Loopback addresses only: without security nothing else is offered.
+    /// Without security loopback addresses only.
     std::vector<std::string> bind_addresses{"127.0.0.1"};
+    /// None: the security of a lab, no encryption and anonymous users.
+    std::optional<ServerSecurity> security{};
     /// NodeSets by short name: any of device, robotics, metier brings the whole skill model with
     /// the official ones it stands on; iiwa, edo, universal_robots add the instances of a robot,
     /// wsg50 those of a gripper.
     std::vector<std::string> nodesets;
     /// URIs of further namespaces, in the order of their indices.
     std::vector<std::string> namespaces;
-    /// Users besides the anonymous one.
+    /// Users of a lab besides the anonymous one.
     std::vector<UserPassword> users;
     EventPublishing event_publishing = EventPublishing::at_once;
     /// Others may register, and are told of by FindServers.
@@ -117,15 +120,15 @@ struct AsResult<Result<T>> {
 template <typename Work>
 using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
 
-/// An OPC UA server with the security of a lab: no encryption, anonymous users, loopback only.
-/// Its log says so when it starts.
+/// An OPC UA server. With the security of a lab, its log says so when it starts.
 ///
 /// Threading: between start() and stop() one thread of its own does all work and makes all calls
 /// of handlers. Before, and after, the thread that created it stands in for it. Functions say
 /// which thread may call them.
 class Server {
 public:
-    /// Errors: invalid_argument (an address that is not loopback, a limit of zero),
+    /// Errors: invalid_argument (an address that is not loopback, a limit of zero, a certificate
+    ///         that is not of the ApplicationUri), resource_unavailable (the trust folder),
     ///         not_found (NodeSet), internal (the stack).
     static Result<std::unique_ptr<Server>> create(ServerOptions options);
     /// Stops it.

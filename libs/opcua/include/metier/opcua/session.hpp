@@ -7,13 +7,14 @@
 namespace metier::opcua {
 
 /// A client's session as the server knows it. All text came from the client and is unchecked,
-/// but the user name, which was. The null id stands for the server itself.
+/// but the user name and the thumbprint, which were. The null id stands for the server itself.
 struct Session {
     NodeId id;
     std::string name;
     std::string application_uri;
     std::string application_name;
-    std::string user;  ///< empty: anonymous
+    std::string user;          ///< empty: anonymous
+    std::string thumbprint{};  ///< of the trusted certificate of its application; empty: none
 };
 
 }  // namespace metier::opcua

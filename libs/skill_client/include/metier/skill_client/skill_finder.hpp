@@ -33,9 +33,14 @@ struct SkillAddress {
 /// Errors:  the server's. Threads: any but the client's own; waits.
 opcua::Answer<std::vector<SkillAddress>> findSkills(opcua::Client& client);
 
-/// BrowseNames of a skill's type and of all types that it is derived from, its own first, the last
-/// one directly below ProgramStateMachineType. Errors and threads: as findSkills().
-opcua::Answer<std::vector<std::string>> typeNames(opcua::Client& client, const SkillAddress& skill);
+struct SkillType {
+    std::string name;  ///< BrowseName
+    opcua::NodeId node;
+};
+
+/// A skill's type and all types that it is derived from, its own first, the last one directly below
+/// ProgramStateMachineType. Errors and threads: as findSkills().
+opcua::Answer<std::vector<SkillType>> typeChain(opcua::Client& client, const SkillAddress& skill);
 
 /// The skill of that name.
 /// \param name a BrowseName, or "Controller/BrowseName" where several controllers have one

@@ -1,0 +1,137 @@
+#include "peer_check.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+#include "convert.hpp"
+#include "guard.hpp"
+#include "metier/opcua/text.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+StatusCode statusOf(trust::RefusalKind kind) noexcept {
+    using trust::RefusalKind;
+    switch (kind) {
+        case RefusalKind::malformed:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATEINVALID);
+        case RefusalKind::untrusted:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATEUNTRUSTED);
+        case RefusalKind::expired:
+        case RefusalKind::not_yet_valid:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATETIMEINVALID);
+        case RefusalKind::revoked:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATEREVOKED);
+        case RefusalKind::revocation_unknown:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATEREVOCATIONUNKNOWN);
+        case RefusalKind::weak:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATEPOLICYCHECKFAILED);
+        case RefusalKind::wrong_use:
+            return StatusCode(UA_STATUSCODE_BADCERTIFICATEUSENOTALLOWED);
+    }
+    return StatusCode(UA_STATUSCODE_BADCERTIFICATEINVALID);
+}
+
+UA_StatusCode expiryOf(UA_DateTime* expiry, UA_ByteString* der) noexcept {
+    return guarded([&]() -> UA_StatusCode {
+        const auto certificate = trust::Certificate::fromDer(bytesOf(*der));
+        if (!certificate) {
+            return UA_STATUSCODE_BADCERTIFICATEINVALID;
+        }
+        *expiry =
+            UA_DateTime_fromUnixTime(std::chrono::system_clock::to_time_t(certificate->notAfter()));
+        return UA_STATUSCODE_GOOD;
+    });
+}
+
+UA_StatusCode subjectOf(UA_String* subject, UA_ByteString* der) noexcept {
+    return guarded([&]() -> UA_StatusCode {
+        const auto certificate = trust::Certificate::fromDer(bytesOf(*der));
+        if (!certificate) {
+            return UA_STATUSCODE_BADCERTIFICATEINVALID;
+        }
+        toNative(certificate->subject(), *subject);
+        return UA_STATUSCODE_GOOD;
+    });
+}
+
+}  // namespace
+
+struct PeerCheck::Callbacks {
+    static UA_StatusCode check(const UA_CertificateVerification* plugin,
+                               const UA_ByteString* der) noexcept {
+        return guarded(
+            [&] { return static_cast<PeerCheck*>(plugin->context)->check(bytesOf(*der)).value(); });
+    }
+    static UA_StatusCode checkUri(const UA_CertificateVerification* plugin,
+                                  const UA_ByteString* der, const UA_String* uri) noexcept {
+        return guarded([&] {
+            return static_cast<PeerCheck*>(plugin->context)
+                ->checkUri(bytesOf(*der), bytesOf(*uri))
+                .value();
+        });
+    }
+};
+
+Result<std::unique_ptr<PeerCheck>> PeerCheck::create(const std::filesystem::path& trust_folder,
+                                                     OnRefused on_refused) {
+    auto store = trust::TrustStore::open(trust_folder);
+    if (!store) {
+        return fail(store.error());
+    }
+    return std::unique_ptr<PeerCheck>(new PeerCheck(std::move(*store), std::move(on_refused)));
+}
+
+PeerCheck::PeerCheck(trust::TrustStore store, OnRefused on_refused)
+    : store_(std::move(store)), on_refused_(std::move(on_refused)) {}
+
+void PeerCheck::install(UA_CertificateVerification& plugin) {
+    if (plugin.clear != nullptr) {
+        plugin.clear(&plugin);
+    }
+    plugin.context = this;
+    plugin.verifyCertificate = Callbacks::check;
+    plugin.verifyApplicationURI = Callbacks::checkUri;
+    plugin.getExpirationDate = expiryOf;
+    plugin.getSubjectName = subjectOf;
+    plugin.clear = nullptr;
+}
+
+void PeerCheck::installForSessions(UA_CertificateVerification& plugin) {
+    install(plugin);
+    plugin.verifyCertificate = [](const UA_CertificateVerification*,
+                                  const UA_ByteString*) -> UA_StatusCode {
+        return UA_STATUSCODE_BADIDENTITYTOKENREJECTED;
+    };
+}
+
+StatusCode PeerCheck::check(std::string_view der) {
+    const auto checked = store_.check(der, std::chrono::system_clock::now());
+    if (checked) {
+        last_refusal_.clear();
+        return status::kGood;
+    }
+    last_refusal_ = checked.error().message;
+    if (on_refused_) {
+        on_refused_({std::string(der), checked.error()});
+    }
+    return statusOf(checked.error().kind);
+}
+
+/// The whole URI: the stack's own plugin is content with a part of it.
+StatusCode PeerCheck::checkUri(std::string_view der, std::string_view application_uri) {
+    const auto certificate = trust::Certificate::fromDer(der);
+    if (certificate && !application_uri.empty() &&
+        certificate->applicationUri() == application_uri) {
+        return status::kGood;
+    }
+    last_refusal_ =
+        fmt::format("the certificate is of \"{}\", not of \"{}\"",
+                    certificate ? certificate->applicationUri() : "", sanitise(application_uri));
+    return StatusCode(UA_STATUSCODE_BADCERTIFICATEURIINVALID);
+}
+
+}  // namespace metier::opcua

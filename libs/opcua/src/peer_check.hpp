@@ -1,0 +1,45 @@
+#pragma once
+
+#include <open62541/plugin/pki.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "metier/opcua/security.hpp"
+#include "metier/opcua/status_code.hpp"
+
+namespace metier::opcua {
+
+/// Checks the certificates of peers for the stack.
+///
+/// Threading: that of the server or client that it is installed in.
+class PeerCheck {
+public:
+    using OnRefused = std::function<void(const RefusedPeer&)>;
+
+    /// Errors: resource_unavailable (the trust folder).
+    static Result<std::unique_ptr<PeerCheck>> create(const std::filesystem::path& trust_folder,
+                                                     OnRefused on_refused);
+    PeerCheck(const PeerCheck&) = delete;
+    PeerCheck& operator=(const PeerCheck&) = delete;
+
+    /// In place of what is there. This must outlive whatever is made with the configuration.
+    void install(UA_CertificateVerification& plugin);
+    /// For the sessions of a server: whose ApplicationUri it is, but no users by certificate.
+    void installForSessions(UA_CertificateVerification& plugin);
+    /// Why the last peer was refused; empty if it was not.
+    const std::string& lastRefusal() const noexcept { return last_refusal_; }
+
+private:
+    struct Callbacks;
+    PeerCheck(trust::TrustStore store, OnRefused on_refused);
+    StatusCode check(std::string_view der);
+    StatusCode checkUri(std::string_view der, std::string_view application_uri);
+
+    trust::TrustStore store_;
+    OnRefused on_refused_;
+    std::string last_refusal_;
+};
+
+}  // namespace metier::opcua

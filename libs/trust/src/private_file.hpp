@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "metier/base/error.hpp"
+
+namespace metier::trust {
+
+enum class Readers { owner, everybody };
+
+/// Writes a file whole or not at all: whoever reads sees what was there before or what is new, also
+/// after a loss of power. Missing folders are made, for their owner alone.
+/// Errors: resource_unavailable.
+Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
+                        Readers readers);
+
+}  // namespace metier::trust

@@ -1,0 +1,81 @@
+#include "metier/trust/certificate.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "authority.hpp"
+
+namespace metier::trust {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Certificate, TellsWhoseItIs) {
+    const auto certificate = selfSigned({.name = "arm 7", .uri = "urn:cell:arm7"});
+    EXPECT_EQ(certificate.subject(), "CN=arm 7");
+    EXPECT_EQ(certificate.issuer(), "CN=arm 7");
+    EXPECT_EQ(certificate.applicationUri(), "urn:cell:arm7");
+    EXPECT_EQ(certificate.keyBits(), 2048);
+    EXPECT_TRUE(certificate.isSelfSigned());
+    EXPECT_FALSE(certificate.isAuthority());
+    EXPECT_EQ(certificate.thumbprint().size(), 40U);
+    EXPECT_EQ(certificate.thumbprint(), thumbprintOf(certificate.der()));
+}
+
+TEST(Certificate, HasTheThumbprintThatOthersCompute) {
+    EXPECT_EQ(thumbprintOf("abc"), "a9993e364706816aba3e25717850c26c9cd0d89d");  // FIPS 180-4
+}
+
+TEST(Certificate, IsKnownByItsSigner) {
+    const Authority authority("factory");
+    const auto certificate = authority.sign({.name = "arm"});
+    EXPECT_EQ(certificate.issuer(), "CN=factory");
+    EXPECT_FALSE(certificate.isSelfSigned());
+    EXPECT_TRUE(authority.certificate().isAuthority());
+    EXPECT_TRUE(authority.certificate().isSelfSigned());
+}
+
+TEST(Certificate, IsTheFirstOfAChain) {
+    const auto first = selfSigned({.name = "first"});
+    const auto second = selfSigned({.name = "second"});
+    const auto chain = Certificate::fromDer(first.der() + second.der());
+    ASSERT_TRUE(chain);
+    EXPECT_EQ(*chain, first);
+}
+
+TEST(Certificate, HasNoUriWhereItHasSeveral) {
+    EXPECT_EQ(selfSigned({.uri = "urn:a,URI:urn:b"}).applicationUri(), "");
+    EXPECT_EQ(selfSigned({.uri = ""}).applicationUri(), "");
+}
+
+TEST(Certificate, IsPrintedWithoutControlCharacters) {
+    const auto certificate = selfSigned({.name = "arm\x1b[2J\n"});
+    EXPECT_THAT(certificate.subject(), Not(HasSubstr("\x1b")));
+    EXPECT_THAT(certificate.subject(), Not(HasSubstr("\n")));
+}
+
+TEST(Certificate, IsReadAsDerAndPem) {
+    const auto certificate = selfSigned({});
+    const auto folder = std::filesystem::path(::testing::TempDir());
+    std::ofstream(folder / "c.der") << certificate.der();
+    std::ofstream(folder / "c.pem") << certificate.pem();
+    EXPECT_EQ(Certificate::fromFile(folder / "c.der").value(), certificate);
+    EXPECT_EQ(Certificate::fromFile(folder / "c.pem").value(), certificate);
+}
+
+TEST(Certificate, IsNotMadeOfAnythingElse) {
+    EXPECT_EQ(Certificate::fromDer("").error().code, Errc::invalid_argument);
+    EXPECT_EQ(Certificate::fromDer("certificate").error().message,
+              "11 byte that are no X.509 certificate");
+    const auto certificate = selfSigned({});
+    EXPECT_FALSE(Certificate::fromDer(certificate.der().substr(0, certificate.der().size() - 1)));
+    EXPECT_EQ(Certificate::fromFile("/none").error().code, Errc::not_found);
+    const auto file = std::filesystem::path(::testing::TempDir()) / "c.txt";
+    std::ofstream(file) << std::string(70'000, 'x');
+    EXPECT_EQ(Certificate::fromFile(file).error().code, Errc::invalid_argument);
+}
+
+}  // namespace
+}  // namespace metier::trust

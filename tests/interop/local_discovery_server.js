@@ -1,0 +1,45 @@
+// node-opcua's Local Discovery Server, as a process of its own: prints "ready URL" and runs until it
+// is killed or told to end.
+//
+//   node local_discovery_server.js DIRECTORY [PORT]
+//
+// DIRECTORY is where it keeps its certificates; PORT 0, the default, is a free one. It takes
+// registrations without security, and also tells of servers by mDNS: node-opcua has no switch for
+// that, and nothing here needs it.
+'use strict';
+
+const net = require('node:net');
+const path = require('node:path');
+const { MessageSecurityMode, OPCUACertificateManager, OPCUADiscoveryServer, SecurityPolicy } = require('node-opcua');
+
+/** A TCP port that nobody listens on at this moment; node-opcua takes 0 for 4840. */
+function freePort() {
+  return new Promise((resolve, reject) => {
+    const probe = net.createServer().once('error', reject);
+    probe.listen(0, '127.0.0.1', () => {
+      const { port } = probe.address();
+      probe.close(() => resolve(port));
+    });
+  });
+}
+
+async function main() {
+  const [directory, given = '0'] = process.argv.slice(2);
+  const port = given === '0' ? await freePort() : Number(given);
+  const lds = new OPCUADiscoveryServer({
+    port,
+    hostname: '127.0.0.1',
+    serverCertificateManager: new OPCUACertificateManager({
+      rootFolder: path.join(directory, 'pki'), automaticallyAcceptUnknownCertificate: true }),
+    securityPolicies: [SecurityPolicy.None],
+    securityModes: [MessageSecurityMode.None],
+  });
+  await lds.start();
+  process.once('SIGTERM', () => lds.shutdown(() => process.exit(0)));
+  process.stdout.write(`ready opc.tcp://127.0.0.1:${port}\n`);
+}
+
+main().catch((error) => {
+  process.stderr.write(`${error.stack}\n`);
+  process.exit(1);
+});
