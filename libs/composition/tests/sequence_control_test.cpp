@@ -462,6 +462,20 @@ TEST(ResetOfASequence, ResetsWhatItHaltedItself) {
     EXPECT_EQ(bench.state(), "Ready");
 }
 
+TEST(ResetOfASequence, GivesNoRightToAnotherReset) {
+    // What a client halted after it was reset by the next Start.
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["a"].halted();
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::reset));
+    bench["a"].wasReset();
+    bench["a"].state_now = State::halted;  // by a client
+    EXPECT_FALSE(bench.program->startWith(testing::kClient, {"again", {}}));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt", "reset"));
+}
+
 TEST(ResetOfASequence, IsRefusedIfAUsedSkillRefusesAtOnce) {
     Bench bench(kTwoSteps);
     ASSERT_TRUE(bench.start());
