@@ -9,7 +9,6 @@
 namespace metier::system_tests {
 namespace {
 
-using skill::State;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;

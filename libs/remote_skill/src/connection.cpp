@@ -142,6 +142,21 @@ void Connection::lose(const std::string& why) {
     }
 }
 
+std::function<void()> Connection::adoptionOf(const Use& use) {
+    const auto address = skill_client::findSkill(*client_, use.skill);
+    auto skill = address ? open(*address, use.link)
+                         : Result<std::shared_ptr<OpenSkill>>(fail(address.error()));
+    const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
+    if (!skill || !now) {
+        warn(told_attempt_, fmt::format("{} is not there yet: {}", use.skill,
+                                        skill ? now.error().message : skill.error().message));
+        return nullptr;
+    }
+    return [link = use.link, skill = std::move(*skill), now = *now] {
+        link->post([skill, now](RemoteChild& child) { child.adopt(skill, now); });
+    };
+}
+
 bool Connection::reconnect() {
     auto client = connect(options_);
     if (!client) {
@@ -160,18 +175,10 @@ bool Connection::reconnect() {
     // All or none: a child that was told would begin, and be told again in the next attempt.
     std::vector<std::function<void()>> adoptions;
     for (const auto& use : uses) {
-        const auto address = skill_client::findSkill(*client_, use.skill);
-        auto skill = address ? open(*address, use.link)
-                             : Result<std::shared_ptr<OpenSkill>>(fail(address.error()));
-        const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
-        if (!skill || !now) {
-            warn(told_attempt_, fmt::format("{} is not there yet: {}", use.skill,
-                                            skill ? now.error().message : skill.error().message));
+        adoptions.push_back(adoptionOf(use));
+        if (adoptions.back() == nullptr) {
             return false;
         }
-        adoptions.emplace_back([link = use.link, skill = std::move(*skill), now = *now] {
-            link->post([skill, now](RemoteChild& child) { child.adopt(skill, now); });
-        });
     }
     for (const auto& adopt : adoptions) {
         adopt();

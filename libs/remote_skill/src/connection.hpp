@@ -73,6 +73,8 @@ private:
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();
+    /// Has the child of a use go on with the present session; nothing if its skill is not there.
+    std::function<void()> adoptionOf(const Use& use);
     /// Warns of a reason that is not the last one of its kind; the log of what comes again and
     /// again is for those who look for it.
     void warn(std::string& last, std::string text) const;
