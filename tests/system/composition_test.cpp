@@ -244,6 +244,40 @@ with.TargetJointPosition = [0, 0, 0, 0, 0, 0, 0]
     }
 }
 
+TEST(CompositionServer, RefusesWishesForASkillOfItsOwn) {
+    // They were not looked at.
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "own_wishes";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "inner.toml") << R"(name = "InnerSkill"
+[uses.arm]
+type = "JointPtpMoveSkillType"
+[[step]]
+name = "move"
+run = "arm"
+)";
+    std::ofstream(folder / "outer.toml") << R"(name = "OuterSkill"
+[uses.inner]
+type = "InnerSkillType"
+reach = 9.0
+[[step]]
+name = "once"
+run = "inner"
+)";
+    std::ofstream(folder / "cell.toml") << R"(name = "cell"
+[[server]]
+name = "both"
+kind = "composition"
+compositions = ["inner.toml", "outer.toml"]
+servers = ["opc.tcp://127.0.0.1:1"]
+)";
+    const auto arm = serve("iiwa");
+    const auto refused = runMetier({"serve", (folder / "cell.toml").string(), "--port", "0",
+                                    "--use", "opc.tcp://127.0.0.1:1=" + arm.url()});
+    EXPECT_NE(refused.status, 0);
+    EXPECT_THAT(refused.output, HasSubstr("outer.toml:2: uses.inner: controller, reach and "
+                                          "payload choose among skills of other servers"));
+}
+
 TEST(CompositionServer, TellsWhatIsWrongWithItsFilesBeforeAnythingStarts) {
     const auto folder = std::filesystem::path(::testing::TempDir()) / "wrong_composition";
     std::filesystem::create_directories(folder);

@@ -184,6 +184,22 @@ TEST_F(GripperOnItsWire, SaysWhereItsJawsAreBlocked) {
     EXPECT_TRUE(move.run({{"Width", 0.02}}, inAMinute()));
 }
 
+TEST_F(GripperOnItsWire, IsAtRestOnceHaltedAndMovesAgainAfterReset) {
+    // Halted was told when the jaws began to brake; the next Start was refused.
+    for (int i = 0; i < 5; ++i) {
+        startGrasp();
+        ASSERT_TRUE(grasp_.halt());
+        ASSERT_TRUE(grasp_.awaitState(State::halted, inAMinute()));
+        EXPECT_EQ(cell_.state("controller").at("velocity"), 0.0);
+        ASSERT_TRUE(grasp_.reset()) << grasp_.reasonText();
+        ASSERT_TRUE(grasp_.start()) << grasp_.reasonText();
+        ASSERT_TRUE(grasp_.halt());
+        ASSERT_TRUE(grasp_.awaitState(State::halted, inAMinute()));
+        ASSERT_TRUE(grasp_.reset()) << grasp_.reasonText();
+        ASSERT_TRUE(release_.run({}, inAMinute()));
+    }
+}
+
 // ---- faults and the cable -----------------------------------------------------------------------
 
 struct GripperFault {

@@ -97,6 +97,9 @@ TEST_F(PickingCell, PlacesAPartAndTellsWhatItDid) {
     EXPECT_NEAR(coordinate("cube", 0), 0.45, 1e-3);
     EXPECT_NEAR(coordinate("cube", 1), -0.1, 1e-3);
     EXPECT_NEAR(coordinate("cube", 2), 0.015, 1e-4);
+    const auto gripper = connectTo(cell_.url("gripper"));
+    EXPECT_EQ(*openSkill(*gripper, "HoldGripperSkill").state(), State::ready)
+        << "the end of the background step is nobody's fault";
 }
 
 TEST_F(PickingCell, SaysThatAPartIsMissingAndLeavesThePlace) {

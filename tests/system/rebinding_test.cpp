@@ -148,6 +148,31 @@ std::string readUntil(process::ChildProcess& program, const std::string& text) {
 
 // The arms and the discovery server are in one network namespace, the component and whoever
 // commands it in another, which reaches them through a cable.
+TEST(SearchForAnArm, EndsWithTheStopSignal) {
+    // The signal was blocked, and looked at by nobody, for up to 20 s.
+    const DiscoveryProcess lds;
+    auto component =
+        process::ChildProcess::start(
+            metierCommand({"--log", "info", "serve", discoveredCell().string(), "--server", "swing",
+                           "--port", "0", "--discovery", lds.url()}),
+            process::ErrorOutput::with_output)
+            .value();
+    std::string text;
+    const auto read = [&](const std::string& until) {
+        auto line = component.readLine(inAMinute());
+        for (; line && line->find(until) == std::string::npos;
+             line = component.readLine(inAMinute())) {
+            text += *line + "\n";
+        }
+        text += line.value_or("");
+        return line.has_value();
+    };
+    ASSERT_TRUE(read("SwingSkill seeks arm")) << text;
+    component.signal(SIGINT);
+    EXPECT_TRUE(read("stopped before SwingSkill had found arm")) << text;
+    EXPECT_EQ(component.waitUntil(inAMinute()), 1);
+}
+
 TEST(DiscoveryOnTheNetwork, FindsArmsAndBindsToTheOneThatIsThere) {
     if (const auto obstacle = Cable::obstacle(); !obstacle.empty()) {
         GTEST_SKIP() << "NOT TESTED: discovery between network namespaces: " << obstacle;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <thread>
 #include <utility>
 
 #include "arm_figures.hpp"
@@ -25,6 +24,15 @@ namespace {
 constexpr std::chrono::seconds kLongestSearch{20};
 constexpr std::chrono::milliseconds kSearchPause{200};
 
+/// "ptp, line"
+std::string namesOf(const std::vector<composition::Use>& uses) {
+    std::string names;
+    for (const auto& use : uses) {
+        names += (names.empty() ? "" : ", ") + use.alias;
+    }
+    return names;
+}
+
 }  // namespace
 
 /// Finds the children of one definition and what to publish of them.
@@ -37,8 +45,9 @@ public:
 
     const std::string& origin() const noexcept { return origin_; }
 
-    /// Errors: a line "file:line: uses.ALIAS: why" for each use that nothing serves.
-    Result<void> find() {
+    /// Errors: a line "file:line: uses.ALIAS: why" for each use that nothing serves; cancelled (a
+    ///         stop was asked for).
+    Result<void> find(const StopSignal& stop) {
         std::string problems;
         for (const auto& use : definition_.uses) {
             if (const auto found = findOne(use); !found) {
@@ -47,7 +56,7 @@ public:
                                 definition_.file, use.line, use.alias, found.error().message);
             }
         }
-        return problems.empty() ? discover() : fail(Errc::invalid_argument, problems);
+        return problems.empty() ? discover(stop) : fail(Errc::invalid_argument, problems);
     }
 
     /// What was found by discovery, to be kept bound.
@@ -98,8 +107,7 @@ private:
         const bool own = use.server.empty() || use.server == server_.name_;
         for (auto* program : server_.host_->skills().programs()) {
             if (own && program->description().type == use.type) {
-                useLocal(use, *program);
-                return {};
+                return checkOwn(use).map([&] { useLocal(use, *program); });
             }
         }
         return findRemote(use);
@@ -145,7 +153,10 @@ private:
     }
 
     /// Others may be starting at this moment.
-    Result<void> discover() {
+    Result<void> discover(const StopSignal& stop) {
+        if (!sought_.empty()) {
+            spdlog::info("{} seeks {}", definition_.name, namesOf(sought_));
+        }
         const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
         while (!sought_.empty()) {
             const auto servers = discoverServers(server_.config_.discovery, {});
@@ -157,7 +168,10 @@ private:
                 return fail(Errc::not_found,
                             fmt::format("{}: {}", definition_.file, assigned.error().message));
             }
-            std::this_thread::sleep_for(kSearchPause);
+            if (stop.waitUntil(std::chrono::steady_clock::now() + kSearchPause)) {
+                return fail(Errc::cancelled, fmt::format("stopped before {} had found {}",
+                                                         definition_.name, namesOf(sought_)));
+            }
         }
         return {};
     }
@@ -194,7 +208,7 @@ private:
 };
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
-    const configuration::ServerConfig& config) {
+    const configuration::ServerConfig& config, const StopSignal& stop) {
     auto definitions = loadDefinitions(config.composition.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
@@ -207,7 +221,7 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     if (auto connected = server->connect(config.composition.servers); !connected) {
         return fail(std::move(connected.error()));
     }
-    if (auto offered = server->offer(std::move(*definitions)); !offered) {
+    if (auto offered = server->offer(std::move(*definitions), stop); !offered) {
         return fail(std::move(offered.error()));
     }
     if (auto started = server->host_->start(); !started) {
@@ -280,14 +294,14 @@ Result<void> CompositionServer::connect(const std::vector<configuration::UsedSer
     return {};
 }
 
-Result<void> CompositionServer::offer(std::vector<Definition> definitions) {
+Result<void> CompositionServer::offer(std::vector<Definition> definitions, const StopSignal& stop) {
     const auto place = opcua_skill::publishSkillController(host_->nodes(), name_,
                                                            "Skills that are made of other skills.");
     if (!place) {
         return fail(place.error());
     }
     for (auto& definition : definitions) {
-        if (auto offered = offerOne(*place, std::move(definition)); !offered) {
+        if (auto offered = offerOne(*place, std::move(definition), stop); !offered) {
             return offered;
         }
     }
@@ -295,10 +309,10 @@ Result<void> CompositionServer::offer(std::vector<Definition> definitions) {
 }
 
 Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
-                                         Definition definition) {
+                                         Definition definition, const StopSignal& stop) {
     const auto name = definition.name;
     Cast cast(*this, definition);
-    if (auto found = cast.find(); !found) {
+    if (auto found = cast.find(stop); !found) {
         return found;
     }
     auto composed = composition::compose(definition, cast.descriptions());

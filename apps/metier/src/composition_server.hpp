@@ -12,6 +12,7 @@
 #include "rebinder.hpp"
 #include "skill_host.hpp"
 #include "skill_matching.hpp"
+#include "stop_signal.hpp"
 
 namespace metier::app {
 
@@ -22,9 +23,10 @@ class CompositionServer {
 public:
     /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
     /// Errors: what is wrong with the files; a used server that cannot be reached; a used skill
-    ///         that nobody or, unless discovered, more than one server offers; the port.
+    ///         that nobody or, unless discovered, more than one server offers; the port; cancelled
+    ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
-        const configuration::ServerConfig& config);
+        const configuration::ServerConfig& config, const StopSignal& stop);
 
     ~CompositionServer();
     CompositionServer(const CompositionServer&) = delete;
@@ -36,9 +38,9 @@ private:
     class Cast;
     CompositionServer(const configuration::ServerConfig& config, std::unique_ptr<SkillHost> host);
     Result<void> connect(const std::vector<configuration::UsedServer>& servers);
-    Result<void> offer(std::vector<composition::Definition> definitions);
+    Result<void> offer(std::vector<composition::Definition> definitions, const StopSignal& stop);
     Result<void> offerOne(const opcua_skill::SkillController& place,
-                          composition::Definition definition);
+                          composition::Definition definition, const StopSignal& stop);
 
     Result<std::shared_ptr<remote_skill::RemoteServer>> connectFound(const DiscoveredServer& found);
     void keepBound();

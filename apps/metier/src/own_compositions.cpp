@@ -12,6 +12,7 @@
 #include "metier/composition/local_child.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
+#include "skill_matching.hpp"
 
 namespace metier::app {
 namespace {
@@ -26,12 +27,7 @@ Result<void> checkWishes(const composition::Use& use, const std::string& server)
                                 "server of kind composition",
                                 use.server, server));
     }
-    if (!use.controller.empty() || use.reach || use.payload) {
-        return fail(Errc::invalid_argument,
-                    "controller, reach and payload choose among skills of other servers; a server "
-                    "has one skill of a type");
-    }
-    return {};
+    return checkOwn(use);
 }
 
 /// Errors: none of that type, or several; those that there are.

@@ -169,7 +169,7 @@ Exit runServe(const ServeOptions& options) {
         return reportUsage(right.error());
     }
     if (config->kind == configuration::ServerKind::composition) {
-        return serveUntil(stop, CompositionServer::start(*config));
+        return serveUntil(stop, CompositionServer::start(*config, stop));
     }
     if (config->kind == configuration::ServerKind::synchronized) {
         return serveUntil(stop, SynchronizedServer::start(*config));

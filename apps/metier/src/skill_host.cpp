@@ -143,16 +143,19 @@ SkillHost::~SkillHost() = default;
 
 Result<void> SkillHost::start() {
     const std::chrono::duration<double> stall_limit(config_.stall_limit);
+    std::function<void()> stop_all;
+    if (!stops_.empty()) {
+        stop_all = [this] {
+            for (const auto& stop : stops_) {
+                stop();
+            }
+        };
+    }
     stall_watch_.emplace(
         robot_skills::StallWatch::Setup{
             .name = config_.name,
             .limit = std::chrono::duration_cast<std::chrono::nanoseconds>(stall_limit),
-            .stop =
-                [this] {
-                    for (const auto& stop : stops_) {
-                        stop();
-                    }
-                },
+            .stop = std::move(stop_all),
             .log = [](const std::string& line) { spdlog::error("{}", line); }},
         skills_->executor(), skills_->programs(), clock_);
     auto started = server_->start();

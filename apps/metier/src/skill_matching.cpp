@@ -37,6 +37,15 @@ bool isOfType(const skill_client::SkillAddress& skill, const std::string& type) 
            skill.name + "Type" == type;
 }
 
+Result<void> checkOwn(const composition::Use& use) {
+    if (!use.controller.empty() || use.reach || use.payload) {
+        return fail(Errc::invalid_argument,
+                    "controller, reach and payload choose among skills of other servers; a server "
+                    "has one skill of a type");
+    }
+    return {};
+}
+
 Result<OfferedSkill> choose(const composition::Use& use, const std::vector<OfferedSkill>& offered) {
     std::vector<OfferedSkill> of_type;
     std::copy_if(offered.begin(), offered.end(), std::back_inserter(of_type),

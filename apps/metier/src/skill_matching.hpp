@@ -22,6 +22,10 @@ struct OfferedSkill {
 /// all are of SequenceSkillType, by its own name with "Type".
 bool isOfType(const skill_client::SkillAddress& skill, const std::string& type);
 
+/// Errors: invalid_argument, if a use that a skill of the same server serves asks for more than
+/// that.
+Result<void> checkOwn(const composition::Use& use);
+
 /// The one skill that a file asks for.
 /// Errors: not_found, with what there is; invalid_argument, with the names of all that fit.
 Result<OfferedSkill> choose(const composition::Use& use, const std::vector<OfferedSkill>& offered);

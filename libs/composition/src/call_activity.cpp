@@ -10,6 +10,16 @@ namespace metier::composition {
 using skill::Reason;
 using skill::State;
 
+namespace {
+
+using namespace std::chrono_literals;
+
+// As the command `metier reset`: longer than any controller takes to release its brakes.
+constexpr auto kLongestReset = 30s;
+constexpr auto kResetPause = 100ms;
+
+}  // namespace
+
 CallActivity::~CallActivity() {
     if (stage_ == Stage::resetting || stage_ == Stage::runs) {
         child().release();
@@ -42,16 +52,14 @@ void CallActivity::unpark() {
 }
 
 void CallActivity::launch() {
+    reset_pause_.cancel();
     const auto& used = run_.used(step_.use);
     if (const auto available = child().available(); !available) {
         over(failure(Reason::device_lost, "cannot be reached: " + available.error().message));
     } else if (child().state() != State::halted) {
         begin();
     } else if (used.mayReset()) {
-        stage_ = Stage::resetting;
-        if (const auto asked = child().reset(*this); !asked) {
-            over(failure(Reason::error, "refused Reset: " + asked.error().message));
-        }
+        askReset();
     } else {
         over(failure(Reason::error,
                      fmt::format("is Halted: {}; reset it, or write reset = true in [uses.{}]",
@@ -59,22 +67,58 @@ void CallActivity::launch() {
     }
 }
 
+void CallActivity::askReset() {
+    stage_ = Stage::resetting;
+    if (!reset_limit_.running()) {
+        reset_limit_.start(kLongestReset, [this] { resetTimePassed(); });
+    }
+    if (const auto asked = child().reset(*this); !asked) {
+        resetRefused(asked.error());
+    }
+}
+
+/// A device that takes longer than its server waits for it is asked again.
+void CallActivity::resetRefused(const Error& error) {
+    child().release();
+    if (error.code != Errc::timeout) {
+        over(failure(Reason::error, "refused Reset: " + error.message));
+        return;
+    }
+    refusal_ = error.message;
+    stage_ = Stage::parked;
+    reset_pause_.start(kResetPause, [this] { launch(); });
+}
+
+void CallActivity::resetTimePassed() {
+    child().release();
+    over(failure(Reason::error,
+                 fmt::format("was not Ready within {} s after Reset{}", kLongestReset.count(),
+                             refusal_.empty() ? std::string() : fmt::format(" ({})", refusal_))));
+}
+
 void CallActivity::onReset(const Result<void>& outcome) {
     run_.enter([this, outcome] {
-        child().release();
+        if (stage_ != Stage::resetting) {
+            return;
+        }
         if (halting_) {
+            child().release();
             over(cancelled());
         } else if (!outcome) {
-            over(failure(Reason::error, "refused Reset: " + outcome.error().message));
-        } else if (run_.held()) {
-            stage_ = Stage::parked;
+            resetRefused(outcome.error());
         } else {
-            begin();
+            child().release();
+            stage_ = Stage::parked;
+            if (!run_.held()) {
+                begin();
+            }
         }
     });
 }
 
 void CallActivity::begin() {
+    reset_limit_.cancel();
+    refusal_.clear();
     skill::StartRequest request{.on_owner_loss = run_.onOwnerLoss()};
     for (const auto& argument : step_.arguments) {
         const auto& fields = child().description().parameters;
@@ -112,6 +156,7 @@ void CallActivity::halt() {
 }
 
 void CallActivity::haltChild() {
+    reset_limit_.cancel();
     rest_timer_ = run_.after(run_.restTime(), [this] { restTimePassed(); });
     if (stage_ == Stage::runs) {
         run_.used(step_.use).halted_by_us = true;
@@ -239,6 +284,8 @@ void CallActivity::onEnd(ChildEnd end) {
 void CallActivity::over(Outcome outcome) {
     stage_ = Stage::ended;
     rest_timer_.cancel();
+    reset_limit_.cancel();
+    reset_pause_.cancel();
     run_.detach(*this);
     this->end(std::move(outcome));
 }

@@ -44,6 +44,9 @@ private:
     void onEnd(ChildEnd end) override;
 
     void launch();
+    void askReset();
+    void resetRefused(const Error& error);
+    void resetTimePassed();
     void begin();
     void haltChild();
     void restTimePassed();
@@ -58,9 +61,11 @@ private:
     bool suspended_ = false;
     double progress_ = 0.0;
     SteadyTime begun_{};
-    std::string refusal_;                 // of the last Suspend or Halt
+    std::string refusal_;                 // of the last Suspend, Halt or Reset
     std::optional<StepFailure> failure_;  // that it is halted for
     skill::Timer rest_timer_;
+    StepTimer reset_limit_{run_};  // from the first Reset to Ready
+    StepTimer reset_pause_{run_};  // to the next attempt; parked meanwhile
 };
 
 }  // namespace metier::composition

@@ -24,6 +24,7 @@ void StepTimer::start(std::chrono::nanoseconds delay, std::function<void()> due)
 void StepTimer::cancel() {
     timer_.cancel();
     running_ = false;
+    due_ = nullptr;
     std::erase(run_.timers_, this);
 }
 
@@ -178,7 +179,7 @@ void Run::forceStop() noexcept {
 void Run::checkRest() {
     const bool at_rest = std::all_of(calls_.begin(), calls_.end(),
                                      [](const CallActivity* call) { return call->atRest(); });
-    if (suspending_ && !over_ && at_rest) {
+    if (suspending_ && (!over_ || tidying_) && at_rest) {
         suspending_ = false;
         rest_timer_.cancel();
         execution_.atRest();
@@ -212,11 +213,18 @@ void Run::ended(Outcome outcome) {
     } else if (outcome) {
         execution_.fail(outcome->reason, std::move(outcome->text));
     } else {
-        finish();
+        tidyUp();
     }
 }
 
+/// A background step that was ended by Halt, and the like: whoever comes next finds it Ready.
+void Run::tidyUp() {
+    tidying_ = true;
+    resets_.start(setup_.used);
+}
+
 void Run::finish() {
+    tidying_ = false;
     scope_.setResult(std::string(kExecution),
                      {{std::string(kExecutionSteps), std::move(finished_)},
                       {std::string(kExecutionDurations), std::move(times_)}});

@@ -14,6 +14,7 @@
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/skill/execution.hpp"
 #include "metier/skill/executor.hpp"
+#include "reset_round.hpp"
 #include "scope.hpp"
 
 namespace metier::composition {
@@ -30,6 +31,8 @@ public:
 
     void start(std::chrono::nanoseconds delay, std::function<void()> due);
     void cancel();
+    /// Whether it is still to come due.
+    bool running() const noexcept { return due_ != nullptr; }
 
 private:
     friend class Run;
@@ -104,6 +107,7 @@ private:
     void checkRest();
     void restTimePassed();
     void ended(Outcome outcome);
+    void tidyUp();
     void finish();
 
     RunSetup setup_;
@@ -115,6 +119,7 @@ private:
     bool suspending_ = false;
     bool halting_ = false;
     bool over_ = false;
+    bool tidying_ = false;                // over, but for what it has halted itself
     std::optional<StepFailure> gave_up_;  // because something did not come to rest
     std::uint64_t begun_ = 0;
     std::vector<std::string> finished_;  // paths
@@ -125,6 +130,7 @@ private:
     std::vector<StepTimer*> timers_;
     skill::Timer rest_timer_;
     std::unique_ptr<Activity> root_;
+    ResetRound resets_{*this, [this] { finish(); }};
     // Posted work asks it whether this is still there.
     std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
 };

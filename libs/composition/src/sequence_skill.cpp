@@ -54,12 +54,19 @@ void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& ali
 /// A Reset of a used skill that nobody waits for: what it leads to shows at the next Start.
 class SequenceSkill::Unheard final : public ChildListener {
 public:
-    void onReset(const Result<void>& /*outcome*/) override {}
+    explicit Unheard(UsedSkill& used) : used_(used) {}
+
+    void onReset(const Result<void>& outcome) override {
+        used_.halted_by_us = used_.halted_by_us && !outcome;
+    }
     void onSuspended() override {}
     void onResumed() override {}
     void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
     void onEnd(ChildEnd /*end*/) override {}
+
+private:
+    UsedSkill& used_;
 };
 
 SequenceSkill::SequenceSkill(Composition composition,
@@ -69,10 +76,11 @@ SequenceSkill::SequenceSkill(Composition composition,
     : composition_(std::move(composition)),
       executor_(std::move(executor)),
       clock_(clock),
-      origin_(std::move(origin)),
-      unheard_(std::make_unique<Unheard>()) {
+      origin_(std::move(origin)) {
     for (const auto& use : composition_.definition.uses) {
-        used_[use.alias] = UsedSkill{std::move(children.at(use.alias)), use.reset};
+        auto& used = used_[use.alias];
+        used = UsedSkill{std::move(children.at(use.alias)), use.reset};
+        unheard_.emplace(use.alias, std::make_unique<Unheard>(used));
     }
     collectNeeded(composition_.definition.root.steps, needed_);
 }
@@ -149,7 +157,7 @@ Result<void> SequenceSkill::reset() {
         if (!used.mayReset() || !child.available() || child.state() != State::halted) {
             continue;
         }
-        if (const auto asked = child.reset(*unheard_); !asked) {
+        if (const auto asked = child.reset(*unheard_.at(alias)); !asked) {
             return fail(asked.error().code, fmt::format("{} ({}) refused Reset: {}", child.name(),
                                                         alias, asked.error().message));
         }

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
+#include <unordered_set>
+#include <utility>
 
 namespace metier::composition {
 
@@ -26,11 +29,26 @@ void forEachComparison(const Condition& condition, const Visit& visit) {
     }
 }
 
-Names intersection(const Names& a, const Names& b) {
-    Names both;
-    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()),
-                          std::less<>{});
-    return both;
+/// What a step adds to the calls that have certainly finished.
+struct Added {
+    std::vector<std::string_view> names{};
+    bool nothing_after = false;  ///< it always fails: whatever is asked for, nobody comes to ask
+};
+
+/// What both add.
+Added intersection(Added a, Added b) {
+    if (a.nothing_after || b.nothing_after) {
+        return a.nothing_after ? std::move(b) : std::move(a);
+    }
+    const std::unordered_set<std::string_view> others(b.names.begin(), b.names.end());
+    std::erase_if(a.names, [&](std::string_view name) { return !others.contains(name); });
+    return a;
+}
+
+/// What either adds, put to `all`.
+void append(Added& all, Added&& one) {
+    all.names.insert(all.names.end(), one.names.begin(), one.names.end());
+    all.nothing_after = all.nothing_after || one.nothing_after;
 }
 
 Names aliasesOf(const Step& step) {
@@ -52,11 +70,11 @@ public:
 
     Problems run() {
         collectNames(definition_.root);
-        const auto known = after(definition_.root, {});
+        after(definition_.root);
         for (const auto& result : definition_.results) {
             const auto& reference = std::get<Reference>(result.from.source);
             if (reference.step != kExecution) {
-                checkReference(reference, {result.line, result.from.key, ""}, known);
+                checkReference(reference, {result.line, result.from.key, ""});
             }
         }
         const auto used = aliasesOf(definition_.root);
@@ -109,79 +127,102 @@ private:
         }
     }
 
-    /// The calls that have certainly finished once the step has, if those of `known` had before.
-    Names after(const Step& step, Names known) {
+    /// Whether that call has certainly finished at the step that is looked at.
+    bool knows(std::string_view name) const { return dead_ends_ > 0 || known_.contains(name); }
+    void take(const Added& added) {
+        known_.insert(added.names.begin(), added.names.end());
+        dead_ends_ += added.nothing_after ? 1 : 0;
+    }
+    void drop(const Added& added) {
+        for (const auto& name : added.names) {
+            known_.erase(name);
+        }
+        dead_ends_ -= added.nothing_after ? 1 : 0;
+    }
+
+    /// What has certainly finished once the step has, besides what had before; it is known then.
+    Added after(const Step& step) {
         switch (step.kind) {
             case StepKind::call:
-                return afterCall(step, std::move(known));
+                return afterCall(step);
             case StepKind::sequence:
-                return afterAll(step.steps, std::move(known));
+                return afterAll(step.steps);
             case StepKind::parallel:
-                return afterParallel(step, known);
+                return afterParallel(step);
             case StepKind::fallback:
-                return afterOneOf(step.steps, known);
-            case StepKind::choice: {
-                checkCondition(*step.condition, known);
-                const auto then = afterAll(step.steps, known);
-                return intersection(then, afterAll(step.otherwise, known));
-            }
+                return afterOneOf(step.steps);
+            case StepKind::choice:
+                return afterChoice(step);
             case StepKind::loop:
-                return afterLoop(step, known);
+                return afterLoop(step);
             case StepKind::failure:
-                return all();  // nothing comes after it
+                ++dead_ends_;
+                return {{}, true};
         }
-        return known;
+        return {};
     }
 
-    Names all() const {
-        Names names;
-        for (const auto& [name, step] : steps_) {
-            names.insert(name);
-        }
-        return names;
-    }
-
-    Names afterCall(const Step& step, Names known) {
+    Added afterCall(const Step& step) {
         if (!step.use.empty() && !aliases_.contains(step.use)) {
             note(
                 step.line, step.key + ".run",
                 fmt::format("\"{}\" is not among [uses]: {}", step.use, fmt::join(aliases_, ", ")));
         }
         for (const auto& argument : step.arguments) {
-            checkBinding(argument.value, known);
+            checkBinding(argument.value);
         }
-        known.insert(step.name);
-        return known;
+        return known_.insert(step.name).second ? Added{{step.name}} : Added{};
     }
 
-    Names afterAll(const std::vector<Step>& steps, Names known) {
+    Added afterAll(const std::vector<Step>& steps) {
+        Added all;
         for (const auto& step : steps) {
-            known = after(step, std::move(known));
+            auto one = after(step);
+            if (one.nothing_after && all.nothing_after) {
+                --dead_ends_;  // counted once for all of them
+            }
+            append(all, std::move(one));
         }
-        return known;
+        return all;
     }
 
-    Names afterOneOf(const std::vector<Step>& steps, const Names& known) {
-        std::optional<Names> common;
+    Added afterOneOf(const std::vector<Step>& steps) {
+        std::optional<Added> common;
         for (const auto& step : steps) {
-            auto one = after(step, known);
-            common = common ? intersection(*common, one) : std::move(one);
+            auto one = after(step);
+            drop(one);
+            common = common ? intersection(std::move(*common), std::move(one)) : std::move(one);
         }
-        return common.value_or(known);
+        auto both = std::move(common).value_or(Added{});
+        take(both);
+        return both;
     }
 
-    Names afterParallel(const Step& step, const Names& known) {
+    Added afterChoice(const Step& step) {
+        checkCondition(*step.condition);
+        auto then = afterAll(step.steps);
+        drop(then);
+        auto otherwise = afterAll(step.otherwise);
+        drop(otherwise);
+        auto both = intersection(std::move(then), std::move(otherwise));
+        take(both);
+        return both;
+    }
+
+    Added afterParallel(const Step& step) {
         checkBranches(step);
         if (step.wait_for == WaitFor::any) {
-            return afterOneOf(step.steps, known);
+            return afterOneOf(step.steps);
         }
-        Names all = known;
+        Added all;
         for (const auto& branch : step.steps) {
-            auto finished = after(branch, known);
+            auto finished = after(branch);
+            drop(finished);
             if (!branch.background) {
-                all.merge(finished);
+                append(all, std::move(finished));
             }
         }
+        take(all);
         return all;
     }
 
@@ -199,19 +240,23 @@ private:
         }
     }
 
-    Names afterLoop(const Step& step, const Names& known) {
+    Added afterLoop(const Step& step) {
         checkBound(step);
         if (step.times) {
-            checkBinding(*step.times, known);
+            checkBinding(*step.times);
         }
         if (step.condition) {
-            checkCondition(*step.condition, known);
+            checkCondition(*step.condition);
         }
-        auto within = afterAll(step.steps, known);
+        auto within = afterAll(step.steps);
         if (step.until) {
-            checkCondition(*step.until, within);
+            checkCondition(*step.until);
         }
-        return runsAtLeastOnce(step) ? within : known;
+        if (!runsAtLeastOnce(step)) {
+            drop(within);
+            return {};
+        }
+        return within;
     }
 
     /// Every loop ends: it has a number of rounds, or a most.
@@ -250,34 +295,33 @@ private:
         return found == parameters_.end() ? nullptr : found->second;
     }
 
-    void checkCondition(const Condition& condition, const Names& known) {
+    void checkCondition(const Condition& condition) {
         forEachComparison(condition, [&](const Condition& comparison) {
-            checkReference(comparison.subject, {comparison.line, comparison.key + ".from", ""},
-                           known);
-            checkBinding(comparison.operand, known);
+            checkReference(comparison.subject, {comparison.line, comparison.key + ".from", ""});
+            checkBinding(comparison.operand);
         });
     }
 
-    void checkBinding(const Binding& binding, const Names& known) {
+    void checkBinding(const Binding& binding) {
         const Problem place{binding.line, binding.key, ""};
         if (const auto* reference = std::get_if<Reference>(&binding.source)) {
-            checkReference(*reference, place, known);
+            checkReference(*reference, place);
         }
         if (const auto* terms = std::get_if<std::vector<Term>>(&binding.source)) {
-            checkTerms(*terms, place, known);
+            checkTerms(*terms, place);
         }
-        checkTerms(binding.shift, place, known);
+        checkTerms(binding.shift, place);
     }
 
-    void checkTerms(const std::vector<Term>& terms, const Problem& place, const Names& known) {
+    void checkTerms(const std::vector<Term>& terms, const Problem& place) {
         for (const auto& term : terms) {
             if (term.from) {
-                checkReference(*term.from, place, known);
+                checkReference(*term.from, place);
             }
         }
     }
 
-    void checkReference(const Reference& reference, const Problem& place, const Names& known) {
+    void checkReference(const Reference& reference, const Problem& place) {
         if (reference.name.empty()) {
             return;  // noted when it was read
         }
@@ -291,7 +335,7 @@ private:
         } else if (step->second->kind != StepKind::call) {
             note(place.line, place.key,
                  fmt::format("step \"{}\" runs no skill, so it has no results", reference.step));
-        } else if (!known.contains(reference.step)) {
+        } else if (!knows(reference.step)) {
             note(place.line, place.key,
                  fmt::format("the result of step \"{}\" (line {}) is not there yet on every way "
                              "to here",
@@ -316,6 +360,11 @@ private:
     std::map<std::string, const skill::Field*, std::less<>> parameters_;
     std::map<std::string, const Step*, std::less<>> steps_;
     Names aliases_;
+    // Calls that have certainly finished where the check is now, and how many steps on the way
+    // there always fail: sets of their own for each step would take a time that grows with the
+    // square.
+    std::unordered_set<std::string_view> known_;
+    int dead_ends_ = 0;
     Problems problems_;
 };
 

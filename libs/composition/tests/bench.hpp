@@ -67,6 +67,18 @@ inline const std::string kHeadWithGrip = kHead + R"(
 type = "GraspSkillType"
 )";
 
+/// One step that runs `b`, which may be reset.
+inline const std::string kOneThatIsReset = R"(
+name = "TestSkill"
+rest_time = 2
+[uses.b]
+type = "MoveSkillType"
+reset = true
+[[step]]
+name = "first"
+run = "b"
+)";
+
 /// A composed skill over scripted children; the test moves the time and everything else.
 class Bench {
 public:

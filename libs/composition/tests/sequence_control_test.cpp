@@ -15,6 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kHead;
+using testing::kOneThatIsReset;
 
 const std::string kTwoSteps = kHead + R"(
 [[step]]
@@ -308,6 +309,34 @@ run = "a"
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
 }
 
+TEST(HaltOfASequence, EndsAtOnceBetweenTwoAttemptsToReset) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    bench["b"].reset_answer = fail(Errc::timeout, "not yet");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    EXPECT_EQ(bench.state(), "Halted");
+    bench.advance(1s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+}
+
+TEST(SuspendOfASequence, BetweenTwoAttemptsToResetAsksAgainOnceItGoesOn) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    bench["b"].reset_answer = fail(Errc::timeout, "not yet");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::suspend));
+    EXPECT_EQ(bench.state(), "Suspended");
+    bench.advance(60s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].reset_answer = {};
+    ASSERT_TRUE(bench.call(Method::resume));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].wasReset();
+    bench.advance(1s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+}
+
 TEST(HaltOfASequence, TellsOfAStepThatDoesNotEnd) {
     Bench bench(kTwoSteps);
     ASSERT_TRUE(bench.start());
@@ -316,6 +345,107 @@ TEST(HaltOfASequence, TellsOfAStepThatDoesNotEnd) {
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_EQ(bench.why(), "step first: MoveSkill a did not end within 2 s after Halt");
     EXPECT_FALSE(bench["a"].runs());
+}
+
+/// `b` is a background step, which the end of `a` has halted.
+class HaltedBackground : public ::testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_TRUE(bench.start());
+        bench["a"].finish();
+        bench.run();
+        ASSERT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+    }
+    void ends() {
+        bench["b"].halted();
+        bench.run();
+    }
+
+    Bench bench{kHead + R"(
+[[step]]
+name = "carry"
+[[step.parallel]]
+name = "move"
+run = "a"
+[[step.parallel]]
+name = "watch"
+run = "b"
+background = true
+)"};
+};
+
+TEST_F(HaltedBackground, IsReadyForOthersOnceTheSkillHasFinished) {
+    ends();
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    EXPECT_EQ(bench.state(), "Running");
+    bench["b"].wasReset();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+    EXPECT_FALSE(bench["b"].runs()) << "nobody hears of it any more";
+}
+
+TEST_F(HaltedBackground, ThatCannotBeResetDoesNotUndoWhatIsDone) {
+    bench["b"].reset_answer = fail(Errc::locked, "somebody else has control");
+    ends();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST_F(HaltedBackground, ThatRefusesLaterDoesNotUndoWhatIsDone) {
+    ends();
+    bench["b"].wasReset(fail(Errc::device_fault, "the emergency stop is pressed"));
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST_F(HaltedBackground, IsAskedAgainIfItsDeviceTakesItsTime) {
+    ends();
+    bench["b"].wasReset(fail(Errc::timeout, "not yet"));
+    bench.advance(100ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset", "reset"));
+    bench["b"].wasReset();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST_F(HaltedBackground, ThatDoesNotAnswerIsNotWaitedForLong) {
+    ends();
+    bench.advance(2s);
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_FALSE(bench["b"].runs());
+    ASSERT_TRUE(bench.program->startWith(testing::kClient, {"again", {}}));
+    bench.run();
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench["b"].heard().front(), "reset") << "the next execution asks again";
+}
+
+TEST_F(HaltedBackground, IsResetWhileTheSkillIsSuspended) {
+    ends();
+    ASSERT_TRUE(bench.call(Method::suspend));
+    EXPECT_EQ(bench.state(), "Suspended");
+    bench["b"].wasReset();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Suspended");
+    ASSERT_TRUE(bench.call(Method::resume));
+    EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST_F(HaltedBackground, KeepsNoHaltFromBeingTaken) {
+    ends();
+    ASSERT_TRUE(bench.call(Method::halt));
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_FALSE(bench["b"].runs());
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST_F(HaltedBackground, StaysHaltedIfTheSkillIsHalted) {
+    ASSERT_TRUE(bench.call(Method::halt));
+    ends();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
 }
 
 TEST(ResetOfASequence, ResetsWhatItHaltedItself) {
@@ -330,6 +460,20 @@ TEST(ResetOfASequence, ResetsWhatItHaltedItself) {
     EXPECT_THAT(bench["a"].heard(), ElementsAre("reset"));
     EXPECT_THAT(bench["b"].heard(), IsEmpty());
     EXPECT_EQ(bench.state(), "Ready");
+}
+
+TEST(ResetOfASequence, GivesNoRightToAnotherReset) {
+    // What a client halted after it was reset by the next Start.
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["a"].halted();
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::reset));
+    bench["a"].wasReset();
+    bench["a"].state_now = State::halted;  // by a client
+    EXPECT_FALSE(bench.program->startWith(testing::kClient, {"again", {}}));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt", "reset"));
 }
 
 TEST(ResetOfASequence, IsRefusedIfAUsedSkillRefusesAtOnce) {

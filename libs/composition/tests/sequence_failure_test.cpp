@@ -17,6 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kHead;
 using testing::kHeadWithGrip;
+using testing::kOneThatIsReset;
 
 const std::string kBoth = kHead + R"(
 [[step]]
@@ -183,6 +184,49 @@ TEST(FailureOfAStep, IsAResetThatIsRefused) {
     bench["b"].wasReset(fail(Errc::device_fault, "the emergency stop is pressed"));
     bench.run();
     EXPECT_EQ(bench.why(), "step second: MoveSkill b refused Reset: the emergency stop is pressed");
+}
+
+TEST(FailureOfAStep, IsAResetThatNobodyAnswers) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    ASSERT_TRUE(bench.start());
+    bench.advance(29'999ms);
+    EXPECT_EQ(bench.state(), "Running");
+    bench.advance(1ms);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step first: MoveSkill b was not Ready within 30 s after Reset");
+    EXPECT_FALSE(bench["b"].runs()) << "a late answer reaches nobody";
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST(FailureOfAStep, IsAResetThatTheDeviceDoesNotEnd) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    bench["b"].reset_answer = fail(Errc::timeout, "the brakes are not released yet");
+    ASSERT_TRUE(bench.start());
+    bench.advance(30s);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(),
+              "step first: MoveSkill b was not Ready within 30 s after Reset (the brakes are not "
+              "released yet)");
+}
+
+TEST(FailureOfAStep, IsNotAResetThatTheDeviceTakesItsTimeFor) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    ASSERT_TRUE(bench.start());
+    bench["b"].wasReset(fail(Errc::timeout, "the brakes are not released yet"));
+    bench.advance(99ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench.advance(1ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].wasReset();
+    bench.run();
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+    bench.advance(30s);
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
 }
 
 TEST(FailureOfAStep, IsASkillThatSomebodyHaltedBeforeItsTurn) {

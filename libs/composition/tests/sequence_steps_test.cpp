@@ -224,6 +224,9 @@ TEST(Parallel, HaltsTheOthersOnceOneHasSucceededIfOneIsEnough) {
     EXPECT_EQ(bench.state(), "Running") << "the other one has not ended";
     bench["a"].halted();
     bench.run();
+    EXPECT_EQ(bench.state(), "Running") << "what was halted is reset";
+    bench["a"].wasReset();
+    bench.run();
     EXPECT_EQ(bench.state(), "Ready");
 }
 
@@ -294,6 +297,8 @@ TEST(Background, IsHaltedOnceTheOthersAreDone) {
     bench.run();
     EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
     bench["a"].halted();
+    bench.run();
+    bench["a"].wasReset();
     bench.run();
     EXPECT_EQ(bench.state(), "Ready");
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <unordered_map>
 #include <utility>
 
 namespace metier::configuration {
@@ -28,6 +29,7 @@ struct TomlFile::Impl {
     // Line numbers order the report as a reader goes through the file.
     std::multimap<toml::source_index, std::string> problems = {};
     std::vector<std::unique_ptr<const TomlTable::Impl>> tables = {};
+    std::unordered_map<const toml::table*, const TomlTable::Impl*> views = {};  // of tables
     std::vector<std::unique_ptr<const TomlValue::Impl>> values = {};
 
     // Out of line: TomlTable::Impl is complete only below.
@@ -131,14 +133,14 @@ TomlFile::Impl::~Impl() = default;
 
 /// One view of each table, so that it is known what was asked for, however often it is opened.
 TomlTable TomlFile::Impl::open(const toml::table* table, std::string path) {
-    const auto known = std::find_if(tables.begin(), tables.end(), [&](const auto& opened) {
-        return table != nullptr && opened->table == table;
-    });
-    if (known != tables.end()) {
-        return TomlTable(known->get());
+    if (const auto known = views.find(table); known != views.end()) {
+        return TomlTable(known->second);
     }
     tables.push_back(
         std::make_unique<TomlTable::Impl>(TomlTable::Impl{this, table, std::move(path)}));
+    if (table != nullptr) {
+        views.emplace(table, tables.back().get());
+    }
     return TomlTable(tables.back().get());
 }
 

@@ -118,6 +118,12 @@ Result<std::unique_ptr<skill::Body>> HandDrivenSkill::prepare(const skill::Value
     return std::make_unique<HandDrivenBody>(hand_);
 }
 
+Result<void> HandDrivenSkill::reset() {
+    auto answer = hand_->mayReset();
+    hand_->told("reset");
+    return answer;
+}
+
 skill::SkillDescription jointMoveDescription() {
     skill::SkillDescription description;
     description.name = "JointPtpMoveSkill";

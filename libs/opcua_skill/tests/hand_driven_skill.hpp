@@ -20,7 +20,8 @@ public:
     skill::Execution execution() const;
     /// What the skill was last started with.
     skill::ValueMap snapshot() const;
-    /// Whether the body is asked to `what` ("start", "suspend", ...) within 5 s; each is told once.
+    /// Whether the body is asked to `what` ("start", "suspend", ...), or the skill to "reset",
+    /// within 5 s; each is told once.
     bool await(const std::string& what);
     /// From now on Start, or Reset, is refused with this.
     void refuseStart(Error error);
@@ -50,7 +51,7 @@ public:
 
     const skill::SkillDescription& description() const override { return description_; }
     Result<std::unique_ptr<skill::Body>> prepare(const skill::ValueMap& snapshot) override;
-    Result<void> reset() override { return hand_->mayReset(); }
+    Result<void> reset() override;
 
 private:
     skill::SkillDescription description_;

@@ -123,8 +123,15 @@ void Connection::work(const std::stop_token& stop) {
     }
 }
 
+void Connection::warn(std::string& last, std::string text) const {
+    const auto level = text == last ? spdlog::level::debug : spdlog::level::warn;
+    const bool named = text.find(options_.url) != std::string::npos;
+    spdlog::log(level, "{}{}{}", named ? "" : options_.url, named ? "" : ": ", text);
+    last = std::move(text);
+}
+
 void Connection::lose(const std::string& why) {
-    spdlog::warn("{}: {}; connecting again", options_.url, why);
+    warn(told_loss_, why + "; connecting again");
     std::vector<Use> uses;
     {
         const std::lock_guard lock(mutex_);
@@ -135,9 +142,25 @@ void Connection::lose(const std::string& why) {
     }
 }
 
+std::function<void()> Connection::adoptionOf(const Use& use) {
+    const auto address = skill_client::findSkill(*client_, use.skill);
+    auto skill = address ? open(*address, use.link)
+                         : Result<std::shared_ptr<OpenSkill>>(fail(address.error()));
+    const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
+    if (!skill || !now) {
+        warn(told_attempt_, fmt::format("{} is not there yet: {}", use.skill,
+                                        skill ? now.error().message : skill.error().message));
+        return nullptr;
+    }
+    return [link = use.link, skill = std::move(*skill), now = *now] {
+        link->post([skill, now](RemoteChild& child) { child.adopt(skill, now); });
+    };
+}
+
 bool Connection::reconnect() {
     auto client = connect(options_);
     if (!client) {
+        warn(told_attempt_, client.error().message);
         return false;
     }
     watch(**client);
@@ -152,23 +175,17 @@ bool Connection::reconnect() {
     // All or none: a child that was told would begin, and be told again in the next attempt.
     std::vector<std::function<void()>> adoptions;
     for (const auto& use : uses) {
-        const auto address = skill_client::findSkill(*client_, use.skill);
-        auto skill = address ? open(*address, use.link)
-                             : Result<std::shared_ptr<OpenSkill>>(fail(address.error()));
-        const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
-        if (!skill || !now) {
-            spdlog::warn("{}: {} is not there yet: {}", options_.url, use.skill,
-                         skill ? now.error().message : skill.error().message);
+        adoptions.push_back(adoptionOf(use));
+        if (adoptions.back() == nullptr) {
             return false;
         }
-        adoptions.emplace_back([link = use.link, skill = std::move(*skill), now = *now] {
-            link->post([skill, now](RemoteChild& child) { child.adopt(skill, now); });
-        });
     }
     for (const auto& adopt : adoptions) {
         adopt();
     }
-    spdlog::info("{}: connected again", options_.url);
+    spdlog::warn("{}: connected again", options_.url);  // heard by whoever heard of the loss
+    told_loss_.clear();
+    told_attempt_.clear();
     const std::lock_guard lock(mutex_);
     if (lost_.empty()) {
         away_since_.reset();

@@ -73,6 +73,11 @@ private:
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();
+    /// Has the child of a use go on with the present session; nothing if its skill is not there.
+    std::function<void()> adoptionOf(const Use& use);
+    /// Warns of a reason that is not the last one of its kind; the log of what comes again and
+    /// again is for those who look for it.
+    void warn(std::string& last, std::string text) const;
     std::shared_ptr<opcua::Client> present() const;
 
     const RemoteServerOptions options_;
@@ -85,6 +90,9 @@ private:
     std::condition_variable_any changed_;
     std::vector<std::function<void()>> jobs_;
     std::string lost_;  // why; empty while connected
+    // Of the thread: what the log has been told of since the connection was there.
+    std::string told_loss_;
+    std::string told_attempt_;
     std::jthread thread_;
 };
 

@@ -14,6 +14,7 @@ using skill::Method;
 using skill::Reason;
 using skill::State;
 using skill::TransitionNumber;
+using skill_client::AsyncSkill;
 
 RemoteChild::RemoteChild(Connection& connection, std::shared_ptr<ChildLink> link, std::string name,
                          std::string origin)
@@ -44,8 +45,7 @@ bool RemoteChild::isOurs(const std::string& execution) const {
     return execution.starts_with(origin_ + "/") || execution.starts_with(origin_ + "~");
 }
 
-void RemoteChild::adopt(std::shared_ptr<OpenSkill> skill,
-                        const skill_client::AsyncSkill::Now& now) {
+void RemoteChild::adopt(std::shared_ptr<OpenSkill> skill, const AsyncSkill::Now& now) {
     drop();
     skill_ = std::move(skill);
     description_ = skill_->skill.description();
@@ -61,8 +61,8 @@ void RemoteChild::adopt(std::shared_ptr<OpenSkill> skill,
 }
 
 /// What was read while nothing runs from here; all else is told by events.
-void RemoteChild::refresh(const skill_client::AsyncSkill::Now& now) {
-    if (skill_ && execution_.empty() && !resetting_ && !left_over_) {
+void RemoteChild::refresh(const AsyncSkill::Now& now) {
+    if (skill_ && execution_.empty() && !reset_ && !left_over_) {
         state_ = now.state;
         reason_text_ = now.reason_text;
     }
@@ -71,7 +71,7 @@ void RemoteChild::refresh(const skill_client::AsyncSkill::Now& now) {
 void RemoteChild::lost(const std::string& why) {
     drop();
     lost_ = why;
-    if (resetting_) {
+    if (reset_) {
         tellReset(fail(Errc::connection_lost, why));
     }
     if (!execution_.empty()) {
@@ -117,8 +117,10 @@ void RemoteChild::begin(skill::StartRequest request, ChildListener& listener) {
                   })
             : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
     if (!sent) {
-        link_->post([text = sent.error().message](RemoteChild& child) {
-            child.end({ChildEnd::Kind::lost, {}, Reason::device_lost, text});
+        link_->post([id = execution_, text = sent.error().message](RemoteChild& child) {
+            if (child.execution_ == id) {
+                child.end({ChildEnd::Kind::lost, {}, Reason::device_lost, text});
+            }
         });
     }
 }
@@ -142,9 +144,9 @@ void RemoteChild::started(const std::string& id, const opcua::Answer<std::string
         end({ChildEnd::Kind::lost, {}, Reason::device_lost, failure.message});
         return;
     }
-    withReason(failure.message, [id](RemoteChild& child, std::string text) {
+    withReason(failure.message, [id](RemoteChild& child, const AsyncSkill::Now& now) {
         if (child.execution_ == id) {
-            child.end({ChildEnd::Kind::refused, {}, Reason::error, std::move(text)});
+            child.end({ChildEnd::Kind::refused, {}, Reason::error, now.reason_text});
         }
     });
 }
@@ -155,25 +157,34 @@ void RemoteChild::haltIfRuns(const std::string& id) {
         return;
     }
     const auto sent = skill_->skill.execution(
-        id, [link = link_](const opcua::Answer<skill::ExecutionRecord>& record) {
+        id, [link = link_, id](const opcua::Answer<skill::ExecutionRecord>& record) {
             if (record && (record->state == State::running || record->state == State::suspended)) {
-                link->post([](RemoteChild& child) {
-                    child.left_over_ = true;
-                    static_cast<void>(child.command(Method::halt));
-                });
+                link->post([id](RemoteChild& child) { child.haltLeftOver(id); });
             }
         });
     static_cast<void>(sent);  // nothing can be done about a server that does not hear
 }
 
+/// Halt names no execution: one that was begun meanwhile must not be hit.
+void RemoteChild::haltLeftOver(const std::string& id) {
+    if (!execution_.empty()) {
+        unsure_ = id;
+        return;
+    }
+    left_over_ = true;
+    static_cast<void>(command(Method::halt));
+}
+
 void RemoteChild::withReason(std::string otherwise,
-                             std::function<void(RemoteChild&, std::string)> then) {
+                             std::function<void(RemoteChild&, const AsyncSkill::Now&)> then) {
     connection_.run(
         [skill = skill_, link = link_, otherwise = std::move(otherwise), then = std::move(then)] {
-            const auto now =
-                skill ? skill->skill.now() : opcua::Answer<skill_client::AsyncSkill::Now>();
-            auto text = now && !now->reason_text.empty() ? now->reason_text : otherwise;
-            link->post([then, text = std::move(text)](RemoteChild& child) { then(child, text); });
+            auto read = skill ? skill->skill.now() : opcua::Answer<AsyncSkill::Now>();
+            auto now = read ? std::move(*read) : AsyncSkill::Now();
+            if (now.reason_text.empty()) {
+                now.reason_text = otherwise;
+            }
+            link->post([then, now = std::move(now)](RemoteChild& child) { then(child, now); });
         });
 }
 
@@ -233,30 +244,39 @@ void RemoteChild::finished() {
 
 void RemoteChild::end(ChildEnd end) {
     execution_.clear();
+    if (const auto unsure = std::exchange(unsure_, {}); !unsure.empty()) {
+        haltIfRuns(unsure);
+    }
     if (auto* listener = std::exchange(listener_, nullptr)) {
         listener->onEnd(std::move(end));
     }
+}
+
+void RemoteChild::release() {
+    listener_ = nullptr;
+    reset_.reset();
 }
 
 Result<void> RemoteChild::command(Method method) {
     if (!skill_) {
         return fail(Errc::connection_lost, lost_);
     }
-    auto sent = skill_->skill.call(method, [link = link_, method](const opcua::Answer<>& answer) {
-        if (!answer) {
-            link->post([method, failure = answer.error()](RemoteChild& child) {
-                child.refused(method, failure);
-            });
-        }
-    });
+    auto sent = skill_->skill.call(
+        method, [link = link_, method, id = execution_](const opcua::Answer<>& answer) {
+            if (!answer) {
+                link->post([method, id, failure = answer.error()](RemoteChild& child) {
+                    child.refused(method, id, failure);
+                });
+            }
+        });
     return sent ? Result<void>{} : fail(sent.error());
 }
 
-void RemoteChild::refused(Method method, const opcua::Failure& failure) {
+void RemoteChild::refused(Method method, const std::string& id, const opcua::Failure& failure) {
     withReason(failure.message,
-               [method, code = failure.code](RemoteChild& child, std::string text) {
-                   if (child.listener_ != nullptr && !child.execution_.empty()) {
-                       child.listener_->onRefused(method, {code, std::move(text)});
+               [method, id, code = failure.code](RemoteChild& child, const AsyncSkill::Now& now) {
+                   if (child.listener_ != nullptr && !id.empty() && child.execution_ == id) {
+                       child.listener_->onRefused(method, {code, now.reason_text});
                    }
                });
 }
@@ -281,28 +301,26 @@ void RemoteChild::halt() {
     static_cast<void>(command(Method::halt));  // a server that is lost is told by lost()
 }
 
+/// Each is sent, also while the answer to another is awaited: that may be a refusal.
 Result<void> RemoteChild::reset(ChildListener& listener) {
     listener_ = &listener;
-    if (resetting_) {
-        return {};
-    }
     if (!skill_) {
         return fail(Errc::connection_lost, lost_);
     }
-    resetting_ = true;
+    const auto call = ++reset_count_;
     const auto sent =
-        skill_->skill.call(Method::reset, [link = link_](const opcua::Answer<>& answer) {
-            link->post([answer](RemoteChild& child) { child.wasReset(answer); });
+        skill_->skill.call(Method::reset, [link = link_, call](const opcua::Answer<>& answer) {
+            link->post([call, answer](RemoteChild& child) { child.wasReset(call, answer); });
         });
     if (!sent) {
-        resetting_ = false;
         return fail(sent.error());
     }
+    reset_ = call;
     return {};
 }
 
-void RemoteChild::wasReset(const opcua::Answer<>& answer) {
-    if (!resetting_) {
+void RemoteChild::wasReset(std::uint64_t call, const opcua::Answer<>& answer) {
+    if (reset_ != call) {
         return;
     }
     if (answer) {
@@ -311,14 +329,18 @@ void RemoteChild::wasReset(const opcua::Answer<>& answer) {
         return;
     }
     withReason(answer.error().message,
-               [code = answer.error().code](RemoteChild& child, std::string text) {
-                   child.tellReset(child.state_ == State::ready ? Result<void>{}
-                                                                : fail(code, std::move(text)));
+               [call, code = answer.error().code](RemoteChild& child, const AsyncSkill::Now& now) {
+                   if (child.reset_ != call) {
+                       return;
+                   }
+                   const bool ready = now.state == State::ready;  // somebody else was quicker
+                   child.state_ = ready ? now.state : child.state_;
+                   child.tellReset(ready ? Result<void>{} : fail(code, now.reason_text));
                });
 }
 
 void RemoteChild::tellReset(const Result<void>& outcome) {
-    resetting_ = false;
+    reset_.reset();
     if (listener_ != nullptr && execution_.empty()) {
         listener_->onReset(outcome);
     }

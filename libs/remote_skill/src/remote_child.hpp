@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "connection.hpp"
@@ -36,7 +39,7 @@ public:
     Result<void> suspend() override;
     Result<void> resume() override;
     void halt() override;
-    void release() override { listener_ = nullptr; }
+    void release() override;
 
     // What the connection tells.
     void adopt(std::shared_ptr<OpenSkill> skill, const skill_client::AsyncSkill::Now& now);
@@ -51,14 +54,19 @@ private:
     void started(const std::string& id, const opcua::Answer<std::string>& answer);
     void finished();
     void end(ChildEnd end);
-    void wasReset(const opcua::Answer<>& answer);
+    /// \param call the Reset that is answered
+    void wasReset(std::uint64_t call, const opcua::Answer<>& answer);
     void tellReset(const Result<void>& outcome);
     /// Sends a command and tells the listener if it is refused.
     Result<void> command(skill::Method method);
-    void refused(skill::Method method, const opcua::Failure& failure);
+    /// \param id of the execution that it was meant for
+    void refused(skill::Method method, const std::string& id, const opcua::Failure& failure);
     void haltIfRuns(const std::string& id);
-    /// Has `then` called with the server's reason for the last refusal, or else with `otherwise`.
-    void withReason(std::string otherwise, std::function<void(RemoteChild&, std::string)> then);
+    void haltLeftOver(const std::string& id);
+    /// Has `then` called with the skill's state and the server's reason for the last refusal, or
+    /// else with `otherwise`, and Halted.
+    void withReason(std::string otherwise,
+                    std::function<void(RemoteChild&, const skill_client::AsyncSkill::Now&)> then);
     void drop();
 
     Connection& connection_;
@@ -71,10 +79,13 @@ private:
     skill::State state_ = skill::State::halted;
     std::string reason_text_;
     bool left_over_ = false;
-    bool resetting_ = false;
+    // The Reset whose answer is awaited; nothing if none is. Earlier ones have lower numbers.
+    std::optional<std::uint64_t> reset_;
+    std::uint64_t reset_count_ = 0;
 
     composition::ChildListener* listener_ = nullptr;
     std::string execution_;  // begun here and not over
+    std::string unsure_;     // maybe runs, to be asked for once execution_ is over
     bool started_ = false;   // the server has said so
     bool halt_wanted_ = false;
     bool suspend_wanted_ = false;

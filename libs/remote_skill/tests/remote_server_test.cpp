@@ -2,6 +2,12 @@
 #include "metier/remote_skill/remote_server.hpp"
 
 #include <gmock/gmock.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
 
 #include "metier/skill/testing/manual_executor.hpp"
 #include "served_skills.hpp"
@@ -149,6 +155,52 @@ TEST_F(RemoteChildTest, TellsTheServersWordsWhenResumeIsRefusedToIt) {
     EXPECT_THAT(listener_.refusal, HasSubstr("Resume: Resume is not possible while Running"));
 }
 
+TEST_F(RemoteChildTest, TellsNobodyTheAnswerToAResetThatIsGivenUp) {
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    move_.hand->refuseReset({Errc::device_fault, "the emergency stop is pressed"});
+    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(move_.hand->await("reset"));
+    child_->release();
+    move_.hand->allowReset();
+    Listener next;
+    ASSERT_TRUE(child_->reset(next));
+    ASSERT_TRUE(move_.hand->await("reset")) << "the next one is sent, too";
+    ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
+    EXPECT_TRUE(*next.reset) << "the answer to its own Reset, not to the one before";
+    EXPECT_FALSE(listener_.reset);
+}
+
+TEST_F(RemoteChildTest, TakesASkillThatIsReadyMeanwhileForReset) {
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(move_.hand->await("reset"));
+    Listener next;  // whose Reset comes to a skill that is Ready
+    ASSERT_TRUE(child_->reset(next));
+    ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
+    EXPECT_TRUE(*next.reset);
+    EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, TellsARefusalToNoOtherExecution) {
+    // A Resume that was refused when its execution had just ended made the next one fail.
+    beginAndAwait("here.Test/1/move/1");
+    const auto before = executor_->posts();
+    ASSERT_TRUE(child_->resume()) << "it is Running: refused";
+    ASSERT_TRUE(executor_->awaitPosts(before + 1));
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(executor_->awaitPosts(before + 2)) << "the end, right behind the refusal";
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    listener_ = {};
+    begin("here.Test/2/move/1");  // it is Halted: refused, later than the Resume
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::refused);
+    EXPECT_EQ(listener_.refusal, "");
+}
+
 TEST_F(RemoteChildTest, IsLostWithItsServer) {
     beginAndAwait("here.Test/1/move/1");
     shutDown();
@@ -170,6 +222,74 @@ TEST_F(RemoteChildTest, HaltsWhatIsLeftOverOfItsOwnAndNothingElse) {
     ASSERT_TRUE(move_.hand->await("halt"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([&] { return again->state() == State::halted; }));
+}
+
+// ---- the log ------------------------------------------------------------------------------------
+
+/// Counts what is logged while it is there.
+class Log final : public spdlog::sinks::base_sink<std::mutex> {
+public:
+    /// Waits until `text` was told that often, at any level.
+    bool await(const std::string& text, int count) {
+        std::unique_lock lock(told_mutex_);
+        return changed_.wait_for(lock, 10s,
+                                 [&] { return countOf(text, spdlog::level::trace) >= count; });
+    }
+    int warnings(const std::string& text) {
+        const std::lock_guard lock(told_mutex_);
+        return countOf(text, spdlog::level::warn);
+    }
+
+private:
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        {
+            const std::lock_guard lock(told_mutex_);
+            told_.emplace_back(message.level,
+                               std::string(message.payload.data(), message.payload.size()));
+        }
+        changed_.notify_all();
+    }
+    void flush_() override {}
+    int countOf(const std::string& text, spdlog::level::level_enum least) const {
+        return static_cast<int>(std::count_if(told_.begin(), told_.end(), [&](const auto& line) {
+            return line.first >= least && line.second.find(text) != std::string::npos;
+        }));
+    }
+
+    std::mutex told_mutex_;
+    std::condition_variable changed_;
+    std::vector<std::pair<spdlog::level::level_enum, std::string>> told_;
+};
+
+/// Takes the place of the program's log, with all levels.
+class LoggedRemoteChild : public RemoteChildTest {
+protected:
+    LoggedRemoteChild() {
+        auto logger = std::make_shared<spdlog::logger>("test", log_);
+        logger->set_level(spdlog::level::trace);
+        spdlog::set_default_logger(std::move(logger));
+        child_.reset();
+        remote_ =
+            RemoteServer::connect(
+                {.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms}, executor_)
+                .value();
+        child_ = use("here.Test");
+    }
+    ~LoggedRemoteChild() override {
+        child_.reset();
+        remote_.reset();
+        spdlog::set_default_logger(former_);
+    }
+
+    std::shared_ptr<spdlog::logger> former_ = spdlog::default_logger();  // as spdlog shares it
+    std::shared_ptr<Log> log_ = std::make_shared<Log>();                 // with the logger
+};
+
+TEST_F(LoggedRemoteChild, TellsOnceThatItsServerIsAway) {
+    shutDown();
+    ASSERT_TRUE(log_->await("connecting again", 1));
+    ASSERT_TRUE(log_->await("BadConnectionRejected", 5)) << "it tries again and again";
+    EXPECT_EQ(log_->warnings(""), 2) << "the loss, and why it cannot be mended";
 }
 
 }  // namespace

@@ -7,9 +7,10 @@ namespace metier::robot_skills {
 using device::SafetyState;
 using skill::Reason;
 
-GripperBody::GripperBody(device::Gripper& gripper, Ask ask, Judge judge)
+GripperBody::GripperBody(device::Gripper& gripper, Ask ask, Judge judge, Moving moving)
     : gripper_(gripper), ask_(std::move(ask)), telling_(std::make_shared<Telling>()) {
     telling_->judge = std::move(judge);
+    telling_->moving = std::move(moving);
 }
 
 GripperBody::~GripperBody() {
@@ -25,13 +26,13 @@ void GripperBody::start(skill::Execution execution) {
 }
 
 Result<void> GripperBody::move() {
-    telling_->moving.store(true);
+    telling_->moving->store(true);
     auto asked = ask_(gripper_, [telling = telling_](const auto& outcome) {
-        telling->moving.store(false);
+        telling->moving->store(false);
         tell(*telling, outcome);
     });
     if (!asked) {
-        telling_->moving.store(false);
+        telling_->moving->store(false);
     }
     return asked;
 }
@@ -51,7 +52,7 @@ void GripperBody::tell(const Telling& telling, const Result<device::GripperOutco
 /// While the jaws rest there is no motion whose end tells that the gripper is gone.
 void GripperBody::watchSafety() {
     safety_watch_ = gripper_.onSafetyChange([telling = telling_](const device::Safety& safety) {
-        if (safety.state == SafetyState::normal || telling->moving.load()) {
+        if (safety.state == SafetyState::normal || telling->moving->load()) {
             return;
         }
         const bool lost = safety.state == SafetyState::disconnected;
@@ -69,7 +70,7 @@ Result<void> GripperBody::resume() {
 }
 
 void GripperBody::halt() {
-    if (telling_->moving.load()) {
+    if (telling_->moving->load()) {
         gripper_.stop();
     } else {
         telling_->execution.atRest();
@@ -77,7 +78,7 @@ void GripperBody::halt() {
 }
 
 void GripperBody::forceStop() noexcept {
-    if (telling_->moving.load()) {
+    if (telling_->moving->load()) {
         gripper_.stop();
     }
 }

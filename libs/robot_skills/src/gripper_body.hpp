@@ -17,8 +17,11 @@ public:
     /// The result for the client. Errors: the outcome is not what was asked for.
     using Judge = std::function<Result<skill::ValueMap>(const device::GripperOutcome&)>;
 
+    /// Whether a motion is under way; shared with the gripper, which may end it after the body.
+    using Moving = std::shared_ptr<std::atomic<bool>>;
+
     /// \param gripper must outlive the body
-    GripperBody(device::Gripper& gripper, Ask ask, Judge judge);
+    GripperBody(device::Gripper& gripper, Ask ask, Judge judge, Moving moving);
     /// Stops the jaws if they still move.
     ~GripperBody() override;
     GripperBody(const GripperBody&) = delete;
@@ -35,7 +38,7 @@ private:
     struct Telling {
         skill::Execution execution;
         Judge judge;
-        std::atomic<bool> moving{false};
+        Moving moving;
     };
 
     static void tell(const Telling& telling, const Result<device::GripperOutcome>& outcome);

@@ -91,7 +91,13 @@ public:
           check_(kind.check),
           needs_width_(kind.needs_width) {}
 
-    Result<void> reset() override { return gripper_.resetFault(); }
+    /// Errors: also timeout while jaws that were told to stop move on; it is to be called again.
+    Result<void> reset() override {
+        if (moving_->load()) {
+            return fail(Errc::timeout, gripper_.info().name + ": the jaws still move");
+        }
+        return gripper_.resetFault();
+    }
 
 protected:
     Result<std::unique_ptr<skill::Body>> plan(const GripperParameters& parameters) override {
@@ -112,7 +118,8 @@ protected:
                 return check(outcome).map([&] {
                     return gripperResultFields().write({outcome.width, outcome.part_held});
                 });
-            });
+            },
+            moving_);
     }
 
 private:
@@ -120,6 +127,7 @@ private:
     Ask ask_;
     Result<void> (*check_)(const GripperOutcome&);
     bool needs_width_;
+    GripperBody::Moving moving_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 Field forceField(std::string description) {

@@ -21,20 +21,24 @@ std::string whatHappened(const std::string& name, std::chrono::nanoseconds silen
 device::Watchdog::Actions actionsOf(const StallWatch::Setup& setup,
                                     const std::shared_ptr<skill::Executor>& executor,
                                     std::vector<skill::Program*> programs) {
+    const bool device = setup.stop != nullptr;
     const auto text = [name = setup.name, limit = setup.limit](std::chrono::nanoseconds silent) {
         return whatHappened(name, silent, limit);
     };
-    return {.stop = setup.stop,
+    return {.stop = device ? setup.stop : [] {},
             .post = [executor](std::function<void()> work) { executor->post(std::move(work)); },
             .tell =
-                [text, programs = std::move(programs)](std::chrono::nanoseconds stalled) {
+                [text, device, programs = std::move(programs)](std::chrono::nanoseconds stalled) {
                     for (auto* program : programs) {
-                        program->deviceStopped(text(stalled) + ": its watchdog stopped the device");
+                        program->deviceStopped(text(stalled) +
+                                               (device ? ": its watchdog stopped the device"
+                                                       : ": the skills that it uses are halted"));
                     }
                 },
             .noticed =
-                [text, log = setup.log](std::chrono::nanoseconds silent) {
-                    log(text(silent) + ": what moves is stopped");
+                [text, device, log = setup.log](std::chrono::nanoseconds silent) {
+                    log(text(silent) + (device ? ": what moves is stopped"
+                                               : ": what runs is halted once it works again"));
                 }};
 }
 

@@ -150,6 +150,25 @@ TEST(GripperSkill, StaysHaltedUntilTheGripperAgreesToReset) {
     EXPECT_EQ(bench.program(kGrasp).state(), State::ready);
 }
 
+TEST_F(MovingJaws, ThatDoNotStopAreNotReady) {
+    ASSERT_TRUE(bench.run([&] { return grasp.halt(bench.caller); }));
+    bench.executor->advance(std::chrono::seconds(5));
+    ASSERT_EQ(grasp.state(), State::halted) << "not at rest in its time";
+    const auto reset = bench.run([&] { return grasp.reset(bench.caller); });
+    ASSERT_FALSE(reset);
+    EXPECT_EQ(reset.error().code, Errc::timeout) << "to be called again";
+    EXPECT_EQ(reset.error().message, "tool: the jaws still move");
+    bench.end(fail(Errc::cancelled, "stopped"));
+    ASSERT_TRUE(bench.run([&] { return grasp.reset(bench.caller); }));
+    EXPECT_TRUE(bench.start(kGrasp)) << "Ready means that it can begin";
+}
+
+TEST_F(MovingJaws, LeaveTheResetOfAnotherSkillAlone) {
+    auto& other = bench.program(kRelease);
+    ASSERT_TRUE(bench.run([&] { return other.halt(bench.caller); }));
+    EXPECT_TRUE(bench.run([&] { return other.reset(bench.caller); }));
+}
+
 TEST(GripperWatch, HaltsEveryProgramWhenTheGripperIsGone) {
     GripperBench bench;
     const DeviceWatch watch(bench.gripper, bench.executor,

@@ -24,14 +24,16 @@ constexpr auto kLimit = 250ms;
 /// it. The watchdog's thread is a real one, which looks at this clock.
 class Watched {
 public:
-    explicit Watched(Bench& bench) : bench_(bench) {
+    explicit Watched(Bench& bench) : Watched(bench, [&bench] { bench.arm().stop(); }) {}
+    Watched(Bench& bench, std::function<void()> stop) : bench_(bench) {
         clock_.advance(1s);
         watch_.emplace(StallWatch::Setup{.name = "ur5",
                                          .limit = kLimit,
-                                         .stop = [this] { bench_.arm().stop(); },
+                                         .stop = std::move(stop),
                                          .log =
-                                             [this](const std::string&) {
+                                             [this](const std::string& told) {
                                                  ++lines;
+                                                 line = told;
                                                  noticed();
                                              }},
                        bench_.sharedExecutor(), programs(), clock_);
@@ -73,6 +75,7 @@ public:
     skill::Program& program() { return bench_.program(kJointPtp); }
 
     std::atomic<int> lines = 0;
+    std::string line;  // the last one; to be read after stall()
 
 private:
     std::vector<skill::Program*> programs() {
@@ -129,6 +132,17 @@ TEST(StallWatch, HaltsAtStandstillIfTheArmStillBrakes) {
     ASSERT_TRUE(bench.stepUntil(kJointPtp, State::halted));
     EXPECT_TRUE(bench.arm().state().standstill);
     EXPECT_THAT(watched.program().reasonText(), HasSubstr("the server's thread did not work"));
+}
+
+TEST(StallWatch, OfAServerWithoutADeviceSaysNotThatItStoppedOne) {
+    Bench bench;
+    Watched watched(bench, nullptr);
+    watched.startMove();
+    ASSERT_TRUE(watched.stall(1200ms));
+    EXPECT_THAT(watched.line, HasSubstr("limit 0.25 s: what runs is halted once it works again"));
+    ASSERT_TRUE(bench.stepUntil(kJointPtp, State::halted));
+    EXPECT_THAT(watched.program().reasonText(),
+                HasSubstr("limit 0.25 s: the skills that it uses are halted"));
 }
 
 TEST(StallWatch, LeavesAServerThatWorksAlone) {

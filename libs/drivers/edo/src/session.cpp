@@ -265,8 +265,8 @@ void Session::tickGripper(SteadyTime now, Wire& wire) {
         gripper_.stop(now, wire);
     }
     if (auto outcome = gripper_.tick(*safety_.machine(), now, wire)) {
+        publishGripper(now);  // first: whoever hears of the end sees the jaws at rest
         gripper_desk_.finish(std::move(*outcome));
-        publishGripper(now);
     }
 }
 

@@ -100,6 +100,7 @@ void MotionTask::settle(Status last, const Observation& seen, SteadyTime now) {
     last_ = last;
     mark_ = seen.mark();
     deadline_ = now + timing_.settle;
+    rest_by_ = now + timing_.motion;
 }
 
 void MotionTask::refuse(std::string why) {
@@ -133,7 +134,11 @@ std::optional<MotionTask::Outcome> MotionTask::outcome(const Observation& seen, 
                     fmt::format("{} ended by the gripper: {}", nameOf(motion_.kind),
                                 seen.system().faultText()));
     }
-    if (phase_ == Phase::settling && seen.renewedSince(mark_) &&
+    if (phase_ == Phase::settling && seen.system().moving() && now < rest_by_) {
+        deadline_ = now + timing_.settle;  // from standstill on
+        return std::nullopt;
+    }
+    if (phase_ == Phase::settling && seen.renewedSince(mark_) && !seen.system().moving() &&
         (last_ != Status::success || asWanted(seen))) {
         return graspsAnew(seen, now) ? std::nullopt : std::optional(judge(seen));
     }
@@ -153,13 +158,18 @@ bool MotionTask::graspsAnew(const Observation& seen, SteadyTime now) {
 
 /// What is to be said when the time for the present phase is over.
 std::optional<MotionTask::Outcome> MotionTask::late(const Observation& seen, SteadyTime now) {
-    if (phase_ == Phase::settling) {
+    const bool settling = phase_ == Phase::settling;
+    if ((settling || stopping_) && seen.system().moving()) {
+        return fail(Errc::timeout,
+                    fmt::format("the jaws still move after {}",
+                                stopping_ ? std::string("stop")
+                                          : fmt::format("the end of {}", nameOf(motion_.kind))));
+    }
+    if (settling) {
         return judge(seen);
     }
     if (stopping_) {
-        return seen.system().moving()
-                   ? Outcome(fail(Errc::timeout, "the jaws still move after stop"))
-                   : stopped();
+        return stopped();
     }
     if (phase_ == Phase::pending) {
         timed_out_ = true;

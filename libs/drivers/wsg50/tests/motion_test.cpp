@@ -250,6 +250,27 @@ TEST_F(MotionOf, StopEndsItAsCancelled) {
     EXPECT_EQ(talk.motionCode(), Errc::cancelled);
 }
 
+TEST_F(MotionOf, StopEndsItOnceTheJawsRest) {
+    // The gripper tells the motion's end when it begins to brake. Halted was told then, and the
+    // next motion was refused: the jaws still moved.
+    underWay(kMove, 0x21);
+    talk.stop();
+    talk.hear(reply(0x22, kSuccess) + reply(0x21, kAborted));
+    talk.pass(500ms, kReferenced | kMoving, kIdle, 47);
+    EXPECT_THAT(talk.ends, IsEmpty());
+    talk.update(kReferenced, kIdle, 46);
+    EXPECT_EQ(talk.motionCode(), Errc::cancelled);
+    EXPECT_FALSE(talk.state.moving);
+}
+
+TEST_F(MotionOf, AnyKindWhoseJawsMoveOnAfterItsEndIsTold) {
+    underWay(kMove, 0x21);
+    talk.hear(reply(0x21, kAborted));
+    talk.pass(31s, kReferenced | kMoving, kIdle, 47);
+    EXPECT_EQ(talk.motionCode(), Errc::timeout);
+    EXPECT_EQ(talk.motionError(), "the jaws still move after the end of move");
+}
+
 TEST_F(MotionOf, StopBeforeTheMotionBeganSendsNone) {
     talk.begin(kMove);
     talk.stop();

@@ -66,8 +66,8 @@ private:
     std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
     const Clock& clock_;
     std::string origin_;
-    std::vector<std::string> needed_;  // aliases that every execution runs
-    std::unique_ptr<Unheard> unheard_;
+    std::vector<std::string> needed_;                          // aliases that every execution runs
+    std::map<std::string, std::unique_ptr<Unheard>> unheard_;  // by alias
     // Shared by the bodies: as many as there are of these, one more than there are bodies.
     std::shared_ptr<const char> body_count_ = std::make_shared<const char>();
 };

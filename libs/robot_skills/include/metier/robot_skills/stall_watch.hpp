@@ -24,7 +24,8 @@ public:
         std::string name;                ///< of the server, for texts
         std::chrono::nanoseconds limit;  ///< longest time without a sign of the owner's thread, > 0
         /// Stops every device at once, as Arm::stop(); any thread. Stays valid for the watch's
-        /// life.
+        /// life. Empty: the server has no device, only skills that run others; these are halted
+        /// when its thread is back, since only it can ask for that.
         std::function<void()> stop;
         /// Logs one line. Any thread; must not wait for the owner's.
         std::function<void(const std::string&)> log;

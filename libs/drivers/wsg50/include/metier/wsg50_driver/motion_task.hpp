@@ -33,7 +33,8 @@ struct Motion {
 /// One motion, from its first command to its outcome.
 ///
 /// The gripper acknowledges a motion as pending and tells its end in a second reply. Neither is
-/// trusted: the outcome is what the updates after the last reply show. A grasp of a part of unknown
+/// trusted: the outcome is what the updates after the last reply show, once the jaws rest: the
+/// gripper tells that a motion was stopped when it begins to brake. A grasp of a part of unknown
 /// width that the part blocks is asked for again, with the width where it was blocked.
 ///
 /// Threading: one thread.
@@ -41,8 +42,8 @@ class MotionTask {
 public:
     struct Timing {
         SteadyTime::duration reply{};   ///< for the first answer to a command
-        SteadyTime::duration motion{};  ///< for the last one
-        SteadyTime::duration settle{};  ///< for the state to agree with the last one
+        SteadyTime::duration motion{};  ///< for the last one, and for the standstill after it
+        SteadyTime::duration settle{};  ///< at standstill, for the state to agree with the last one
     };
 
     /// Sends the first command. \param sink must outlive this
@@ -81,6 +82,7 @@ private:
     CommandSink& sink_;
     Phase phase_ = Phase::force_limit;
     SteadyTime deadline_;
+    SteadyTime rest_by_;  // once it settles
     bool stopping_ = false;
     bool timed_out_ = false;
     Status last_ = Status::success;

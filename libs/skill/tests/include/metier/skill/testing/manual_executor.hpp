@@ -26,8 +26,20 @@ public:
         {
             const std::lock_guard lock(mutex_);
             posted_.push_back(std::move(work));
+            ++post_count_;
         }
         changed_.notify_one();
+    }
+    /// How often something was posted so far.
+    std::size_t posts() {
+        const std::lock_guard lock(mutex_);
+        return post_count_;
+    }
+    /// Waits, without running anything, until that many posts have come; false after 10 s.
+    bool awaitPosts(std::size_t count) {
+        std::unique_lock lock(mutex_);
+        return changed_.wait_for(lock, std::chrono::seconds(10),
+                                 [&] { return post_count_ >= count; });
     }
 
     Timer after(std::chrono::nanoseconds delay, std::function<void()> work) override {
@@ -103,6 +115,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<std::function<void()>> posted_;
+    std::size_t post_count_ = 0;
     // Shared with the Timers, which may outlive the executor.
     std::shared_ptr<Timers> timers_ = std::make_shared<Timers>();
     std::uint64_t timer_count_ = 0;

@@ -1,0 +1,98 @@
+#include "reset_round.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "run.hpp"
+
+namespace metier::composition {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPause{100};
+
+}  // namespace
+
+/// The Reset of one skill.
+class ResetRound::One final : public ChildListener {
+public:
+    One(Run& run, UsedSkill& used, ResetRound& round) : run_(run), used_(used), round_(round) {}
+    ~One() override { used_.child->release(); }
+    One(const One&) = delete;
+    One& operator=(const One&) = delete;
+
+    /// \return whether its outcome is still to come
+    bool ask() {
+        const auto asked = used_.child->reset(*this);
+        return asked || again(asked.error());
+    }
+
+    void onReset(const Result<void>& outcome) override {
+        run_.enter([this, outcome] {
+            used_.halted_by_us = used_.halted_by_us && !outcome;
+            if (outcome || !again(outcome.error())) {
+                round_.ended(*this);
+            }
+        });
+    }
+    void onSuspended() override {}
+    void onResumed() override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
+    void onEnd(ChildEnd /*end*/) override {}
+
+private:
+    /// A device that takes longer than its server waits for it is asked again.
+    bool again(const Error& error) {
+        if (error.code != Errc::timeout) {
+            return false;
+        }
+        pause_ = run_.after(kPause, [this] {
+            if (!ask()) {
+                round_.ended(*this);
+            }
+        });
+        return true;
+    }
+
+    Run& run_;
+    UsedSkill& used_;
+    ResetRound& round_;
+    skill::Timer pause_;
+};
+
+ResetRound::ResetRound(Run& run, std::function<void()> done) : run_(run), done_(std::move(done)) {}
+ResetRound::~ResetRound() = default;
+
+void ResetRound::start(UsedSkills& used) {
+    for (auto& [alias, each] : used) {
+        const auto& child = *each.child;
+        if (!each.halted_by_us || !child.available() || child.state() != skill::State::halted) {
+            continue;
+        }
+        auto one = std::make_unique<One>(run_, each, *this);
+        if (one->ask()) {
+            open_.push_back(std::move(one));
+        }
+    }
+    limit_ = run_.after(run_.restTime(), [this] { end(); });
+    if (open_.empty()) {
+        end();
+    }
+}
+
+void ResetRound::ended(const One& one) {
+    std::erase_if(open_, [&](const auto& open) { return open.get() == &one; });
+    if (open_.empty()) {
+        end();
+    }
+}
+
+void ResetRound::end() {
+    limit_.cancel();
+    open_.clear();
+    run_.later(std::exchange(done_, nullptr));
+}
+
+}  // namespace metier::composition
