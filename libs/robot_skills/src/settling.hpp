@@ -7,7 +7,8 @@
 
 namespace metier::robot_skills {
 
-/// Waits after the last set-point until the measured arm stands there.
+/// Waits after the last set-point until the measured arm stands there. An arm that is late, as on a
+/// busy machine, is waited for as long as it moves, 10 s at most; one that rests elsewhere 2 s.
 ///
 /// Threading: one thread, the cycle; tellOffTarget() after it.
 class Settling {
@@ -25,13 +26,14 @@ public:
                 double cycle) noexcept;
 
     /// Ready for the next end of a motion.
-    void restart() noexcept { waited_ = 0.0; }
+    void restart() noexcept { waited_ = rested_ = 0.0; }
 
     /// Fails `execution` with how far off the arm is.
     void tellOffTarget(const skill::Execution& execution) const;
 
 private:
     double waited_ = 0.0;    ///< [s]
+    double rested_ = 0.0;    ///< at standstill elsewhere, without a break [s]
     double distance_ = 0.0;  ///< of the axis farthest off [rad]
 };
 
