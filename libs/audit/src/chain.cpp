@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::string_view kChainKey = ",\"chain\":\"";
 constexpr std::string_view kEnd = "\"}";
+// Peers choose their names: a line stays far shorter than what is read of a log's end.
+constexpr std::size_t kLongestValue = 1'000;
 
 std::string sha256(std::string_view text) {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -45,7 +47,7 @@ ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view
     json["time"] = timeText(entry.time);
     json["event"] = entry.event;
     for (const auto& [name, value] : entry.fields) {
-        json[name] = value;
+        json[name] = value.size() > kLongestValue ? value.substr(0, kLongestValue) + "..." : value;
     }
     auto body = json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
     body.pop_back();  // the brace

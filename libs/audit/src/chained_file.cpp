@@ -47,10 +47,13 @@ AuditLog::File::~File() {
 /// The number of bytes behind the last whole line, which are cut off.
 Result<std::size_t> AuditLog::File::readEnd() {
     const off_t size = ::lseek(descriptor_, 0, SEEK_END);
+    if (size < 0) {
+        return failed(path_);
+    }
     const off_t begin = std::max<off_t>(0, size - kLongestLine);
     std::string tail(static_cast<std::size_t>(size - begin), '\0');
-    if (size < 0 || ::pread(descriptor_, tail.data(), tail.size(), begin) !=
-                        static_cast<ssize_t>(tail.size())) {
+    if (::pread(descriptor_, tail.data(), tail.size(), begin) !=
+        static_cast<ssize_t>(tail.size())) {
         return failed(path_);
     }
     const auto end = tail.rfind('\n');

@@ -73,6 +73,15 @@ TEST_F(AuditFile, GoesOnAfterARestart) {
     EXPECT_EQ(verified->entries, 2U);
 }
 
+TEST_F(AuditFile, GoesOnAfterWhateverALongName) {
+    open()->append(
+        {std::chrono::system_clock::now(), "Login", {{"user", std::string(200'000, 'x')}}});
+    open()->append(entry("Halt"));
+    const auto verified = verify(file_);
+    ASSERT_TRUE(verified) << verified.error().message;
+    EXPECT_EQ(verified->entries, 2U);
+}
+
 TEST_F(AuditFile, TellsWhichLineWasTamperedWith) {
     {
         const auto log = open();

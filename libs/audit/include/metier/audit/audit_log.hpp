@@ -22,7 +22,8 @@ namespace metier::audit {
 struct Entry {
     UtcTime time;
     std::string event;  ///< "Start", "Halt", "LoginRefused"
-    /// Who, where, what came of it; in this order in the file. Text that is not UTF-8 is made so.
+    /// Who, where, what came of it; in this order in the file. Text that is not UTF-8 is made so,
+    /// and cut after 1000 bytes.
     std::vector<std::pair<std::string, std::string>> fields;
 };
 
