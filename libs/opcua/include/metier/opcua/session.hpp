@@ -16,8 +16,8 @@ struct Session {
     std::string application_name;
     std::string user;          ///< empty: anonymous
     std::string thumbprint{};  ///< of the trusted certificate of its application; empty: none
-    /// In a lab everybody may do everything.
-    trust::Role role = trust::Role::engineer;
+    /// What it may do; in a lab everybody is an engineer.
+    trust::Role role = trust::Role::observer;
 };
 
 /// Whether a role may change anything: write Variables and call Methods that do more than tell.
