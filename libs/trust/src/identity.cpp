@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "openssl.hpp"
 #include "private_file.hpp"
@@ -60,15 +61,14 @@ bool addExtension(X509* certificate, int kind, const std::string& value) {
 }
 
 /// What OPC 10000-6, 6.2.2 wants of the certificate of an application.
-bool addExtensions(X509* certificate, const std::string& names) {
+bool addExtensions(X509* certificate) {
     return addExtension(certificate, NID_subject_key_identifier, "hash") &&
            addExtension(certificate, NID_authority_key_identifier, "keyid:always") &&
            addExtension(certificate, NID_basic_constraints, "critical,CA:FALSE") &&
            addExtension(certificate, NID_key_usage,
                         "critical,digitalSignature,nonRepudiation,keyEncipherment,"
                         "dataEncipherment,keyCertSign") &&
-           addExtension(certificate, NID_ext_key_usage, "serverAuth,clientAuth") &&
-           addExtension(certificate, NID_subject_alt_name, names);
+           addExtension(certificate, NID_ext_key_usage, "serverAuth,clientAuth");
 }
 
 bool setSerial(X509* certificate) {
@@ -90,10 +90,10 @@ bool setName(X509* certificate, const std::string& application_name) {
            X509_set_issuer_name(certificate, name) == 1;
 }
 
-void setTimes(X509* certificate, const IdentityOptions& options, UtcTime now) {
+void setTimes(X509* certificate, std::chrono::days lifetime, UtcTime now) {
     const auto seconds = [](UtcTime time) { return std::chrono::system_clock::to_time_t(time); };
     ASN1_TIME_set(X509_getm_notBefore(certificate), seconds(now - kClockDifference));
-    ASN1_TIME_set(X509_getm_notAfter(certificate), seconds(now + options.lifetime));
+    ASN1_TIME_set(X509_getm_notAfter(certificate), seconds(now + lifetime));
 }
 
 Result<std::string> keyDer(const EVP_PKEY* key) {
@@ -115,6 +115,36 @@ std::string keyPem(const std::string& der) {
     return textOf(out.get());
 }
 
+struct Strength {
+    std::chrono::days lifetime;
+    int key_bits;
+};
+
+/// \param name sets subject, issuer and SubjectAltName
+Result<Identity> makeFor(const std::function<bool(X509*)>& name, const Strength& strength,
+                         UtcTime now) {
+    const KeyPtr key(EVP_RSA_gen(static_cast<unsigned int>(strength.key_bits)));
+    const X509Ptr certificate(X509_new());
+    if (!key || !certificate) {
+        return libraryFailed("make a key");
+    }
+    setTimes(certificate.get(), strength.lifetime, now);
+    const bool made =
+        X509_set_version(certificate.get(), X509_VERSION_3) == 1 && setSerial(certificate.get()) &&
+        X509_set_pubkey(certificate.get(), key.get()) == 1 && addExtensions(certificate.get()) &&
+        name(certificate.get()) && X509_sign(certificate.get(), key.get(), EVP_sha256()) > 0;
+    const BioPtr out(BIO_new(BIO_s_mem()));
+    if (!made || i2d_X509_bio(out.get(), certificate.get()) != 1) {
+        return libraryFailed("make a certificate");
+    }
+    auto private_key = keyDer(key.get());
+    auto parsed = Certificate::fromDer(textOf(out.get()));
+    if (!private_key || !parsed) {
+        return fail(private_key ? parsed.error() : private_key.error());
+    }
+    return Identity{std::move(*parsed), std::move(*private_key)};
+}
+
 }  // namespace
 
 Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
@@ -126,28 +156,28 @@ Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
     if (!names) {
         return fail(names.error());
     }
-    const KeyPtr key(EVP_RSA_gen(static_cast<unsigned int>(options.key_bits)));
-    const X509Ptr certificate(X509_new());
-    if (!key || !certificate) {
-        return libraryFailed("make a key");
+    return makeFor(
+        [&](X509* certificate) {
+            return setName(certificate, options.application_name) &&
+                   addExtension(certificate, NID_subject_alt_name, *names);
+        },
+        {options.lifetime, options.key_bits}, now);
+}
+
+Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetime, UtcTime now) {
+    const auto parsed = parseDer(former.certificate.der());
+    if (!parsed) {
+        return libraryFailed("read a certificate");
     }
-    setTimes(certificate.get(), options, now);
-    const bool made = X509_set_version(certificate.get(), X509_VERSION_3) == 1 &&
-                      setSerial(certificate.get()) &&
-                      setName(certificate.get(), options.application_name) &&
-                      X509_set_pubkey(certificate.get(), key.get()) == 1 &&
-                      addExtensions(certificate.get(), *names) &&
-                      X509_sign(certificate.get(), key.get(), EVP_sha256()) > 0;
-    const BioPtr out(BIO_new(BIO_s_mem()));
-    if (!made || i2d_X509_bio(out.get(), certificate.get()) != 1) {
-        return libraryFailed("make a certificate");
-    }
-    auto private_key = keyDer(key.get());
-    auto parsed = Certificate::fromDer(textOf(out.get()));
-    if (!private_key || !parsed) {
-        return fail(private_key ? parsed.error() : private_key.error());
-    }
-    return Identity{std::move(*parsed), std::move(*private_key)};
+    return makeFor(
+        [&](X509* certificate) {
+            const auto* name = X509_get_subject_name(parsed.get());
+            const int at = X509_get_ext_by_NID(parsed.get(), NID_subject_alt_name, -1);
+            return X509_set_subject_name(certificate, name) == 1 &&
+                   X509_set_issuer_name(certificate, name) == 1 &&
+                   (at < 0 || X509_add_ext(certificate, X509_get_ext(parsed.get(), at), -1) == 1);
+        },
+        {lifetime, former.certificate.keyBits()}, now);
 }
 
 Result<Identity> loadIdentity(const std::filesystem::path& folder) {

@@ -30,6 +30,11 @@ struct IdentityOptions {
 /// Threads: any; takes up to a second.
 Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now);
 
+/// A new key and a certificate for the same names as the former.
+/// Errors: internal (the library).
+/// Threads: any; takes up to a second.
+Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetime, UtcTime now);
+
 /// The identity in `folder`: identity.pem, which its owner alone may read.
 /// Errors: not_found (none there), access_denied (others may read it), invalid_argument (what it
 ///         holds).

@@ -1,0 +1,153 @@
+#include "metier/trust/security_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "openssl.hpp"
+#include "private_file.hpp"
+
+namespace metier::trust {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestName = 100;
+constexpr std::size_t kThumbprintDigits = 40;
+
+Result<void> checkName(std::string_view name) {
+    constexpr std::string_view kAllowed =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_";
+    const bool right = !name.empty() && name.size() <= kLongestName && name.front() != '.' &&
+                       name.find_first_not_of(kAllowed) == std::string_view::npos;
+    return right ? Result<void>()
+                 : fail(Errc::invalid_argument,
+                        fmt::format("\"{}\" is no name of an application: letters, digits, '.', "
+                                    "'-', '_', at most {}",
+                                    name, kLongestName));
+}
+
+bool isThumbprint(std::string_view text) {
+    return text.size() == kThumbprintDigits &&
+           text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+}  // namespace
+
+Result<SecurityFolder> SecurityFolder::open(fs::path folder) {
+    std::error_code error;
+    if (fs::create_directories(folder, error) && !error) {
+        fs::permissions(folder, fs::perms::owner_all, error);
+    }
+    if (error) {
+        return fail(Errc::resource_unavailable,
+                    fmt::format("{}: {}", folder.string(), error.message()));
+    }
+    constexpr auto kOthersWrite = fs::perms::group_write | fs::perms::others_write;
+    if ((fs::status(folder, error).permissions() & kOthersWrite) != fs::perms::none) {
+        return fail(Errc::access_denied,
+                    fmt::format("others may write to {}: chmod 700", folder.string()));
+    }
+    if (const auto trust = TrustStore::open(folder / "trust"); !trust) {
+        return fail(trust.error());
+    }
+    return SecurityFolder(std::move(folder));
+}
+
+fs::path SecurityFolder::identityFolder(const std::string& name) const {
+    return folder_ / "own" / name;
+}
+
+Result<Identity> SecurityFolder::makeKnown(Identity identity) {
+    auto store = TrustStore::open(trustFolder());
+    if (!store) {
+        return fail(store.error());
+    }
+    if (auto trusted = store->trust(identity.certificate); !trusted) {
+        return fail(trusted.error());
+    }
+    if (auto allowed = setRole(identity.certificate, Role::operator_); !allowed) {
+        return fail(allowed.error());
+    }
+    return identity;
+}
+
+/// It is known before it is saved: whoever finds it saved may rely on that.
+Result<Identity> SecurityFolder::identity(const std::string& name, const IdentityOptions& options,
+                                          UtcTime now) {
+    if (auto right = checkName(name); !right) {
+        return fail(right.error());
+    }
+    auto identity = loadIdentity(identityFolder(name));
+    if (identity || identity.error().code != Errc::not_found) {
+        return identity;
+    }
+    identity = makeIdentity(options, now);
+    identity = identity ? makeKnown(std::move(*identity)) : std::move(identity);
+    if (!identity) {
+        return identity;
+    }
+    if (auto saved = saveIdentity(identityFolder(name), *identity); !saved) {
+        return fail(saved.error());
+    }
+    return identity;
+}
+
+Result<Identity> SecurityFolder::renew(const std::string& name, UtcTime now) {
+    if (auto right = checkName(name); !right) {
+        return fail(right.error());
+    }
+    const auto former = loadIdentity(identityFolder(name));
+    if (!former) {
+        return former;
+    }
+    auto identity = makeSuccessor(*former, IdentityOptions().lifetime, now);
+    identity = identity ? makeKnown(std::move(*identity)) : std::move(identity);
+    if (!identity) {
+        return identity;
+    }
+    if (auto saved = saveIdentity(identityFolder(name), *identity); !saved) {
+        return fail(saved.error());
+    }
+    return identity;
+}
+
+std::vector<SecurityFolder::Own> SecurityFolder::own() const {
+    std::vector<Own> all;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_ / "own", error), end; !error && entry != end;
+         entry.increment(error)) {
+        auto name = entry->path().filename().string();
+        if (auto identity = loadIdentity(entry->path())) {
+            all.push_back({std::move(name), std::move(identity->certificate)});
+        }
+    }
+    std::sort(all.begin(), all.end(), [](const Own& a, const Own& b) { return a.name < b.name; });
+    return all;
+}
+
+std::optional<Role> SecurityFolder::roleOf(std::string_view thumbprint) const {
+    if (!isThumbprint(thumbprint)) {
+        return std::nullopt;
+    }
+    auto text = readFile((folder_ / "roles" / thumbprint).string());
+    while (!text.empty() && text.back() == '\n') {
+        text.pop_back();
+    }
+    return roleNamed(text);
+}
+
+Result<void> SecurityFolder::setRole(const Certificate& certificate, std::optional<Role> role) {
+    const auto file = folder_ / "roles" / certificate.thumbprint();
+    if (role) {
+        return writeWhole(file, fmt::format("{}\n", toString(*role)), Readers::owner);
+    }
+    std::error_code error;
+    fs::remove(file, error);
+    return error ? fail(Errc::resource_unavailable,
+                        fmt::format("{}: {}", file.string(), error.message()))
+                 : Result<void>();
+}
+
+}  // namespace metier::trust
