@@ -9,10 +9,20 @@
 #include "metier/opcua/text.hpp"
 
 namespace metier::discovery {
+namespace {
+
+Registrar::Register registerWith(const std::optional<opcua::Credentials>& security) {
+    return [security](const std::string& url, const opcua::ServerRegistration& server,
+                      std::chrono::milliseconds timeout) {
+        return opcua::registerServer(url, server, timeout, security);
+    };
+}
+
+}  // namespace
 
 Registrar::Registrar(RegistrarOptions options, Register use)
     : options_(std::move(options)),
-      register_(std::move(use)),
+      register_(use ? std::move(use) : registerWith(options_.security)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Registrar::~Registrar() = default;

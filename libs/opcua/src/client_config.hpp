@@ -39,7 +39,7 @@ enum class ClientPurpose {
 struct ClientPlugins {
     UA_EventLoop* loop = nullptr;
     UA_Logger* logger = nullptr;
-    PeerCheck* peers = nullptr;  ///< for a session with security
+    PeerCheck* peers = nullptr;  ///< for a connection with security
     std::string url{};           ///< where to connect to
 };
 

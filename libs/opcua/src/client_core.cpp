@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "convert.hpp"
+
 namespace metier::opcua {
 
 namespace {
@@ -52,10 +54,19 @@ EventLoopOptions loopOptions(const ClientOptions& options, const UA_Logger* logg
     return loop;
 }
 
+ClientOptions withPresentIdentity(ClientOptions options) {
+    if (options.security && !options.security->identity_folder.empty()) {
+        if (auto present = trust::loadIdentity(options.security->identity_folder)) {
+            options.security->identity = std::move(*present);
+        }
+    }
+    return options;
+}
+
 }  // namespace
 
 ClientCore::ClientCore(ClientOptions options, ClientPurpose purpose)
-    : options_(std::move(options)),
+    : options_(withPresentIdentity(std::move(options))),
       purpose_(purpose),
       loop_(loopOptions(options_, complaints_.logger())),
       subscriptions_(*this) {
@@ -70,12 +81,13 @@ ClientCore::~ClientCore() {
 
 Answer<> ClientCore::connect(const std::string& url) {
     url_ = url;
-    if (options_.security && purpose_ == ClientPurpose::session) {
+    if (options_.security) {
         auto peers = PeerCheck::create(options_.security->trust_folder, {});
         if (!peers) {
             return failed(status::kBadResourceUnavailable, peers.error().message);
         }
         peers_ = std::move(*peers);
+        peers_->keepUntrusted();
     }
     auto outcome = connected_.get_future();
     thread_ = std::jthread([this] { run(); });
@@ -394,9 +406,20 @@ void ClientCore::connectingChanged(UA_SecureChannelState channel, UA_SessionStat
     } else if (session == UA_SESSIONSTATE_ACTIVATED) {
         UA_Client_getConfig(client_.get())->noReconnect = true;
         identify();
-    } else if (changed && channel == UA_SECURECHANNELSTATE_OPEN && when_open_) {
+    } else if (changed && channel == UA_SECURECHANNELSTATE_OPEN && when_open_ &&
+               isAsSecureAsWanted()) {
         later(when_open_);
     }
+}
+
+/// The stack asks for the Endpoints without security first.
+bool ClientCore::isAsSecureAsWanted() const {
+    auto mode = UA_MESSAGESECURITYMODE_INVALID;
+    const auto code = UA_Client_getConnectionAttribute_scalar(
+        client_.get(), UA_QualifiedName{0, viewOf("securityMode")},
+        &UA_TYPES[UA_TYPES_MESSAGESECURITYMODE], &mode);
+    return !options_.security ||
+           (code == UA_STATUSCODE_GOOD && mode == UA_MESSAGESECURITYMODE_SIGNANDENCRYPT);
 }
 
 void ClientCore::onState(UA_Client* client, UA_SecureChannelState channel, UA_SessionState session,

@@ -129,6 +129,7 @@ private:
     void stateChanged(UA_SecureChannelState channel, UA_SessionState session, StatusCode status);
     void connectingChanged(UA_SecureChannelState channel, UA_SessionState session,
                            StatusCode status);
+    bool isAsSecureAsWanted() const;
     static void onState(UA_Client* client, UA_SecureChannelState channel, UA_SessionState session,
                         UA_StatusCode status);
     static void onInactivity(UA_Client* client);
@@ -148,7 +149,7 @@ private:
     std::mutex joining_;
 
     // The own thread's, once it runs.
-    std::unique_ptr<PeerCheck> peers_;  // of a session with security
+    std::unique_ptr<PeerCheck> peers_;  // of a connection with security
     ClientComplaints complaints_;
     AsioEventLoop loop_;
     ClientCalls calls_;

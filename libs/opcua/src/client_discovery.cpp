@@ -38,6 +38,12 @@ ServerDescription fromNative(const UA_ApplicationDescription& native) {
     return server;
 }
 
+ClientOptions optionsFor(std::chrono::milliseconds timeout) {
+    ClientOptions options;
+    options.connect_timeout = timeout;
+    return options;
+}
+
 /// One question that needs no session, on a connection of its own.
 template <typename Request, typename T>
 class Question {
@@ -46,12 +52,12 @@ public:
     using Fill = std::function<void(Request&)>;
     using Convert = std::function<Answer<T>(const Response&)>;
 
-    Question(std::string url, std::chrono::milliseconds timeout, Fill fill, Convert convert)
+    Question(std::string url, ClientOptions options, Fill fill, Convert convert)
         : url_(std::move(url)),
-          deadline_(Deadline::in(timeout)),
+          deadline_(Deadline::in(options.connect_timeout)),
           fill_(std::move(fill)),
           convert_(std::move(convert)),
-          core_(optionsFor(timeout), ClientPurpose::discovery) {}
+          core_(std::move(options), ClientPurpose::discovery) {}
 
     Answer<T> ask() {
         core_.whenOpen([this] { send(); });
@@ -61,12 +67,6 @@ public:
     }
 
 private:
-    static ClientOptions optionsFor(std::chrono::milliseconds timeout) {
-        ClientOptions options;
-        options.connect_timeout = timeout;
-        return options;
-    }
-
     void send() {
         Owned<Request> request(UA_TYPES[Service<Request>::kRequest]);
         fill_(*request);
@@ -142,9 +142,9 @@ void fillMdns(const ServerRegistration& registration, UA_RegisterServer2Request&
 
 /// Tells it by one of the two services, which both answer no more than that it went well.
 template <typename Request>
-Answer<> tell(const std::string& url, std::chrono::milliseconds timeout,
+Answer<> tell(const std::string& url, const ClientOptions& options,
               std::function<void(Request&)> prepare) {
-    Question<Request, void> question(url, timeout, std::move(prepare),
+    Question<Request, void> question(url, options, std::move(prepare),
                                      [](const auto& /*response*/) { return Answer<>(); });
     return question.ask();
 }
@@ -155,7 +155,7 @@ Answer<std::vector<EndpointDescription>> getEndpoints(const std::string& url,
                                                       std::chrono::milliseconds timeout) {
     using List = std::vector<EndpointDescription>;
     Question<UA_GetEndpointsRequest, List> question(
-        url, timeout, [&url](auto& request) { toNative(url, request.endpointUrl); },
+        url, optionsFor(timeout), [&url](auto& request) { toNative(url, request.endpointUrl); },
         [](const UA_GetEndpointsResponse& response) {
             return listFrom<EndpointDescription>(response.endpoints, response.endpointsSize);
         });
@@ -168,7 +168,7 @@ Answer<std::vector<ServerDescription>> findServers(const std::string& url,
     // No EndpointUrl: a discovery server on open62541 1.4 would tell it as the address of all that
     // registered there.
     Question<UA_FindServersRequest, List> question(
-        url, timeout, [](auto& /*request*/) {},
+        url, optionsFor(timeout), [](auto& /*request*/) {},
         [](const UA_FindServersResponse& response) {
             return listFrom<ServerDescription>(response.servers, response.serversSize);
         });
@@ -176,8 +176,11 @@ Answer<std::vector<ServerDescription>> findServers(const std::string& url,
 }
 
 Answer<> registerServer(const std::string& url, const ServerRegistration& registration,
-                        std::chrono::milliseconds timeout) {
-    auto told = tell<UA_RegisterServer2Request>(url, timeout, [&](auto& request) {
+                        std::chrono::milliseconds timeout,
+                        const std::optional<Credentials>& security) {
+    auto options = optionsFor(timeout);
+    options.security = security;
+    auto told = tell<UA_RegisterServer2Request>(url, options, [&](auto& request) {
         fill(registration, request.server);
         fillMdns(registration, request);
     });
@@ -185,7 +188,7 @@ Answer<> registerServer(const std::string& url, const ServerRegistration& regist
         return told;
     }
     return tell<UA_RegisterServerRequest>(
-        url, timeout, [&](auto& request) { fill(registration, request.server); });
+        url, options, [&](auto& request) { fill(registration, request.server); });
 }
 
 }  // namespace metier::opcua

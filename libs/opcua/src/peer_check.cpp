@@ -115,6 +115,11 @@ StatusCode PeerCheck::check(std::string_view der) {
         return status::kGood;
     }
     last_refusal_ = checked.error().message;
+    if (keeps_untrusted_ && checked.error().kind == trust::RefusalKind::untrusted) {
+        if (const auto certificate = trust::Certificate::fromDer(der)) {
+            store_.keepRejected(*certificate);
+        }
+    }
     if (on_refused_) {
         on_refused_({std::string(der), checked.error()});
     }

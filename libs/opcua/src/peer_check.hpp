@@ -30,6 +30,8 @@ public:
     void installForSessions(UA_CertificateVerification& plugin);
     /// Why the last peer was refused; empty if it was not.
     const std::string& lastRefusal() const noexcept { return last_refusal_; }
+    /// Keeps each that is not trusted for somebody to decide on, besides telling of it.
+    void keepUntrusted() noexcept { keeps_untrusted_ = true; }
 
 private:
     struct Callbacks;
@@ -40,6 +42,7 @@ private:
     trust::TrustStore store_;
     OnRefused on_refused_;
     std::string last_refusal_;
+    bool keeps_untrusted_ = false;
 };
 
 }  // namespace metier::opcua

@@ -48,12 +48,11 @@ UA_StatusCode addPolicy(const Policy& policy, const Credentials& credentials,
     return code;
 }
 
-Result<> outcome(UA_StatusCode code, const Credentials& credentials) {
+Result<> outcome(UA_StatusCode code, const trust::Identity& identity) {
     return code == UA_STATUSCODE_GOOD
                ? Result<>()
-               : fail(errorFrom(StatusCode(code),
-                                fmt::format("use the certificate {}",
-                                            credentials.identity.certificate.thumbprint())));
+               : fail(errorFrom(StatusCode(code), fmt::format("use the certificate {}",
+                                                              identity.certificate.thumbprint())));
 }
 
 }  // namespace
@@ -67,7 +66,19 @@ Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_Server
         code = code != UA_STATUSCODE_GOOD ? code : addPolicy(policy, credentials, config);
     }
     config.securityPolicyNoneDiscoveryOnly = true;
-    return outcome(code, credentials);
+    return outcome(code, credentials.identity);
+}
+
+Result<> replaceIdentity(const trust::Identity& identity, UA_ServerConfig& config) {
+    const auto certificate = bytesView(identity.certificate.der());
+    const auto key = bytesView(identity.private_key);
+    auto code = UA_STATUSCODE_GOOD;
+    for (std::size_t i = 0; i < config.securityPoliciesSize; ++i) {
+        auto& policy = config.securityPolicies[i];
+        const auto replaced = policy.updateCertificateAndPrivateKey(&policy, certificate, key);
+        code = code != UA_STATUSCODE_GOOD ? code : replaced;
+    }
+    return outcome(code, identity);
 }
 
 Result<> addNoSecurity(UA_ServerConfig& config) {
@@ -85,7 +96,7 @@ Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_Client
     const auto code =
         UA_ClientConfig_setDefaultEncryption(&config, certificate, key, nullptr, 0, nullptr, 0);
     if (code != UA_STATUSCODE_GOOD) {
-        return outcome(code, credentials);
+        return outcome(code, credentials.identity);
     }
     peers.install(config.certificateVerification);
     config.securityMode = UA_MESSAGESECURITYMODE_SIGNANDENCRYPT;

@@ -13,6 +13,9 @@ namespace metier::opcua {
 /// \param peers must outlive the server
 /// Errors: invalid_argument (the identity).
 Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_ServerConfig& config);
+/// Gives the policies of a closed server another certificate and key.
+/// Errors: invalid_argument (the identity).
+Result<> replaceIdentity(const trust::Identity& identity, UA_ServerConfig& config);
 /// The Endpoint of a lab: without security, for everything.
 Result<> addNoSecurity(UA_ServerConfig& config);
 

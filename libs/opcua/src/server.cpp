@@ -62,6 +62,10 @@ AddressSpace& Server::nodes() {
     return core_->nodes();
 }
 
+Result<> Server::renewIdentity(const trust::Identity& identity) {
+    return core_->renewIdentity(identity);
+}
+
 SteadyTime Server::lastTick() const noexcept {
     return core_->lastTick();
 }

@@ -8,6 +8,7 @@
 #include "guard.hpp"
 #include "metier/opcua/text.hpp"
 #include "nodesets.hpp"
+#include "security_config.hpp"
 #include "server_config.hpp"
 
 namespace metier::opcua {
@@ -199,6 +200,23 @@ void ServerCore::tellDenial(const CallContext& context) {
     if (options_.security && options_.security->on_denied) {
         options_.security->on_denied({context.session, context.object, context.method});
     }
+}
+
+Result<> ServerCore::renewIdentity(const trust::Identity& identity) {
+    if (!options_.security) {
+        return fail(Errc::invalid_state, "a server without security has no certificate");
+    }
+    auto options = options_;
+    options.security->credentials.identity = identity;
+    if (auto right = checkOptions(options); !right) {
+        return right;
+    }
+    auto replaced = replaceIdentity(identity, *UA_Server_getConfig(native()));
+    if (replaced) {
+        options_.security->credentials.identity = identity;
+        tellSecurity();
+    }
+    return replaced;
 }
 
 void ServerCore::tellSecurity() {

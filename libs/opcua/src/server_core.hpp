@@ -55,6 +55,7 @@ public:
     void structureChanged() { notifiers_.clear(); }
     /// Publishes to those who watch the events of an Object, if the options ask for it.
     void publishEventsOf(const NodeId& source);
+    Result<> renewIdentity(const trust::Identity& identity);
     /// A session called what its role does not allow.
     void tellDenial(const CallContext& context);
     /// Whether an event of a source that raised one before would reach nobody.

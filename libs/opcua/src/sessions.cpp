@@ -116,9 +116,13 @@ struct Sessions::Callbacks {
                                const UA_NodeId* /*old_id*/, void* old_context,
                                const UA_NodeId* /*new_id*/, void* new_context) noexcept {
         const auto& sessions = owner(control);
-        return new_context != nullptr &&
-               (old_context == nullptr ||
-                sessions.of(old_context).user == sessions.of(new_context).user);
+        if (new_context == nullptr || old_context == nullptr) {
+            return new_context != nullptr;
+        }
+        const auto& before = sessions.of(old_context);
+        const auto& now = sessions.of(new_context);
+        return before.user == now.user &&
+               (!now.user.empty() || before.thumbprint == now.thumbprint);
     }
 };
 

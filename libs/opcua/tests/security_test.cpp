@@ -52,8 +52,9 @@ protected:
     void trustIn(const std::string& who, const trust::Identity& peer) {
         ASSERT_TRUE(trust::TrustStore::open(folder_ / who).value().trust(peer.certificate));
     }
-    void start() {
+    void start(std::optional<DiscoveryService> discovery = std::nullopt) {
         ServerOptions options;
+        options.discovery = discovery;
         options.application_uri = kServerUri;
         options.port = 0;
         options.security =
@@ -246,6 +247,80 @@ TEST_F(ClosedServer, IsNotTrustedByAClientThatDoesNotKnowIt) {
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message,
                 HasSubstr(serverIdentity().certificate.thumbprint() + ") is not trusted"));
+}
+
+TEST_F(ClosedServer, IsKeptToBeDecidedOnByAClientThatDoesNotKnowIt) {
+    auto store = trust::TrustStore::open(folder_ / "client").value();
+    const auto& thumbprint = serverIdentity().certificate.thumbprint();
+    store.distrust(thumbprint).value();
+    std::filesystem::remove_all(folder_ / "client" / "rejected");
+    EXPECT_FALSE(connect(options()));
+    ASSERT_TRUE(store.trustRejected(thumbprint));
+    const auto client = connect(options());
+    EXPECT_TRUE(client) << client.error().message;
+}
+
+TEST_F(ClosedServer, GoesOnWithARenewedCertificate) {
+    const auto before = connect(options()).value();
+    const auto now = std::chrono::system_clock::now();
+    const auto renewed = trust::makeSuccessor(serverIdentity(), std::chrono::days(10), now).value();
+    const auto done = server_->call([&] { return server_->renewIdentity(renewed); });
+    ASSERT_TRUE(done) << done.error().message;
+    const auto refused = connect(options());
+    ASSERT_FALSE(refused) << "its client trusts the former alone";
+    EXPECT_THAT(refused.error().message, HasSubstr(renewed.certificate.thumbprint()));
+    trustIn("client", renewed);
+    const auto after = connect(options());
+    EXPECT_TRUE(after) << after.error().message;
+    EXPECT_TRUE(before->read(NodeId(0, 2258U))) << "open connections stay";
+}
+
+TEST_F(ClosedServer, DoesNotGoOnAsAnotherServer) {
+    const auto done = server_->call([&] { return server_->renewIdentity(clientIdentity()); });
+    ASSERT_FALSE(done);
+    EXPECT_THAT(done.error().message, HasSubstr("is of \"urn:test:client\", not of"));
+    EXPECT_TRUE(connect(options()));
+}
+
+TEST_F(ClosedServer, IsConnectedToWithThePresentIdentityOfAClient) {
+    const auto mine = folder_ / "own";
+    auto renewing = options(identityOf("former"));
+    renewing.security->identity_folder = mine;
+    EXPECT_FALSE(connect(renewing)) << "nothing there, and the former is not trusted";
+    ASSERT_TRUE(trust::saveIdentity(mine, clientIdentity()));
+    const auto client = connect(renewing);
+    EXPECT_TRUE(client) << client.error().message;
+}
+
+/// A closed Local Discovery Server in place of the other.
+class ClosedDiscovery : public ClosedServer {
+protected:
+    ClosedDiscovery() {
+        server_.reset();
+        discovery_.forget_after = std::chrono::seconds(60);
+        start(discovery_);
+    }
+    static ServerRegistration arm() {
+        return {.application_uri = "urn:test:client",
+                .name = "arm",
+                .discovery_urls = {"opc.tcp://127.0.0.1:1"}};
+    }
+
+    DiscoveryService discovery_;
+};
+
+TEST_F(ClosedDiscovery, RegistersWhomItTrusts) {
+    const auto told =
+        registerServer(server_->endpointUrl(), arm(), std::chrono::seconds(5), options().security);
+    ASSERT_TRUE(told) << told.error().message;
+    EXPECT_EQ(findServers(server_->endpointUrl()).value().size(), 2U);
+}
+
+TEST_F(ClosedDiscovery, RegistersNobodyElse) {
+    EXPECT_FALSE(registerServer(server_->endpointUrl(), arm()));
+    const auto stranger = options(identityOf("stranger")).security;
+    EXPECT_FALSE(registerServer(server_->endpointUrl(), arm(), std::chrono::seconds(5), stranger));
+    EXPECT_EQ(findServers(server_->endpointUrl()).value().size(), 1U);
 }
 
 TEST(PeerCheck, WantsTheWholeApplicationUri) {

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -20,6 +21,7 @@ struct RegistrarOptions {
     std::chrono::milliseconds pause{5'000};    ///< after one that did not, > 0
     std::chrono::milliseconds timeout{2'000};  ///< of each
     std::chrono::milliseconds farewell{500};   ///< timeout of the last one, which takes it out
+    std::optional<opcua::Credentials> security{};  ///< as opcua::registerServer()
 };
 
 /// Keeps a server registered at one discovery server, and takes it out at its end.
@@ -35,7 +37,8 @@ public:
                                                    const opcua::ServerRegistration& server,
                                                    std::chrono::milliseconds timeout)>;
 
-    explicit Registrar(RegistrarOptions options, Register use = opcua::registerServer);
+    /// \param use empty: opcua::registerServer(), with the security of the options
+    explicit Registrar(RegistrarOptions options, Register use = {});
     ~Registrar();
     Registrar(const Registrar&) = delete;
     Registrar& operator=(const Registrar&) = delete;

@@ -34,7 +34,8 @@ struct ClientOptions {
     std::string application_uri = "urn:metier:client";
     std::optional<UserName> user{};  ///< none: anonymous
     /// None: without security. Else everything is signed and encrypted, the server's certificate
-    /// must be trusted, and application_uri is that of the own certificate.
+    /// must be trusted, and application_uri is that of the own certificate. A server's certificate
+    /// that is not trusted is kept among those to decide on.
     std::optional<Credentials> security{};
     std::chrono::milliseconds connect_timeout{5'000};
     /// Silence after which the server may forget this client; it is asked for something, and

@@ -2,17 +2,19 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "metier/opcua/answer.hpp"
+#include "metier/opcua/security.hpp"
 #include "metier/opcua/types.hpp"
 
 namespace metier::opcua {
 
-// Services that need no session (OPC 10000-4, 5.5). Each opens a connection without security for
-// itself. Threads: any; waits, at most `timeout` and about a second for closing. What a peer says
-// is text as it came: sanitise() it before it is shown.
+// Services that need no session (OPC 10000-4, 5.5). Each opens a connection for itself, without
+// security if nothing else is said. Threads: any; waits, at most `timeout` and about a second for
+// closing. What a peer says is text as it came: sanitise() it before it is shown.
 
 /// One way to reach a server (OPC 10000-4, 7.14).
 struct EndpointDescription {
@@ -64,8 +66,10 @@ struct ServerRegistration {
 
 /// Registers a server, or takes it out, by RegisterServer2, and by RegisterServer where the
 /// discovery server does not know the former.
+/// \param security whom the discovery server is to trust; none: a connection without security
 /// Errors: as Client::connect(); the discovery server's, such as invalid_argument.
 Answer<> registerServer(const std::string& url, const ServerRegistration& registration,
-                        std::chrono::milliseconds timeout = std::chrono::seconds(5));
+                        std::chrono::milliseconds timeout = std::chrono::seconds(5),
+                        const std::optional<Credentials>& security = std::nullopt);
 
 }  // namespace metier::opcua

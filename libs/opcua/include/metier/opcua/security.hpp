@@ -18,6 +18,9 @@ struct Credentials {
     trust::Identity identity;
     /// Of a trust::TrustStore, which is read again after changes.
     std::filesystem::path trust_folder;
+    /// Where the identity is kept, see trust::loadIdentity(): each new connection of a client takes
+    /// the present one. Empty: `identity` for ever.
+    std::filesystem::path identity_folder{};
 };
 
 /// Somebody who wants to log in, over a connection that is encrypted or signed.

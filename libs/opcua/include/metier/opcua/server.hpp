@@ -168,6 +168,13 @@ public:
     /// The server's thread only.
     AddressSpace& nodes();
 
+    /// Goes on with another certificate and key for the same ApplicationUri. Connections that are
+    /// open stay until their next renewal, within ten minutes; then their clients connect again.
+    /// Server's thread.
+    /// Errors: invalid_argument (another ApplicationUri, a key that does not fit), invalid_state
+    ///         (a server without security).
+    Result<> renewIdentity(const trust::Identity& identity);
+
     /// When the server's thread was last seen working; it is at least every 100 ms. Any thread.
     SteadyTime lastTick() const noexcept;
     bool onServerThread() const noexcept;
