@@ -1,6 +1,7 @@
 #include "metier_program.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <csignal>
 #include <fstream>
@@ -32,15 +33,19 @@ std::vector<std::string> serveArguments(const std::string& name,
 }  // namespace
 
 std::vector<std::string> metierCommand(const std::vector<std::string>& arguments) {
-    std::vector<std::string> command{METIER_PROGRAM};
+    std::vector<std::string> command{METIER_PROGRAM, "--insecure-lab"};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return command;
 }
 
 Finished runMetier(const std::vector<std::string>& arguments, Errors errors) {
+    return runToEnd(metierCommand(arguments), errors);
+}
+
+Finished runToEnd(const std::vector<std::string>& command, Errors errors) {
     auto child = orThrow(process::ChildProcess::start(
-        metierCommand(arguments), errors == Errors::with_output ? process::ErrorOutput::with_output
-                                                                : process::ErrorOutput::inherited));
+        command, errors == Errors::with_output ? process::ErrorOutput::with_output
+                                               : process::ErrorOutput::inherited));
     Finished finished;
     const auto deadline = inAMinute();
     auto line = child.readLine(deadline);
@@ -49,8 +54,8 @@ Finished runMetier(const std::vector<std::string>& arguments, Errors errors) {
     }
     const auto status = child.waitUntil(deadline);
     if (!status) {
-        throw std::runtime_error(fmt::format("metier {} did not end; it printed:\n{}",
-                                             arguments.front(), finished.output));
+        throw std::runtime_error(fmt::format("{} did not end; it printed:\n{}",
+                                             fmt::join(command, " "), finished.output));
     }
     finished.status = *status;
     return finished;
@@ -76,11 +81,14 @@ std::string sourceText(const std::filesystem::path& file) {
 
 ServerProcess::ServerProcess(const std::string& name, const std::vector<std::string>& more,
                              const std::filesystem::path& cell)
-    : process_(orThrow(process::ChildProcess::start(serveArguments(name, more, cell)))) {
+    : ServerProcess(serveArguments(name, more, cell)) {}
+
+ServerProcess::ServerProcess(const std::vector<std::string>& command)
+    : process_(orThrow(process::ChildProcess::start(command))) {
     const std::string ready = "ready ";
     const auto line = orThrow(process_.readLine(inAMinute()));
     if (!line.starts_with(ready)) {
-        throw std::runtime_error(fmt::format("{} said: {}", name, line));
+        throw std::runtime_error(fmt::format("{} said: {}", fmt::join(command, " "), line));
     }
     url_ = line.substr(ready.size());
 }

@@ -18,7 +18,7 @@ inline SteadyTime inAMinute() {
     return std::chrono::steady_clock::now() + std::chrono::seconds(60);
 }
 
-/// The command line of the `metier` that was built with these tests.
+/// The command line of the `metier` that was built with these tests, as an insecure lab.
 std::vector<std::string> metierCommand(const std::vector<std::string>& arguments);
 
 /// A run of `metier` that came to its end.
@@ -29,7 +29,9 @@ struct Finished {
 
 enum class Errors { left_out, with_output };
 
-/// Runs `metier` to its end. Throws at a deadline of a minute.
+/// Runs a command to its end. Throws at a deadline of a minute.
+Finished runToEnd(const std::vector<std::string>& command, Errors errors = Errors::with_output);
+/// The same of metierCommand().
 Finished runMetier(const std::vector<std::string>& arguments, Errors errors = Errors::with_output);
 
 /// The demo's cell file: three arms and a gripper with their virtual controllers.
@@ -51,6 +53,8 @@ public:
     explicit ServerProcess(const std::string& name,
                            const std::vector<std::string>& more = {"--port", "0"},
                            const std::filesystem::path& cell = simulatedCell());
+    /// \param command that prints a ready line once it serves
+    explicit ServerProcess(const std::vector<std::string>& command);
 
     const std::string& url() const noexcept { return url_; }
     std::string port() const { return url_.substr(url_.rfind(':') + 1); }

@@ -1,19 +1,15 @@
 #include "announcement.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <random>
 
+#include "folders.hpp"
+#include "security.hpp"
+
 namespace metier::app {
 namespace {
-
-std::string hostName() {
-    std::array<char, 256> name{};
-    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "localhost";
-}
 
 /// Of "opc.tcp://127.0.0.1:48411".
 std::uint16_t portOf(const std::string& url) {
@@ -46,6 +42,7 @@ Announcement::Announcement(const configuration::ServerConfig& config,
     options.server = {.application_uri = application_uri,
                       .name = config.name,
                       .discovery_urls = {announcedUrl(config.discovery, url)}};
+    options.security = ownCredentials();
     options.period = period;
     options.pause = std::min(period, options.pause);
     for (const auto& server : config.discovery.servers) {

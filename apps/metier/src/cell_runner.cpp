@@ -9,6 +9,7 @@
 #include <random>
 
 #include "ready_line.hpp"
+#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -98,6 +99,8 @@ Result<void> CellRunner::startVirtual(const configuration::CellConfig& cell,
 Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
                                      const configuration::ServerConfig& server, Ports ports) {
     std::vector<std::string> command{self(), "serve", cell.file.string(), "--server", server.name};
+    const auto security = securityArguments();
+    command.insert(command.begin() + 1, security.begin(), security.end());
     if (ports == Ports::free) {
         command.insert(command.end(), {"--port", "0"});
     }

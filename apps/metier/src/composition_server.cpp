@@ -13,6 +13,7 @@
 #include "metier/composition/local_child.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
+#include "security.hpp"
 #include "skill_matching.hpp"
 
 namespace metier::app {
@@ -263,9 +264,11 @@ Result<std::shared_ptr<remote_skill::RemoteServer>> CompositionServer::connectFo
             return known;
         }
     }
-    auto server = remote_skill::RemoteServer::connect(
-        {.url = found.found.url, .name = found.found.name, .application_name = "metier " + name_},
-        host_->skills().executor());
+    auto server = remote_skill::RemoteServer::connect({.url = found.found.url,
+                                                       .name = found.found.name,
+                                                       .application_name = "metier " + name_,
+                                                       .security = ownCredentials()},
+                                                      host_->skills().executor());
     if (!server) {
         return fail(std::move(server.error()));
     }
@@ -275,9 +278,11 @@ Result<std::shared_ptr<remote_skill::RemoteServer>> CompositionServer::connectFo
 
 Result<void> CompositionServer::connect(const std::vector<configuration::UsedServer>& servers) {
     for (const auto& used : servers) {
-        auto server = remote_skill::RemoteServer::connect(
-            {.url = used.url, .name = used.name, .application_name = "metier " + name_},
-            host_->skills().executor());
+        auto server = remote_skill::RemoteServer::connect({.url = used.url,
+                                                           .name = used.name,
+                                                           .application_name = "metier " + name_,
+                                                           .security = ownCredentials()},
+                                                          host_->skills().executor());
         if (!server) {
             return fail(std::move(server.error()));
         }

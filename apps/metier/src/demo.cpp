@@ -8,6 +8,7 @@
 #include "cell_runner.hpp"
 #include "commands.hpp"
 #include "pick_place_command.hpp"
+#include "security.hpp"
 #include "square_command.hpp"
 #include "stop_signal.hpp"
 
@@ -55,6 +56,9 @@ std::vector<std::string> addressesOf(const CellRunner& cell) {
 
 /// Squares in the first cell, then parts in the second; both stay up for whoever wants to look.
 Exit runDemo(const DemoOptions& options) {
+    if (isInsecureLab()) {
+        fmt::print(stderr, "{}\n", kInsecureLab);
+    }
     auto started = startCell(options.cell, options);
     if (!started) {
         return started.error().code == Errc::invalid_argument ? reportUsage(started.error())

@@ -7,8 +7,11 @@
 #include <string>
 
 #include "commands.hpp"
+#include "folders.hpp"
 #include "metier/opcua/server.hpp"
 #include "ready_line.hpp"
+#include "security.hpp"
+#include "server_access.hpp"
 #include "stop_signal.hpp"
 
 namespace metier::app {
@@ -26,14 +29,29 @@ Exit runDiscovery(const DiscoveryOptions& options) {
     const StopSignal stop;
     opcua::ServerOptions server_options;
     server_options.application_name = "metier discovery";
-    server_options.application_uri = "urn:metier:discovery";
     server_options.port = options.port;
     server_options.bind_addresses = {options.address};
     server_options.discovery =
         opcua::DiscoveryService{.forget_after = std::chrono::seconds(options.forget_after)};
+    if (const auto known = becomeApplication(
+            options.port == 0 ? "discovery" : fmt::format("discovery-{}", options.port),
+            {.application_name = "metier discovery",
+             .application_uri = fmt::format("urn:{}:metier:discovery:{}", hostName(), options.port),
+             .hosts = {hostName(), options.address}});
+        !known) {
+        return report(known.error());
+    }
+    const SystemClock clock;
+    const auto access = secureServer(server_options, "urn:metier:discovery", clock);
+    if (!access) {
+        return report(access.error());
+    }
     const auto server = opcua::Server::create(std::move(server_options));
     if (!server) {
         return reportUsage(server.error());
+    }
+    if (*access != nullptr) {
+        (*access)->follow(**server);
     }
     if (const auto started = (*server)->start(); !started) {
         return report(started.error());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "security.hpp"
 
 namespace {
 
@@ -43,6 +44,8 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addPlot(app, exit);
     metier::app::addGraph(app, exit);
     metier::app::addVirtual(app, exit);
+    metier::app::addTrust(app, exit);
+    metier::app::addUser(app, exit);
     metier::app::addCompletion(app, exit);
 }
 
@@ -77,6 +80,8 @@ int run(int argc, char** argv) {
     app.add_option("--log", log_level, "Least severity to log: debug, info, warning or error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
         ->capture_default_str();
+    app.fallthrough();  // the options of every command may follow it
+    metier::app::addSecurityOptions(app);
     // The log must be set up before a subcommand runs; its callback comes after this one.
     app.parse_complete_callback([&log_level] { setUpLog(log_level); });
     addCommands(app, exit);

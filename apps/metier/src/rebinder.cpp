@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "metier/opcua_skill/used_skills.hpp"
+#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -103,7 +104,8 @@ Result<void> Rebinder::moveTo(const DiscoveredServer& other, Bond& bond) {
     }
     auto server = remote_skill::RemoteServer::connect({.url = other.found.url,
                                                        .name = chosen->begin()->second.server,
-                                                       .application_name = setup_.application_name},
+                                                       .application_name = setup_.application_name,
+                                                       .security = ownCredentials()},
                                                       setup_.executor);
     if (!server) {
         return fail(std::move(server.error()));

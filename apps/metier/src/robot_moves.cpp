@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kinematics_conversion.hpp"
+#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -39,7 +40,7 @@ opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device
 }  // namespace
 
 Result<ConnectedRobot> connectRobot(const std::string& url) {
-    auto arm = remote_arm::RemoteArm::connect({.url = url});
+    auto arm = remote_arm::RemoteArm::connect({.url = url, .security = ownCredentials()});
     if (!arm) {
         return fail(arm.error().code, fmt::format("{}: {}", url, arm.error().message));
     }

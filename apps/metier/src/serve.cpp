@@ -2,17 +2,19 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "announcement.hpp"
 #include "arm_server.hpp"
 #include "commands.hpp"
 #include "composition_server.hpp"
+#include "folders.hpp"
 #include "gripper_server.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
+#include "security.hpp"
 #include "stop_signal.hpp"
 #include "synchronized_server.hpp"
 
@@ -31,19 +33,6 @@ struct ServeOptions {
     std::vector<std::string> discovery;
     std::string announce_as;
 };
-
-/// Of this user; empty if nobody says where that is.
-std::filesystem::path userStateFolder() {
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): one thread yet
-        return std::filesystem::path(value == nullptr ? "" : value);
-    };
-    if (const auto state = variable("XDG_STATE_HOME"); !state.empty()) {
-        return state / "metier";
-    }
-    const auto home = variable("HOME");
-    return home.empty() ? home : home / ".local" / "state" / "metier";
-}
 
 /// A server on any free port is another one each time, and keeps nothing unless it is told where.
 std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t port) {
@@ -138,6 +127,19 @@ Result<void> resolveUsed(const configuration::CellConfig& cell,
     return {};
 }
 
+/// A server at another port is another application.
+Result<void> becomeServer(const configuration::ServerConfig& config) {
+    std::vector<std::string> hosts{hostName(), config.address};
+    if (!config.discovery.announce_as.empty()) {
+        hosts.push_back(config.discovery.announce_as);
+    }
+    return becomeApplication(
+        config.port == 0 ? config.name : fmt::format("{}-{}", config.name, config.port),
+        {.application_name = "metier " + config.name,
+         .application_uri = applicationUriOf(config),
+         .hosts = std::move(hosts)});
+}
+
 template <typename Server>
 Exit serveUntil(const StopSignal& stop, Result<std::unique_ptr<Server>> server) {
     if (!server) {
@@ -158,6 +160,9 @@ Exit runServe(const ServeOptions& options) {
     auto config = chosenServer(*cell, options);
     if (!config) {
         return reportUsage(config.error());
+    }
+    if (const auto known = becomeServer(*config); !known) {
+        return report(known.error());
     }
     if (config->kind == configuration::ServerKind::arm) {
         return serveUntil(stop, ArmServer::start(*config));

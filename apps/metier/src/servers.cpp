@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "metier/configuration/cell.hpp"
+#include "security.hpp"
 
 namespace metier::app {
 
@@ -37,9 +38,13 @@ Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url, OnLoss 
     if (on_loss == OnLoss::reconnect) {
         options.reconnect.emplace();
     }
+    if (const auto secured = secure(options, url); !secured) {
+        return fail(secured.error().code, fmt::format("{}: {}", url, secured.error().message));
+    }
     auto client = opcua::Client::connect(url, options);
     if (!client) {
-        return fail(client.error().code, fmt::format("{}: {}", url, client.error().message));
+        return fail(client.error().code,
+                    fmt::format("{}: {}{}", url, client.error().message, adviceOn(client.error())));
     }
     return std::move(*client);
 }

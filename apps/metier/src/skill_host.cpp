@@ -82,22 +82,11 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
     if (!port_lock) {
         return fail(port_lock.error());
     }
-    opcua::ServerOptions options;
-    options.application_name = "metier " + config.name;
-    options.application_uri = applicationUriOf(config);
-    options.port = config.port;
-    options.bind_addresses = {config.address};
-    options.nodesets = std::move(nodesets);
-    options.nodesets.insert(options.nodesets.begin(), {"device", "robotics", "metier"});
-    options.event_publishing = config.publish_at_once ? opcua::EventPublishing::at_once
-                                                      : opcua::EventPublishing::at_interval;
-    auto uri = options.application_uri;
-    auto server = opcua::Server::create(std::move(options));
-    if (!server) {
-        return fail(server.error());
-    }
-    std::unique_ptr<SkillHost> host(new SkillHost(config, std::move(uri), std::move(*server)));
+    std::unique_ptr<SkillHost> host(new SkillHost(config));
     host->port_lock_ = std::move(*port_lock);
+    if (auto made = host->makeServer(std::move(nodesets)); !made) {
+        return fail(made.error());
+    }
     auto skills = opcua_skill::SkillServer::create(*host->server_, host->clock_);
     if (!skills) {
         return fail(skills.error());
@@ -133,11 +122,33 @@ Result<void> SkillHost::keepNames(const configuration::ServerConfig& config) {
     return {};
 }
 
-SkillHost::SkillHost(configuration::ServerConfig config, std::string application_uri,
-                     std::unique_ptr<opcua::Server> server)
-    : config_(std::move(config)),
-      application_uri_(std::move(application_uri)),
-      server_(std::move(server)) {}
+SkillHost::SkillHost(configuration::ServerConfig config) : config_(std::move(config)) {}
+
+Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
+    opcua::ServerOptions options;
+    options.application_name = "metier " + config_.name;
+    options.port = config_.port;
+    options.bind_addresses = {config_.address};
+    options.nodesets = std::move(nodesets);
+    options.nodesets.insert(options.nodesets.begin(), {"device", "robotics", "metier"});
+    options.event_publishing = config_.publish_at_once ? opcua::EventPublishing::at_once
+                                                       : opcua::EventPublishing::at_interval;
+    auto access = secureServer(options, applicationUriOf(config_), clock_);
+    if (!access) {
+        return fail(access.error());
+    }
+    access_ = std::move(*access);
+    application_uri_ = options.application_uri;
+    auto server = opcua::Server::create(std::move(options));
+    if (!server) {
+        return fail(server.error());
+    }
+    server_ = std::move(*server);
+    if (access_ != nullptr) {
+        access_->follow(*server_);
+    }
+    return {};
+}
 
 SkillHost::~SkillHost() = default;
 

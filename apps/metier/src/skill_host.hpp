@@ -19,6 +19,7 @@
 #include "metier/robot_skills/arm_skills.hpp"
 #include "metier/robot_skills/device_watch.hpp"
 #include "metier/robot_skills/stall_watch.hpp"
+#include "server_access.hpp"
 
 namespace metier::app {
 
@@ -94,14 +95,15 @@ public:
     Result<void> start();
 
 private:
-    SkillHost(configuration::ServerConfig config, std::string application_uri,
-              std::unique_ptr<opcua::Server> server);
+    explicit SkillHost(configuration::ServerConfig config);
+    Result<void> makeServer(std::vector<std::string> nodesets);
     Result<void> keepNames(const configuration::ServerConfig& config);
 
     std::optional<process::NameLock> port_lock_;  // until the server is gone
     const configuration::ServerConfig config_;
-    const std::string application_uri_;
+    std::string application_uri_;
     SystemClock clock_;
+    std::unique_ptr<ServerAccess> access_;  // none in an insecure lab
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::shared_ptr<skill::Control> control_;       // shared with the Programs

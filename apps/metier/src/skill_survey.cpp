@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
+#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -112,7 +113,11 @@ class Interview {
 public:
     Result<std::vector<SurveyedSkill>> ask(const std::string& url,
                                            std::chrono::milliseconds limit) {
-        auto client = opcua::Client::connect(url, optionsFor(limit));
+        auto options = optionsFor(limit);
+        if (auto secured = secure(options, url); !secured) {
+            return fail(std::move(secured.error()));
+        }
+        auto client = opcua::Client::connect(url, options);
         if (!client) {
             return fail(client.error().code, opcua::sanitise(client.error().message));
         }

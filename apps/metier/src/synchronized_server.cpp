@@ -6,6 +6,7 @@
 
 #include "composition_files.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
+#include "security.hpp"
 #include "skill_matching.hpp"
 
 namespace metier::app {
@@ -68,7 +69,8 @@ Result<Arm> SynchronizedServer::connect(const configuration::UsedServer& used,
     auto server = remote_skill::RemoteServer::connect({.url = used.url,
                                                        .name = used.name,
                                                        .application_name = "metier " + component,
-                                                       .session_timeout = kSessionTimeout},
+                                                       .session_timeout = kSessionTimeout,
+                                                       .security = ownCredentials()},
                                                       host_->skills().executor());
     if (!server) {
         return fail(std::move(server.error()));

@@ -6,6 +6,7 @@
 
 #include "cell_runner.hpp"
 #include "commands.hpp"
+#include "security.hpp"
 #include "stop_signal.hpp"
 
 namespace metier::app {
@@ -50,6 +51,9 @@ Exit runUp(const UpOptions& options) {
     const auto config = configuration::loadCell(options.cell);
     if (!config) {
         return reportUsage(config.error());
+    }
+    if (isInsecureLab()) {
+        fmt::print(stderr, "{}\n", kInsecureLab);
     }
     const auto ports = options.free_ports ? CellRunner::Ports::free : CellRunner::Ports::configured;
     auto cell = CellRunner::start(*config, ports, [](const CellRunner::Running& server) {

@@ -62,6 +62,10 @@ AddressSpace& Server::nodes() {
     return core_->nodes();
 }
 
+void Server::closeSessions(const std::function<bool(const Session&)>& which) {
+    core_->sessions().closeIf(core_->native(), which);
+}
+
 Result<> Server::renewIdentity(const trust::Identity& identity) {
     return core_->renewIdentity(identity);
 }

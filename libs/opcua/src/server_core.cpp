@@ -231,7 +231,7 @@ void ServerCore::tellSecurity() {
 }
 
 void ServerCore::close() {
-    sessions_.closeAll(native());
+    sessions_.closeIf(native(), [](const Session&) { return true; });
     UA_Server_run_shutdown(native());
 }
 

@@ -78,10 +78,10 @@ struct Sessions::Callbacks {
                                   const UA_ByteString* certificate, const UA_NodeId* id,
                                   const UA_ExtensionObject* token, void** context) noexcept {
         return guarded([&] {
-            const auto thumbprint = certificate == nullptr || certificate->length == 0
-                                        ? std::string()
-                                        : trust::thumbprintOf(bytesOf(*certificate));
-            return owner(control).activate(server, *id, {*token, thumbprint}, context).value();
+            const auto der =
+                certificate == nullptr ? std::string() : std::string(bytesOf(*certificate));
+            const auto thumbprint = der.empty() ? der : trust::thumbprintOf(der);
+            return owner(control).activate(server, *id, {*token, thumbprint, der}, context).value();
         });
     }
     static void close(UA_Server* /*server*/, UA_AccessControl* control, const UA_NodeId* id,
@@ -160,7 +160,8 @@ Result<Admission> Sessions::admit(const Presented& presented) const {
     const auto& token = presented.token;
     if (isAbsent(token) || decodedAs<UA_AnonymousIdentityToken>(
                                token, UA_TYPES[UA_TYPES_ANONYMOUSIDENTITYTOKEN]) != nullptr) {
-        return options_.security ? options_.security->authenticate({"", "", presented.thumbprint})
+        return options_.security ? options_.security->authenticate(
+                                       {"", "", presented.thumbprint, presented.certificate})
                                  : Result<Admission>(Admission{"", trust::Role::engineer});
     }
     const auto* named =
@@ -168,7 +169,8 @@ Result<Admission> Sessions::admit(const Presented& presented) const {
     if (named == nullptr) {
         return fail(Errc::not_supported, "a kind of identity this server does not know");
     }
-    Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint};
+    Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint,
+                presented.certificate};
     return login.user.empty() ? fail(Errc::access_denied, "a user without a name")
                               : authenticate(login);
 }
@@ -218,10 +220,12 @@ void Sessions::close(const UA_NodeId& id) {
     }
 }
 
-void Sessions::closeAll(UA_Server* server) {
+void Sessions::closeIf(UA_Server* server, const std::function<bool(const Session&)>& which) {
     std::vector<NodeId> ids;
     for (const auto& [id, session] : sessions_) {
-        ids.push_back(id);
+        if (which(*session)) {
+            ids.push_back(id);
+        }
     }
     for (const auto& id : ids) {
         const UA_NodeId native = viewOf(id);

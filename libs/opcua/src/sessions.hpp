@@ -32,7 +32,7 @@ public:
     /// Calls whenever a session is activated: at first, and again on another connection.
     void onActivated(Handler handler) { activated_ = std::move(handler); }
     void onClosed(Handler handler) { closed_.push_back(std::move(handler)); }
-    void closeAll(UA_Server* server);
+    void closeIf(UA_Server* server, const std::function<bool(const Session&)>& which);
 
 private:
     struct Callbacks;
@@ -40,7 +40,8 @@ private:
     /// What a client presents to be let in.
     struct Presented {
         const UA_ExtensionObject& token;
-        std::string thumbprint;  ///< empty without security
+        std::string thumbprint;   ///< empty without security
+        std::string certificate;  ///< in DER
     };
     StatusCode activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                         void** context);

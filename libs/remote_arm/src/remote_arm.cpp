@@ -9,7 +9,7 @@ namespace metier::remote_arm {
 Result<std::unique_ptr<RemoteArm>> RemoteArm::connect(RemoteArmOptions options) {
     // Shared by the thread that waits and the sessions that ring, also late.
     auto bell = std::make_shared<Doorbell>();
-    auto session = StreamSession::open(options.url, bell);
+    auto session = StreamSession::open(options, bell);
     if (!session) {
         return fail(session.error());
     }

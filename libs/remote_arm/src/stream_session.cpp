@@ -51,13 +51,14 @@ SafetyState safetyFrom(std::int32_t kind) {
 
 }  // namespace
 
-Result<std::unique_ptr<StreamSession>> StreamSession::open(const std::string& url,
+Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOptions& remote,
                                                            std::shared_ptr<Doorbell> bell) {
     opcua::ClientOptions options;
     options.application_name = "metier move component";
     options.connect_timeout = kConnectTimeout;
     options.publishing_interval = kPublishingInterval;
-    auto client = opcua::Client::connect(url, options);
+    options.security = remote.security;
+    auto client = opcua::Client::connect(remote.url, options);
     if (!client) {
         return fail(client.error());
     }

@@ -12,6 +12,7 @@
 #include "metier/device/arm.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua_skill/kinematics_data.hpp"
+#include "metier/remote_arm/remote_arm.hpp"
 #include "metier/skill_client/kinematics_reader.hpp"
 #include "metier/skill_client/skill_handle.hpp"
 
@@ -35,7 +36,7 @@ public:
     };
 
     /// \param bell rung after each change of what is observed; shared with late answers
-    static Result<std::unique_ptr<StreamSession>> open(const std::string& url,
+    static Result<std::unique_ptr<StreamSession>> open(const RemoteArmOptions& remote,
                                                        std::shared_ptr<Doorbell> bell);
 
     const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }

@@ -146,7 +146,7 @@ void RemoteArm::Worker::run(const std::stop_token& stop) {
 }
 
 void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
-    auto session = StreamSession::open(options_.url, bell_);
+    auto session = StreamSession::open(options_, bell_);
     if (!session) {
         bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
         return;

@@ -39,6 +39,7 @@ opcua::Answer<std::unique_ptr<opcua::Client>> Connection::connect(
     opcua::ClientOptions client;
     client.application_name = options.application_name;
     client.session_timeout = options.session_timeout;
+    client.security = options.security;
     return opcua::Client::connect(options.url, client);
 }
 

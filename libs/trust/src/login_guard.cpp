@@ -78,6 +78,12 @@ Result<Role> LoginGuard::check(const std::string& user, const std::string& passw
     return known->role;
 }
 
+std::optional<Role> LoginGuard::roleOf(const std::string& user) {
+    reload();
+    const auto* known = users_.find(user);
+    return known == nullptr ? std::nullopt : std::optional(known->role);
+}
+
 void LoginGuard::noteFailure(const Who& who) {
     if (failures_.size() >= kMostRemembered && failures_.find(who) == failures_.end()) {
         failures_.erase(

@@ -27,7 +27,8 @@ struct Credentials {
 struct Login {
     std::string user;  ///< empty: it is the application itself
     std::string password;
-    std::string thumbprint;  ///< of the application's certificate, which is trusted
+    std::string thumbprint;   ///< of the application's certificate, which is trusted
+    std::string certificate;  ///< in DER
 };
 
 /// As whom somebody was let in.

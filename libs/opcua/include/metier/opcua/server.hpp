@@ -168,6 +168,9 @@ public:
     /// The server's thread only.
     AddressSpace& nodes();
 
+    /// Closes the sessions of which it says true. Server's thread.
+    void closeSessions(const std::function<bool(const Session&)>& which);
+
     /// Goes on with another certificate and key for the same ApplicationUri. Connections that are
     /// open stay until their next renewal, within ten minutes; then their clients connect again.
     /// Server's thread.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "metier/device/arm.hpp"
+#include "metier/opcua/security.hpp"
 #include "metier/opcua_skill/kinematics_data.hpp"
 
 namespace metier::remote_arm {
@@ -15,6 +16,7 @@ struct RemoteArmOptions {
     std::string url;
     /// Pause between tries to reach a server that was lost.
     std::chrono::milliseconds retry_interval{500};
+    std::optional<opcua::Credentials> security{};  ///< as opcua::ClientOptions::security
 };
 
 /// An arm behind another OPC UA server: its set-points go out as the position stream of that

@@ -9,6 +9,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/composition/child.hpp"
+#include "metier/opcua/security.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill_client/async_skill.hpp"
 #include "metier/skill_client/skill_finder.hpp"
@@ -23,6 +24,7 @@ struct RemoteServerOptions {
     /// told with its start; at least 2 s.
     std::chrono::milliseconds session_timeout{5'000};
     std::chrono::milliseconds retry_interval{500};  ///< between attempts to connect again
+    std::optional<opcua::Credentials> security{};   ///< as opcua::ClientOptions::security
 };
 
 struct OpenSkill;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -29,6 +30,9 @@ public:
     ///         long to wait.
     Result<Role> check(const std::string& user, const std::string& password,
                        const std::string& thumbprint);
+
+    /// What a user may do now; nothing for one who is not known.
+    std::optional<Role> roleOf(const std::string& user);
 
 private:
     struct Failures {

@@ -1,0 +1,210 @@
+#include "server_access.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "metier/opcua/text.hpp"
+#include "security.hpp"
+
+namespace metier::app {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+constexpr auto kLookEvery = 2s;
+constexpr auto kCheckEvery = 1h;  // certificates end without a change of the folder
+constexpr auto kWarnEvery = 24h;
+constexpr std::size_t kMostWaiting = 16;
+constexpr std::size_t kMostRemembered = 1'000;
+
+fs::file_time_type latestChange(const trust::SecurityFolder& folder) {
+    const auto trust = folder.trustFolder();
+    const std::array places{trust / "trusted" / "certs", trust / "trusted" / "crl",
+                            trust / "issuers" / "certs", trust / "issuers" / "crl",
+                            folder.path() / "roles",     folder.usersFile()};
+    auto latest = fs::file_time_type::min();
+    for (const auto& place : places) {
+        std::error_code error;
+        const auto time = fs::last_write_time(place, error);
+        latest = error ? latest : std::max(latest, time);
+    }
+    return latest;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ServerAccess>> ServerAccess::open(opcua::Credentials own,
+                                                         const Clock& clock) {
+    auto folder = openSecurityFolder();
+    if (!folder) {
+        return fail(folder.error());
+    }
+    auto logins = trust::LoginGuard::open(folder->usersFile(), clock);
+    if (!logins) {
+        return fail(logins.error());
+    }
+    auto store = trust::TrustStore::open(folder->trustFolder());
+    if (!store) {
+        return fail(store.error());
+    }
+    return std::unique_ptr<ServerAccess>(new ServerAccess(std::move(own), std::move(*folder),
+                                                          std::move(*logins), std::move(*store)));
+}
+
+ServerAccess::ServerAccess(opcua::Credentials own, trust::SecurityFolder folder,
+                           trust::LoginGuard logins, trust::TrustStore store)
+    : own_(std::move(own)),
+      folder_(std::move(folder)),
+      logins_(std::move(logins)),
+      store_(std::move(store)),
+      seen_(latestChange(folder_)),
+      keeper_([this](const std::stop_token& stop) { keepRefused(stop); }) {}
+
+ServerAccess::~ServerAccess() = default;
+
+opcua::ServerSecurity ServerAccess::security() {
+    return {.credentials = own_,
+            .authenticate = [this](const opcua::Login& login) { return authenticate(login); },
+            .on_refused = [this](const opcua::RefusedPeer& peer) { noteRefused(peer); }};
+}
+
+void ServerAccess::follow(opcua::Server& server) {
+    server.post([this, &server] { look(server); });
+}
+
+Result<opcua::Admission> ServerAccess::authenticate(const opcua::Login& login) {
+    Result<trust::Role> role =
+        fail(Errc::access_denied,
+             fmt::format("the application {} has no role of its own: log in as a user",
+                         login.thumbprint));
+    if (!login.user.empty()) {
+        role = logins_.check(login.user, login.password, login.thumbprint);
+    } else if (const auto own = folder_.roleOf(login.thumbprint)) {
+        role = *own;
+    }
+    if (!role) {
+        spdlog::warn("{} was not let in: {}",
+                     login.user.empty() ? "nobody" : opcua::sanitise(login.user),
+                     role.error().message);
+        return fail(role.error());
+    }
+    if (let_in_.size() >= kMostRemembered) {
+        let_in_.erase(let_in_.begin());
+    }
+    let_in_[login.thumbprint] = login.certificate;
+    return opcua::Admission{login.user, *role};
+}
+
+void ServerAccess::noteRefused(const opcua::RefusedPeer& peer) {
+    auto certificate = trust::Certificate::fromDer(peer.der);
+    if (!certificate || peer.refusal.kind != trust::RefusalKind::untrusted) {
+        return;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        if (refused_.size() >= kMostWaiting) {
+            return;
+        }
+        refused_.push_back(std::move(*certificate));
+    }
+    wake_.notify_one();
+}
+
+/// A disk may be slow, the server's thread must not be.
+void ServerAccess::keepRefused(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    while (wake_.wait(lock, stop, [this] { return !refused_.empty(); })) {
+        const auto certificate = std::move(refused_.front());
+        refused_.pop_front();
+        lock.unlock();
+        if (auto store = trust::TrustStore::open(folder_.trustFolder())) {
+            store->keepRejected(certificate);
+        }
+        lock.lock();
+    }
+}
+
+void ServerAccess::look(opcua::Server& server) {
+    takeRenewed(server);
+    warnOfEnd();
+    const auto latest = latestChange(folder_);
+    const auto now = std::chrono::steady_clock::now();
+    if (latest != seen_ || now - checked_ > kCheckEvery) {
+        seen_ = latest;
+        checked_ = now;
+        closeStrangers(server);
+    }
+    timer_ = server.after(kLookEvery, [this, &server] { look(server); });
+}
+
+void ServerAccess::takeRenewed(opcua::Server& server) {
+    const auto present = trust::loadIdentity(own_.identity_folder);
+    if (!present || present->certificate == own_.identity.certificate) {
+        return;
+    }
+    own_.identity = *present;
+    warned_ = {};
+    if (const auto renewed = server.renewIdentity(*present); !renewed) {
+        spdlog::error("the renewed certificate is not used: {}", renewed.error().message);
+    }
+}
+
+void ServerAccess::warnOfEnd() {
+    const auto now = std::chrono::steady_clock::now();
+    if (warned_ != SteadyTime{} && now - warned_ < kWarnEvery) {
+        return;
+    }
+    warned_ = now;
+    const auto end = own_.identity.certificate.notAfter();
+    if (std::chrono::system_clock::now() + trust::kRenewalTime > end) {
+        spdlog::warn("the certificate of this server ends on {}: metier trust renew {}",
+                     trust::dateText(end), own_.identity_folder.filename().string());
+    }
+}
+
+std::optional<trust::Role> ServerAccess::roleNow(const std::string& user,
+                                                 const std::string& thumbprint) {
+    const auto certificate = let_in_.find(thumbprint);
+    const bool trusted =
+        certificate == let_in_.end() ||
+        store_.check(certificate->second, std::chrono::system_clock::now()).has_value();
+    if (!trusted) {
+        return std::nullopt;
+    }
+    return user.empty() ? folder_.roleOf(thumbprint) : logins_.roleOf(user);
+}
+
+void ServerAccess::closeStrangers(opcua::Server& server) {
+    server.closeSessions([this](const opcua::Session& session) {
+        const bool stays = roleNow(session.user, session.thumbprint) == session.role;
+        if (!stays) {
+            spdlog::warn("the session of {} with the certificate {} is closed: its rights changed",
+                         session.user.empty() ? "an application" : session.user,
+                         session.thumbprint);
+        }
+        return !stays;
+    });
+}
+
+Result<std::unique_ptr<ServerAccess>> secureServer(opcua::ServerOptions& options,
+                                                   const std::string& lab_uri, const Clock& clock) {
+    options.application_uri = lab_uri;
+    auto own = ownCredentials();
+    if (!own) {
+        return std::unique_ptr<ServerAccess>();
+    }
+    options.application_uri = own->identity.certificate.applicationUri();
+    auto access = ServerAccess::open(std::move(*own), clock);
+    if (access) {
+        options.security = (*access)->security();
+    }
+    return access;
+}
+
+}  // namespace metier::app

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/opcua/security.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/trust/login_guard.hpp"
+#include "metier/trust/security_folder.hpp"
+
+namespace metier::app {
+
+/// Who is let in to a closed server of this process, by the folder of `--security`.
+///
+/// Users log in by name and password; an application without a user gets the role it has in the
+/// folder, if any. What changes there holds within seconds: sessions of applications that are
+/// trusted no more, and of users who are gone or have another role, are closed; the server goes on
+/// with a renewed certificate, and warns before its own ends.
+/// Threading: between open() and the end of the server, the server's thread; a thread of its own
+/// writes files.
+class ServerAccess {
+public:
+    /// \param clock must outlive this
+    /// Errors: as openSecurityFolder(), trust::LoginGuard::open().
+    static Result<std::unique_ptr<ServerAccess>> open(opcua::Credentials own, const Clock& clock);
+    ~ServerAccess();
+    ServerAccess(const ServerAccess&) = delete;
+    ServerAccess& operator=(const ServerAccess&) = delete;
+
+    /// For the options of the server, which this must outlive.
+    opcua::ServerSecurity security();
+    /// Has the server follow the folder. Once, before Server::start().
+    void follow(opcua::Server& server);
+
+private:
+    ServerAccess(opcua::Credentials own, trust::SecurityFolder folder, trust::LoginGuard logins,
+                 trust::TrustStore store);
+    Result<opcua::Admission> authenticate(const opcua::Login& login);
+    std::optional<trust::Role> roleNow(const std::string& user, const std::string& thumbprint);
+    void noteRefused(const opcua::RefusedPeer& peer);
+    void look(opcua::Server& server);
+    void takeRenewed(opcua::Server& server);
+    void warnOfEnd();
+    void closeStrangers(opcua::Server& server);
+    void keepRefused(const std::stop_token& stop);
+
+    opcua::Credentials own_;
+    trust::SecurityFolder folder_;
+    trust::LoginGuard logins_;
+    trust::TrustStore store_;
+    std::map<std::string, std::string> let_in_;  // DER of applications by thumbprint
+    std::filesystem::file_time_type seen_{};     // the latest change of the folder
+    SteadyTime checked_{};
+    SteadyTime warned_{};
+    opcua::TimerHandle timer_;
+
+    std::mutex mutex_;  // of what follows
+    std::condition_variable_any wake_;
+    std::deque<trust::Certificate> refused_;
+    std::jthread keeper_;
+};
+
+/// Makes a server of this process closed, under the ApplicationUri of its certificate; in an
+/// insecure lab it is open, under the other, and the result null.
+/// Errors: as ServerAccess::open().
+Result<std::unique_ptr<ServerAccess>> secureServer(opcua::ServerOptions& options,
+                                                   const std::string& lab_uri, const Clock& clock);
+
+}  // namespace metier::app

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "metier/trust/users.hpp"
+#include "security.hpp"
+
+namespace metier::app {
+namespace {
+
+using trust::UserTable;
+
+struct UserOptions {
+    std::string name;
+    std::string role = "Operator";
+};
+
+Result<void> list(UserTable& users, const UserOptions& /*options*/) {
+    for (const auto& user : users.users()) {
+        fmt::print("{:<24} {}\n", user.name, trust::toString(user.role));
+    }
+    return {};
+}
+
+Result<void> add(UserTable& users, const UserOptions& options) {
+    const auto password = readPassword(options.name);
+    if (!password) {
+        return fail(password.error());
+    }
+    const auto role = trust::roleNamed(options.role).value_or(trust::Role::observer);
+    return users.add(options.name, role, *password);
+}
+
+Result<void> setPassword(UserTable& users, const UserOptions& options) {
+    if (users.find(options.name) == nullptr) {
+        return fail(Errc::not_found, fmt::format("no user '{}'", options.name));
+    }
+    const auto password = readPassword(options.name);
+    return password ? users.setPassword(options.name, *password) : fail(password.error());
+}
+
+Result<void> remove(UserTable& users, const UserOptions& options) {
+    return users.remove(options.name);
+}
+
+using Action = Result<void> (*)(UserTable&, const UserOptions&);
+
+Result<void> act(Action action, const UserOptions& options) {
+    const auto folder = openSecurityFolder();
+    if (!folder) {
+        return fail(folder.error());
+    }
+    auto users = UserTable::load(folder->usersFile());
+    if (!users) {
+        return fail(users.error());
+    }
+    if (auto done = action(*users, options); !done) {
+        return done;
+    }
+    return action == &list ? Result<void>() : users->save(folder->usersFile());
+}
+
+}  // namespace
+
+void addUser(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callbacks, which read it.
+    auto options = std::make_shared<UserOptions>();
+    auto* command = app.add_subcommand("user", "Decide who may log in, and as what");
+    command->require_subcommand(1);
+    const auto addAction = [&](const char* name, const char* about, Action action) {
+        auto* one = command->add_subcommand(name, about);
+        one->callback([options, action, &exit] {
+            const auto done = act(action, *options);
+            exit = done ? Exit::success : report(done.error());
+        });
+        return one;
+    };
+    addAction("list", "Everybody who may log in", &list);
+    auto* adding = addAction("add", "Let somebody log in; asks for a password", &add);
+    adding->add_option("name", options->name, "Who it is")->required();
+    adding
+        ->add_option("--role", options->role,
+                     "Observer reads; Operator and Engineer also command; SecurityAdmin reads, and "
+                     "decides whom to trust")
+        ->check(CLI::IsMember({"Observer", "Operator", "Engineer", "SecurityAdmin"}))
+        ->capture_default_str();
+    addAction("password", "Give somebody another password", &setPassword)
+        ->add_option("name", options->name, "Who it is")
+        ->required();
+    addAction("remove", "Let somebody log in no longer; open sessions are closed", &remove)
+        ->add_option("name", options->name, "Who it is")
+        ->required();
+}
+
+}  // namespace metier::app
