@@ -6,6 +6,7 @@ const readline = require('node:readline');
 
 const kReadyTimeoutMs = 30000;
 const kRunTimeoutMs = 30000;
+const kLab = ['--insecure-lab'];
 
 function metierProgram() {
   const program = process.env.METIER;
@@ -49,18 +50,23 @@ function startProcess(program, args) {
   });
 }
 
-/** @param {string[]} args of the metier command @returns {Promise<Running>} */
-function startServer(args) {
-  return startProcess(metierProgram(), args);
+/**
+ * @param {string[]} args of the metier command
+ * @param {string[]} security options of metier on security
+ * @returns {Promise<Running>}
+ */
+function startServer(args, security = kLab) {
+  return startProcess(metierProgram(), [...security, ...args]);
 }
 
 /**
  * @param {string[]} args of a metier command that ends by itself
+ * @param {string[]} security options of metier on security
  * @returns {Promise<{status: number, output: string}>} what it printed and its exit status
  */
-function runMetier(args) {
+function runMetier(args, security = kLab) {
   return new Promise((resolve, reject) => {
-    execFile(metierProgram(), args, { timeout: kRunTimeoutMs }, (error, output) => {
+    execFile(metierProgram(), [...security, ...args], { timeout: kRunTimeoutMs }, (error, output) => {
       if (error && typeof error.code !== 'number') {
         reject(error);
         return;

@@ -90,7 +90,7 @@ Result<opcua::Admission> ServerAccess::authenticate(const opcua::Login& login) {
     }
     if (!role) {
         spdlog::warn("{} was not let in: {}",
-                     login.user.empty() ? "nobody" : opcua::sanitise(login.user),
+                     login.user.empty() ? "an application" : opcua::sanitise(login.user),
                      role.error().message);
         return fail(role.error());
     }
