@@ -18,7 +18,6 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
 constexpr auto kLookEvery = 2s;
-constexpr auto kCheckEvery = 1h;  // certificates end without a change of the folder
 constexpr auto kWarnEvery = 24h;
 constexpr std::size_t kMostWaiting = 16;
 constexpr std::size_t kMostRemembered = 1'000;
@@ -134,10 +133,8 @@ void ServerAccess::look(opcua::Server& server) {
     takeRenewed(server);
     warnOfEnd();
     const auto latest = latestChange(folder_);
-    const auto now = std::chrono::steady_clock::now();
-    if (latest != seen_ || now - checked_ > kCheckEvery) {
+    if (latest != seen_) {
         seen_ = latest;
-        checked_ = now;
         closeStrangers(server);
     }
     timer_ = server.after(kLookEvery, [this, &server] { look(server); });
@@ -168,13 +165,25 @@ void ServerAccess::warnOfEnd() {
     }
 }
 
+/// A session stays when its certificate ends, or a clock says so: nothing that moves may stop by
+/// it.
+bool ServerAccess::isTrustedStill(const std::string& thumbprint) {
+    const auto let_in = let_in_.find(thumbprint);
+    if (let_in == let_in_.end()) {
+        return true;
+    }
+    const auto certificate = trust::Certificate::fromDer(let_in->second);
+    if (!certificate) {
+        return false;
+    }
+    const auto within = std::clamp(std::chrono::system_clock::now(), certificate->notBefore(),
+                                   certificate->notAfter());
+    return store_.check(let_in->second, within).has_value();
+}
+
 std::optional<trust::Role> ServerAccess::roleNow(const std::string& user,
                                                  const std::string& thumbprint) {
-    const auto certificate = let_in_.find(thumbprint);
-    const bool trusted =
-        certificate == let_in_.end() ||
-        store_.check(certificate->second, std::chrono::system_clock::now()).has_value();
-    if (!trusted) {
+    if (!isTrustedStill(thumbprint)) {
         return std::nullopt;
     }
     return user.empty() ? folder_.roleOf(thumbprint) : logins_.roleOf(user);

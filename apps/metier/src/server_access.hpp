@@ -45,6 +45,7 @@ private:
     ServerAccess(opcua::Credentials own, trust::SecurityFolder folder, trust::LoginGuard logins,
                  trust::TrustStore store);
     Result<opcua::Admission> authenticate(const opcua::Login& login);
+    bool isTrustedStill(const std::string& thumbprint);
     std::optional<trust::Role> roleNow(const std::string& user, const std::string& thumbprint);
     void noteRefused(const opcua::RefusedPeer& peer);
     void look(opcua::Server& server);
@@ -59,7 +60,6 @@ private:
     trust::TrustStore store_;
     std::map<std::string, std::string> let_in_;  // DER of applications by thumbprint
     std::filesystem::file_time_type seen_{};     // the latest change of the folder
-    SteadyTime checked_{};
     SteadyTime warned_{};
     opcua::TimerHandle timer_;
 

@@ -1,0 +1,138 @@
+// The clock of a server's computer jumps, by days and years, or in steps, while its arm moves.
+#include <gmock/gmock.h>
+
+#include <optional>
+#include <thread>
+
+#include "discovered_cell.hpp"
+#include "installation.hpp"
+#include "jumping_clock/jumping_clock.hpp"
+#include "metier/base/queue.hpp"
+#include "watched_skill.hpp"
+
+namespace metier::system_tests {
+namespace {
+
+using namespace std::chrono_literals;
+using skill::Reason;
+using skill::State;
+
+/// What the clock of a server tells.
+UtcTime timeOf(opcua::Client& client) {
+    return client.read(opcua::NodeId(0, 2258U)).value().as<UtcTime>().value();
+}
+
+using Offsets = std::vector<std::chrono::nanoseconds>;
+constexpr std::chrono::hours kDay{24};
+constexpr auto kTenYears = 3'652 * kDay;
+
+struct Jump {
+    const char* name;
+    Offsets offsets;  // one after the other, 100 ms apart, during each motion
+};
+
+/// A second to and fro, and at last more.
+Offsets steps() {
+    Offsets offsets;
+    for (int i = 0; i < 10; ++i) {
+        offsets.insert(offsets.end(), {1s, 0s});
+    }
+    offsets.emplace_back(2h);
+    return offsets;
+}
+
+class ClockJump : public ::testing::TestWithParam<Jump> {
+protected:
+    void SetUp() override {
+        if (!JumpingClock::obstacle().empty()) {
+            GTEST_SKIP() << "NOT TESTED: " << JumpingClock::obstacle();
+        }
+        server_.emplace(clock_.of(
+            metierCommand({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"})));
+        move_.emplace(server_->url(), "JointPtpMoveSkill");
+    }
+    /// Axis 1 there and nowhere else, over some three seconds.
+    void start(double axis) {
+        ASSERT_TRUE(
+            (*move_)->set("TargetJointPosition", std::vector<double>{axis, 0, 0, 0, 0, 0, 0}));
+        ASSERT_TRUE((*move_)->set("SpeedOverride", 0.2));
+        const auto started = (*move_)->start();
+        ASSERT_TRUE(started) << started.error().message;
+        EXPECT_EQ(move_->awaitEvent(State::running).to, State::running);
+    }
+    void jump() {
+        auto next = std::chrono::steady_clock::now();
+        for (const auto& offset : GetParam().offsets) {
+            clock_.set(offset);
+            std::this_thread::sleep_until(next += 100ms);  // the pace of the steps
+        }
+    }
+
+    JumpingClock clock_;
+    std::optional<ServerProcess> server_;
+    std::optional<Watched> move_;
+};
+
+TEST_P(ClockJump, NeitherEndsNorDelaysAMotion) {
+    start(1.0);
+    const auto begun = std::chrono::steady_clock::now();
+    jump();
+    const auto ended = move_->awaitEvent(State::ready);
+    EXPECT_EQ(ended.reason, Reason::finished) << ended.reason_text;
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, 30s);
+    EXPECT_NEAR(jointPosition(move_->client(), **move_).front(), 1.0, 1e-3);
+    const auto wrong = timeOf(move_->client()) - std::chrono::system_clock::now();
+    EXPECT_LT(std::chrono::abs(wrong - GetParam().offsets.back()), 30s) << "the clock did jump";
+}
+
+TEST_P(ClockJump, DoesNotKeepAnArmFromStopping) {
+    start(2.0);
+    jump();
+    ASSERT_TRUE((*move_)->halt());
+    EXPECT_EQ(move_->awaitEvent(State::halted).reason, Reason::by_client);
+    const auto resting = jointPosition(move_->client(), **move_);
+    EXPECT_LT(resting.front(), 2.0);
+    EXPECT_NEAR(jointPosition(move_->client(), **move_).front(), resting.front(), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(ByTime, ClockJump,
+                         ::testing::Values(Jump{"ADayOn", {kDay}}, Jump{"ADayBack", {-kDay}},
+                                           Jump{"TenYearsOn", {kTenYears}},
+                                           Jump{"TenYearsBack", {-kTenYears}},
+                                           Jump{"StepsOfSeconds", steps()}),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+class ClockJumpOfAClosedServer : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!JumpingClock::obstacle().empty()) {
+            GTEST_SKIP() << "NOT TESTED: " << JumpingClock::obstacle();
+        }
+    }
+
+    JumpingClock clock_;
+    const Installation here_{"here"};
+};
+
+// All certificates are over by that clock: who is there stays, also when the server looks again.
+TEST_F(ClockJumpOfAClosedServer, EndsNoSession) {
+    const auto options = here_.asCommand();
+    const ServerProcess arm(clock_.of(
+        here_.command({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"})));
+    const auto client = opcua::Client::connect(arm.url(), options);
+    ASSERT_TRUE(client) << client.error().message;
+    auto second = options;
+    second.application_name = "metier second";
+    const auto user = here_.run({"user", "add", "anna"}, "anna's own");
+    ASSERT_EQ(user.status, 0) << user.output;
+    second.user = opcua::UserName{"anna", "anna's own"};
+    const auto leaving = opcua::Client::connect(arm.url(), second);
+    ASSERT_TRUE(leaving) << leaving.error().message;
+    clock_.set(kTenYears);
+    ASSERT_EQ(here_.run({"user", "remove", "anna"}).status, 0);  // so the server looks
+    EXPECT_TRUE(holdsSoon([&] { return !(*leaving)->read(opcua::NodeId(0, 2258U)); }));
+    EXPECT_TRUE((*client)->read(opcua::NodeId(0, 2258U)));
+}
+
+}  // namespace
+}  // namespace metier::system_tests
