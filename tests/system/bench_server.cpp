@@ -25,6 +25,7 @@ BenchServer::BenchServer(BenchOptions options) : options_(std::move(options)) {
     opcua::ServerOptions server_options;
     server_options.port = options_.port;
     server_options.limits = options_.limits;
+    server_options.security = options_.security;
     server_options.nodesets = {"device", "robotics", "metier"};
     server_options.namespaces = {kNamespace};
     server_options.logger = std::make_shared<spdlog::logger>("quiet");

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ namespace metier::system_tests {
 struct BenchOptions {
     std::uint16_t port = 0;  ///< 0: a free one
     opcua::ServerLimits limits{};
+    std::optional<opcua::ServerSecurity> security{};  ///< none: that of a lab
     /// Both or none: time that is moved by hand. The clock must outlive the server.
     const Clock* clock = nullptr;
     /// Makes the executor of that time, which runs on the server's thread.

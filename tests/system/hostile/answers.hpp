@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "known.hpp"
+#include "reader.hpp"
+
+namespace metier::hostile {
+
+/// Whoever behaves well is answered within it.
+inline constexpr std::chrono::milliseconds kLongestAnswer{1'000};
+
+/// Types of responses, by their Binary encoding.
+inline constexpr std::uint32_t kServiceFault = 397;
+inline constexpr std::uint32_t kOpenSecureChannelResponse = 449;
+inline constexpr std::uint32_t kCreateSessionResponse = 464;
+inline constexpr std::uint32_t kActivateSessionResponse = 470;
+inline constexpr std::uint32_t kBadSessionIdInvalid = 0x8025'0000;
+
+/// Takes over ids of subscriptions, monitored items and continuation points.
+void learn(std::uint32_t type, Reader& content, Known& known);
+
+/// What was done for a stranger that must not be, of an open server: nodes or references were added
+/// or deleted. Empty if nothing was.
+std::string permitted(std::uint32_t type, std::uint32_t result, std::string_view content);
+
+/// The same of a closed server: anything but discovery.
+std::string givenAway(std::uint32_t type, std::uint32_t result);
+
+}  // namespace metier::hostile

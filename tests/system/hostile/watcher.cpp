@@ -1,0 +1,64 @@
+#include "watcher.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "../bench_server.hpp"
+#include "answers.hpp"
+
+namespace metier::hostile {
+
+namespace {
+
+using system_tests::orThrow;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr auto kLongestWait = 4 * kLongestAnswer;
+#else
+constexpr auto kLongestWait = kLongestAnswer;
+#endif
+
+skill_client::SkillHandle guardedSkill(opcua::Client& client) {
+    return orThrow(skill_client::SkillHandle::open(
+        client, orThrow(skill_client::findSkill(client, "Guarded"))));
+}
+
+/// It waits long, so that it can tell how long a late answer took.
+opcua::ClientOptions patient(opcua::ClientOptions options) {
+    options.application_name = "watcher";
+    options.call_timeout = std::chrono::seconds(30);
+    options.connect_timeout = std::chrono::seconds(30);
+    return options;
+}
+
+}  // namespace
+
+Watcher::Watcher(const std::string& url, const opcua::ClientOptions& options)
+    : client_(orThrow(opcua::Client::connect(url, patient(options)))),
+      skill_(guardedSkill(*client_)) {
+    orThrow(skill_.halt());
+    orThrow(skill_.awaitState(skill::State::halted,
+                              std::chrono::steady_clock::now() + std::chrono::seconds(10)));
+    skill_.onTransition([this](const skill::TransitionEvent& event) {
+        transitions_ += event.from == skill::State::halted ? 1 : 0;
+    });
+}
+
+std::string Watcher::ask() {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto state = skill_.state();
+    const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::steady_clock::now() - begin);
+    longest_ = std::max(longest_, waited);
+    if (!state) {
+        return "the client that behaves: " + state.error().message;
+    }
+    if (*state != skill::State::halted || transitions_ != 0) {
+        return fmt::format("the guarded skill is {}, and left Halted {} times", toString(*state),
+                           transitions_.load());
+    }
+    return waited > kLongestWait ? fmt::format("an answer took {} ms", waited.count()) : "";
+}
+
+}  // namespace metier::hostile
