@@ -92,10 +92,18 @@ struct Sessions::Callbacks {
         });
     }
     static UA_Byte accessLevel(UA_Server* /*server*/, UA_AccessControl* control,
-                               const UA_NodeId* /*session_id*/, void* context,
-                               const UA_NodeId* /*node*/, void* /*node_context*/) noexcept {
+                               const UA_NodeId* session_id, void* context, const UA_NodeId* node,
+                               void* node_context) noexcept {
+        if (session_id == nullptr && isOfTheStack(*node, node_context)) {
+            return 0;
+        }
         return context == nullptr || mayCommand(owner(control).of(context).role) ? kAllAccess
                                                                                  : kReadAccess;
+    }
+    /// Diagnostics of a session, which the stack keeps in namespace 1. Asked for by a Subscription
+    /// that has outlived its session, they would be looked up for a session that is null.
+    static bool isOfTheStack(const UA_NodeId& node, const void* node_context) noexcept {
+        return node.namespaceIndex == 1 && node_context == nullptr;
     }
     /// Methods of ours answer for themselves, with the StatusCode that the stack has not.
     static UA_Boolean executableOnObject(UA_Server* server, UA_AccessControl* /*control*/,

@@ -91,6 +91,14 @@ void BareClient::breakConnection() {
     UA_Client_disconnectSecureChannel(client_);
 }
 
+StatusCode BareClient::closeSessionWithoutSubscriptions() {
+    UA_CloseSessionRequest request{};
+    Owned<UA_CloseSessionResponse> response(UA_TYPES[UA_TYPES_CLOSESESSIONRESPONSE]);
+    __UA_Client_Service(client_, &request, &UA_TYPES[UA_TYPES_CLOSESESSIONREQUEST], response.get(),
+                        &UA_TYPES[UA_TYPES_CLOSESESSIONRESPONSE]);
+    return StatusCode(response->responseHeader.serviceResult);
+}
+
 DataValue BareClient::read(const NodeId& variable) {
     UA_ReadValueId item{};
     item.nodeId = viewOf(variable);

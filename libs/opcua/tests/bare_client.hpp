@@ -33,6 +33,8 @@ public:
     void disconnect();
     /// Closes the connection and leaves the session to its time-out.
     void breakConnection();
+    /// Ends the session and leaves its Subscriptions to their lifetime.
+    StatusCode closeSessionWithoutSubscriptions();
 
     DataValue read(const NodeId& variable);
     std::optional<bool> readUserExecutable(const NodeId& method);

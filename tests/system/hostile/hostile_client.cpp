@@ -77,8 +77,10 @@ void HostileClient::sendOpen(Random& random, std::size_t wrong_one_in) {
     if (damaged) {
         damage(random, body);
     }
+    // It answers only whom it has taken a right HEL from.
+    const bool is_right = stage_ == Stage::greeted && !damaged && wrong_one_in == 0;
     transmit(openChunk(channel_, body));
-    awaitStage(Stage::opened, damaged ? 1 : wrong_one_in);
+    awaitStage(Stage::opened, is_right ? 0 : 1);
 }
 
 void HostileClient::sendSession(Random& random, std::size_t wrong_one_in) {
