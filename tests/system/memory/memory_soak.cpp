@@ -91,7 +91,7 @@ public:
     bool judge(double limit) {
         const auto end = target_.residentKilobytes();
         const auto grown = static_cast<double>(end) - static_cast<double>(warm_);
-        const auto files = target_.descriptors();
+        const auto files = awaitFiles();
         const bool good = grown <= limit && files <= warm_files_ && target_.lives();
         fmt::print(
             "{} {}: {} kB when warm, {} kB at the end, grown {:.0f} kB of {:.0f} kB; "
@@ -102,6 +102,14 @@ public:
     }
 
 private:
+    /// The server closes its end of a connection a moment after the client does.
+    std::size_t awaitFiles() const {
+        const auto deadline = std::chrono::steady_clock::now() + kPatience;
+        while (target_.descriptors() > warm_files_ && std::chrono::steady_clock::now() < deadline) {
+        }
+        return target_.descriptors();
+    }
+
     const char* what_;
     TargetProcess& target_;
     std::size_t steps_;
