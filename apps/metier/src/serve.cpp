@@ -129,9 +129,12 @@ Result<void> resolveUsed(const configuration::CellConfig& cell,
 
 /// A server at another port is another application.
 Result<void> becomeServer(const configuration::ServerConfig& config) {
-    std::vector<std::string> hosts{hostName(), config.address};
-    if (!config.discovery.announce_as.empty()) {
-        hosts.push_back(config.discovery.announce_as);
+    std::vector<std::string> hosts{hostName()};
+    for (const auto& host : {config.address, config.discovery.announce_as}) {
+        const bool names_one = !host.empty() && host != "0.0.0.0";
+        if (names_one && host.find(':') == std::string::npos) {
+            hosts.push_back(host);
+        }
     }
     return becomeApplication(
         config.port == 0 ? config.name : fmt::format("{}-{}", config.name, config.port),

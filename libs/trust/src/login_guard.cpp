@@ -13,6 +13,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kFreeAttempts = 5;
+constexpr int kFreeAttemptsOfAnApplication = 20;
+constexpr auto kMemory = 10min;
 constexpr auto kFirstPause = 1s;
 constexpr auto kLongestPause = 60s;
 constexpr std::size_t kMostRemembered = 200;
@@ -61,17 +63,18 @@ Result<Role> LoginGuard::check(const std::string& user, const std::string& passw
                                const std::string& thumbprint) {
     reload();
     const Who who{user.substr(0, kLongestName), thumbprint};
-    const auto failures = failures_.find(who);
-    const auto now = clock_->now();
-    if (failures != failures_.end() && now < failures->second.barred_until) {
-        const std::chrono::duration<double> wait = failures->second.barred_until - now;
-        return fail(Errc::access_denied, fmt::format("too many wrong passwords: wait {:.0f} s",
-                                                     std::ceil(wait.count())));
+    const Who application{"", thumbprint};  // no user has that name
+    forgetOld(application);
+    for (const auto& one : {who, application}) {
+        if (auto free = checkBar(one); !free) {
+            return fail(free.error());
+        }
     }
     const auto* known = users_.find(user);
     const bool right = isPassword(password, known ? known->password_hash : hashOfNobody());
     if (known == nullptr || !right) {
-        noteFailure(who);
+        noteFailure(who, kFreeAttempts);
+        noteFailure(application, kFreeAttemptsOfAnApplication);
         return fail(Errc::access_denied, "unknown user or wrong password");
     }
     failures_.erase(who);
@@ -84,7 +87,26 @@ std::optional<Role> LoginGuard::roleOf(const std::string& user) {
     return known == nullptr ? std::nullopt : std::optional(known->role);
 }
 
-void LoginGuard::noteFailure(const Who& who) {
+Result<void> LoginGuard::checkBar(const Who& who) const {
+    const auto failures = failures_.find(who);
+    const auto now = clock_->now();
+    if (failures == failures_.end() || now >= failures->second.barred_until) {
+        return {};
+    }
+    const std::chrono::duration<double> wait = failures->second.barred_until - now;
+    return fail(Errc::access_denied,
+                fmt::format("too many wrong passwords: wait {:.0f} s", std::ceil(wait.count())));
+}
+
+/// Nothing else does: whoever knows one password could guess others in between.
+void LoginGuard::forgetOld(const Who& application) {
+    const auto failures = failures_.find(application);
+    if (failures != failures_.end() && clock_->now() - failures->second.last > kMemory) {
+        failures_.erase(failures);
+    }
+}
+
+void LoginGuard::noteFailure(const Who& who, int free_attempts) {
     if (failures_.size() >= kMostRemembered && failures_.find(who) == failures_.end()) {
         failures_.erase(
             std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) {
@@ -93,8 +115,9 @@ void LoginGuard::noteFailure(const Who& who) {
     }
     auto& failures = failures_[who];
     ++failures.count;
-    if (failures.count >= kFreeAttempts) {
-        const int doubled = std::min(failures.count - kFreeAttempts, 6);
+    failures.last = clock_->now();
+    if (failures.count >= free_attempts) {
+        const int doubled = std::min(failures.count - free_attempts, 6);
         const auto pause =
             std::min<std::chrono::seconds>(kFirstPause * (1 << doubled), kLongestPause);
         failures.barred_until = clock_->now() + pause;

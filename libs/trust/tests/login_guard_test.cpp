@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <string>
 
 namespace metier::trust {
 namespace {
@@ -50,6 +51,23 @@ TEST_F(Logins, GiveTheRoleOfWhoKnowsThePassword) {
 TEST_F(Logins, DoNotTellWhetherThereIsSuchAUser) {
     EXPECT_EQ(guard_->check("nobody", "right password", "panel").error().message,
               wrong().error().message);
+}
+
+TEST_F(Logins, MakeAnApplicationWaitThatTriesManyNames) {
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(guard_->check("user" + std::to_string(i), "a guess", "panel").error().message,
+                  "unknown user or wrong password");
+        clock_.advance(1s);
+    }
+    EXPECT_TRUE(right("another panel"));
+    EXPECT_TRUE(right()) << "one second is over";
+    EXPECT_FALSE(guard_->check("user20", "a guess", "panel"));
+    EXPECT_THAT(right().error().message, HasSubstr("too many wrong passwords: wait 2 s"))
+        << "a right password in between does not help";
+    clock_.advance(11min);
+    EXPECT_TRUE(right());
+    EXPECT_FALSE(guard_->check("user21", "a guess", "panel"));
+    EXPECT_TRUE(right()) << "the first is forgotten";
 }
 
 TEST_F(Logins, MakeWhoeverGuessesWait) {

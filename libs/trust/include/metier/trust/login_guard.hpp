@@ -14,9 +14,11 @@ namespace metier::trust {
 
 /// Lets users in by name and password, and makes whoever guesses wait.
 ///
-/// After five wrong passwords for one user from one application each further attempt is refused for
-/// a while, which doubles from one second to a minute, without a look at the password. Counted for
-/// each application by itself: somebody who guesses cannot lock others out.
+/// After five wrong passwords for one user from one application, or twenty from it for whatever
+/// users within ten minutes, each further attempt is refused for a while, which doubles from one
+/// second to a minute, without a look at the password: that look takes some ten milliseconds of the
+/// server's thread. Counted for each application by itself: somebody who guesses cannot lock out
+/// those who use others.
 /// The file of users is read again when it has changed.
 /// Threading: one thread.
 class LoginGuard {
@@ -37,13 +39,16 @@ public:
 private:
     struct Failures {
         int count = 0;
+        SteadyTime last{};
         SteadyTime barred_until{};
     };
     using Who = std::pair<std::string, std::string>;
 
     LoginGuard(std::filesystem::path file, const Clock& clock, UserTable users);
     void reload();
-    void noteFailure(const Who& who);
+    void noteFailure(const Who& who, int free_attempts);
+    Result<void> checkBar(const Who& who) const;
+    void forgetOld(const Who& application);
 
     std::filesystem::path file_;
     const Clock* clock_;
