@@ -10,6 +10,9 @@ namespace metier::opcua {
 
 namespace {
 
+/// Of one node; a server that sends more, or sends on for ever, is not listened to.
+constexpr std::size_t kMostReferences = 100'000;
+
 /// One Browse and the BrowseNexts that complete it.
 class Browsing : public std::enable_shared_from_this<Browsing> {
 public:
@@ -96,6 +99,9 @@ OnResponse<Request> Browsing::taken() {
 void Browsing::take(UA_BrowseResult& result) {
     if (StatusCode(result.statusCode).isBad()) {
         return finish(failed(StatusCode(result.statusCode), task_.doing));
+    }
+    if (references_.size() + result.referencesSize > kMostReferences) {
+        return finish(failed(StatusCode(UA_STATUSCODE_BADENCODINGLIMITSEXCEEDED), task_.doing));
     }
     for (std::size_t i = 0; i < result.referencesSize; ++i) {
         if (result.references[i].nodeId.serverIndex == 0) {

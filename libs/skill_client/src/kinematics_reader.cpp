@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "questions.hpp"
+
 namespace metier::skill_client {
 namespace {
 
@@ -19,8 +21,8 @@ using opcua_skill::KinematicsData;
 
 using Children = std::map<std::string, NodeId, std::less<>>;
 
-Answer<Children> childrenByName(Client& client, const NodeId& node) {
-    const auto references = client.browse({.node = node, .node_classes = {}});
+Answer<Children> childrenByName(Questions& questions, const NodeId& node) {
+    const auto references = questions.browse({.node = node, .node_classes = {}});
     if (!references) {
         return tl::unexpected(references.error());
     }
@@ -38,8 +40,8 @@ tl::unexpected<Failure> failure(Errc code, std::string text) {
 /// Reads values by name below one object; the first problem is kept.
 class NamedReader {
 public:
-    NamedReader(Client& client, Children children)
-        : client_(client), children_(std::move(children)) {}
+    NamedReader(Questions& questions, Children children)
+        : questions_(questions), children_(std::move(children)) {}
 
     template <typename T>
     void read(std::string_view name, T& target) {
@@ -53,7 +55,7 @@ public:
                         {}};
             return;
         }
-        auto value = client_.read(found->second);
+        auto value = questions_.read(found->second);
         if (!value) {
             problem_ = value.error();
             return;
@@ -72,7 +74,7 @@ public:
     const std::optional<Failure>& problem() const { return problem_; }
 
 private:
-    Client& client_;
+    Questions& questions_;
     Children children_;
     std::optional<Failure> problem_;
 };
@@ -94,9 +96,9 @@ Answer<> checkLengths(const KinematicsData& data) {
     return {};
 }
 
-Answer<KinematicsNodes> nodesOf(Client& client, const Children::value_type& device,
+Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type& device,
                                 const NodeId& object) {
-    const auto children = childrenByName(client, object);
+    const auto children = childrenByName(questions, object);
     if (!children) {
         return tl::unexpected(children.error());
     }
@@ -116,10 +118,10 @@ Answer<KinematicsNodes> nodesOf(Client& client, const Children::value_type& devi
 }
 
 /// FlangeLoad/Mass of the motion device [kg]; 0 if it says nothing of use.
-Answer<double> readPayload(Client& client, const NodeId& device) {
+Answer<double> readPayload(Questions& questions, const NodeId& device) {
     NodeId node = device;
     for (const auto* name : {"FlangeLoad", "Mass"}) {
-        const auto children = childrenByName(client, node);
+        const auto children = childrenByName(questions, node);
         if (!children) {
             return tl::unexpected(children.error());
         }
@@ -129,24 +131,24 @@ Answer<double> readPayload(Client& client, const NodeId& device) {
         }
         node = found->second;
     }
-    const auto mass = client.read(node);
+    const auto mass = questions.read(node);
     const auto number = mass ? mass->as<double>() : Result<double>(0.0);
     return number && std::isfinite(*number) && *number > 0 ? *number : 0.0;
 }
 
 /// The Kinematics object below a folder `MotionDevices`; nothing if no device has one.
-Answer<std::optional<KinematicsNodes>> searchDevices(Client& client, const NodeId& folder) {
-    const auto devices = childrenByName(client, folder);
+Answer<std::optional<KinematicsNodes>> searchDevices(Questions& questions, const NodeId& folder) {
+    const auto devices = childrenByName(questions, folder);
     if (!devices) {
         return tl::unexpected(devices.error());
     }
     for (const auto& device : *devices) {
-        const auto parts = childrenByName(client, device.second);
+        const auto parts = childrenByName(questions, device.second);
         if (!parts) {
             return tl::unexpected(parts.error());
         }
         if (const auto found = parts->find("Kinematics"); found != parts->end()) {
-            auto nodes = nodesOf(client, device, found->second);
+            auto nodes = nodesOf(questions, device, found->second);
             if (!nodes) {
                 return tl::unexpected(nodes.error());
             }
@@ -159,8 +161,9 @@ Answer<std::optional<KinematicsNodes>> searchDevices(Client& client, const NodeI
 }  // namespace
 
 Answer<KinematicsNodes> findKinematics(Client& client, const SkillAddress& skill) {
+    Questions questions(client);
     for (auto object = skill.above.rbegin(); object != skill.above.rend(); ++object) {
-        const auto children = childrenByName(client, object->node);
+        const auto children = childrenByName(questions, object->node);
         if (!children) {
             return tl::unexpected(children.error());
         }
@@ -168,7 +171,7 @@ Answer<KinematicsNodes> findKinematics(Client& client, const SkillAddress& skill
         if (devices == children->end()) {
             continue;
         }
-        auto found = searchDevices(client, devices->second);
+        auto found = searchDevices(questions, devices->second);
         if (!found) {
             return tl::unexpected(found.error());
         }
@@ -180,11 +183,12 @@ Answer<KinematicsNodes> findKinematics(Client& client, const SkillAddress& skill
 }
 
 Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nodes) {
-    auto children = childrenByName(client, nodes.object);
+    Questions questions(client);
+    auto children = childrenByName(questions, nodes.object);
     if (!children) {
         return tl::unexpected(children.error());
     }
-    NamedReader reader(client, std::move(*children));
+    NamedReader reader(questions, std::move(*children));
     KinematicsData data;
     reader.read("BaseFromFirstJoint", data.base_from_first_joint);
     reader.read("LastJointFromFlange", data.last_joint_from_flange);
@@ -206,7 +210,7 @@ Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nod
     if (auto checked = checkLengths(data); !checked) {
         return tl::unexpected(checked.error());
     }
-    const auto payload = readPayload(client, nodes.device);
+    const auto payload = readPayload(questions, nodes.device);
     if (!payload) {
         return tl::unexpected(payload.error());
     }

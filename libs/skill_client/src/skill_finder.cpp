@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "questions.hpp"
+
 namespace metier::skill_client {
 namespace {
 
@@ -24,13 +26,13 @@ constexpr std::size_t kMaxDepth = 12;
 /// Walks the objects of a server, each once.
 class Walk {
 public:
-    explicit Walk(Client& client) : client_(client) {}
+    explicit Walk(Client& client) : questions_(client) {}
 
     Answer<> below(const NodeId& node, std::vector<SkillAddress::Above>& above) {
         if (above.size() > kMaxDepth) {
             return {};
         }
-        auto children = client_.browse({.node = node, .node_classes = {NodeClass::object}});
+        auto children = questions_.browse({.node = node, .node_classes = {NodeClass::object}});
         if (!children) {
             return tl::unexpected(children.error());
         }
@@ -63,7 +65,8 @@ private:
     }
 
     Answer<> add(const ReferenceDescription& skill, const std::vector<SkillAddress::Above>& above) {
-        const auto type_name = client_.read(skill.type_definition, opcua::AttributeId::browse_name);
+        const auto type_name =
+            questions_.read(skill.type_definition, opcua::AttributeId::browse_name);
         if (!type_name) {
             return tl::unexpected(type_name.error());
         }
@@ -73,32 +76,45 @@ private:
         return {};
     }
 
+    /// A type that is derived from itself, over whatever way, is none.
     Answer<bool> isProgram(const NodeId& type) {
+        std::vector<NodeId> chain;
+        NodeId next = type;
+        std::optional<bool> answer;
+        while (!answer) {
+            answer = known(next, chain.size());
+            if (!answer) {
+                chain.push_back(next);
+                const auto parents =
+                    questions_.browse({.node = next,
+                                       .reference_type = opcua::ids::kHasSubtype,
+                                       .direction = BrowseQuery::Direction::inverse,
+                                       .node_classes = {}});
+                if (!parents) {
+                    return tl::unexpected(parents.error());
+                }
+                next = parents->empty() ? NodeId{} : parents->front().target;
+            }
+        }
+        for (const auto& derived : chain) {
+            is_program_[derived] = *answer;
+        }
+        return *answer;
+    }
+
+    /// What needs no further look, so many types above the first.
+    std::optional<bool> known(const NodeId& type, std::size_t above) const {
         if (type == opcua::ids::kProgramStateMachineType) {
             return true;
         }
-        if (type == NodeId{} || type == opcua::ids::kBaseObjectType) {
+        if (type == NodeId{} || type == opcua::ids::kBaseObjectType || above > kMaxDepth) {
             return false;
         }
-        if (const auto known = is_program_.find(type); known != is_program_.end()) {
-            return known->second;
-        }
-        const auto parents = client_.browse({.node = type,
-                                             .reference_type = opcua::ids::kHasSubtype,
-                                             .direction = BrowseQuery::Direction::inverse,
-                                             .node_classes = {}});
-        if (!parents) {
-            return tl::unexpected(parents.error());
-        }
-        const auto result =
-            parents->empty() ? Answer<bool>(false) : isProgram(parents->front().target);
-        if (result) {
-            is_program_[type] = *result;
-        }
-        return result;
+        const auto decided = is_program_.find(type);
+        return decided == is_program_.end() ? std::nullopt : std::optional(decided->second);
     }
 
-    Client& client_;
+    Questions questions_;
     std::set<NodeId> seen_;
     std::map<NodeId, bool> is_program_;
 };

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "metier/opcua_skill/values.hpp"
+#include "questions.hpp"
 
 namespace metier::skill_client {
 namespace {
@@ -29,18 +30,18 @@ const ReferenceDescription* findNamed(const std::vector<ReferenceDescription>& r
     return found == references.end() ? nullptr : &*found;
 }
 
-Answer<std::vector<ReferenceDescription>> childrenOf(Client& client, const NodeId& node) {
-    return client.browse({.node = node, .node_classes = {}});
+Answer<std::vector<ReferenceDescription>> childrenOf(Questions& questions, const NodeId& node) {
+    return questions.browse({.node = node, .node_classes = {}});
 }
 
 /// What the attributes and properties of a field's Variable say.
 class FieldReader {
 public:
-    FieldReader(Client& client, Place place) : client_(client), place_(place) {}
+    FieldReader(Questions& questions, Place place) : questions_(questions), place_(place) {}
 
     /// All fields directly below `folder`; none of types that skills do not have.
     Answer<std::vector<FieldNode>> read(const NodeId& folder) {
-        auto variables = client_.browse({.node = folder, .node_classes = {NodeClass::variable}});
+        auto variables = questions_.browse({.node = folder, .node_classes = {NodeClass::variable}});
         if (!variables) {
             return tl::unexpected(variables.error());
         }
@@ -60,10 +61,10 @@ public:
 private:
     Answer<FieldNode> readOne(const ReferenceDescription& variable) {
         const auto& node = variable.target;
-        auto attributes = client_.readMany({{node, AttributeId::value},
-                                            {node, AttributeId::description},
-                                            {node, AttributeId::data_type},
-                                            {node, AttributeId::value_rank}});
+        auto attributes = questions_.readMany({{node, AttributeId::value},
+                                               {node, AttributeId::description},
+                                               {node, AttributeId::data_type},
+                                               {node, AttributeId::value_rank}});
         if (!attributes) {
             return tl::unexpected(attributes.error());
         }
@@ -94,18 +95,18 @@ private:
     }
 
     Answer<> readProperties(const NodeId& variable, Field& field) {
-        const auto children = childrenOf(client_, variable);
+        const auto children = childrenOf(questions_, variable);
         if (!children) {
             return tl::unexpected(children.error());
         }
         if (const auto* range = findNamed(*children, "EURange")) {
-            const auto value = client_.read(range->target);
+            const auto value = questions_.read(range->target);
             if (const auto read = value ? value->as<opcua::Range>() : Result<opcua::Range>{}) {
                 field.range = skill::Range{read->low, read->high};
             }
         }
         if (const auto* unit = findNamed(*children, "EngineeringUnits")) {
-            const auto value = client_.read(unit->target);
+            const auto value = questions_.read(unit->target);
             const auto read =
                 value ? value->as<opcua::EuInformation>() : Result<opcua::EuInformation>{};
             field.unit = read ? unitOf(*read) : skill::kOne;
@@ -130,16 +131,16 @@ private:
         return found == kKnown.end() ? skill::kOne : *found;
     }
 
-    Client& client_;
+    Questions& questions_;
     Place place_;
 };
 
-Answer<> appendFields(Client& client, const ReferenceDescription* folder, Place place,
+Answer<> appendFields(Questions& questions, const ReferenceDescription* folder, Place place,
                       std::vector<FieldNode>& fields) {
     if (folder == nullptr) {
         return {};
     }
-    auto read = FieldReader(client, place).read(folder->target);
+    auto read = FieldReader(questions, place).read(folder->target);
     if (!read) {
         return tl::unexpected(read.error());
     }
@@ -183,7 +184,8 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
 }  // namespace
 
 Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
-    const auto children = childrenOf(client, address.node);
+    Questions questions(client);
+    const auto children = childrenOf(questions, address.node);
     if (!children) {
         return tl::unexpected(children.error());
     }
@@ -199,7 +201,7 @@ Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     for (const auto& folder : {Folder{"ParameterSet", Place::parameter_set, nodes.parameters},
                                Folder{"Options", Place::options, nodes.parameters},
                                Folder{"FinalResultData", Place::final_result, nodes.results}}) {
-        if (auto read = appendFields(client, findNamed(*children, folder.name), folder.place,
+        if (auto read = appendFields(questions, findNamed(*children, folder.name), folder.place,
                                      folder.fields);
             !read) {
             return tl::unexpected(read.error());

@@ -123,6 +123,40 @@ Bytes closeChunk(Channel& channel, std::string_view body) {
     return framed({"CLO"}, symmetric(channel, body));
 }
 
+Bytes acknowledge(Writer writer) {
+    constexpr std::uint32_t kBuffer = 65'535;
+    writer.number(std::uint32_t{0});
+    writer.number(kBuffer);
+    writer.number(kBuffer);
+    writer.number(std::uint32_t{0});
+    writer.number(std::uint32_t{0});
+    return framed({"ACK"}, writer.bytes());
+}
+
+Bytes messageInParts(Channel& channel, std::string_view body) {
+    constexpr std::size_t kMost = 60'000;
+    ++channel.request;
+    Bytes all;
+    for (; body.size() > kMost; body.remove_prefix(kMost)) {
+        ++channel.sequence;
+        all += framed({"MSG", 'C'}, symmetric(channel, body.substr(0, kMost)));
+    }
+    ++channel.sequence;
+    return all += framed({"MSG", 'F'}, symmetric(channel, body));
+}
+
+Bytes endlessChunks(Channel& channel) {
+    constexpr int kChunks = 80;
+    const Bytes body(60'000, 'e');
+    ++channel.request;
+    Bytes all;
+    for (int i = 0; i < kChunks; ++i) {
+        ++channel.sequence;
+        all += framed({"MSG", 'C'}, symmetric(channel, body));
+    }
+    return all;
+}
+
 void damage(Random& random, Bytes& bytes) {
     if (bytes.empty()) {
         return;

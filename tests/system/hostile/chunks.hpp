@@ -23,6 +23,13 @@ Bytes openChunk(Channel& channel, std::string_view body);
 Bytes chunks(Random& random, Channel& channel, std::string_view body, std::size_t wrong_one_in);
 Bytes closeChunk(Channel& channel, std::string_view body);
 
+/// ACK, as a server sends it.
+Bytes acknowledge(Writer writer);
+/// MSG without a mistake, in chunks of the size that clients take.
+Bytes messageInParts(Channel& channel, std::string_view body);
+/// Some megabytes of a message that does not end.
+Bytes endlessChunks(Channel& channel);
+
 /// Changes, cuts off or adds bytes.
 void damage(Random& random, Bytes& bytes);
 
