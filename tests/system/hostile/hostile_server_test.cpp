@@ -152,7 +152,7 @@ void tryEverything(const HostileServer::Character& character) {
                [&] { static_cast<void>(opcua::findServers(server.url(), kTimeout)); });
     endsWithin(kTimeout, "getEndpoints",
                [&] { static_cast<void>(opcua::getEndpoints(server.url(), kTimeout)); });
-    EXPECT_GT(connections, character.from_the_start ? 0 : 7);
+    EXPECT_GE(connections, character.from_the_start ? 0 : 4);
 }
 
 class HostileServers : public ::testing::TestWithParam<std::uint64_t> {};

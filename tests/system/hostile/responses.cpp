@@ -144,7 +144,7 @@ void writeRead(Writer& writer, std::uint32_t items, Landscape landscape) {
     constexpr std::uint8_t kDoubles = 0x8B;
     writer.count(items);
     for (std::uint32_t i = 0; i < items; ++i) {
-        if (landscape != Landscape::plenty) {
+        if (landscape == Landscape::loops) {
             writeDataValue(writer, known());
             continue;
         }

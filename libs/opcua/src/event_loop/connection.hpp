@@ -8,6 +8,7 @@
 
 #include "event_loop.hpp"
 #include "message_counter.hpp"
+#include "response_gate.hpp"
 #include "send_queue.hpp"
 
 namespace metier::opcua {
@@ -54,7 +55,8 @@ public:
 
     bool connected;  ///< an opened connection is connected later
     bool awaits_writable = false;
-    MessageCounter incoming;  ///< of an opened connection
+    MessageCounter incoming;  ///< of an opened connection, as the next
+    ResponseGate gate;
 
 private:
     ConnectionId id_;

@@ -185,6 +185,9 @@ void TcpConnectionManager::onReadable(ConnectionId id, const asio::error_code& e
 }
 
 void TcpConnectionManager::deliver(Connection& connection, std::span<std::uint8_t> bytes) {
+    if (connection.origin() == Origin::opened && !connection.gate.feed(bytes)) {
+        return cut(connection, "sends what is no answer");
+    }
     if (connection.origin() == Origin::accepted) {
         publisher_.received(connection.id(), bytes);
     } else if (connection.incoming.feed(bytes) > 1) {

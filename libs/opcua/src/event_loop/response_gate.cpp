@@ -1,0 +1,86 @@
+#include "response_gate.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr std::size_t kHeader = 8;      // type, final or not, size
+constexpr std::size_t kSymmetric = 24;  // with channel, token, sequence number, request
+constexpr std::size_t kPolicyLength = 12;
+constexpr std::string_view kNone = "http://opcfoundation.org/UA/SecurityPolicy#None";
+
+}  // namespace
+
+bool ResponseGate::feed(std::span<const std::uint8_t> bytes) {
+    while (!bytes.empty() && !refused_) {
+        const bool is_dull = size_ != 0 && taken_ >= std::min(kSeen, size_);
+        if (is_dull) {
+            const auto step = std::min(bytes.size(), size_ - taken_);
+            taken_ += step;
+            bytes = bytes.subspan(step);
+        } else {
+            refused_ = !take(bytes.front());
+            bytes = bytes.subspan(1);
+        }
+        if (size_ != 0 && taken_ == size_) {
+            goes_on_ = seen_[3] == 'C';
+            taken_ = 0;
+            size_ = 0;
+        }
+    }
+    return !refused_;
+}
+
+bool ResponseGate::take(std::uint8_t byte) {
+    constexpr std::size_t kSize = 4;
+    seen_.at(taken_++) = byte;
+    if (taken_ == kHeader) {
+        size_ = number(kSize);
+        if (size_ < kHeader) {
+            return false;
+        }
+    }
+    if (size_ == 0 || taken_ < std::min(kSeen, size_)) {
+        return true;
+    }
+    noteSecurity();
+    return judge();
+}
+
+std::uint32_t ResponseGate::number(std::size_t at) const {
+    constexpr std::size_t kBits = 8;
+    std::uint32_t value = 0;
+    for (std::size_t i = sizeof value; i-- > 0;) {
+        value = value << kBits | seen_.at(at + i);
+    }
+    return value;
+}
+
+void ResponseGate::noteSecurity() {
+    if (!std::equal(seen_.begin(), seen_.begin() + 3, "OPN")) {
+        return;
+    }
+    constexpr auto kPolicy = kPolicyLength + sizeof(std::uint32_t);
+    open_ = size_ < kPolicy + kNone.size() ||
+            (number(kPolicyLength) == kNone.size() &&
+             std::equal(kNone.begin(), kNone.end(), seen_.begin() + kPolicy));
+}
+
+bool ResponseGate::judge() const {
+    const bool is_message = std::equal(seen_.begin(), seen_.begin() + 3, "MSG");
+    return !is_message || !open_ || goes_on_ || seen_[3] == 'A' || beginsWithAnId();
+}
+
+bool ResponseGate::beginsWithAnId() const {
+    constexpr std::array<std::size_t, 3> kLengths{2, 4, 7};  // by how it is encoded
+    if (size_ <= kSymmetric) {
+        return false;
+    }
+    const auto encoding = seen_.at(kSymmetric);
+    return encoding < kLengths.size() && size_ >= kSymmetric + kLengths.at(encoding);
+}
+
+}  // namespace metier::opcua
