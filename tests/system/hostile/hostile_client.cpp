@@ -77,6 +77,10 @@ void HostileClient::sendOpen(Random& random, std::size_t wrong_one_in) {
     if (damaged) {
         damage(random, body);
     }
+    if (target_.kind == ServerKind::closed && random.oneIn(2)) {
+        transmit(secureOpenChunk(random, channel_, target_.certificates, body));
+        return awaitStage(Stage::opened, 1);
+    }
     // It answers only whom it has taken a right HEL from.
     const bool is_right = stage_ == Stage::greeted && !damaged && wrong_one_in == 0;
     transmit(openChunk(channel_, body));

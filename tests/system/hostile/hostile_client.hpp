@@ -8,6 +8,7 @@
 #include "chunks.hpp"
 #include "known.hpp"
 #include "raw_socket.hpp"
+#include "secure_open.hpp"
 
 namespace metier::hostile {
 
@@ -35,6 +36,7 @@ public:
         std::uint16_t port = 0;
         std::string url;
         ServerKind kind = ServerKind::open;
+        PublicCertificates certificates{};  ///< of a closed server
     };
 
     /// `map` and `tally` must outlive it.

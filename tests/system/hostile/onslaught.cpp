@@ -28,6 +28,15 @@ opcua::ClientOptions watcherOptions(const std::string& folder) {
     return folder.empty() ? opcua::ClientOptions{} : clientOptionsIn(folder);
 }
 
+PublicCertificates certificatesIn(const std::string& folder) {
+    if (folder.empty()) {
+        return {};
+    }
+    const auto options = clientOptionsIn(folder);
+    return {securityIn(folder).credentials.identity.certificate.der(),
+            options.security->identity.certificate.der()};
+}
+
 class Onslaught {
 public:
     explicit Onslaught(const OnslaughtOptions& options)
@@ -55,9 +64,9 @@ private:
         std::vector<HostileClient> clients;
         clients.reserve(options_.clients);
         for (std::size_t i = 0; i < options_.clients; ++i) {
-            clients.emplace_back(
-                HostileClient::Target{target_.port(), target_.url(), options_.kind}, map_,
-                report_.tally);
+            clients.emplace_back(HostileClient::Target{target_.port(), target_.url(), options_.kind,
+                                                       certificatesIn(folder_)},
+                                 map_, report_.tally);
         }
         const auto end = options_.first + options_.messages;
         for (auto number = options_.first; number < end && report_.tally.defects.empty();

@@ -109,7 +109,10 @@ void writeReference(Writer& writer, Landscape landscape) {
     writer.localizedText("\xc3(");
     constexpr std::array<std::uint32_t, 3> kClasses{1, 2, 4};
     writer.number(landscape == Landscape::endless ? 1U : random.pick(kClasses));
-    writer.expandedId(numericId(random.oneIn(2) ? 0 : 1, random.pick(kTypes)));
+    constexpr std::uint32_t kBaseObject = 58;
+    writer.expandedId(landscape == Landscape::endless
+                          ? standardId(kBaseObject)
+                          : numericId(random.oneIn(2) ? 0 : 1, random.pick(kTypes)));
 }
 
 std::size_t referencesIn(Random& random, Landscape landscape) {
@@ -117,7 +120,7 @@ std::size_t referencesIn(Random& random, Landscape landscape) {
         case Landscape::loops:
             return random.below(30);
         case Landscape::endless:
-            return 3;
+            return 4;
         case Landscape::plenty:
             break;
     }
