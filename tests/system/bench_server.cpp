@@ -23,6 +23,7 @@ skill::Field field(std::string name, skill::ValueType type, skill::Value default
 
 BenchServer::BenchServer(BenchOptions options) : options_(std::move(options)) {
     opcua::ServerOptions server_options;
+    server_options.application_name = options_.application_name;
     server_options.port = options_.port;
     server_options.limits = options_.limits;
     server_options.security = options_.security;

@@ -18,6 +18,7 @@
 namespace metier::system_tests {
 
 struct BenchOptions {
+    std::string application_name = "metier";
     std::uint16_t port = 0;  ///< 0: a free one
     opcua::ServerLimits limits{};
     std::optional<opcua::ServerSecurity> security{};  ///< none: that of a lab

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "metier/discovery/search.hpp"
 #include "metier/opcua/text.hpp"
+#include "printable.hpp"
 #include "skill_survey.hpp"
 #include "used_arms.hpp"
 
@@ -90,7 +91,7 @@ public:
     }
     void addProblem(const Error& error) {
         problems_.push_back(error.message);
-        fmt::print(stderr, "metier: {}\n", error.message);
+        fmt::print(stderr, "metier: {}\n", printable(error.message));
     }
 
     Exit finish() const {

@@ -3,8 +3,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "metier/opcua/text.hpp"
 #include "metier/skill_client/skill_finder.hpp"
 #include "metier/skill_client/skill_handle.hpp"
+#include "printable.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
@@ -37,8 +39,8 @@ Result<std::vector<ListedSkill>> listSkills(const std::string& url) {
         const auto value = state ? (*client)->read(*state) : opcua::Answer<opcua::Value>();
         const auto text =
             value ? value->as<opcua::LocalizedText>() : Result<opcua::LocalizedText>();
-        listed.push_back(
-            {skill.controllerName(), skill.name, skill.type_name, text ? text->text : "unknown"});
+        listed.push_back({skill.controllerName(), skill.name, skill.type_name,
+                          text ? opcua::sanitise(text->text) : "unknown"});
     }
     return listed;
 }
@@ -76,7 +78,7 @@ Exit runList(const ListOptions& options) {
         const auto skills = listSkills(url);
         if (!skills) {
             exit = report(skills.error());
-            json.push_back({{"url", url}, {"error", skills.error().message}});
+            json.push_back({{"url", url}, {"error", printable(skills.error().message)}});
         } else if (options.json) {
             json.push_back(jsonOf(url, *skills));
         } else {
@@ -84,7 +86,7 @@ Exit runList(const ListOptions& options) {
         }
     }
     if (options.json) {
-        fmt::print("{}\n", json.dump(2));
+        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     }
     return exit;
 }

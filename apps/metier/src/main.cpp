@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "printable.hpp"
 #include "security.hpp"
 
 namespace {
@@ -52,7 +53,7 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
 /// Standard output belongs to results: the log goes to standard error.
 void setUpLog(const std::string& level) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("metier"));
-    spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_formatter(metier::app::printableLog("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v"));
     spdlog::set_level(spdlog::level::from_str(level));
 }
 

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "printable.hpp"
 
 namespace metier::app {
 
 Exit report(const Error& error) {
-    fmt::print(stderr, "metier: {}\n", error.message);
+    fmt::print(stderr, "metier: {}\n", printable(error.message));
     return error.code == Errc::invalid_argument ? Exit::usage : Exit::failed;
 }
 

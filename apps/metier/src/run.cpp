@@ -9,6 +9,7 @@
 #include "metier/skill_client/control_handle.hpp"
 #include "metier/skill_client/skill_handle.hpp"
 #include "owner_options.hpp"
+#include "printable.hpp"
 #include "servers.hpp"
 #include "stop_signal.hpp"
 #include "value_json.hpp"
@@ -86,12 +87,13 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
 
 void printResult(const skill::ValueMap& result, const RunOptions& options) {
     if (options.json) {
-        fmt::print("{}\n", toJson(result).dump(2));
+        fmt::print("{}\n",
+                   toJson(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
         return;
     }
     fmt::print("done\n");
     for (const auto& [name, value] : result) {
-        fmt::print("  {:<22} {}\n", name, skill::toString(value));
+        fmt::print("  {:<22} {}\n", name, printable(skill::toString(value)));
     }
 }
 
@@ -119,7 +121,7 @@ private:
         if (called) {
             return;
         }
-        fmt::print(stderr, "metier: Halt: {}\n", called.error().message);
+        fmt::print(stderr, "metier: Halt: {}\n", printable(called.error().message));
         if (called.error().delivery != opcua::Failure::Delivery::answered) {
             client.close();  // the user does not wait for the connection: the run ends as unknown
         }

@@ -41,7 +41,7 @@ std::string jsonOf(const std::string& skill, const TransitionEvent& event) {
                           {"from", toString(event.from)},    {"to", toString(event.to)},
                           {"execution", event.execution_id}, {"reason", toString(event.reason)},
                           {"text", event.reason_text}}
-        .dump();
+        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string jsonOf(const opcua::ConnectionChange& change) {
@@ -56,7 +56,7 @@ std::string jsonOf(const opcua::ConnectionChange& change) {
     } else {
         line["text"] = change.why.message;
     }
-    return line.dump();
+    return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 /// Prints transitions until it has printed enough of them, and what becomes of the connection.

@@ -4,6 +4,7 @@
 
 #include "convert.hpp"
 #include "guard.hpp"
+#include "metier/opcua/text.hpp"
 #include "metier/trust/certificate.hpp"
 #include "server_core.hpp"
 
@@ -55,14 +56,14 @@ void describe(UA_Server* server, Session& session) {
     if (UA_Server_getSessionAttribute_scalar(
             server, &id, UA_QualifiedName{0, viewOf("clientDescription")},
             &UA_TYPES[UA_TYPES_APPLICATIONDESCRIPTION], &client) == UA_STATUSCODE_GOOD) {
-        session.application_uri = textFrom(client.applicationUri);
-        session.application_name = textFrom(client.applicationName.text);
+        session.application_uri = sanitise(textFrom(client.applicationUri));
+        session.application_name = sanitise(textFrom(client.applicationName.text));
     }
     UA_String name{};
     if (UA_Server_getSessionAttribute_scalar(
             server, &id, UA_QualifiedName{0, viewOf("sessionName")}, &UA_TYPES[UA_TYPES_STRING],
             &name) == UA_STATUSCODE_GOOD) {
-        session.name = textFrom(name);
+        session.name = sanitise(textFrom(name));
     }
 }
 

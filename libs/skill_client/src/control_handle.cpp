@@ -12,6 +12,8 @@
 #include <thread>
 #include <utility>
 
+#include "metier/opcua/text.hpp"
+
 namespace metier::skill_client {
 
 using opcua::Answer;
@@ -55,7 +57,7 @@ Answer<LeaseNodes> findLease(opcua::Client& client, const NodeId& controller) {
 Failure refused(opcua::Client& client, const LeaseNodes& nodes, Failure failure) {
     if (failure.code == Errc::locked) {
         const auto owner = client.read(nodes.owner);
-        const auto name = owner ? owner->as<std::string>().value_or("") : std::string();
+        const auto name = opcua::sanitise(owner ? owner->as<std::string>().value_or("") : "");
         failure.message += name.empty() ? "" : fmt::format(": \"{}\" has control", name);
     }
     return failure;

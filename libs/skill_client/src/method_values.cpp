@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "metier/opcua/text.hpp"
 #include "metier/opcua/types.hpp"
 #include "metier/opcua_skill/values.hpp"
 
@@ -49,7 +50,7 @@ opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value
     }
     skill::CheckReport report;
     report.possible = outputs[0].as<bool>().value_or(false);
-    report.reason = outputs[1].as<std::string>().value_or("");
+    report.reason = opcua::sanitise(outputs[1].as<std::string>().value_or(""));
     report.first_failing_fraction = outputs[2].as<double>().value_or(0.0);
     report.planned_duration = outputs[3].as<double>().value_or(0.0);
     report.joint_path = outputs[4].asRows().value_or(std::vector<std::vector<double>>{});
@@ -68,7 +69,7 @@ opcua::Answer<skill::ExecutionRecord> executionFrom(const std::vector<opcua::Val
     record.id = id;
     record.state = static_cast<skill::State>(outputs[0].as<std::uint32_t>().value_or(0));
     record.reason = static_cast<skill::Reason>(outputs[1].as<std::int32_t>().value_or(0));
-    record.reason_text = outputs[2].as<std::string>().value_or("");
+    record.reason_text = opcua::sanitise(outputs[2].as<std::string>().value_or(""));
     record.start_time = outputs[3].as<UtcTime>().value_or(UtcTime{});
     record.end_time = outputs[4].as<UtcTime>().value_or(UtcTime{});
     record.result = resultsIn(outputs[5], results);

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "metier/opcua/text.hpp"
 #include "questions.hpp"
 
 namespace metier::skill_client {
@@ -20,6 +21,7 @@ using opcua::Client;
 using opcua::NodeClass;
 using opcua::NodeId;
 using opcua::ReferenceDescription;
+using opcua::sanitise;
 
 constexpr std::size_t kMaxDepth = 12;
 
@@ -58,7 +60,7 @@ private:
         if (*is_program) {
             return add(child, above);
         }
-        above.push_back({child.browse_name.name, child.target});
+        above.push_back({sanitise(child.browse_name.name), child.target});
         auto walked = below(child.target, above);
         above.pop_back();
         return walked;
@@ -70,9 +72,9 @@ private:
         if (!type_name) {
             return tl::unexpected(type_name.error());
         }
-        found.push_back(
-            {skill.browse_name.name, skill.display_name.text, skill.target, skill.type_definition,
-             type_name->as<opcua::QualifiedName>().value_or(opcua::QualifiedName{}).name, above});
+        const auto type = type_name->as<opcua::QualifiedName>().value_or(opcua::QualifiedName{});
+        found.push_back({sanitise(skill.browse_name.name), sanitise(skill.display_name.text),
+                         skill.target, skill.type_definition, sanitise(type.name), above});
         return {};
     }
 
@@ -171,7 +173,7 @@ Answer<std::vector<SkillType>> typeChain(Client& client, const SkillAddress& ski
         if (parents->empty() || parents->front().target == opcua::ids::kProgramStateMachineType) {
             break;
         }
-        types.push_back({parents->front().browse_name.name, parents->front().target});
+        types.push_back({sanitise(parents->front().browse_name.name), parents->front().target});
     }
     return types;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "method_values.hpp"
+#include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "skill_handle_impl.hpp"
 
@@ -146,7 +147,7 @@ std::string SkillHandle::Impl::reasonText() const {
         return {};
     }
     const auto value = client.read(nodes.reason_text);
-    return value ? value->as<std::string>().value_or("") : "";
+    return value ? opcua::sanitise(value->as<std::string>().value_or("")) : "";
 }
 
 Answer<const FieldNode*> SkillHandle::Impl::parameter(std::string_view name) const {

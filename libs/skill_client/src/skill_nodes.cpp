@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "questions.hpp"
 
@@ -68,13 +69,14 @@ private:
         if (!attributes) {
             return tl::unexpected(attributes.error());
         }
-        FieldNode result{{.name = variable.browse_name.name, .place = place_}, node};
+        FieldNode result{{.name = opcua::sanitise(variable.browse_name.name), .place = place_},
+                         node};
         auto& field = result.field;
         const auto& value = (*attributes)[0].value;
         field.type = typeOf(value, (*attributes)[2].value, (*attributes)[3].value);
         field.default_value = opcua_skill::fromOpcua(value, field.type).value_or(skill::Value{});
         if (const auto text = (*attributes)[1].value.as<opcua::LocalizedText>()) {
-            field.description = text->text;
+            field.description = opcua::sanitise(text->text);
         }
         if (auto read = readProperties(node, field); !read) {
             return tl::unexpected(read.error());

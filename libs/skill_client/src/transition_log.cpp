@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
 
 namespace metier::skill_client {
@@ -42,11 +43,11 @@ std::optional<TransitionEvent> eventFrom(const std::vector<opcua::Value>& fields
     event.from = skill::fromState(event.number);
     event.to = skill::toState(event.number);
     event.time = fieldOr(fields, kTime, UtcTime{});
-    event.message = fieldOr(fields, kMessage, opcua::LocalizedText{}).text;
+    event.message = opcua::sanitise(fieldOr(fields, kMessage, opcua::LocalizedText{}).text);
     event.severity = fieldOr<std::uint16_t>(fields, kSeverity, 0);
-    event.execution_id = fieldOr(fields, kExecutionId, std::string{});
+    event.execution_id = opcua::sanitise(fieldOr(fields, kExecutionId, std::string{}));
     event.reason = static_cast<skill::Reason>(fieldOr<std::int32_t>(fields, kReason, 0));
-    event.reason_text = fieldOr(fields, kReasonText, std::string{});
+    event.reason_text = opcua::sanitise(fieldOr(fields, kReasonText, std::string{}));
     const auto& intermediate = fields[kIntermediate];
     event.intermediate_result =
         opcua_skill::fromOpcua(intermediate, opcua_skill::valueTypeOf(intermediate))
