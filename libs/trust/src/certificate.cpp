@@ -26,7 +26,13 @@ UtcTime timeOf(const ASN1_TIME* time) {
     if (ASN1_TIME_to_tm(time, &parts) != 1) {
         return {};
     }
-    return std::chrono::system_clock::from_time_t(timegm(&parts));
+    // Certificates may be of the year 9999; our clock ends in 2262.
+    using std::chrono::floor;
+    using std::chrono::seconds;
+    const seconds since_1970{timegm(&parts)};
+    return UtcTime(std::clamp(since_1970,
+                              floor<seconds>(UtcTime::min().time_since_epoch()) + seconds(1),
+                              floor<seconds>(UtcTime::max().time_since_epoch())));
 }
 
 /// The one URI of the SubjectAltName, if it is printable and there is no other.

@@ -77,5 +77,15 @@ TEST(Certificate, IsNotMadeOfAnythingElse) {
     EXPECT_EQ(Certificate::fromFile(file).error().code, Errc::invalid_argument);
 }
 
+// As many devices have: their time seemed over long ago, since a number ran over.
+TEST(Certificate, MayBeValidForThousandsOfYears) {
+    const auto certificate =
+        Certificate::fromFile(std::string(METIER_TRUST_SEEDS) + "/without_end.der");
+    ASSERT_TRUE(certificate) << certificate.error().message;
+    EXPECT_GT(certificate->notAfter(),
+              std::chrono::system_clock::now() + std::chrono::days(36'500));
+    EXPECT_LT(certificate->notBefore(), std::chrono::system_clock::now());
+}
+
 }  // namespace
 }  // namespace metier::trust
