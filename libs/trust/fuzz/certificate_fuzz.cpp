@@ -37,8 +37,8 @@ void use(const Certificate& certificate, std::string_view sent) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const metier::fuzz::Scratch kFolder("certificate_fuzz");
-    static auto store = metier::trust::fuzz::storeOfAnAuthority(kFolder.path());
+    static const metier::fuzz::Scratch folder("certificate_fuzz");
+    static auto store = metier::trust::fuzz::storeOfAnAuthority(folder.path());
     const std::string_view sent(reinterpret_cast<const char*>(data), size);
     if (const auto certificate = Certificate::fromDer(sent)) {
         use(*certificate, sent);

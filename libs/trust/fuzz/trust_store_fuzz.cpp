@@ -27,21 +27,23 @@ void put(const fs::path& file, std::string_view content) {
 
 /// The first byte says which folder the rest is in.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const metier::fuzz::Scratch kScratch("trust_store_fuzz");
-    static const auto kFolder = metier::trust::fuzz::storeOfAnAuthority(kScratch.path()).folder();
-    static const auto kPeer = signedCertificate();
-    static const std::array kPlaces{kFolder / "trusted/crl/input", kFolder / "issuers/certs/input",
-                                    kFolder / "trusted/certs/input", kFolder / "issuers/crl/input"};
+    static const metier::fuzz::Scratch scratch("trust_store_fuzz");
+    static const auto folder_value =
+        metier::trust::fuzz::storeOfAnAuthority(scratch.path()).folder();
+    static const auto peer = signedCertificate();
+    static const std::array places{
+        folder_value / "trusted/crl/input", folder_value / "issuers/certs/input",
+        folder_value / "trusted/certs/input", folder_value / "issuers/crl/input"};
     if (size == 0) {
         return 0;
     }
-    const auto& place = kPlaces.at(data[0] % kPlaces.size());
+    const auto& place = places.at(data[0] % places.size());
     put(place, {reinterpret_cast<const char*>(data) + 1, size - 1});
-    auto store = TrustStore::open(kFolder);
+    auto store = TrustStore::open(folder_value);
     if (!store) {
         std::abort();
     }
-    const auto checked = store->check(kPeer, metier::trust::fuzz::kNow);
+    const auto checked = store->check(peer, metier::trust::fuzz::kNow);
     if (!checked && checked.error().message.empty()) {
         std::abort();
     }

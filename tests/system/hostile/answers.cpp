@@ -23,11 +23,11 @@ bool isOneOf(std::span<const std::uint32_t> types, std::uint32_t type) {
 }
 
 void learnItems(Reader& content, Known& known) {
-    constexpr std::size_t kRevised = 12;
+    constexpr std::size_t revised = 12;
     for (auto items = content.number<std::int32_t>(); items > 0 && content.ok(); --items) {
         const auto status = content.number<std::uint32_t>();
         const auto id = content.number<std::uint32_t>();
-        content.raw(kRevised);
+        content.raw(revised);
         content.skipExtension();
         if (status == 0) {
             known.items.push_back(id);

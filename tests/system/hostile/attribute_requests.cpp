@@ -15,10 +15,10 @@ std::uint32_t anyAttribute(Random& random) {
 }
 
 void writeRange(Writer& writer) {
-    constexpr std::array<std::string_view, 7> kRanges{"0",   "0:1", "1:0", "0:4294967295",
-                                                      "0,0", "-1",  "a:b"};
+    constexpr std::array<std::string_view, 7> ranges{"0",   "0:1", "1:0", "0:4294967295",
+                                                     "0,0", "-1",  "a:b"};
     if (writer.random().oneIn(10)) {
-        return writer.text(writer.random().pick(kRanges));
+        return writer.text(writer.random().pick(ranges));
     }
     writer.noText();
 }
@@ -73,14 +73,14 @@ void writeCalls(Writer& writer, const Known& known) {
 }
 
 void writeHistoryDetails(Writer& writer) {
-    constexpr std::array<std::uint32_t, 5> kDetails{646, 649, 652, 655, 681};
+    constexpr std::array<std::uint32_t, 5> details{646, 649, 652, 655, 681};
     Writer body = writer.fresh();
     body.boolean(false);
     body.time();
     body.time();
     body.number(std::uint32_t{10});
     body.boolean(false);
-    writer.extension(writer.random().pick(kDetails), body.bytes());
+    writer.extension(writer.random().pick(details), body.bytes());
 }
 
 void writeHistoryRead(Writer& writer, const Known& known) {
@@ -98,7 +98,7 @@ void writeHistoryRead(Writer& writer, const Known& known) {
 }
 
 void writeHistoryUpdate(Writer& writer, const Known& known) {
-    constexpr std::array<std::uint32_t, 4> kDetails{682, 685, 688, 691};
+    constexpr std::array<std::uint32_t, 4> details{682, 685, 688, 691};
     const auto updates = writer.random().below(3);
     writer.count(updates);
     for (std::size_t i = 0; i < updates; ++i) {
@@ -107,19 +107,19 @@ void writeHistoryUpdate(Writer& writer, const Known& known) {
         body.number(std::uint32_t{1});
         body.count(1);
         writeDataValue(body, known);
-        writer.extension(writer.random().pick(kDetails), body.bytes());
+        writer.extension(writer.random().pick(details), body.bytes());
     }
 }
 
 }  // namespace
 
 std::span<const Request> attributeRequests() {
-    static constexpr std::array<Request, 5> kAll{{{631, writeRead, 14},
-                                                  {673, writeWrite, 12},
-                                                  {712, writeCalls, 20},
-                                                  {664, writeHistoryRead, 3},
-                                                  {700, writeHistoryUpdate, 2}}};
-    return kAll;
+    static constexpr std::array<Request, 5> all{{{631, writeRead, 14},
+                                                 {673, writeWrite, 12},
+                                                 {712, writeCalls, 20},
+                                                 {664, writeHistoryRead, 3},
+                                                 {700, writeHistoryUpdate, 2}}};
+    return all;
 }
 
 }  // namespace metier::hostile

@@ -22,10 +22,10 @@ void put(Bytes& bytes, std::uint32_t value) {
 }
 
 Bytes framed(const Framing& framing, std::string_view content) {
-    constexpr std::int64_t kHeader = 8;
+    constexpr std::int64_t header = 8;
     Bytes bytes(framing.type);
     bytes.push_back(framing.part);
-    put(bytes, static_cast<std::uint32_t>(static_cast<std::int64_t>(content.size()) + kHeader +
+    put(bytes, static_cast<std::uint32_t>(static_cast<std::int64_t>(content.size()) + header +
                                           framing.size_lie));
     return bytes.append(content);
 }
@@ -40,20 +40,20 @@ Bytes symmetric(const Channel& channel, std::string_view body) {
 
 /// Something else than what was to be sent.
 void distort(Random& random, Framing& framing, Channel& channel) {
-    constexpr std::array<std::string_view, 7> kTypes{"XYZ", "ERR", "ACK",   "RHE",
-                                                     "HEL", "OPN", "\0\0\0"};
-    constexpr std::array<char, 5> kParts{'C', 'A', 'Z', '\0', '\x7f'};
-    constexpr std::array<std::int64_t, 8> kLies{-8, -7, -1, 1, 8, 70'000, 2'000'000, 0x7FFF'0000};
+    constexpr std::array<std::string_view, 7> types{"XYZ", "ERR", "ACK",   "RHE",
+                                                    "HEL", "OPN", "\0\0\0"};
+    constexpr std::array<char, 5> odd_ends{'C', 'A', 'Z', '\0', '\x7f'};
+    constexpr std::array<std::int64_t, 8> lies{-8, -7, -1, 1, 8, 70'000, 2'000'000, 0x7FFF'0000};
     switch (random.below(7)) {
         case 0:
-            framing.type = random.pick(kTypes);
+            framing.type = random.pick(types);
             break;
         case 1:
         case 2:
-            framing.part = random.pick(kParts);
+            framing.part = random.pick(odd_ends);
             break;
         case 3:
-            framing.size_lie = random.pick(kLies);
+            framing.size_lie = random.pick(lies);
             break;
         case 4:
             channel.id = static_cast<std::uint32_t>(random.below(10));
@@ -81,10 +81,10 @@ Bytes inParts(Random& random, Channel& channel, std::string_view body) {
 }  // namespace
 
 Bytes hello(Writer writer, std::string_view url) {
-    constexpr std::uint32_t kBuffer = 65'535;
+    constexpr std::uint32_t buffer = 65'535;
     writer.number(std::uint32_t{0});
-    writer.number(kBuffer);
-    writer.number(kBuffer);
+    writer.number(buffer);
+    writer.number(buffer);
     writer.number(std::uint32_t{0});
     writer.number(std::uint32_t{0});
     writer.text(url);
@@ -98,8 +98,8 @@ Bytes openChunk(Channel& channel, std::string_view body) {
     put(content, channel.id);
     put(content, static_cast<std::uint32_t>(kNone.size()));
     content.append(kNone);
-    constexpr std::uint32_t kNull = 0xFFFF'FFFF;
-    for (const auto field : {kNull, kNull, channel.sequence, channel.request}) {
+    constexpr std::uint32_t null = 0xFFFF'FFFF;
+    for (const auto field : {null, null, channel.sequence, channel.request}) {
         put(content, field);
     }
     return framed({"OPN"}, content.append(body));
@@ -124,33 +124,33 @@ Bytes closeChunk(Channel& channel, std::string_view body) {
 }
 
 Bytes acknowledge(Writer writer) {
-    constexpr std::uint32_t kBuffer = 65'535;
+    constexpr std::uint32_t buffer = 65'535;
     writer.number(std::uint32_t{0});
-    writer.number(kBuffer);
-    writer.number(kBuffer);
+    writer.number(buffer);
+    writer.number(buffer);
     writer.number(std::uint32_t{0});
     writer.number(std::uint32_t{0});
     return framed({"ACK"}, writer.bytes());
 }
 
 Bytes messageInParts(Channel& channel, std::string_view body) {
-    constexpr std::size_t kMost = 60'000;
+    constexpr std::size_t most = 60'000;
     ++channel.request;
     Bytes all;
-    for (; body.size() > kMost; body.remove_prefix(kMost)) {
+    for (; body.size() > most; body.remove_prefix(most)) {
         ++channel.sequence;
-        all += framed({"MSG", 'C'}, symmetric(channel, body.substr(0, kMost)));
+        all += framed({"MSG", 'C'}, symmetric(channel, body.substr(0, most)));
     }
     ++channel.sequence;
     return all += framed({"MSG", 'F'}, symmetric(channel, body));
 }
 
 Bytes endlessChunks(Channel& channel) {
-    constexpr int kChunks = 80;
+    constexpr int how_many = 80;
     const Bytes body(60'000, 'e');
     ++channel.request;
     Bytes all;
-    for (int i = 0; i < kChunks; ++i) {
+    for (int i = 0; i < how_many; ++i) {
         ++channel.sequence;
         all += framed({"MSG", 'C'}, symmetric(channel, body));
     }

@@ -14,14 +14,14 @@ constexpr std::uint32_t kValueAttribute = 13;
 constexpr std::size_t kOperators = 18;
 
 void writeSimpleOperand(Writer& writer) {
-    constexpr std::array<std::string_view, 6> kFields{"EventType",  "Message",    "Severity",
-                                                      "SourceNode", "Transition", "FromState"};
-    constexpr std::array<std::uint32_t, 3> kTypes{kBaseEventType, 2378, 58};
-    writer.id(standardId(writer.random().pick(kTypes)));
+    constexpr std::array<std::string_view, 6> field_names{"EventType",  "Message",    "Severity",
+                                                          "SourceNode", "Transition", "FromState"};
+    constexpr std::array<std::uint32_t, 3> types{kBaseEventType, 2378, 58};
+    writer.id(standardId(writer.random().pick(types)));
     const auto names = writer.random().oneIn(50) ? writer.random().below(500) : 1;
     writer.count(names);
     for (std::size_t i = 0; i < names; ++i) {
-        writer.qualifiedName(0, writer.random().pick(kFields));
+        writer.qualifiedName(0, writer.random().pick(field_names));
     }
     writer.number(kValueAttribute);
     if (writer.isWrong()) {
@@ -43,24 +43,24 @@ void writeAttributeOperand(Writer& writer, const Known& known) {
 }
 
 void writeOperand(Writer& writer, const Known& known, std::size_t elements) {
-    constexpr std::uint32_t kElement = 594;
-    constexpr std::uint32_t kLiteral = 597;
-    constexpr std::uint32_t kAttribute = 600;
-    constexpr std::uint32_t kSimpleAttribute = 603;
+    constexpr std::uint32_t element = 594;
+    constexpr std::uint32_t literal = 597;
+    constexpr std::uint32_t attribute = 600;
+    constexpr std::uint32_t simple_attribute = 603;
     Writer body = writer.fresh();
     switch (writer.random().below(5)) {
         case 0:
             body.number(static_cast<std::uint32_t>(writer.random().below(elements + 1)));
-            return writer.extension(kElement, body.bytes());
+            return writer.extension(element, body.bytes());
         case 1:
             writeAttributeOperand(body, known);
-            return writer.extension(kAttribute, body.bytes());
+            return writer.extension(attribute, body.bytes());
         case 2:
             writeSimpleOperand(body);
-            return writer.extension(kSimpleAttribute, body.bytes());
+            return writer.extension(simple_attribute, body.bytes());
         default:
             writeVariant(body, known);
-            return writer.extension(kLiteral, body.bytes());
+            return writer.extension(literal, body.bytes());
     }
 }
 
@@ -105,9 +105,9 @@ void writeContentFilter(Writer& writer, const Known& known) {
 }
 
 void writeFilter(Writer& writer, const Known& known) {
-    constexpr std::uint32_t kDataChange = 724;
-    constexpr std::uint32_t kEvent = 727;
-    constexpr std::uint32_t kAggregate = 730;
+    constexpr std::uint32_t data_change = 724;
+    constexpr std::uint32_t event = 727;
+    constexpr std::uint32_t aggregate = 730;
     Writer body = writer.fresh();
     switch (writer.random().below(6)) {
         case 0:
@@ -115,13 +115,13 @@ void writeFilter(Writer& writer, const Known& known) {
             return writer.exactly(std::uint8_t{0});
         case 1:
             writeDataChangeFilter(body);
-            return writer.extension(kDataChange, body.bytes());
+            return writer.extension(data_change, body.bytes());
         case 2:
             writeAggregateFilter(body);
-            return writer.extension(kAggregate, body.bytes());
+            return writer.extension(aggregate, body.bytes());
         default:
             writeEventFilter(body, known);
-            return writer.extension(kEvent, body.bytes());
+            return writer.extension(event, body.bytes());
     }
 }
 

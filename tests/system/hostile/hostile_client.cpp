@@ -21,8 +21,8 @@ constexpr std::size_t kMostKept = 40;
 
 /// One field in so many is wrong: in none, in a few, in many.
 std::size_t anyRate(Random& random) {
-    constexpr std::array<std::size_t, 5> kRates{0, 0, 150, 60, 15};
-    return random.pick(kRates);
+    constexpr std::array<std::size_t, 5> rates{0, 0, 150, 60, 15};
+    return random.pick(rates);
 }
 
 }  // namespace
@@ -31,10 +31,10 @@ HostileClient::HostileClient(Target target, const AddressMap& map, Tally& tally)
     : target_(std::move(target)), tally_(tally), known_{.map = map, .endpoint_url = target_.url} {}
 
 void HostileClient::send(std::uint64_t seed, std::uint64_t number) {
-    constexpr std::uint64_t kSpell = 400;
+    constexpr std::uint64_t spell = 400;
     Random random(seed, number);
     number_ = number;
-    listens_ = number / kSpell % 8 != 7;  // now and then it does not take its answers
+    listens_ = number / spell % 8 != 7;  // now and then it does not take its answers
     if (!socket_.isOpen()) {
         stage_ = Stage::disconnected;
     }
@@ -88,8 +88,8 @@ void HostileClient::sendOpen(Random& random, std::size_t wrong_one_in) {
 }
 
 void HostileClient::sendSession(Random& random, std::size_t wrong_one_in) {
-    constexpr int kMostAttempts = 4;
-    if (stage_ == Stage::opened && attempts_ >= kMostAttempts) {
+    constexpr int most_attempts = 4;
+    if (stage_ == Stage::opened && attempts_ >= most_attempts) {
         known_.authentication_token = standardId(0);  // the server has forgotten it
     }
     const bool has_one = known_.authentication_token != standardId(0);
@@ -176,14 +176,14 @@ void HostileClient::awaitStage(Stage stage, std::size_t wrong_one_in) {
 }
 
 void HostileClient::receive(std::chrono::milliseconds longest) {
-    constexpr std::size_t kSize = 4;
+    constexpr std::size_t size_offset = 4;
     if (!listens_ && longest == 0ms) {
         return;
     }
     socket_.receive(received_, longest);
     std::string_view rest(received_);
     while (rest.size() >= kHeader) {
-        const auto size = Reader(rest.substr(kSize)).number<std::uint32_t>();
+        const auto size = Reader(rest.substr(size_offset)).number<std::uint32_t>();
         if (size < kHeader || size > rest.size()) {
             break;
         }
@@ -207,13 +207,13 @@ void HostileClient::take(std::string_view chunk) {
 }
 
 void HostileClient::takeOpened(std::string_view chunk) {
-    constexpr std::size_t kSequence = 8;
+    constexpr std::size_t sequence = 8;
     Reader reader(chunk);
     reader.number<std::uint32_t>();
     for (int field = 0; field < 3; ++field) {
         reader.text();
     }
-    reader.raw(kSequence);
+    reader.raw(sequence);
     const auto header = readHeader(reader);
     reader.number<std::uint32_t>();
     const auto id = reader.number<std::uint32_t>();
@@ -227,9 +227,9 @@ void HostileClient::takeOpened(std::string_view chunk) {
 }
 
 void HostileClient::takeMessage(std::string_view chunk) {
-    constexpr std::size_t kSymmetric = 16;
+    constexpr std::size_t symmetric = 16;
     Reader reader(chunk);
-    reader.raw(kSymmetric);
+    reader.raw(symmetric);
     const auto header = readHeader(reader);
     ++tally_.answers;
     if (!reader.ok()) {

@@ -38,14 +38,14 @@ void HostileServer::run(const std::stop_token& stop) {
 }
 
 void HostileServer::serve(const std::stop_token& stop, RawSocket& socket) {
-    constexpr std::size_t kSize = 4;
+    constexpr std::size_t size_offset = 4;
     channel_ = {};
     Bytes received;
     while (!stop.stop_requested() && socket.isOpen()) {
         socket.receive(received, 20ms);
         std::string_view rest(received);
         while (rest.size() >= kHeader) {
-            const auto size = Reader(rest.substr(kSize)).number<std::uint32_t>();
+            const auto size = Reader(rest.substr(size_offset)).number<std::uint32_t>();
             if (size < kHeader || size > rest.size()) {
                 break;
             }
@@ -107,14 +107,14 @@ void HostileServer::answerRequest(RawSocket& socket, std::string_view body) {
 }
 
 void HostileServer::answerOddly(RawSocket& socket, Random& random, const Asked& asked) {
-    constexpr std::array<std::uint32_t, 5> kStatuses{0, 0x8001'0000, 0x8025'0000, 0x4000'0000,
-                                                     0xFFFF'FFFF};
+    constexpr std::array<std::uint32_t, 5> statuses{0, 0x8001'0000, 0x8025'0000, 0x4000'0000,
+                                                    0xFFFF'FFFF};
     switch (random.below(8)) {
         case 0:
             return;  // says nothing
         case 1:
             return socket.send(
-                inMessage(serviceFault(Writer(random, 0), asked, random.pick(kStatuses))), 100ms);
+                inMessage(serviceFault(Writer(random, 0), asked, random.pick(statuses))), 100ms);
         case 2:
             channel_.request += 1 + static_cast<std::uint32_t>(random.below(5));
             break;

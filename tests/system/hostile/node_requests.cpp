@@ -164,18 +164,18 @@ void writeQueryNext(Writer& writer, const Known& known) {
 }  // namespace
 
 std::span<const Request> nodeRequests() {
-    static constexpr std::array<Request, 11> kAll{{{527, writeBrowse, 10},
-                                                   {533, writeBrowseNext, 4},
-                                                   {554, writeTranslate, 6},
-                                                   {560, writeNodeList, 2},
-                                                   {566, writeNodeList, 2},
-                                                   {488, writeAddNodes, 5},
-                                                   {494, writeAddReferences, 3},
-                                                   {500, writeDeleteNodes, 5},
-                                                   {506, writeDeleteReferences, 3},
-                                                   {615, writeQueryFirst, 2},
-                                                   {621, writeQueryNext, 1}}};
-    return kAll;
+    static constexpr std::array<Request, 11> all{{{527, writeBrowse, 10},
+                                                  {533, writeBrowseNext, 4},
+                                                  {554, writeTranslate, 6},
+                                                  {560, writeNodeList, 2},
+                                                  {566, writeNodeList, 2},
+                                                  {488, writeAddNodes, 5},
+                                                  {494, writeAddReferences, 3},
+                                                  {500, writeDeleteNodes, 5},
+                                                  {506, writeDeleteReferences, 3},
+                                                  {615, writeQueryFirst, 2},
+                                                  {621, writeQueryNext, 1}}};
+    return all;
 }
 
 }  // namespace metier::hostile

@@ -60,13 +60,12 @@ void writeNumber(Writer& writer, unsigned type) {
 }
 
 void writeExtension(Writer& writer, int depth) {
-    constexpr std::array<std::uint32_t, 8> kEncodings{298,    886,    889,    940,
-                                                      15'396, 18'815, 24'134, 9};
+    constexpr std::array<std::uint32_t, 8> encodings{298, 886, 889, 940, 15'396, 18'815, 24'134, 9};
     Writer body(writer.random(), 2);
     for (auto fields = writer.random().below(6); fields > 0 && depth > 0; --fields) {
         body.text("field");
     }
-    writer.extension(writer.random().pick(kEncodings), body.bytes());
+    writer.extension(writer.random().pick(encodings), body.bytes());
 }
 
 void writeOne(Writer& writer, const Known& known, unsigned type, int depth) {
@@ -148,46 +147,47 @@ void writeNested(Writer& writer, std::size_t depth) {
 }  // namespace
 
 void writeVariant(Writer& writer, const Known& known) {
-    constexpr std::array<std::size_t, 7> kDepths{2, 50, 99, 100, 101, 1'000, 8'000};
+    constexpr std::array<std::size_t, 7> depths{2, 50, 99, 100, 101, 1'000, 8'000};
     if (writer.random().oneIn(30)) {
-        return writeNested(writer, writer.random().pick(kDepths));
+        return writeNested(writer, writer.random().pick(depths));
     }
-    constexpr int kDeepest = 4;
-    writeValue(writer, known, kDeepest);
+    constexpr int deepest = 4;
+    writeValue(writer, known, deepest);
 }
 
 void writeDataValue(Writer& writer, const Known& known) {
-    constexpr unsigned kValue = 1;
-    constexpr unsigned kStatus = 2;
-    constexpr unsigned kSourceTime = 4;
-    constexpr unsigned kServerTime = 8;
-    constexpr unsigned kSourcePicoseconds = 0x10;
-    const auto fields =
-        writer.random().oneIn(3) ? static_cast<unsigned>(writer.random().below(0x100)) : kValue;
+    constexpr unsigned value_value = 1;
+    constexpr unsigned status = 2;
+    constexpr unsigned source_time = 4;
+    constexpr unsigned server_time = 8;
+    constexpr unsigned source_picoseconds = 0x10;
+    const auto fields = writer.random().oneIn(3)
+                            ? static_cast<unsigned>(writer.random().below(0x100))
+                            : value_value;
     writer.exactly(static_cast<std::uint8_t>(fields));
-    if ((fields & kValue) != 0) {
+    if ((fields & value_value) != 0) {
         writeVariant(writer, known);
     }
-    if ((fields & kStatus) != 0) {
+    if ((fields & status) != 0) {
         writer.number(std::uint32_t{0});
     }
-    if ((fields & kSourceTime) != 0) {
+    if ((fields & source_time) != 0) {
         writer.time();
     }
-    if ((fields & kSourcePicoseconds) != 0) {
+    if ((fields & source_picoseconds) != 0) {
         writer.number(std::uint16_t{0});
     }
-    if ((fields & kServerTime) != 0) {
+    if ((fields & server_time) != 0) {
         writer.time();
     }
 }
 
 void writeDiagnostic(Writer& writer) {
-    constexpr std::array<std::size_t, 5> kDepths{0, 1, 99, 101, 5'000};
-    constexpr std::uint8_t kInner = 0x40;
-    const auto depth = writer.random().oneIn(8) ? writer.random().pick(kDepths) : 0;
+    constexpr std::array<std::size_t, 5> depths{0, 1, 99, 101, 5'000};
+    constexpr std::uint8_t inner = 0x40;
+    const auto depth = writer.random().oneIn(8) ? writer.random().pick(depths) : 0;
     for (std::size_t i = 0; i < depth; ++i) {
-        writer.exactly(kInner);
+        writer.exactly(inner);
     }
     writer.number(std::uint8_t{0});
 }

@@ -83,7 +83,7 @@ private:
     }
 
     void ask(std::uint64_t number) {
-        constexpr std::uint64_t kTell = 100'000;
+        constexpr std::uint64_t tell = 100'000;
         auto wrong = watcher_.ask();
         if (!target_.lives()) {
             wrong = "the server has ended";
@@ -91,7 +91,7 @@ private:
         if (!wrong.empty()) {
             report_.tally.defects.push_back(fmt::format("until message {}: {}", number, wrong));
         }
-        if (options_.tells && number % kTell == 0) {
+        if (options_.tells && number % tell == 0) {
             fmt::print("{} messages, longest wait {} ms, {} kB\n", number,
                        watcher_.longestWait().count(), target_.residentKilobytes());
             std::fflush(stdout);

@@ -60,19 +60,19 @@ std::uint32_t Reader::standardId() {
 }
 
 void Reader::skipDiagnostic(int depth) {
-    constexpr int kDeepest = 10;
-    constexpr unsigned kText = 0x10;
-    constexpr unsigned kStatus = 0x20;
-    constexpr unsigned kInner = 0x40;
+    constexpr int deepest = 10;
+    constexpr unsigned text_value = 0x10;
+    constexpr unsigned status = 0x20;
+    constexpr unsigned inner = 0x40;
     const auto fields = number<std::uint8_t>();
-    for (unsigned bit = 1; bit < kText; bit <<= 1U) {
+    for (unsigned bit = 1; bit < text_value; bit <<= 1U) {
         raw((fields & bit) != 0 ? sizeof(std::int32_t) : 0);
     }
-    if ((fields & kText) != 0) {
+    if ((fields & text_value) != 0) {
         text();
     }
-    raw((fields & kStatus) != 0 ? sizeof(std::uint32_t) : 0);
-    if ((fields & kInner) != 0 && depth < kDeepest) {
+    raw((fields & status) != 0 ? sizeof(std::uint32_t) : 0);
+    if ((fields & inner) != 0 && depth < deepest) {
         skipDiagnostic(depth + 1);
     }
 }

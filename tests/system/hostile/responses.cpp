@@ -34,9 +34,9 @@ AddressMap someNodes() {
 }
 
 const Known& known() {
-    static const AddressMap kMap = someNodes();
-    static const Known kKnown{.map = kMap, .endpoint_url = {}};
-    return kKnown;
+    static const AddressMap map_value = someNodes();
+    static const Known known_value{.map = map_value, .endpoint_url = {}};
+    return known_value;
 }
 
 void writeHeader(Writer& writer, std::uint32_t type, const Asked& asked, std::uint32_t status = 0) {
@@ -107,11 +107,11 @@ void writeReference(Writer& writer, Landscape landscape) {
                              : numericId(1, 7'000 + static_cast<std::uint32_t>(random.below(12))));
     writer.qualifiedName(random.oneIn(2) ? 0 : 1, random.pick(kNames));
     writer.localizedText("\xc3(");
-    constexpr std::array<std::uint32_t, 3> kClasses{1, 2, 4};
-    writer.number(landscape == Landscape::endless ? 1U : random.pick(kClasses));
-    constexpr std::uint32_t kBaseObject = 58;
+    constexpr std::array<std::uint32_t, 3> classes{1, 2, 4};
+    writer.number(landscape == Landscape::endless ? 1U : random.pick(classes));
+    constexpr std::uint32_t base_object = 58;
     writer.expandedId(landscape == Landscape::endless
-                          ? standardId(kBaseObject)
+                          ? standardId(base_object)
                           : numericId(random.oneIn(2) ? 0 : 1, random.pick(kTypes)));
 }
 
@@ -143,19 +143,19 @@ void writeBrowse(Writer& writer, std::uint32_t items, Landscape landscape) {
 }
 
 void writeRead(Writer& writer, std::uint32_t items, Landscape landscape) {
-    constexpr std::uint8_t kValue = 1;
-    constexpr std::uint8_t kDoubles = 0x8B;
+    constexpr std::uint8_t value = 1;
+    constexpr std::uint8_t doubles = 0x8B;
     writer.count(items);
     for (std::uint32_t i = 0; i < items; ++i) {
         if (landscape == Landscape::loops) {
             writeDataValue(writer, known());
             continue;
         }
-        constexpr std::size_t kElements = 2'000;
-        writer.exactly(kValue);
-        writer.exactly(kDoubles);
-        writer.count(kElements);
-        writer.raw(Bytes(kElements * sizeof(double), '\x40'));
+        constexpr std::size_t elements_value = 2'000;
+        writer.exactly(value);
+        writer.exactly(doubles);
+        writer.count(elements_value);
+        writer.raw(Bytes(elements_value * sizeof(double), '\x40'));
     }
     writer.count(0);
 }
@@ -230,8 +230,8 @@ void writeEvents(Writer& body) {
 }
 
 void writePublish(Writer& writer) {
-    constexpr std::uint32_t kDataChange = 811;
-    constexpr std::uint32_t kEvents = 916;
+    constexpr std::uint32_t data_change = 811;
+    constexpr std::uint32_t events_value = 916;
     writer.number(std::uint32_t{1});
     writer.count(0);
     writer.boolean(writer.random().oneIn(3));
@@ -248,7 +248,7 @@ void writePublish(Writer& writer) {
         writeDataValue(body, known());
         body.count(0);
     }
-    writer.extension(events ? kEvents : kDataChange, body.bytes());
+    writer.extension(events ? events_value : data_change, body.bytes());
     writer.count(0);
     writer.count(0);
 }
@@ -298,8 +298,8 @@ Asked readRequest(Reader reader) {
 }
 
 Bytes respondOpen(Writer writer, const Asked& asked) {
-    constexpr std::uint32_t kResponse = 449;
-    writeHeader(writer, kResponse, asked);
+    constexpr std::uint32_t response = 449;
+    writeHeader(writer, response, asked);
     writer.number(std::uint32_t{0});
     writer.number(std::uint32_t{1});
     writer.number(std::uint32_t{1});
@@ -310,15 +310,15 @@ Bytes respondOpen(Writer writer, const Asked& asked) {
 }
 
 Bytes serviceFault(Writer writer, const Asked& asked, std::uint32_t status) {
-    constexpr std::uint32_t kFault = 397;
-    writeHeader(writer, kFault, asked, status);
+    constexpr std::uint32_t fault = 397;
+    writeHeader(writer, fault, asked, status);
     return writer.take();
 }
 
 // One case for each service.
 Bytes respond(Writer writer, const Asked& asked, const std::string& url, Landscape landscape) {
-    constexpr std::uint32_t kToResponse = 3;
-    writeHeader(writer, asked.type + kToResponse, asked);
+    constexpr std::uint32_t to_response = 3;
+    writeHeader(writer, asked.type + to_response, asked);
     switch (asked.type) {
         case 422:
             writeServers(writer, url);

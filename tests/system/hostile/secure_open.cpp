@@ -48,23 +48,23 @@ Bytes encrypted(std::string_view plain, std::string_view der) {
 }
 
 Bytes thumbprint(std::string_view der) {
-    constexpr int kHexadecimal = 16;
+    constexpr int hexadecimal = 16;
     const auto hex = trust::thumbprintOf(der);
     Bytes bytes;
     for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
-        bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, kHexadecimal)));
+        bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, hexadecimal)));
     }
     return bytes;
 }
 
 Bytes anyCertificate(Random& random, const PublicCertificates& certificates) {
-    constexpr std::size_t kHuge = 60'000;
+    constexpr std::size_t huge = 60'000;
     auto trusted = certificates.trusted_client;
     switch (random.below(8)) {
         case 0:
             return {};
         case 1:
-            return Bytes(random.below(kHuge), '\x30');
+            return Bytes(random.below(huge), '\x30');
         case 2:
             return certificates.server;
         case 3:  // a chain, of what does not belong together
@@ -93,13 +93,13 @@ void putText(Bytes& content, std::string_view text) {
 
 Bytes secureOpenChunk(Random& random, Channel& channel, const PublicCertificates& certificates,
                       std::string_view body) {
-    constexpr std::array<std::string_view, 7> kNames{"Basic256Sha256",
-                                                     "Basic256Sha256",
-                                                     "Aes128_Sha256_RsaOaep",
-                                                     "Aes256_Sha256_RsaPss",
-                                                     "Basic128Rsa15",
-                                                     "None",
-                                                     "Unknown"};
+    constexpr std::array<std::string_view, 7> names{"Basic256Sha256",
+                                                    "Basic256Sha256",
+                                                    "Aes128_Sha256_RsaOaep",
+                                                    "Aes256_Sha256_RsaPss",
+                                                    "Basic128Rsa15",
+                                                    "None",
+                                                    "Unknown"};
     Bytes plain;
     put(plain, ++channel.sequence);
     put(plain, ++channel.request);
@@ -108,7 +108,7 @@ Bytes secureOpenChunk(Random& random, Channel& channel, const PublicCertificates
 
     Bytes content;
     put(content, 0);
-    putText(content, Bytes(kPolicies) + Bytes(random.pick(kNames)));
+    putText(content, Bytes(kPolicies) + Bytes(random.pick(names)));
     putText(content, anyCertificate(random, certificates));
     putText(content,
             random.oneIn(5) ? Bytes(random.below(40), 't') : thumbprint(certificates.server));

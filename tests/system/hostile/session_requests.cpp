@@ -36,16 +36,16 @@ void writeTexts(Writer& writer, std::string_view text) {
 }
 
 void writeNonce(Writer& writer) {
-    constexpr std::array<std::size_t, 6> kLengths{0, 1, 31, 32, 33, 5'000};
-    writer.text(Bytes(writer.isWrong() ? writer.random().pick(kLengths) : 32, '\x5a'));
+    constexpr std::array<std::size_t, 6> lengths{0, 1, 31, 32, 33, 5'000};
+    writer.text(Bytes(writer.isWrong() ? writer.random().pick(lengths) : 32, '\x5a'));
 }
 
 void writeCertificate(Writer& writer) {
     if (!writer.isWrong()) {
         return writer.noText();
     }
-    constexpr std::array<std::size_t, 4> kLengths{1, 500, 1'200, 20'000};
-    Bytes der(writer.random().pick(kLengths), '\x30');
+    constexpr std::array<std::size_t, 4> lengths{1, 500, 1'200, 20'000};
+    Bytes der(writer.random().pick(lengths), '\x30');
     for (std::size_t i = 1; i < der.size(); i += 7) {
         der[i] = static_cast<char>(writer.random().next());
     }
@@ -62,28 +62,28 @@ void writeSignature(Writer& writer) {
 }
 
 void writeIdentity(Writer& writer, const Known& known) {
-    constexpr std::uint32_t kAnonymous = 321;
-    constexpr std::uint32_t kUserName = 324;
-    constexpr std::uint32_t kX509 = 327;
-    constexpr std::uint32_t kIssued = 940;
+    constexpr std::uint32_t anonymous = 321;
+    constexpr std::uint32_t user_name = 324;
+    constexpr std::uint32_t x509 = 327;
+    constexpr std::uint32_t issued = 940;
     Writer body = writer.fresh();
     body.text(known.anonymous_policy);
     if (!writer.isWrong()) {
-        return writer.extension(kAnonymous, body.bytes());
+        return writer.extension(anonymous, body.bytes());
     }
     switch (writer.random().below(4)) {
         case 0:
             body.text("operator");
             body.text("secret");
             body.text("http://www.w3.org/2001/04/xmlenc#rsa-oaep");
-            return writer.extension(kUserName, body.bytes());
+            return writer.extension(user_name, body.bytes());
         case 1:
             writeCertificate(body);
-            return writer.extension(kX509, body.bytes());
+            return writer.extension(x509, body.bytes());
         case 2:
             body.text(Bytes(2'000, 't'));
             body.text("");
-            return writer.extension(kIssued, body.bytes());
+            return writer.extension(issued, body.bytes());
         default:
             writer.id(standardId(0));
             return writer.exactly(std::uint8_t{0});
@@ -171,17 +171,18 @@ void writeHeader(Writer& writer, std::uint32_t type, std::string_view token) {
 }  // namespace
 
 std::span<const Request> discoveryRequests() {
-    static constexpr std::array<Request, 9> kAll{{{422, writeFindServers, 2},
-                                                  {428, writeFindServers, 2},
-                                                  {12'208, writeFindServers, 1},
-                                                  {437, writeRegisterServer, 1},
-                                                  {12'211, writeRegisterServer, 1},
-                                                  {479, writeCancel, 1},
-                                                  // Of no service: a response, a fault, nothing.
-                                                  {464, writeNothing, 1},
-                                                  {397, writeNothing, 1},
-                                                  {64'000, writeNothing, 1}}};
-    return kAll;
+    static constexpr std::array<Request, 9> all_value{
+        {{422, writeFindServers, 2},
+         {428, writeFindServers, 2},
+         {12'208, writeFindServers, 1},
+         {437, writeRegisterServer, 1},
+         {12'211, writeRegisterServer, 1},
+         {479, writeCancel, 1},
+         // Of no service: a response, a fault, nothing.
+         {464, writeNothing, 1},
+         {397, writeNothing, 1},
+         {64'000, writeNothing, 1}}};
+    return all_value;
 }
 
 const Request& anyRequest(Random& random) {

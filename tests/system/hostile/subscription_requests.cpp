@@ -132,19 +132,19 @@ void writeTransfer(Writer& writer, const Known& known) {
 }  // namespace
 
 std::span<const Request> subscriptionRequests() {
-    static constexpr std::array<Request, 12> kAll{{{751, writeCreateItems, 8},
-                                                   {763, writeModifyItems, 3},
-                                                   {769, writeMonitoringMode, 2},
-                                                   {775, writeTriggering, 2},
-                                                   {781, writeDeleteItems, 3},
-                                                   {787, writeCreateSubscription, 3},
-                                                   {793, writeModifySubscription, 2},
-                                                   {799, writePublishingMode, 2},
-                                                   {826, writePublish, 10},
-                                                   {832, writeRepublish, 3},
-                                                   {841, writeTransfer, 3},
-                                                   {847, writeSubscriptionIds, 3}}};
-    return kAll;
+    static constexpr std::array<Request, 12> all{{{751, writeCreateItems, 8},
+                                                  {763, writeModifyItems, 3},
+                                                  {769, writeMonitoringMode, 2},
+                                                  {775, writeTriggering, 2},
+                                                  {781, writeDeleteItems, 3},
+                                                  {787, writeCreateSubscription, 3},
+                                                  {793, writeModifySubscription, 2},
+                                                  {799, writePublishingMode, 2},
+                                                  {826, writePublish, 10},
+                                                  {832, writeRepublish, 3},
+                                                  {841, writeTransfer, 3},
+                                                  {847, writeSubscriptionIds, 3}}};
+    return all;
 }
 
 }  // namespace metier::hostile

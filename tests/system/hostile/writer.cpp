@@ -22,13 +22,13 @@ void put(Bytes& bytes, T value) {
 
 /// 100 ns since 1601.
 std::uint64_t now() {
-    constexpr std::uint64_t kTicksTo1970 = 116'444'736'000'000'000;
-    constexpr std::uint64_t kNanosecondsPerTick = 100;
+    constexpr std::uint64_t ticks_to_1970 = 116'444'736'000'000'000;
+    constexpr std::uint64_t nanoseconds_per_tick = 100;
     const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-    return kTicksTo1970 +
+    return ticks_to_1970 +
            static_cast<std::uint64_t>(
                std::chrono::duration_cast<std::chrono::nanoseconds>(since_1970).count()) /
-               kNanosecondsPerTick;
+               nanoseconds_per_tick;
 }
 
 }  // namespace
@@ -94,16 +94,16 @@ void Writer::expandedId(std::string_view node_id) {
     if (!isWrong()) {
         return raw(node_id);
     }
-    constexpr unsigned kUri = 0x80;
-    constexpr unsigned kServer = 0x40;
+    constexpr unsigned uri = 0x80;
+    constexpr unsigned server = 0x40;
     auto odd = oddId();
     const auto flags = static_cast<unsigned>(random_.below(4)) << 6U;
     odd[0] = static_cast<char>(static_cast<unsigned char>(odd[0]) | flags);
     raw(odd);
-    if ((flags & kUri) != 0) {
+    if ((flags & uri) != 0) {
         text("urn:of:nobody");
     }
-    if ((flags & kServer) != 0) {
+    if ((flags & server) != 0) {
         number(std::uint32_t{1});
     }
 }
@@ -114,17 +114,17 @@ void Writer::qualifiedName(std::uint16_t namespace_index, std::string_view name)
 }
 
 void Writer::localizedText(std::string_view value) {
-    constexpr std::uint8_t kHasText = 2;
-    constexpr std::uint8_t kHasLocale = 1;
+    constexpr std::uint8_t has_text = 2;
+    constexpr std::uint8_t has_locale = 1;
     if (!isWrong()) {
-        exactly(kHasText);
+        exactly(has_text);
         return text(value);
     }
     exactly(static_cast<std::uint8_t>(random_.next()));
     if (random_.oneIn(2)) {
         exactText(oddText());
     }
-    exactly(kHasLocale);
+    exactly(has_locale);
     text(value);
 }
 
@@ -134,9 +134,9 @@ void Writer::time() {
 
 void Writer::extension(std::uint32_t encoding_id, std::string_view body) {
     if (isWrong()) {
-        constexpr std::array<std::uint32_t, 12> kOthers{321, 324, 327, 727, 724, 597,
-                                                        594, 603, 649, 354, 298, 99'999};
-        encoding_id = random_.pick(kOthers);
+        constexpr std::array<std::uint32_t, 12> others{321, 324, 327, 727, 724, 597,
+                                                       594, 603, 649, 354, 298, 99'999};
+        encoding_id = random_.pick(others);
     }
     id(standardId(encoding_id));
     if (isWrong()) {
@@ -149,56 +149,56 @@ void Writer::extension(std::uint32_t encoding_id, std::string_view body) {
 }
 
 std::uint64_t Writer::oddInteger() {
-    constexpr std::array<std::uint64_t, 12> kOdd{0,
-                                                 1,
-                                                 2,
-                                                 0x7F,
-                                                 0xFF,
-                                                 0xFFFF,
-                                                 0x7FFF'FFFF,
-                                                 0x8000'0000,
-                                                 0xFFFF'FFFF,
-                                                 0x7FFF'FFFF'FFFF'FFFF,
-                                                 0x8000'0000'0000'0000,
-                                                 0xFFFF'FFFF'FFFF'FFFF};
-    return random_.oneIn(3) ? random_.next() : random_.pick(kOdd);
+    constexpr std::array<std::uint64_t, 12> odd_value{0,
+                                                      1,
+                                                      2,
+                                                      0x7F,
+                                                      0xFF,
+                                                      0xFFFF,
+                                                      0x7FFF'FFFF,
+                                                      0x8000'0000,
+                                                      0xFFFF'FFFF,
+                                                      0x7FFF'FFFF'FFFF'FFFF,
+                                                      0x8000'0000'0000'0000,
+                                                      0xFFFF'FFFF'FFFF'FFFF};
+    return random_.oneIn(3) ? random_.next() : random_.pick(odd_value);
 }
 
 double Writer::oddReal() {
     using Limits = std::numeric_limits<double>;
-    constexpr std::array<double, 9> kOdd{Limits::quiet_NaN(),
-                                         Limits::infinity(),
-                                         -Limits::infinity(),
-                                         Limits::max(),
-                                         Limits::lowest(),
-                                         Limits::denorm_min(),
-                                         -0.0,
-                                         -1.0,
-                                         1e18};
-    return random_.pick(kOdd);
+    constexpr std::array<double, 9> odd_value{Limits::quiet_NaN(),
+                                              Limits::infinity(),
+                                              -Limits::infinity(),
+                                              Limits::max(),
+                                              Limits::lowest(),
+                                              Limits::denorm_min(),
+                                              -0.0,
+                                              -1.0,
+                                              1e18};
+    return random_.pick(odd_value);
 }
 
 Bytes Writer::oddText() {
     using namespace std::string_literals;
-    static const std::array<Bytes, 12> kOdd{""s,
-                                            "\xff\xfe\xfd"s,
-                                            "\xc0\x80"s,
-                                            "\xed\xa0\x80"s,
-                                            "\xf4\x90\x80\x80"s,
-                                            "nul\0inside"s,
-                                            "\x1b[2J\x1b[31mred"s,
-                                            "\x1b]0;title\x07"s,
-                                            "line\r\nline two"s,
-                                            "%s%n%d{}"s,
-                                            "\xe2\x80\xae"
-                                            "desrever"s,
-                                            "../../../../etc/passwd"s};
-    return random_.oneIn(6) ? Bytes(random_.below(kLongText), 'A') : random_.pick(kOdd);
+    static const std::array<Bytes, 12> odd_value{""s,
+                                                 "\xff\xfe\xfd"s,
+                                                 "\xc0\x80"s,
+                                                 "\xed\xa0\x80"s,
+                                                 "\xf4\x90\x80\x80"s,
+                                                 "nul\0inside"s,
+                                                 "\x1b[2J\x1b[31mred"s,
+                                                 "\x1b]0;title\x07"s,
+                                                 "line\r\nline two"s,
+                                                 "%s%n%d{}"s,
+                                                 "\xe2\x80\xae"
+                                                 "desrever"s,
+                                                 "../../../../etc/passwd"s};
+    return random_.oneIn(6) ? Bytes(random_.below(kLongText), 'A') : random_.pick(odd_value);
 }
 
 Bytes Writer::oddId() {
-    constexpr std::uint8_t kGuidId = 4;
-    constexpr std::uint8_t kOpaqueId = 5;
+    constexpr std::uint8_t guid_id = 4;
+    constexpr std::uint8_t opaque_id = 5;
     Bytes bytes;
     switch (random_.below(7)) {
         case 0:
@@ -211,11 +211,11 @@ Bytes Writer::oddId() {
         case 3:
             return textId(static_cast<std::uint16_t>(random_.below(8)), oddText());
         case 4:
-            bytes.push_back(static_cast<char>(kGuidId));
+            bytes.push_back(static_cast<char>(guid_id));
             return bytes.append(18, static_cast<char>(random_.next()));
         case 5:
             bytes = textId(0, oddText());
-            bytes[0] = static_cast<char>(kOpaqueId);
+            bytes[0] = static_cast<char>(opaque_id);
             return bytes;
         default:
             return Bytes(1 + random_.below(4), static_cast<char>(random_.next()));

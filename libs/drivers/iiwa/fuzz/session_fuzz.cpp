@@ -42,9 +42,9 @@ private:
 };
 
 const motion::RobotModel& iiwa7() {
-    static const auto kModel =
+    static const auto model =
         motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/iiwa7.toml").value();
-    return kModel;
+    return model;
 }
 
 class Turn final : public device::SetPointSource {
@@ -158,11 +158,11 @@ private:
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    constexpr int kMostSteps = 200;
+    constexpr int most_steps = 200;
     spdlog::set_level(spdlog::level::off);
     Input input(data, size);
     Dialogue dialogue;
-    for (int count = 0; count < kMostSteps && !input.isEmpty(); ++count) {
+    for (int count = 0; count < most_steps && !input.isEmpty(); ++count) {
         dialogue.step(input);
     }
     dialogue.end();

@@ -43,7 +43,7 @@ void add(Bytes& stream, char type, std::string_view payload) {
 
 /// What each variable of the recipe is.
 std::string outputTypes() {
-    static const std::map<std::string, std::string, std::less<>> kOthers{
+    static const std::map<std::string, std::string, std::less<>> others{
         {"timestamp", "DOUBLE"},
         {"speed_scaling", "DOUBLE"},
         {"target_speed_fraction", "DOUBLE"},
@@ -54,9 +54,9 @@ std::string outputTypes() {
         {"script_control_line", "UINT32"}};
     std::string types(1, '\1');
     for (const auto& name : rtde::OutputRecipe(kRegisterBase).names()) {
-        const auto other = kOthers.find(name);
+        const auto other = others.find(name);
         const bool is_register = name.find("register") != std::string::npos;
-        types += other != kOthers.end() ? other->second : is_register ? "INT32" : "VECTOR6D";
+        types += other != others.end() ? other->second : is_register ? "INT32" : "VECTOR6D";
         types += ',';
     }
     types.pop_back();
@@ -80,7 +80,7 @@ Bytes agreement() {
 
 /// Then: a type and a length each, whose data repeat the rest of the input.
 void addPackages(Bytes& stream, std::span<const std::uint8_t> input) {
-    constexpr std::string_view kTypes = "UUUUUMVSI?";
+    constexpr std::string_view some_types = "UUUUUMVSI?";
     while (input.size() >= 3) {
         std::string payload(input[1] % 4 == 0 ? input[2] : kDataSize, '\0');
         for (std::size_t i = 0; i < payload.size(); i += 1U + input[1] % 64U) {
@@ -89,7 +89,7 @@ void addPackages(Bytes& stream, std::span<const std::uint8_t> input) {
         if (!payload.empty()) {
             payload[0] = '\1';
         }
-        add(stream, kTypes[input[0] % kTypes.size()], payload);
+        add(stream, some_types[input[0] % some_types.size()], payload);
         input = input.subspan(3);
     }
 }
@@ -128,15 +128,15 @@ void converse(std::uint16_t port, bool agrees) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     spdlog::set_level(spdlog::level::off);
     static auto listener = link::TcpListener::listen("127.0.0.1", 0).value();
-    static const auto kAgreement = agreement();
+    static const auto agreement_value = agreement();
     if (size < 4) {
         return 0;
     }
-    auto stream = kAgreement;
+    auto stream = agreement_value;
     for (std::size_t i = 0; i < data[0] % 4U; ++i) {
         stream[(data[1] * 5U + i) % stream.size()] ^= static_cast<std::byte>(data[2]);
     }
-    const bool stream_is_right = stream == kAgreement;
+    const bool stream_is_right = stream == agreement_value;
     addPackages(stream, {data + 3, size - 3});
     const std::jthread controller([&] {
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);

@@ -35,10 +35,10 @@ bool ResponseGate::feed(std::span<const std::uint8_t> bytes) {
 }
 
 bool ResponseGate::take(std::uint8_t byte) {
-    constexpr std::size_t kSize = 4;
+    constexpr std::size_t size_offset = 4;
     seen_.at(taken_++) = byte;
     if (taken_ == kHeader) {
-        size_ = number(kSize);
+        size_ = number(size_offset);
         if (size_ < kHeader) {
             return false;
         }
@@ -51,10 +51,10 @@ bool ResponseGate::take(std::uint8_t byte) {
 }
 
 std::uint32_t ResponseGate::number(std::size_t at) const {
-    constexpr std::size_t kBits = 8;
+    constexpr std::size_t bits = 8;
     std::uint32_t value = 0;
     for (std::size_t i = sizeof value; i-- > 0;) {
-        value = value << kBits | seen_.at(at + i);
+        value = value << bits | seen_.at(at + i);
     }
     return value;
 }
@@ -63,10 +63,10 @@ void ResponseGate::noteSecurity() {
     if (!std::equal(seen_.begin(), seen_.begin() + 3, "OPN")) {
         return;
     }
-    constexpr auto kPolicy = kPolicyLength + sizeof(std::uint32_t);
-    open_ = size_ < kPolicy + kNone.size() ||
+    constexpr auto policy = kPolicyLength + sizeof(std::uint32_t);
+    open_ = size_ < policy + kNone.size() ||
             (number(kPolicyLength) == kNone.size() &&
-             std::equal(kNone.begin(), kNone.end(), seen_.begin() + kPolicy));
+             std::equal(kNone.begin(), kNone.end(), seen_.begin() + policy));
 }
 
 bool ResponseGate::judge() const {
@@ -75,12 +75,12 @@ bool ResponseGate::judge() const {
 }
 
 bool ResponseGate::beginsWithAnId() const {
-    constexpr std::array<std::size_t, 3> kLengths{2, 4, 7};  // by how it is encoded
+    constexpr std::array<std::size_t, 3> lengths{2, 4, 7};  // by how it is encoded
     if (size_ <= kSymmetric) {
         return false;
     }
     const auto encoding = seen_.at(kSymmetric);
-    return encoding < kLengths.size() && size_ >= kSymmetric + kLengths.at(encoding);
+    return encoding < lengths.size() && size_ >= kSymmetric + lengths.at(encoding);
 }
 
 }  // namespace metier::opcua
