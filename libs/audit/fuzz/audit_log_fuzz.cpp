@@ -28,8 +28,8 @@ bool goOn(const fs::path& file) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const metier::fuzz::Scratch scratch_value("audit_log_fuzz");
-    const auto& file = scratch_value.path();
+    static const metier::fuzz::Scratch own_file("audit_log_fuzz");
+    const auto& file = own_file.path();
     std::ofstream(file, std::ios::binary | std::ios::trunc)
         << std::string_view(reinterpret_cast<const char*>(data), size);
     const auto before = verify(file);

@@ -28,18 +28,17 @@ void put(const fs::path& file, std::string_view content) {
 /// The first byte says which folder the rest is in.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const metier::fuzz::Scratch scratch("trust_store_fuzz");
-    static const auto folder_value =
-        metier::trust::fuzz::storeOfAnAuthority(scratch.path()).folder();
+    static const auto own_folder = metier::trust::fuzz::storeOfAnAuthority(scratch.path()).folder();
     static const auto peer = signedCertificate();
     static const std::array places{
-        folder_value / "trusted/crl/input", folder_value / "issuers/certs/input",
-        folder_value / "trusted/certs/input", folder_value / "issuers/crl/input"};
+        own_folder / "trusted/crl/input", own_folder / "issuers/certs/input",
+        own_folder / "trusted/certs/input", own_folder / "issuers/crl/input"};
     if (size == 0) {
         return 0;
     }
     const auto& place = places.at(data[0] % places.size());
     put(place, {reinterpret_cast<const char*>(data) + 1, size - 1});
-    auto store = TrustStore::open(folder_value);
+    auto store = TrustStore::open(own_folder);
     if (!store) {
         std::abort();
     }

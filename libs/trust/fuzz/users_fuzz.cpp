@@ -12,8 +12,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using metier::trust::UserTable;
-    static const metier::fuzz::Scratch scratch_value("users_fuzz");
-    const auto& file = scratch_value.path();
+    static const metier::fuzz::Scratch own_file("users_fuzz");
+    const auto& file = own_file.path();
     std::ofstream(file, std::ios::binary | std::ios::trunc)
         << std::string_view(reinterpret_cast<const char*>(data), size);
     ::chmod(file.c_str(), S_IRUSR | S_IWUSR);

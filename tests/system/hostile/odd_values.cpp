@@ -156,16 +156,15 @@ void writeVariant(Writer& writer, const Known& known) {
 }
 
 void writeDataValue(Writer& writer, const Known& known) {
-    constexpr unsigned value_value = 1;
+    constexpr unsigned has_value = 1;
     constexpr unsigned status = 2;
     constexpr unsigned source_time = 4;
     constexpr unsigned server_time = 8;
     constexpr unsigned source_picoseconds = 0x10;
-    const auto fields = writer.random().oneIn(3)
-                            ? static_cast<unsigned>(writer.random().below(0x100))
-                            : value_value;
+    const auto fields =
+        writer.random().oneIn(3) ? static_cast<unsigned>(writer.random().below(0x100)) : has_value;
     writer.exactly(static_cast<std::uint8_t>(fields));
-    if ((fields & value_value) != 0) {
+    if ((fields & has_value) != 0) {
         writeVariant(writer, known);
     }
     if ((fields & status) != 0) {

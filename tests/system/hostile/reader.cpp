@@ -61,14 +61,14 @@ std::uint32_t Reader::standardId() {
 
 void Reader::skipDiagnostic(int depth) {
     constexpr int deepest = 10;
-    constexpr unsigned text_value = 0x10;
+    constexpr unsigned has_text = 0x10;
     constexpr unsigned status = 0x20;
     constexpr unsigned inner = 0x40;
     const auto fields = number<std::uint8_t>();
-    for (unsigned bit = 1; bit < text_value; bit <<= 1U) {
+    for (unsigned bit = 1; bit < has_text; bit <<= 1U) {
         raw((fields & bit) != 0 ? sizeof(std::int32_t) : 0);
     }
-    if ((fields & text_value) != 0) {
+    if ((fields & has_text) != 0) {
         text();
     }
     raw((fields & status) != 0 ? sizeof(std::uint32_t) : 0);

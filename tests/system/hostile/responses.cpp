@@ -34,9 +34,9 @@ AddressMap someNodes() {
 }
 
 const Known& known() {
-    static const AddressMap map_value = someNodes();
-    static const Known known_value{.map = map_value, .endpoint_url = {}};
-    return known_value;
+    static const AddressMap made_up_map = someNodes();
+    static const Known made_up{.map = made_up_map, .endpoint_url = {}};
+    return made_up;
 }
 
 void writeHeader(Writer& writer, std::uint32_t type, const Asked& asked, std::uint32_t status = 0) {
@@ -151,11 +151,11 @@ void writeRead(Writer& writer, std::uint32_t items, Landscape landscape) {
             writeDataValue(writer, known());
             continue;
         }
-        constexpr std::size_t elements_value = 2'000;
+        constexpr std::size_t many_elements = 2'000;
         writer.exactly(value);
         writer.exactly(doubles);
-        writer.count(elements_value);
-        writer.raw(Bytes(elements_value * sizeof(double), '\x40'));
+        writer.count(many_elements);
+        writer.raw(Bytes(many_elements * sizeof(double), '\x40'));
     }
     writer.count(0);
 }
@@ -231,7 +231,7 @@ void writeEvents(Writer& body) {
 
 void writePublish(Writer& writer) {
     constexpr std::uint32_t data_change = 811;
-    constexpr std::uint32_t events_value = 916;
+    constexpr std::uint32_t events_id = 916;
     writer.number(std::uint32_t{1});
     writer.count(0);
     writer.boolean(writer.random().oneIn(3));
@@ -248,7 +248,7 @@ void writePublish(Writer& writer) {
         writeDataValue(body, known());
         body.count(0);
     }
-    writer.extension(events ? events_value : data_change, body.bytes());
+    writer.extension(events ? events_id : data_change, body.bytes());
     writer.count(0);
     writer.count(0);
 }

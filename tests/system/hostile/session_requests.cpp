@@ -171,7 +171,7 @@ void writeHeader(Writer& writer, std::uint32_t type, std::string_view token) {
 }  // namespace
 
 std::span<const Request> discoveryRequests() {
-    static constexpr std::array<Request, 9> all_value{
+    static constexpr std::array<Request, 9> requests{
         {{422, writeFindServers, 2},
          {428, writeFindServers, 2},
          {12'208, writeFindServers, 1},
@@ -182,7 +182,7 @@ std::span<const Request> discoveryRequests() {
          {464, writeNothing, 1},
          {397, writeNothing, 1},
          {64'000, writeNothing, 1}}};
-    return all_value;
+    return requests;
 }
 
 const Request& anyRequest(Random& random) {

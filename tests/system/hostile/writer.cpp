@@ -149,51 +149,51 @@ void Writer::extension(std::uint32_t encoding_id, std::string_view body) {
 }
 
 std::uint64_t Writer::oddInteger() {
-    constexpr std::array<std::uint64_t, 12> odd_value{0,
-                                                      1,
-                                                      2,
-                                                      0x7F,
-                                                      0xFF,
-                                                      0xFFFF,
-                                                      0x7FFF'FFFF,
-                                                      0x8000'0000,
-                                                      0xFFFF'FFFF,
-                                                      0x7FFF'FFFF'FFFF'FFFF,
-                                                      0x8000'0000'0000'0000,
-                                                      0xFFFF'FFFF'FFFF'FFFF};
-    return random_.oneIn(3) ? random_.next() : random_.pick(odd_value);
+    constexpr std::array<std::uint64_t, 12> odd_ones{0,
+                                                     1,
+                                                     2,
+                                                     0x7F,
+                                                     0xFF,
+                                                     0xFFFF,
+                                                     0x7FFF'FFFF,
+                                                     0x8000'0000,
+                                                     0xFFFF'FFFF,
+                                                     0x7FFF'FFFF'FFFF'FFFF,
+                                                     0x8000'0000'0000'0000,
+                                                     0xFFFF'FFFF'FFFF'FFFF};
+    return random_.oneIn(3) ? random_.next() : random_.pick(odd_ones);
 }
 
 double Writer::oddReal() {
     using Limits = std::numeric_limits<double>;
-    constexpr std::array<double, 9> odd_value{Limits::quiet_NaN(),
-                                              Limits::infinity(),
-                                              -Limits::infinity(),
-                                              Limits::max(),
-                                              Limits::lowest(),
-                                              Limits::denorm_min(),
-                                              -0.0,
-                                              -1.0,
-                                              1e18};
-    return random_.pick(odd_value);
+    constexpr std::array<double, 9> odd_ones{Limits::quiet_NaN(),
+                                             Limits::infinity(),
+                                             -Limits::infinity(),
+                                             Limits::max(),
+                                             Limits::lowest(),
+                                             Limits::denorm_min(),
+                                             -0.0,
+                                             -1.0,
+                                             1e18};
+    return random_.pick(odd_ones);
 }
 
 Bytes Writer::oddText() {
     using namespace std::string_literals;
-    static const std::array<Bytes, 12> odd_value{""s,
-                                                 "\xff\xfe\xfd"s,
-                                                 "\xc0\x80"s,
-                                                 "\xed\xa0\x80"s,
-                                                 "\xf4\x90\x80\x80"s,
-                                                 "nul\0inside"s,
-                                                 "\x1b[2J\x1b[31mred"s,
-                                                 "\x1b]0;title\x07"s,
-                                                 "line\r\nline two"s,
-                                                 "%s%n%d{}"s,
-                                                 "\xe2\x80\xae"
-                                                 "desrever"s,
-                                                 "../../../../etc/passwd"s};
-    return random_.oneIn(6) ? Bytes(random_.below(kLongText), 'A') : random_.pick(odd_value);
+    static const std::array<Bytes, 12> odd_ones{""s,
+                                                "\xff\xfe\xfd"s,
+                                                "\xc0\x80"s,
+                                                "\xed\xa0\x80"s,
+                                                "\xf4\x90\x80\x80"s,
+                                                "nul\0inside"s,
+                                                "\x1b[2J\x1b[31mred"s,
+                                                "\x1b]0;title\x07"s,
+                                                "line\r\nline two"s,
+                                                "%s%n%d{}"s,
+                                                "\xe2\x80\xae"
+                                                "desrever"s,
+                                                "../../../../etc/passwd"s};
+    return random_.oneIn(6) ? Bytes(random_.below(kLongText), 'A') : random_.pick(odd_ones);
 }
 
 Bytes Writer::oddId() {

@@ -128,15 +128,15 @@ void converse(std::uint16_t port, bool agrees) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     spdlog::set_level(spdlog::level::off);
     static auto listener = link::TcpListener::listen("127.0.0.1", 0).value();
-    static const auto agreement_value = agreement();
+    static const auto whole_agreement = agreement();
     if (size < 4) {
         return 0;
     }
-    auto stream = agreement_value;
+    auto stream = whole_agreement;
     for (std::size_t i = 0; i < data[0] % 4U; ++i) {
         stream[(data[1] * 5U + i) % stream.size()] ^= static_cast<std::byte>(data[2]);
     }
-    const bool stream_is_right = stream == agreement_value;
+    const bool stream_is_right = stream == whole_agreement;
     addPackages(stream, {data + 3, size - 3});
     const std::jthread controller([&] {
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
