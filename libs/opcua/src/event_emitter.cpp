@@ -39,6 +39,18 @@ struct EventEmitter::State {
         return {};
     }
 
+    /// All fields, those that the stack sets too.
+    Result<> hideFromOthers() {
+        const auto children = core.nodes().browse(node);
+        if (!children) {
+            return fail(children.error());
+        }
+        for (const auto& child : *children) {
+            UA_Server_setNodeContext(core.native(), viewOf(child.target), auditorsOnly());
+        }
+        return {};
+    }
+
     Result<> write(std::size_t field, const Value& value) {
         const auto code =
             UA_Server_writeValue(core.native(), viewOf(fields[field]), ValueAccess::native(value));
@@ -57,7 +69,13 @@ struct EventEmitter::State {
 
 Result<EventEmitter> EventEmitter::create(Server& server, const NodeId& type,
                                           const std::vector<BrowsePath>& fields) {
-    auto state = std::make_unique<State>(*server.core_);
+    return create(*server.core_, type, fields);
+}
+
+Result<EventEmitter> EventEmitter::create(ServerCore& core, const NodeId& type,
+                                          const std::vector<BrowsePath>& fields,
+                                          EventAudience audience) {
+    auto state = std::make_unique<State>(core);
     Owned<UA_NodeId> node(UA_TYPES[UA_TYPES_NODEID]);
     const auto code = UA_Server_createEvent(state->core.native(), viewOf(type), node.get());
     if (code != UA_STATUSCODE_GOOD) {
@@ -74,6 +92,11 @@ Result<EventEmitter> EventEmitter::create(Server& server, const NodeId& type,
             return fail(added.error());
         }
         state->names.push_back(path.back().name);
+    }
+    if (audience == EventAudience::auditors) {
+        if (auto hidden = state->hideFromOthers(); !hidden) {
+            return fail(hidden.error());
+        }
     }
     return EventEmitter(std::move(state));
 }

@@ -147,13 +147,21 @@ UA_StatusCode callMethod(UA_Server* server, const UA_NodeId* /*session_id*/, voi
             hooks.core->tellDenial(context);
             return UA_STATUSCODE_BADUSERACCESSDENIED;
         }
-        auto results = method.handler(context, arguments);
-        if (!results) {
+        std::string why;
+        const auto code = guarded([&]() -> UA_StatusCode {
+            auto results = method.handler(context, arguments);
+            if (results) {
+                return handOver(*results, output, output_size);
+            }
+            why = std::move(results.error().message);
             hooks.core->log().info("call of {} on {} refused: {}", context.method.toString(),
-                                   context.object.toString(), sanitise(results.error().message));
+                                   context.object.toString(), sanitise(why));
             return statusFrom(results.error().code).value();
+        });
+        if (method.effect == MethodEffect::commands) {
+            hooks.core->audit().called(context, arguments, StatusCode(code), why);
         }
-        return handOver(*results, output, output_size);
+        return code;
     });
 }
 
@@ -163,6 +171,11 @@ UA_DataSource dataSourceCallbacks() noexcept {
 
 UA_DataSource slotCallbacks() noexcept {
     return {readSlot, writeSlot};
+}
+
+void* auditorsOnly() noexcept {
+    static char mark = 0;
+    return &mark;
 }
 
 bool mayCall(UA_Server* server, const void* session_context, const UA_NodeId& method_id,

@@ -57,6 +57,8 @@ UA_StatusCode callMethod(UA_Server* server, const UA_NodeId* session_id, void* s
 UA_DataSource dataSourceCallbacks() noexcept;
 /// The callbacks of a Variable whose context is a VariableSlot.
 UA_DataSource slotCallbacks() noexcept;
+/// The context of a Variable that only those read who may audit.
+void* auditorsOnly() noexcept;
 /// Whether the role of a session allows a Method.
 bool mayCall(UA_Server* server, const void* session_context, const UA_NodeId& method_id,
              const void* method_context) noexcept;

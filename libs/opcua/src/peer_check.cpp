@@ -123,7 +123,14 @@ StatusCode PeerCheck::check(std::string_view der) {
     if (on_refused_) {
         on_refused_({std::string(der), checked.error()});
     }
-    return statusOf(checked.error().kind);
+    return refuse(der, statusOf(checked.error().kind));
+}
+
+StatusCode PeerCheck::refuse(std::string_view der, StatusCode status) const {
+    if (on_refusal_) {
+        on_refusal_(der, status, last_refusal_);
+    }
+    return status;
 }
 
 /// The whole URI: the stack's own plugin is content with a part of it.
@@ -136,7 +143,7 @@ StatusCode PeerCheck::checkUri(std::string_view der, std::string_view applicatio
     last_refusal_ =
         fmt::format("the certificate is of \"{}\", not of \"{}\"",
                     certificate ? certificate->applicationUri() : "", sanitise(application_uri));
-    return StatusCode(UA_STATUSCODE_BADCERTIFICATEURIINVALID);
+    return refuse(der, StatusCode(UA_STATUSCODE_BADCERTIFICATEURIINVALID));
 }
 
 }  // namespace metier::opcua

@@ -28,6 +28,11 @@ public:
     void install(UA_CertificateVerification& plugin);
     /// For the sessions of a server: whose ApplicationUri it is, but no users by certificate.
     void installForSessions(UA_CertificateVerification& plugin);
+    /// \param why text of the peer may be in it, printable
+    using OnRefusal =
+        std::function<void(std::string_view der, StatusCode status, const std::string& why)>;
+    /// Told of every refusal, also of a certificate that is in order but not the application's.
+    void onRefusal(OnRefusal handler) { on_refusal_ = std::move(handler); }
     /// Why the last peer was refused; empty if it was not.
     const std::string& lastRefusal() const noexcept { return last_refusal_; }
     /// Keeps each that is not trusted for somebody to decide on, besides telling of it.
@@ -36,11 +41,13 @@ public:
 private:
     struct Callbacks;
     PeerCheck(trust::TrustStore store, OnRefused on_refused);
+    StatusCode refuse(std::string_view der, StatusCode status) const;
     StatusCode check(std::string_view der);
     StatusCode checkUri(std::string_view der, std::string_view application_uri);
 
     trust::TrustStore store_;
     OnRefused on_refused_;
+    OnRefusal on_refusal_;
     std::string last_refusal_;
     bool keeps_untrusted_ = false;
 };

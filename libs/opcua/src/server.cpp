@@ -58,6 +58,10 @@ void Server::onSessionClosed(std::function<void(const Session&)> handler) {
     core_->sessions().onClosed(std::move(handler));
 }
 
+void Server::audit(const OwnAct& act) {
+    core_->audit().acted(act);
+}
+
 AddressSpace& Server::nodes() {
     return core_->nodes();
 }

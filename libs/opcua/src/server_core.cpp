@@ -96,7 +96,8 @@ ServerCore::ServerCore(ServerOptions options)
       loop_(loopOptions(options_, log_.handle())),
       sessions_(options_),
       hooks_(*this),
-      nodes_(*this) {}
+      nodes_(*this),
+      audit_(*this) {}
 
 ServerCore::~ServerCore() {
     stop();
@@ -112,13 +113,8 @@ Result<> ServerCore::build() {
     config.logging = log_.handle();
     config.eventLoop = loop_.handle();
     config.context = this;
-    if (options_.security) {
-        auto peers = PeerCheck::create(options_.security->credentials.trust_folder,
-                                       options_.security->on_refused);
-        if (!peers) {
-            return fail(peers.error());
-        }
-        peers_ = std::move(*peers);
+    if (auto checked = checkPeers(); !checked) {
+        return checked;
     }
     if (auto applied = applyOptions(options_, peers_.get(), config); !applied) {
         return applied;
@@ -128,10 +124,7 @@ Result<> ServerCore::build() {
     config.nodeLifecycle.destructor = Callbacks::nodeDeleted;
     config.nodeLifecycle.generateChildNodeId = Callbacks::nameChild;
     config.monitoredItemRegisterCallback = Callbacks::monitored;
-    sessions_.onActivated([this](const Session& session) {
-        watch_.sessionOn(session.id, loop_.currentConnection());
-    });
-    sessions_.onClosed([this](const Session& session) { watch_.sessionClosed(session.id); });
+    followSessions();
     server_.reset(UA_Server_newWithConfig(&config));
     if (!server_) {
         return fail(Errc::internal, "the stack could not make a server");
@@ -144,7 +137,44 @@ Result<> ServerCore::build() {
     for (const auto& uri : options_.namespaces) {
         UA_Server_addNamespace(native(), uri.c_str());
     }
+    // The stack's own source says false.
+    return nodes_.setDataSource(ids::kServerAuditing,
+                                {.read =
+                                     [](const Session&) {
+                                         return DataValue{Value::of(true), {}, {}, {}};
+                                     },
+                                 .write = {}});
+}
+
+/// Of a closed server.
+Result<> ServerCore::checkPeers() {
+    if (!options_.security) {
+        return {};
+    }
+    auto peers = PeerCheck::create(options_.security->credentials.trust_folder,
+                                   options_.security->on_refused);
+    if (!peers) {
+        return fail(peers.error());
+    }
+    peers_ = std::move(*peers);
+    peers_->onRefusal([this](std::string_view der, StatusCode status, const std::string& why) {
+        audit_.peerRefused(der, status, why);
+    });
     return {};
+}
+
+void ServerCore::followSessions() {
+    sessions_.onActivated([this](const Session& session) {
+        watch_.sessionOn(session.id, loop_.currentConnection());
+        audit_.loggedIn(session);
+    });
+    sessions_.onRefused([this](const Session& session, StatusCode status, const std::string& why) {
+        audit_.loginRefused(session, status, why);
+    });
+    sessions_.onClosed([this](const Session& session) {
+        watch_.sessionClosed(session.id);
+        audit_.sessionClosed(session);
+    });
 }
 
 Result<> ServerCore::start() {
@@ -197,6 +227,7 @@ void ServerCore::tellDenial(const CallContext& context) {
     log().info("{} on {} denied to {}, who is {}", context.method.toString(),
                context.object.toString(), sanitise(context.session.user),
                trust::toString(context.session.role));
+    audit_.denied(context);
     if (options_.security && options_.security->on_denied) {
         options_.security->on_denied({context.session, context.object, context.method});
     }
@@ -232,6 +263,7 @@ void ServerCore::tellSecurity() {
 
 void ServerCore::close() {
     sessions_.closeIf(native(), [](const Session&) { return true; });
+    audit_.tellLeftOut();
     UA_Server_run_shutdown(native());
 }
 

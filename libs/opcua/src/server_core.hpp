@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "audit_trail.hpp"
 #include "event_loop/event_loop.hpp"
 #include "event_watch.hpp"
 #include "log_bridge.hpp"
@@ -49,6 +50,7 @@ public:
     Sessions& sessions() noexcept { return sessions_; }
     HookRegistry& hooks() noexcept { return hooks_; }
     AddressSpace& nodes() noexcept { return nodes_; }
+    AuditTrail& audit() noexcept { return audit_; }
     spdlog::logger& log() noexcept { return log_.target(); }
 
     /// Nodes or references changed: what was learned about notifiers holds no more.
@@ -58,6 +60,8 @@ public:
     Result<> renewIdentity(const trust::Identity& identity);
     /// A session called what its role does not allow.
     void tellDenial(const CallContext& context);
+    /// Whether anybody subscribed the events of an Object.
+    bool isWatched(const NodeId& notifier) const { return watch_.watchesAny({&notifier, 1}); }
     /// Whether an event of a source that raised one before would reach nobody.
     bool nobodyHears(const NodeId& source) const;
 
@@ -69,6 +73,8 @@ private:
 
     explicit ServerCore(ServerOptions options);
     Result<> build();
+    Result<> checkPeers();
+    void followSessions();
     void run(const std::stop_token& stop, std::promise<Result<>>& opened);
     Result<> open();
     void tellSecurity();
@@ -87,6 +93,7 @@ private:
     std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;
     std::unique_ptr<UA_Server, DeleteServer> server_;
     std::shared_ptr<PendingTimers> timers_;  ///< shared for the weak pointers of handles
+    AuditTrail audit_;
     WorkQueue queue_;
     std::atomic<std::uint16_t> port_{0};
     const std::thread::id creator_ = std::this_thread::get_id();

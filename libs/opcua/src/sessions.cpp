@@ -67,6 +67,11 @@ void describe(UA_Server* server, Session& session) {
     }
 }
 
+StatusCode refusalOf(const Error& error) noexcept {
+    return error.code == Errc::not_supported ? status::kBadIdentityTokenInvalid
+                                             : status::kBadUserAccessDenied;
+}
+
 }  // namespace
 
 /// What the stack calls. It passes the session's context, which is ours or null.
@@ -95,7 +100,11 @@ struct Sessions::Callbacks {
     static UA_Byte accessLevel(UA_Server* /*server*/, UA_AccessControl* control,
                                const UA_NodeId* session_id, void* context, const UA_NodeId* node,
                                void* node_context) noexcept {
-        if (session_id == nullptr && isOfTheStack(*node, node_context)) {
+        const bool for_auditors = node_context == auditorsOnly();
+        if (session_id == nullptr && (for_auditors || isOfTheStack(*node, node_context))) {
+            return 0;
+        }
+        if (for_auditors && context != nullptr && !mayAudit(owner(control).of(context).role)) {
             return 0;
         }
         return context == nullptr || mayCommand(owner(control).of(context).role) ? kAllAccess
@@ -200,8 +209,8 @@ StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Pres
                               void** context) {
     const auto admission = admit(presented);
     if (!admission) {
-        return admission.error().code == Errc::not_supported ? status::kBadIdentityTokenInvalid
-                                                             : status::kBadUserAccessDenied;
+        tellRefusal(server, fromNative(id), presented, admission.error());
+        return refusalOf(admission.error());
     }
     auto& session = sessions_[fromNative(id)];
     if (!session) {
@@ -217,6 +226,21 @@ StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Pres
         activated_(*session);
     }
     return status::kGood;
+}
+
+void Sessions::tellRefusal(UA_Server* server, const NodeId& id, const Presented& presented,
+                           const Error& error) {
+    if (!refused_) {
+        return;
+    }
+    Session session;
+    session.id = id;
+    session.thumbprint = presented.thumbprint;
+    describe(server, session);
+    const auto* named = decodedAs<UA_UserNameIdentityToken>(
+        presented.token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
+    session.user = named == nullptr ? std::string() : textFrom(named->userName);
+    refused_(session, refusalOf(error), error.message);
 }
 
 void Sessions::close(const UA_NodeId& id) {

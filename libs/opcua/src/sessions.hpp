@@ -31,6 +31,9 @@ public:
     const Session& of(const void* context) const noexcept;
     /// Calls whenever a session is activated: at first, and again on another connection.
     void onActivated(Handler handler) { activated_ = std::move(handler); }
+    using RefusedHandler = std::function<void(const Session&, StatusCode, const std::string& why)>;
+    /// Calls whenever a session is not activated; its user is the one that was claimed.
+    void onRefused(RefusedHandler handler) { refused_ = std::move(handler); }
     void onClosed(Handler handler) { closed_.push_back(std::move(handler)); }
     void closeIf(UA_Server* server, const std::function<bool(const Session&)>& which);
 
@@ -46,6 +49,8 @@ private:
     StatusCode activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                         void** context);
     void close(const UA_NodeId& id);
+    void tellRefusal(UA_Server* server, const NodeId& id, const Presented& presented,
+                     const Error& error);
     Result<Admission> admit(const Presented& presented) const;
     Result<Admission> authenticate(const Login& login) const;
 
@@ -53,6 +58,7 @@ private:
     std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;
     Session server_session_{{}, "server", {}, {}, {}};
     Handler activated_;
+    RefusedHandler refused_;
     std::vector<Handler> closed_;
 };
 

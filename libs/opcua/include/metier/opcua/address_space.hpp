@@ -86,8 +86,9 @@ using MethodHandler =
 
 /// Who may call a Method of a closed server.
 enum class MethodEffect {
-    commands,  ///< whose role commands
-    tells,     ///< everybody
+    commands,  ///< whose role commands; each call is audited
+    renews,    ///< whose role commands; called again and again, so only denials are audited
+    tells,     ///< everybody; not audited
 };
 
 struct MethodSpec {

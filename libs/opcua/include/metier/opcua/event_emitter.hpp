@@ -10,6 +10,7 @@
 namespace metier::opcua {
 
 class Server;
+class ServerCore;  // of src/
 
 /// One occurrence of an event.
 struct Event {
@@ -19,6 +20,13 @@ struct Event {
     std::uint16_t severity = 0;  ///< 1 (least) .. 1000
     LocalizedText message;
     std::vector<Value> fields;  ///< in the order the emitter was created with
+};
+
+/// Who may read the fields of events. The stack sends an event to every subscriber: to others its
+/// fields are Null, the EventType too.
+enum class EventAudience {
+    everybody,
+    auditors,  ///< sessions for which mayAudit()
 };
 
 /// Raises events of one type.
@@ -36,6 +44,9 @@ public:
     /// type).
     static Result<EventEmitter> create(Server& server, const NodeId& type,
                                        const std::vector<BrowsePath>& fields);
+    static Result<EventEmitter> create(ServerCore& core, const NodeId& type,
+                                       const std::vector<BrowsePath>& fields,
+                                       EventAudience audience = EventAudience::everybody);
     ~EventEmitter();
     EventEmitter(EventEmitter&&) noexcept;
     EventEmitter& operator=(EventEmitter&&) noexcept;

@@ -20,6 +20,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/address_space.hpp"
+#include "metier/opcua/audit.hpp"
 #include "metier/opcua/security.hpp"
 #include "metier/opcua/session.hpp"
 
@@ -85,6 +86,9 @@ struct ServerOptions {
     /// Users of a lab besides the anonymous one.
     std::vector<UserPassword> users;
     EventPublishing event_publishing = EventPublishing::at_once;
+    /// Told what sessions and the server do, and what they were not let do; may be empty. On the
+    /// server's thread: it must not wait.
+    std::function<void(const AuditRecord&)> on_audit{};
     /// Others may register, and are told of by FindServers.
     std::optional<DiscoveryService> discovery{};
     ServerLimits limits;
@@ -167,6 +171,8 @@ public:
 
     /// The server's thread only.
     AddressSpace& nodes();
+    /// Notes what the server did by itself, as an audit event and for on_audit. Server's thread.
+    void audit(const OwnAct& act);
 
     /// Closes the sessions of which it says true. Server's thread.
     void closeSessions(const std::function<bool(const Session&)>& which);

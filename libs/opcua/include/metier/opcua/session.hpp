@@ -25,4 +25,9 @@ constexpr bool mayCommand(trust::Role role) noexcept {
     return role == trust::Role::operator_ || role == trust::Role::engineer;
 }
 
+/// Whether a role may read what others did: the content of audit events.
+constexpr bool mayAudit(trust::Role role) noexcept {
+    return role == trust::Role::engineer || role == trust::Role::security_admin;
+}
+
 }  // namespace metier::opcua

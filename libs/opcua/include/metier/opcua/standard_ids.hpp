@@ -37,8 +37,21 @@ inline const NodeId kPropertyType{0, 68U};
 inline const NodeId kBaseEventType{0, 2041U};
 inline const NodeId kProgramStateMachineType{0, 2391U};
 inline const NodeId kProgramTransitionEventType{0, 2378U};
+inline const NodeId kSystemEventType{0, 2130U};
+inline const NodeId kAuditEventType{0, 2052U};
+inline const NodeId kAuditSecurityEventType{0, 2058U};
+inline const NodeId kAuditSessionEventType{0, 2069U};
+inline const NodeId kAuditActivateSessionEventType{0, 2075U};
+inline const NodeId kAuditCertificateEventType{0, 2080U};
+inline const NodeId kAuditCertificateExpiredEventType{0, 2085U};
+inline const NodeId kAuditCertificateInvalidEventType{0, 2086U};
+inline const NodeId kAuditCertificateUntrustedEventType{0, 2087U};
+inline const NodeId kAuditCertificateRevokedEventType{0, 2088U};
+inline const NodeId kAuditCertificateMismatchEventType{0, 2089U};
+inline const NodeId kAuditUpdateMethodEventType{0, 2127U};
 
 inline const NodeId kObjectsFolder{0, 85U};
 inline const NodeId kServer{0, 2253U};
+inline const NodeId kServerAuditing{0, 2994U};
 
 }  // namespace metier::opcua::ids
