@@ -1,5 +1,7 @@
 #include "control_node.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <utility>
 
@@ -47,9 +49,9 @@ opcua::MethodHandler withEpoch(Work work) {
 
 }  // namespace
 
-ControlNode::ControlNode(std::shared_ptr<skill::Control> control,
+ControlNode::ControlNode(std::shared_ptr<skill::Control> control, opcua::Server& server,
                          std::shared_ptr<spdlog::logger> log)
-    : control_(std::move(control)), log_(std::move(log)) {
+    : control_(std::move(control)), server_(server), log_(std::move(log)) {
     control_->attach(*this);
 }
 
@@ -57,8 +59,12 @@ ControlNode::~ControlNode() {
     control_->detach(*this);
 }
 
-void ControlNode::onControlLost(std::string_view /*session*/, skill::OwnerLossAction /*action*/,
+void ControlNode::onControlLost(std::string_view session, skill::OwnerLossAction action,
                                 const std::string& text) {
+    server_.audit({.object = controller_,
+                   .event = "ControlLost",
+                   .text = fmt::format("{}; session {}, OnOwnerLoss {}", text, session,
+                                       skill::toString(action))});
     log_->warn("control of {} is lost: {}", controller_.toString(), text);
 }
 
@@ -80,20 +86,23 @@ Result<void> ControlNode::bindLease(AddressSpace& nodes, const NodeId& controlle
     struct Call {
         const char* name;
         opcua::MethodHandler handler;
+        opcua::MethodEffect effect = opcua::MethodEffect::commands;
     };
     const std::array calls{
         Call{"AcquireControl", [this](const CallContext& context,
                                       Inputs inputs) { return acquire(context, inputs); }},
         Call{"Heartbeat", withEpoch([this](const skill::Caller& caller, std::uint64_t epoch) {
                  return control_->heartbeat(caller, epoch);
-             })},
+             }),
+             opcua::MethodEffect::renews},
         Call{"ReleaseControl", withEpoch([this](const skill::Caller& caller, std::uint64_t epoch) {
                  return control_->release(caller, epoch);
              })},
     };
-    for (const auto& [name, handler] : calls) {
+    for (const auto& [name, handler, effect] : calls) {
         const auto method = nodes.find(controller, {*metier, name});
-        auto set = method ? nodes.setMethod(*method, handler) : Result<void>(fail(method.error()));
+        auto set =
+            method ? nodes.setMethod(*method, handler, effect) : Result<void>(fail(method.error()));
         if (!set) {
             return set;
         }
@@ -118,12 +127,16 @@ Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
     struct Call {
         const char* name;
         Result<void> (*work)(skill::Control&, const skill::Caller&);
+        opcua::MethodEffect effect = opcua::MethodEffect::commands;
     };
     static constexpr std::array kCalls{
         Call{"InitLock", [](skill::Control& control,
                             const skill::Caller& caller) { return control.lock(caller); }},
-        Call{"RenewLock", [](skill::Control& control,
-                             const skill::Caller& caller) { return control.renewLock(caller); }},
+        Call{"RenewLock",
+             [](skill::Control& control, const skill::Caller& caller) {
+                 return control.renewLock(caller);
+             },
+             opcua::MethodEffect::renews},
         Call{"ExitLock", [](skill::Control& control,
                             const skill::Caller& caller) { return control.unlock(caller); }},
         Call{"BreakLock", [](skill::Control& control,
@@ -134,10 +147,13 @@ Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
         if (!method) {
             return fail(method.error());
         }
-        auto set = nodes.setMethod(*method, [control = control_, work = call.work](
-                                                const CallContext& context, Inputs /*inputs*/) {
-            return Result<std::vector<Value>>(statusOf(work(*control, callerOf(context.session))));
-        });
+        auto set = nodes.setMethod(
+            *method,
+            [control = control_, work = call.work](const CallContext& context, Inputs /*inputs*/) {
+                return Result<std::vector<Value>>(
+                    statusOf(work(*control, callerOf(context.session))));
+            },
+            call.effect);
         if (!set) {
             return set;
         }

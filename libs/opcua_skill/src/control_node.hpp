@@ -13,13 +13,15 @@
 namespace metier::opcua_skill {
 
 /// Serves a Control at the nodes of one controller: the lease of IControlLeaseType, and the Lock of
-/// the DI model. Logs each loss of control.
+/// the DI model. Logs each loss of control, and has it audited.
 ///
 /// Threading: the server's thread.
 class ControlNode final : public opcua::VariableHandler, private skill::Control::Listener {
 public:
-    /// \param log shared with its other users, as spdlog does
-    ControlNode(std::shared_ptr<skill::Control> control, std::shared_ptr<spdlog::logger> log);
+    /// \param server must outlive this
+    /// \param log    shared with its other users, as spdlog does
+    ControlNode(std::shared_ptr<skill::Control> control, opcua::Server& server,
+                std::shared_ptr<spdlog::logger> log);
     ~ControlNode() override;
     ControlNode(const ControlNode&) = delete;
     ControlNode& operator=(const ControlNode&) = delete;
@@ -54,6 +56,7 @@ private:
 
     // Shared with the Programs of the controller.
     std::shared_ptr<skill::Control> control_;
+    opcua::Server& server_;
     std::shared_ptr<spdlog::logger> log_;  // with its other users, as spdlog does
     opcua::NodeId controller_;
     std::vector<std::unique_ptr<opcua::VariableSlot>> slots_;

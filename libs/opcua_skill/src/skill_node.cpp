@@ -386,7 +386,21 @@ Result<void> SkillNode::remember(const Session& session, Result<void> outcome) {
     return outcome;
 }
 
+/// A transition that no call of a client asked for, and that is not simply the end of the work.
+void SkillNode::auditOwnAct(const skill::TransitionEvent& event) {
+    using skill::Reason;
+    if (event.reason == Reason::none || event.reason == Reason::finished ||
+        event.reason == Reason::by_client) {
+        return;
+    }
+    context_.server.audit(
+        {.object = id_,
+         .event = std::string(skill::toString(event.to)),
+         .text = fmt::format("{}: {}", skill::toString(event.reason), event.reason_text)});
+}
+
 void SkillNode::onTransition(const skill::TransitionEvent& event) {
+    auditOwnAct(event);
     opcua::Event occurrence;
     occurrence.source = id_;
     occurrence.source_name = program_->description().name;

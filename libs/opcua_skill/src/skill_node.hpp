@@ -43,6 +43,7 @@ struct SkillContext {
     ModelIds ids;
     opcua::EventEmitter emitter;
     Refusals refusals;
+    opcua::Server& server;
     std::shared_ptr<spdlog::logger> log;  // with its other users, as spdlog does
 };
 
@@ -79,6 +80,7 @@ private:
     void onProgress(const skill::Value& /*intermediate*/) override {}
     void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
 
+    void auditOwnAct(const skill::TransitionEvent& event);
     Result<void> call(const opcua::Session& session, skill::Method method);
     Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose);
     Result<void> bindMethod(opcua::AddressSpace& nodes, const opcua::NodeId& node,

@@ -70,7 +70,8 @@ public:
 
     Result<void> serveControl(const opcua::NodeId& controller,
                               std::shared_ptr<skill::Control> control) {
-        controls_.push_back(std::make_unique<ControlNode>(std::move(control), context_.log));
+        controls_.push_back(
+            std::make_unique<ControlNode>(std::move(control), server_, context_.log));
         return controls_.back()->bind(server_.nodes(), controller);
     }
 
@@ -135,6 +136,7 @@ Result<std::unique_ptr<SkillServer>> SkillServer::create(
     SkillContext context{std::move(*ids),
                          std::move(*emitter),
                          {},
+                         server,
                          logger ? std::move(logger) : spdlog::default_logger()};
     return std::unique_ptr<SkillServer>(new SkillServer(
         std::make_unique<State>(server, clock, std::move(context), std::move(executor))));

@@ -10,6 +10,10 @@
 namespace metier::opcua_skill::testing {
 namespace {
 
+using namespace std::chrono_literals;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
 class Events : public ServedSkills {
 protected:
     Events() : skill_(add(jointMoveDescription())) {
@@ -98,6 +102,26 @@ TEST_F(Events, NeverComeBeforeTheStateThatTheyTell) {
         ASSERT_EQ(watch.nextName(), "RunningToReady");
         ASSERT_EQ(readAs<double>(*client_, skill_, "FinalResultData/Duration"), round);
     }
+}
+
+TEST_F(Events, OfTheAuditTellWhatTheServerDidByItself) {
+    const auto messages = std::make_shared<Queue<std::string>>(100);  // with the callback
+    const auto subscription = client_->subscribeEvents(
+        opcua::ids::kServer,
+        {.fields = {{{0, "Message"}}, {{0, "EventType"}}}, .of_type = opcua::ids::kAuditEventType},
+        [messages](const opcua::EventNotice& notice) {
+            if (notice.kind == opcua::EventNotice::Kind::event &&
+                notice.fields[1] == opcua::Value::of(opcua::ids::kAuditEventType)) {
+                messages->tryPush(notice.fields[0].toString());
+            }
+        });
+    ASSERT_TRUE(subscription) << subscription.error().message;
+    start();
+    skill_.hand->execution().fail(skill::Reason::device_lost, "the wire is cut");
+    const auto message = messages->popUntil(std::chrono::steady_clock::now() + 10s);
+    ASSERT_TRUE(message);
+    EXPECT_THAT(*message, AllOf(HasSubstr("Halted of JointPtpMoveSkill"),
+                                HasSubstr("by the server: DeviceLost: the wire is cut")));
 }
 
 /// Skills that finish at once, shared by several clients.

@@ -83,6 +83,8 @@ TransitionWatch::TransitionWatch(opcua::Client& client, const opcua::NodeId& not
     EXPECT_TRUE(device);
     opcua::EventFilter filter;
     filter.fields = watchedFields(device.value_or(0));
+    filter.of_type =
+        opcua::ids::kProgramTransitionEventType;  // the Server raises audit events, too
     auto subscription = client.subscribeEvents(
         notifier, std::move(filter), [this, seen = seen_](const opcua::EventNotice& notice) {
             if (notice.kind == opcua::EventNotice::Kind::event) {
