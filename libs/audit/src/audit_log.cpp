@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
 
 #include "chain.hpp"
@@ -25,7 +24,7 @@ Entry note(std::string event, std::string name, std::string value) {
 
 Result<std::unique_ptr<AuditLog>> AuditLog::open(Options options) {
     std::size_t dropped = 0;
-    auto file = File::open(options.file, dropped);
+    auto file = File::open(options.file, options.part_size, dropped);
     if (!file) {
         return fail(file.error());
     }
@@ -106,31 +105,6 @@ void AuditLog::tell(Health health, const std::string& why) {
     if (std::exchange(health_, health) != health && options_.on_health) {
         options_.on_health(health, why);
     }
-}
-
-Result<Verified> verify(const std::filesystem::path& file) {
-    std::ifstream lines(file);
-    if (!lines) {
-        return fail(Errc::not_found, fmt::format("{} cannot be read", file.string()));
-    }
-    Verified verified;
-    verified.last_chain = kNoChain;
-    for (std::string text; std::getline(lines, text);) {
-        const auto line = readLine(text, verified.last_chain);
-        if (!line || line->number != verified.entries + 1) {
-            return fail(Errc::invalid_argument,
-                        fmt::format("{}:{}: is not as it was written, or the line before is "
-                                    "missing",
-                                    file.string(), verified.entries + 1));
-        }
-        ++verified.entries;
-        verified.last_chain = line->chain;
-        verified.last_time = line->time;
-        if (verified.first_time.empty()) {
-            verified.first_time = line->time;
-        }
-    }
-    return verified;
 }
 
 }  // namespace metier::audit

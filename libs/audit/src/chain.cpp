@@ -65,8 +65,13 @@ std::optional<ReadLine> readLastLine(std::string_view text) {
         !json.contains("time") || !json["time"].is_string() || !json["chain"].is_string()) {
         return {};
     }
-    ReadLine line{json["n"].get<std::uint64_t>(), json["time"].get<std::string>(),
-                  json["chain"].get<std::string>()};
+    ReadLine line{json["n"].get<std::uint64_t>(),
+                  json["time"].get<std::string>(),
+                  json["chain"].get<std::string>(),
+                  {}};
+    if (json.value("event", std::string()) == kContinued) {
+        line.after = json.value(kAfter, std::string());
+    }
     return line.chain.size() == kNoChain.size() ? std::optional(std::move(line)) : std::nullopt;
 }
 

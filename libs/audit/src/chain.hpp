@@ -19,12 +19,17 @@ struct ChainedLine {
     std::string chain;
 };
 
+/// The first line of a part that follows another one.
+inline constexpr std::string_view kContinued = "Continued";
+inline constexpr std::string_view kAfter = "after";
+
 ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view chain_before);
 
 struct ReadLine {
     std::uint64_t number = 0;
     std::string time;
     std::string chain;
+    std::string after;  ///< of the first line of a part: the chain value of the part before
 };
 /// Nothing unless it is just as chainLine() wrote it after that one.
 std::optional<ReadLine> readLine(std::string_view text, std::string_view chain_before);

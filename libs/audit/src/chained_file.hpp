@@ -1,6 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chain.hpp"
@@ -8,15 +11,33 @@
 
 namespace metier::audit {
 
-/// The file of a log, open to append.
+/// An open file; closed at its end.
+class Descriptor {
+public:
+    explicit Descriptor(int value = -1) noexcept : value_(value) {}
+    ~Descriptor();
+    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(value_, other.value_);
+        return *this;
+    }
+    int get() const noexcept { return value_; }
+    explicit operator bool() const noexcept { return value_ >= 0; }
+
+private:
+    int value_;
+};
+
+/// The last part of a log, open to append; nobody else has the log open.
 ///
 /// Threading: one thread.
 class AuditLog::File {
 public:
+    /// \param part_size [byte]
     /// \param dropped how much of a last line that was not whole [byte]
     static Result<std::unique_ptr<File>> open(const std::filesystem::path& path,
-                                              std::size_t& dropped);
-    ~File();
+                                              std::uintmax_t part_size, std::size_t& dropped);
+    ~File() = default;
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 
@@ -25,12 +46,24 @@ public:
     Result<void> write(const std::vector<Entry>& entries);
 
 private:
-    File(int descriptor, std::filesystem::path path) noexcept
-        : descriptor_(descriptor), path_(std::move(path)) {}
-    Result<std::size_t> readEnd();
+    File(std::filesystem::path log, std::uintmax_t part_size) noexcept
+        : log_(std::move(log)), part_size_(part_size) {}
+    /// Lines to write, and what is true once they are.
+    struct Batch {
+        std::string text;
+        std::uint64_t number = 0;
+        std::string chain;
+    };
+    Batch chained(const std::vector<Entry>& entries, bool at_begin) const;
+    Result<void> lock();
+    Result<std::size_t> readEnds();
+    void goOnInNextPart(off_t size);
 
-    int descriptor_;
-    std::filesystem::path path_;
+    const std::filesystem::path log_;
+    const std::uintmax_t part_size_;
+    Descriptor first_part_;  // keeps the lock
+    Descriptor part_;
+    std::uint32_t part_number_ = 1;
     std::uint64_t number_ = 0;
     std::string chain_{kNoChain};
 };

@@ -34,6 +34,8 @@ enum class Health {
 };
 
 /// A file that only grows: a JSON object in each line, chained to the one before by SHA-256.
+/// Beyond `part_size` it goes on in another one: "a.log", "a.2.log", "a.3.log", ..., the chain too.
+/// No part is ever removed.
 ///
 /// Whoever changes, removes or inserts a line breaks the chain, which verify() tells. Only lines
 /// cut off at the end do not show, unless the last chain value is known from elsewhere. What is
@@ -46,11 +48,14 @@ public:
         std::filesystem::path file;
         /// On the log's thread, at each change; with the reason. May be empty.
         std::function<void(Health, const std::string& why)> on_health;
+        std::uintmax_t part_size = std::uintmax_t{64} << 20U;  ///< [byte] about
     };
 
-    /// Goes on where the file ends. A last line that is not whole, as after a loss of power, is
+    /// Goes on where the file ends, or its last part. Others may not read it, nor its folder if
+    /// that is new. A last line that is not whole, as after a loss of power, is
     /// dropped, which an entry tells.
-    /// Errors: resource_unavailable (the file); invalid_argument (it is no audit log).
+    /// Errors: resource_unavailable (the file, also if another log has it open);
+    ///         invalid_argument (it is no audit log).
     static Result<std::unique_ptr<AuditLog>> open(Options options);
     /// Writes what is waiting, unless the disk refuses it.
     ~AuditLog();
@@ -84,13 +89,18 @@ private:
 /// What a log that was not tampered with holds.
 struct Verified {
     std::uint64_t entries = 0;
-    std::string first_time;  ///< empty if there is no entry
+    std::uint64_t first_number = 1;  ///< more: what came before is in another part
+    std::string first_time;          ///< empty if there is no entry
     std::string last_time;
     std::string last_chain;  ///< 64 hexadecimal digits
 };
 
-/// Reads the whole file.
-/// Errors: not_found; invalid_argument, naming the first line that is not as it was written.
+/// Reads the whole file and the parts that follow it.
+/// Errors: not_found, naming the part; invalid_argument, naming the first line that is not as it
+///         was written.
 Result<Verified> verify(const std::filesystem::path& file);
+
+/// The file and the parts that follow it, in their order.
+std::vector<std::filesystem::path> partsOf(const std::filesystem::path& file);
 
 }  // namespace metier::audit

@@ -1,0 +1,47 @@
+#include "parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <string_view>
+
+namespace metier::audit {
+namespace {
+
+/// The number in "<stem>.<number><extension>"; 0: it is no such name.
+std::uint32_t numberIn(std::string_view name, std::string_view stem, std::string_view extension) {
+    if (name.size() <= stem.size() + extension.size() + 1 || !name.starts_with(stem) ||
+        !name.ends_with(extension) || name[stem.size()] != '.') {
+        return 0;
+    }
+    const auto digits =
+        name.substr(stem.size() + 1, name.size() - stem.size() - extension.size() - 1);
+    std::uint32_t number = 0;
+    const auto* end = digits.data() + digits.size();
+    const auto read = std::from_chars(digits.data(), end, number);
+    return read.ec == std::errc() && read.ptr == end ? number : 0;
+}
+
+}  // namespace
+
+std::filesystem::path partOf(const std::filesystem::path& log, std::uint32_t number) {
+    auto part = log;
+    return number == 1 ? part
+                       : part.replace_filename(fmt::format("{}.{}{}", log.stem().string(), number,
+                                                           log.extension().string()));
+}
+
+std::uint32_t lastPart(const std::filesystem::path& log) {
+    const auto stem = log.stem().string();
+    const auto extension = log.extension().string();
+    std::uint32_t last = 1;
+    std::error_code none;  // no folder, no parts
+    for (const auto& entry : std::filesystem::directory_iterator(log.parent_path(), none)) {
+        last = std::max(last, numberIn(entry.path().filename().string(), stem, extension));
+    }
+    return last;
+}
+
+}  // namespace metier::audit
