@@ -35,6 +35,7 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addHalt(app, exit);
     metier::app::addSkillCommands(app, exit);
     metier::app::addOwn(app, exit);
+    metier::app::addAudit(app, exit);
     metier::app::addFind(app, exit);
     metier::app::addDiscovery(app, exit);
     metier::app::addSquare(app, exit);

@@ -92,6 +92,12 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
         return fail(skills.error());
     }
     host->skills_ = std::move(*skills);
+    if (auto followed = host->audit_ == nullptr
+                            ? Result<void>()
+                            : host->audit_->follow(*host->server_, host->skills_->executor());
+        !followed) {
+        return fail(followed.error());
+    }
     if (auto published = opcua_skill::publishDictionary(host->nodes()); !published) {
         return fail(published.error());
     }
@@ -139,6 +145,11 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     }
     access_ = std::move(*access);
     application_uri_ = options.application_uri;
+    auto audit = ServerAudit::open(config_, options);
+    if (!audit) {
+        return fail(audit.error());
+    }
+    audit_ = std::move(*audit);
     auto server = opcua::Server::create(std::move(options));
     if (!server) {
         return fail(server.error());

@@ -20,6 +20,7 @@
 #include "metier/robot_skills/device_watch.hpp"
 #include "metier/robot_skills/stall_watch.hpp"
 #include "server_access.hpp"
+#include "server_audit.hpp"
 
 namespace metier::app {
 
@@ -105,6 +106,7 @@ private:
     SystemClock clock_;
     std::unique_ptr<ServerAccess> access_;  // none in an insecure lab
     std::unique_ptr<opcua::Server> server_;
+    std::unique_ptr<ServerAudit> audit_;  // none without a state folder
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::shared_ptr<skill::Control> control_;       // shared with the Programs
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs

@@ -1,0 +1,112 @@
+#include "server_audit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "metier/trust/users.hpp"
+
+namespace metier::app {
+namespace {
+
+constexpr std::uint16_t kAlarm = 800;
+constexpr std::uint16_t kOver = 100;
+
+audit::Entry entryOf(const opcua::AuditRecord& record) {
+    audit::Entry entry{record.time, record.event, {}};
+    const auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty()) {
+            entry.fields.emplace_back(name, value);
+        }
+    };
+    const auto& session = record.session;
+    const bool of_client = !session.id.isNull();
+    add("user", session.user);
+    add("role", of_client ? std::string(trust::toString(session.role)) : "");
+    add("application", session.application_name);
+    add("application_uri", session.application_uri);
+    add("thumbprint", session.thumbprint);
+    add("session", of_client ? session.id.toString() : session.name);
+    add("object", record.object_name);
+    add("object_id", record.object.isNull() ? "" : record.object.toString());
+    add("method", record.method_name == record.event ? "" : record.method_name);
+    add("inputs", fmt::format("{}", fmt::join(record.inputs, "; ")));
+    add("status", record.status.name());
+    add("text", record.text);
+    return entry;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::ServerConfig& config,
+                                                       opcua::ServerOptions& options) {
+    if (config.state_folder.empty()) {
+        spdlog::warn("{}: no state folder, so no audit log", config.name);
+        return nullptr;
+    }
+    std::unique_ptr<ServerAudit> audit(new ServerAudit());
+    audit->name_ = config.name;
+    auto log = audit::AuditLog::open(
+        {.file = config.state_folder / "audit" /
+                 fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
+         .on_health = [&audit = *audit](audit::Health health, const std::string& why) {
+             audit.tell(health, why);
+         }});
+    if (!log) {
+        return fail(log.error());
+    }
+    audit->log_ = std::move(*log);
+    options.on_audit = [&log = *audit->log_,
+                        before = std::move(options.on_audit)](const opcua::AuditRecord& record) {
+        log.append(entryOf(record));
+        if (before) {
+            before(record);
+        }
+    };
+    return audit;
+}
+
+Result<void> ServerAudit::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
+    auto emitter = opcua::EventEmitter::create(server, opcua::ids::kSystemEventType, {});
+    if (!emitter) {
+        return fail(emitter.error());
+    }
+    emitter_ = std::move(*emitter);
+    const std::lock_guard lock(mutex_);
+    executor_ = std::move(executor);
+    return {};
+}
+
+void ServerAudit::tell(audit::Health health, const std::string& why) {
+    const auto text =
+        health == audit::Health::failing
+            ? fmt::format("the audit log cannot be written: {}; up to 10000 entries wait", why)
+            : std::string("the audit log is written again");
+    spdlog::log(health == audit::Health::failing ? spdlog::level::err : spdlog::level::warn,
+                "{}: {}", name_, text);
+    std::shared_ptr<skill::Executor> executor;
+    {
+        const std::lock_guard lock(mutex_);
+        executor = executor_;
+    }
+    if (executor) {
+        executor->post([this, health, text] { raise(health, text); });
+    }
+}
+
+void ServerAudit::raise(audit::Health health, const std::string& text) {
+    const auto raised =
+        emitter_->emit({.source = opcua::ids::kServer,
+                        .source_name = "AuditLog",
+                        .time = std::chrono::system_clock::now(),
+                        .severity = health == audit::Health::failing ? kAlarm : kOver,
+                        .message = {"en", text},
+                        .fields = {}});
+    if (!raised) {
+        spdlog::error("{}: no event: {}", name_, raised.error().message);
+    }
+}
+
+}  // namespace metier::app

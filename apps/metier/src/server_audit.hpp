@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "metier/audit/audit_log.hpp"
+#include "metier/base/error.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/opcua/event_emitter.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/skill/executor.hpp"
+
+namespace metier::app {
+
+/// Keeps the audit log of a server, `<state folder>/audit/<name>-<address>-<port>.log`, and says
+/// when it cannot be written: in the program's log, and by an event of the Server object.
+///
+/// Threading: made, followed and ended as its server; ends before it, and after its last client.
+class ServerAudit {
+public:
+    /// Has what a server of these options does and refuses written; before the server is made.
+    /// \return null without a state folder, which the program's log tells
+    /// Errors: resource_unavailable (the file); invalid_argument (it is no audit log).
+    static Result<std::unique_ptr<ServerAudit>> open(const configuration::ServerConfig& config,
+                                                     opcua::ServerOptions& options);
+    ServerAudit(const ServerAudit&) = delete;
+    ServerAudit& operator=(const ServerAudit&) = delete;
+
+    /// Raises the events at that server. Before its start.
+    Result<void> follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor);
+
+private:
+    ServerAudit() = default;
+    /// On the log's thread.
+    void tell(audit::Health health, const std::string& why);
+    void raise(audit::Health health, const std::string& text);
+
+    std::string name_;
+    std::optional<opcua::EventEmitter> emitter_;
+    std::mutex mutex_;
+    std::shared_ptr<skill::Executor> executor_;  // of the server, shared with its Programs
+    std::unique_ptr<audit::AuditLog> log_;       // ends first, and its thread
+};
+
+}  // namespace metier::app
