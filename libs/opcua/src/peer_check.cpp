@@ -112,6 +112,9 @@ StatusCode PeerCheck::check(std::string_view der) {
     const auto checked = store_.check(der, std::chrono::system_clock::now());
     if (checked) {
         last_refusal_.clear();
+        if (on_trusted_) {
+            on_trusted_();
+        }
         return status::kGood;
     }
     last_refusal_ = checked.error().message;
@@ -133,12 +136,15 @@ StatusCode PeerCheck::refuse(std::string_view der, StatusCode status) const {
     return status;
 }
 
-/// The whole URI: the stack's own plugin is content with a part of it.
+/// The whole URI: the stack's own plugin is content with a part of it. The stack asks when a
+/// Session is to be created, and tells the client what it is told here.
 StatusCode PeerCheck::checkUri(std::string_view der, std::string_view application_uri) {
     const auto certificate = trust::Certificate::fromDer(der);
     if (certificate && !application_uri.empty() &&
         certificate->applicationUri() == application_uri) {
-        return status::kGood;
+        const bool may_create =
+            !may_create_ || may_create_(certificate->thumbprint(), certificate->applicationUri());
+        return may_create ? status::kGood : status::kBadTooManySessions;
     }
     last_refusal_ =
         fmt::format("the certificate is of \"{}\", not of \"{}\"",

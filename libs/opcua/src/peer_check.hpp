@@ -33,6 +33,13 @@ public:
         std::function<void(std::string_view der, StatusCode status, const std::string& why)>;
     /// Told of every refusal, also of a certificate that is in order but not the application's.
     void onRefusal(OnRefusal handler) { on_refusal_ = std::move(handler); }
+    /// Told whenever a peer's certificate is trusted.
+    void onTrusted(std::function<void()> handler) { on_trusted_ = std::move(handler); }
+    /// Asked whether an application may create a Session.
+    /// \param may_create gets the certificate's thumbprint and the ApplicationUri
+    void onSession(std::function<bool(const std::string&, const std::string&)> may_create) {
+        may_create_ = std::move(may_create);
+    }
     /// Why the last peer was refused; empty if it was not.
     const std::string& lastRefusal() const noexcept { return last_refusal_; }
     /// Keeps each that is not trusted for somebody to decide on, besides telling of it.
@@ -48,6 +55,8 @@ private:
     trust::TrustStore store_;
     OnRefused on_refused_;
     OnRefusal on_refusal_;
+    std::function<void()> on_trusted_;
+    std::function<bool(const std::string&, const std::string&)> may_create_;
     std::string last_refusal_;
     bool keeps_untrusted_ = false;
 };

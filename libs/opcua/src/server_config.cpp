@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <open62541/server_config_default.h>
 
+#include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "convert.hpp"
@@ -66,7 +68,10 @@ UA_DurationRange durations(std::chrono::milliseconds low, std::chrono::milliseco
 }
 
 void setSessionLimits(const ServerLimits& limits, UA_ServerConfig& config) {
-    config.maxSecureChannels = limits.secure_channels;
+    // The event loop counts them, and knows better whose place is needed. The stack frees a closed
+    // one a little later.
+    config.maxSecureChannels = static_cast<UA_UInt16>(
+        std::min<unsigned>(limits.secure_channels * 2U, std::numeric_limits<UA_UInt16>::max()));
     config.maxSessions = limits.sessions;
     config.maxSessionTimeout = static_cast<double>(limits.session_timeout.count());
     config.tcpMaxMsgSize = limits.message_size;
@@ -75,6 +80,7 @@ void setSessionLimits(const ServerLimits& limits, UA_ServerConfig& config) {
     config.maxNodesPerWrite = limits.nodes_per_write;
     config.maxNodesPerMethodCall = limits.nodes_per_call;
     config.maxNodesPerBrowse = limits.nodes_per_browse;
+    config.maxReferencesPerNode = limits.references_per_node;
     config.maxNodesPerRegisterNodes = limits.nodes_per_read;
     config.maxNodesPerTranslateBrowsePathsToNodeIds = limits.nodes_per_browse;
     config.maxMonitoredItemsPerCall = limits.monitored_items_per_subscription;

@@ -20,6 +20,7 @@ constexpr std::chrono::milliseconds kLongestWait{100};
 EventLoopOptions loopOptions(const ServerOptions& options, const UA_Logger* logger) {
     EventLoopOptions result;
     result.max_connections = options.limits.secure_channels;
+    result.stranger_limit = options.limits.handshake_timeout;
     result.publishing = options.event_publishing == EventPublishing::at_once
                             ? Publishing::at_once
                             : Publishing::at_interval;
@@ -160,21 +161,44 @@ Result<> ServerCore::checkPeers() {
     peers_->onRefusal([this](std::string_view der, StatusCode status, const std::string& why) {
         audit_.peerRefused(der, status, why);
     });
+    peers_->onTrusted([this] { loop_.vouchFor(loop_.currentConnection()); });
+    peers_->onSession([this](const std::string& thumbprint, const std::string& uri) {
+        // Without a connection it is this server, which checks its own certificate.
+        return loop_.currentConnection() == 0 || sessions_.mayCreate({thumbprint, uri});
+    });
     return {};
 }
 
 void ServerCore::followSessions() {
     sessions_.onActivated([this](const Session& session) {
-        watch_.sessionOn(session.id, loop_.currentConnection());
+        seat(session);
         audit_.loggedIn(session);
     });
     sessions_.onRefused([this](const Session& session, StatusCode status, const std::string& why) {
         audit_.loginRefused(session, status, why);
     });
     sessions_.onClosed([this](const Session& session) {
-        watch_.sessionClosed(session.id);
+        unseat(session);
         audit_.sessionClosed(session);
     });
+}
+
+void ServerCore::seat(const Session& session) {
+    const auto connection = loop_.currentConnection();
+    watch_.sessionOn(session.id, connection);
+    const auto before = std::exchange(seats_[session.id], connection);
+    if (before != connection) {
+        loop_.admit(connection);
+        loop_.dismiss(before);
+    }
+}
+
+void ServerCore::unseat(const Session& session) {
+    watch_.sessionClosed(session.id);
+    const auto seat = seats_.extract(session.id);
+    if (!seat.empty()) {
+        loop_.dismiss(seat.mapped());
+    }
 }
 
 Result<> ServerCore::start() {

@@ -57,6 +57,9 @@ public:
     void structureChanged() { notifiers_.clear(); }
     /// Publishes to those who watch the events of an Object, if the options ask for it.
     void publishEventsOf(const NodeId& source);
+    /// Whether the message that is processed may still be worked on: nobody keeps the others
+    /// waiting with one that names the most expensive nodes again and again.
+    bool mayWorkOn() const { return loop_.workOnTurn() < kLongestWorkOnAMessage; }
     Result<> renewIdentity(const trust::Identity& identity);
     /// A session called what its role does not allow.
     void tellDenial(const CallContext& context);
@@ -66,6 +69,8 @@ public:
     bool nobodyHears(const NodeId& source) const;
 
 private:
+    static constexpr std::chrono::milliseconds kLongestWorkOnAMessage{20};
+
     struct DeleteServer {
         void operator()(UA_Server* server) const noexcept { UA_Server_delete(server); }
     };
@@ -78,6 +83,8 @@ private:
     void run(const std::stop_token& stop, std::promise<Result<>>& opened);
     Result<> open();
     void tellSecurity();
+    void seat(const Session& session);
+    void unseat(const Session& session);
     void close();
     void runGuarded(const std::function<void()>& work) noexcept;
     const std::vector<NodeId>& notifiersAbove(const NodeId& source);
@@ -88,6 +95,7 @@ private:
     Sessions sessions_;
     std::unique_ptr<PeerCheck> peers_;  ///< of a closed server
     EventWatch watch_;
+    std::unordered_map<NodeId, ConnectionId> seats_;  ///< where each Session is used
     HookRegistry hooks_;
     AddressSpace nodes_;
     std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;

@@ -90,18 +90,19 @@ struct Sessions::Callbacks {
             return owner(control).activate(server, *id, {*token, thumbprint, der}, context).value();
         });
     }
-    static void close(UA_Server* /*server*/, UA_AccessControl* control, const UA_NodeId* id,
+    static void close(UA_Server* server, UA_AccessControl* control, const UA_NodeId* id,
                       void* /*context*/) noexcept {
         guarded([&]() -> UA_StatusCode {
-            owner(control).close(*id);
+            owner(control).close(server, *id);
             return UA_STATUSCODE_GOOD;
         });
     }
-    static UA_Byte accessLevel(UA_Server* /*server*/, UA_AccessControl* control,
+    static UA_Byte accessLevel(UA_Server* server, UA_AccessControl* control,
                                const UA_NodeId* session_id, void* context, const UA_NodeId* node,
                                void* node_context) noexcept {
         const bool for_auditors = node_context == auditorsOnly();
-        if (session_id == nullptr && (for_auditors || isOfTheStack(*node, node_context))) {
+        if (!ServerCore::of(server).mayWorkOn() ||
+            (session_id == nullptr && (for_auditors || isOfTheStack(*node, node_context)))) {
             return 0;
         }
         if (for_auditors && context != nullptr && !mayAudit(owner(control).of(context).role)) {
@@ -144,7 +145,13 @@ struct Sessions::Callbacks {
     }
 };
 
-Sessions::Sessions(const ServerOptions& options) : options_(options) {}
+Sessions::Sessions(const ServerOptions& options)
+    : options_(options),
+      by_application_(options.limits.sessions_per_application, options.limits.session_timeout) {}
+
+bool Sessions::mayCreate(const ApplicationSessions::Application& application) {
+    return by_application_.create(application, std::chrono::steady_clock::now());
+}
 
 void Sessions::install(UA_ServerConfig& config) {
     UA_AccessControl& control = config.accessControl;
@@ -156,7 +163,9 @@ void Sessions::install(UA_ServerConfig& config) {
     control.getUserRightsMask = [](auto...) -> UA_UInt32 { return 0; };
     control.getUserAccessLevel = Callbacks::accessLevel;
     control.getUserExecutableOnObject = Callbacks::executableOnObject;
-    control.allowBrowseNode = [](auto...) -> UA_Boolean { return true; };
+    control.allowBrowseNode = [](UA_Server* server, auto...) -> UA_Boolean {
+        return ServerCore::of(server).mayWorkOn();
+    };
     control.allowAddNode = [](auto...) -> UA_Boolean { return false; };
     control.allowAddReference = [](auto...) -> UA_Boolean { return false; };
     control.allowDeleteNode = [](auto...) -> UA_Boolean { return false; };
@@ -205,17 +214,29 @@ Result<Admission> Sessions::authenticate(const Login& login) const {
                  : fail(Errc::access_denied, "unknown user or wrong password");
 }
 
+/// A Session that nobody was let in to would count until its time-out.
+void Sessions::closeUnused(UA_Server* server, const NodeId& id) const {
+    if (sessions_.find(id) == sessions_.end()) {
+        ServerCore::of(server).post([server, id] {
+            const UA_NodeId native = viewOf(id);
+            UA_Server_closeSession(server, &native);
+        });
+    }
+}
+
 StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                               void** context) {
     const auto admission = admit(presented);
     if (!admission) {
         tellRefusal(server, fromNative(id), presented, admission.error());
+        closeUnused(server, fromNative(id));
         return refusalOf(admission.error());
     }
     auto& session = sessions_[fromNative(id)];
     if (!session) {
         session = std::make_unique<Session>();
         session->id = fromNative(id);
+        by_application_.activated(presented.thumbprint);
     }
     describe(server, *session);
     session->user = admission->user;
@@ -243,11 +264,15 @@ void Sessions::tellRefusal(UA_Server* server, const NodeId& id, const Presented&
     refused_(session, refusalOf(error), error.message);
 }
 
-void Sessions::close(const UA_NodeId& id) {
+void Sessions::close(UA_Server* server, const UA_NodeId& id) {
     const auto node = sessions_.extract(fromNative(id));
     if (node.empty()) {
+        Session unused{fromNative(id), {}, {}, {}, {}};
+        describe(server, unused);
+        by_application_.abandoned(unused.application_uri);
         return;
     }
+    by_application_.closed(node.mapped()->thumbprint);
     for (const auto& handler : closed_) {
         handler(*node.mapped());
     }

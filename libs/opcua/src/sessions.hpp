@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "application_sessions.hpp"
 #include "metier/opcua/server.hpp"
 
 namespace metier::opcua {
@@ -35,6 +36,8 @@ public:
     /// Calls whenever a session is not activated; its user is the one that was claimed.
     void onRefused(RefusedHandler handler) { refused_ = std::move(handler); }
     void onClosed(Handler handler) { closed_.push_back(std::move(handler)); }
+    /// Whether an application may create one more, which it is then about to do.
+    bool mayCreate(const ApplicationSessions::Application& application);
     void closeIf(UA_Server* server, const std::function<bool(const Session&)>& which);
 
 private:
@@ -48,7 +51,8 @@ private:
     };
     StatusCode activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                         void** context);
-    void close(const UA_NodeId& id);
+    void close(UA_Server* server, const UA_NodeId& id);
+    void closeUnused(UA_Server* server, const NodeId& id) const;
     void tellRefusal(UA_Server* server, const NodeId& id, const Presented& presented,
                      const Error& error);
     Result<Admission> admit(const Presented& presented) const;
@@ -56,6 +60,7 @@ private:
 
     const ServerOptions& options_;
     std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;
+    ApplicationSessions by_application_;
     Session server_session_{{}, "server", {}, {}, {}};
     Handler activated_;
     RefusedHandler refused_;

@@ -22,9 +22,11 @@ UA_String view(const std::string& text) {
 
 struct TestServerCallbacks {
     // NOLINTBEGIN(readability-function-size): the stack's parameters
-    static UA_StatusCode echo(UA_Server*, const UA_NodeId*, void*, const UA_NodeId*, void*,
+    static UA_StatusCode echo(UA_Server*, const UA_NodeId*, void*, const UA_NodeId*, void* context,
                               const UA_NodeId*, void*, size_t, const UA_Variant* input, size_t,
                               UA_Variant* output) {
+        auto& self = *static_cast<TestServer*>(context);
+        self.last_caller_ = self.loop_ ? self.loop_->currentConnection() : 0;
         return UA_Variant_copy(&input[0], &output[0]);
     }
     static UA_StatusCode fire(UA_Server*, const UA_NodeId*, void*, const UA_NodeId*, void* context,
@@ -52,10 +54,11 @@ struct TestServerCallbacks {
         attributes.userExecutable = true;
         const UA_NodeId component{0, UA_NODEIDTYPE_NUMERIC, {UA_NS0ID_HASCOMPONENT}};
         UA_Server_addMethodNode(server, kEcho, kObjects, component, {1, UA_STRING_STATIC("echo")},
-                                attributes, echo, 1, &text, 1, &text, nullptr, nullptr);
+                                attributes, echo, 1, &text, 1, &text, self, nullptr);
         UA_Server_addMethodNode(server, kFire, kObjects, component, {1, UA_STRING_STATIC("fire")},
                                 attributes, fire, 0, nullptr, 0, nullptr, self, nullptr);
         UA_Server_setNodeContext(server, kFire, self);
+        UA_Server_setNodeContext(server, kEcho, self);
     }
 };
 

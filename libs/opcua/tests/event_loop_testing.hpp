@@ -67,6 +67,8 @@ public:
     EventLoopStatistics statistics() {
         return inServer([this](UA_Server*) { return loop_->statistics(); });
     }
+    /// Who called `echo` last; on the server's thread.
+    ConnectionId lastCaller() const { return last_caller_; }
     /// On the server's thread: triggers an event and asks for publishing.
     void fire();
     /// On the server's thread: asks for publishing on every connection with an event item.
@@ -78,6 +80,7 @@ private:
     std::unique_ptr<AsioEventLoop> loop_;
     UA_Server* server_ = nullptr;
     std::set<ConnectionId> event_connections_;
+    ConnectionId last_caller_ = 0;
     UA_StatusCode started_ = UA_STATUSCODE_GOOD;
     std::uint16_t port_ = 0;
     std::jthread thread_;

@@ -225,6 +225,35 @@ TEST_F(ClosedServer, LetsNobodyInWithAWrongPassword) {
     EXPECT_EQ(refused.error().code, Errc::access_denied);
 }
 
+TEST_F(ClosedServer, GivesOneApplicationSoManySessionsAndNoMore) {
+    const auto other = identityOf("other");
+    trustIn("server", other);
+    std::vector<std::unique_ptr<Client>> clients;
+    for (int i = 0; i < ServerLimits().sessions_per_application; ++i) {
+        auto client = connect(options());
+        ASSERT_TRUE(client) << client.error().message;
+        clients.push_back(std::move(*client));
+    }
+    const auto one_more = connect(options());
+    ASSERT_FALSE(one_more);
+    EXPECT_EQ(one_more.error().status, status::kBadTooManySessions);
+    EXPECT_TRUE(connect(options(other)));
+
+    ASSERT_TRUE(clients.back()->close());
+    const auto instead = connect(options());
+    EXPECT_TRUE(instead) << instead.error().message;
+}
+
+TEST_F(ClosedServer, LetsFailedLoginsTakeNoSessionsOfTheirApplication) {
+    auto wrong = options();
+    wrong.user->password = "Secret";
+    for (int i = 0; i < ServerLimits().sessions_per_application; ++i) {
+        ASSERT_EQ(connect(wrong).error().code, Errc::access_denied);
+    }
+    const auto right = connect(options());
+    EXPECT_TRUE(right) << right.error().message;
+}
+
 TEST_F(ClosedServer, RefusesAStrangerAndTellsOfIt) {
     const auto stranger = identityOf("stranger");
     EXPECT_FALSE(connect(options(stranger)));

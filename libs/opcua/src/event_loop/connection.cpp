@@ -34,6 +34,7 @@ Connection::Connection(ConnectionId id, asio::ip::tcp::socket socket, Applicatio
       id_(id),
       socket_(std::move(socket)),
       timer_(socket_.get_executor()),
+      patience_(socket_.get_executor()),
       application_(application),
       origin_(origin) {}
 
@@ -93,6 +94,7 @@ void Connection::close() {
     asio::error_code ignored;  // there is nobody left to tell
     socket_.close(ignored);
     timer_.cancel();
+    patience_.cancel();
     queue_.clear();
 }
 

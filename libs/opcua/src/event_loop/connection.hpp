@@ -5,11 +5,14 @@
 #include <asio/ip/tcp.hpp>
 #include <asio/steady_timer.hpp>
 #include <span>
+#include <string>
 
 #include "event_loop.hpp"
+#include "inbox.hpp"
 #include "message_counter.hpp"
 #include "response_gate.hpp"
 #include "send_queue.hpp"
+#include "turns.hpp"
 
 namespace metier::opcua {
 
@@ -34,6 +37,8 @@ public:
     Origin origin() const { return origin_; }
     asio::ip::tcp::socket& socket() { return socket_; }
     asio::steady_timer& timer() { return timer_; }
+    /// Until it is closed if its peer is still a stranger.
+    asio::steady_timer& patience() { return patience_; }
     Application& application() { return application_; }
     bool closing() const { return closing_; }
 
@@ -57,11 +62,16 @@ public:
     bool awaits_writable = false;
     MessageCounter incoming;  ///< of an opened connection, as the next
     ResponseGate gate;
+    Standing standing = Standing::member;
+    std::size_t sessions = 0;  ///< of a member
+    std::string address{};     ///< of an accepted one: the peer's
+    Inbox inbox{};             ///< of an accepted one
 
 private:
     ConnectionId id_;
     asio::ip::tcp::socket socket_;
     asio::steady_timer timer_;  ///< connecting takes too long, then: the peer stalls
+    asio::steady_timer patience_;
     Application application_;
     Origin origin_;
     SendQueue queue_;

@@ -30,6 +30,25 @@ ConnectionId AsioEventLoop::currentConnection() const noexcept {
     return loop_->tcp().currentAccepted();
 }
 
+void AsioEventLoop::vouchFor(ConnectionId connection) {
+    const auto held = loop_->lock();
+    loop_->tcp().vouchFor(connection);
+}
+
+void AsioEventLoop::admit(ConnectionId connection) {
+    const auto held = loop_->lock();
+    loop_->tcp().admit(connection);
+}
+
+void AsioEventLoop::dismiss(ConnectionId connection) {
+    const auto held = loop_->lock();
+    loop_->tcp().dismiss(connection);
+}
+
+std::chrono::nanoseconds AsioEventLoop::workOnTurn() const {
+    return loop_->tcp().workOnTurn();
+}
+
 void AsioEventLoop::flushPublishing(std::span<const ConnectionId> connections) {
     const auto held = loop_->lock();
     loop_->flushPublishing(connections);

@@ -32,7 +32,10 @@ struct EventLoopOptions {
     std::chrono::milliseconds stall_limit{2000};    ///< a peer that takes nothing so long is cut
     std::chrono::milliseconds connect_limit{5000};  ///< for an outgoing connection to open
     std::size_t max_connections = 1000;             ///< beyond: accepted and closed at once
-    int kernel_send_buffer = 0;                     ///< [byte] SO_SNDBUF, 0: as the kernel chooses
+    /// Whoever is not admitted within this time is closed, and sooner if his place is needed; 0:
+    /// everybody is as good as admitted.
+    std::chrono::milliseconds stranger_limit{0};
+    int kernel_send_buffer = 0;  ///< [byte] SO_SNDBUF, 0: as the kernel chooses
     Publishing publishing = Publishing::at_once;
     const UA_Logger* logger = nullptr;  ///< must outlive the loop; none: silent
 };
@@ -42,6 +45,7 @@ struct EventLoopStatistics {
     std::size_t queued_bytes = 0;  ///< [byte] waiting for peers to read, now
     std::uint64_t accepted = 0;
     std::uint64_t refused = 0;            ///< beyond max_connections
+    std::uint64_t dropped_strangers = 0;  ///< not admitted in time, or their place was needed
     std::uint64_t cut_peers = 0;          ///< did not take what was sent to them
     std::uint64_t flushes = 0;            ///< publish callbacks run at once
     std::uint64_t fruitless_flushes = 0;  ///< of these, with nothing to say
@@ -93,6 +97,18 @@ public:
 
     /// The accepted connection whose message is being processed, 0 outside of one.
     ConnectionId currentConnection() const noexcept;
+
+    /// The peer of an accepted connection showed a certificate that is trusted: others lose their
+    /// place first.
+    void vouchFor(ConnectionId connection);
+    /// The connection has a Session, or one more: it keeps its place.
+    void admit(ConnectionId connection);
+    /// The connection has one Session less; without any it is as good as vouched for.
+    void dismiss(ConnectionId connection);
+
+    /// How long the owner thread has worked, waiting left out, on what it read last from a peer; 0
+    /// outside of that. Owner thread.
+    std::chrono::nanoseconds workOnTurn() const;
 
     /// Publishes what Subscriptions of these connections have to say, right after the handlers
     /// that run now. Ask only for connections that have a MonitoredItem for the event: a publish

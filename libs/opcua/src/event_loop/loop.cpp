@@ -12,7 +12,9 @@ namespace metier::opcua {
 
 namespace {
 
-constexpr int kHandlersPerIteration = 64;  // then timers get their turn
+constexpr int kHandlersPerTurn = 16;
+constexpr std::chrono::milliseconds kSlice{5};  // of reading from peers, then timers are looked at
+constexpr std::chrono::milliseconds kSliceForPeers{2};  // of timers that work for peers
 constexpr std::chrono::microseconds kLongestCoalescing{100};
 
 }  // namespace
@@ -101,8 +103,10 @@ UA_StatusCode Loop::release() {
 
 TimerId Loop::addTimer(const Timer& timer, SteadyTime first) {
     auto added = timer;
-    added.id = timers_.add(timer, first);
-    publisher_.timerAdded(added, tcp_.currentAccepted());
+    const auto during = tcp_.currentAccepted();
+    added.can_wait = during != 0 && timer.interval > std::chrono::nanoseconds::zero();
+    added.id = timers_.add(added, first);
+    publisher_.timerAdded(added, during);
     reactor_.wake();
     return added.id;
 }
@@ -165,10 +169,19 @@ void Loop::runTimers(SteadyTime now) {
     while (const auto due = timers_.takeDue(now)) {
         publisher_.runTimer(*due);
     }
+    const auto end = now + kSliceForPeers;
+    auto time = now;
+    for (auto due = timers_.takeWaiting(now); due; due = timers_.takeWaiting(now)) {
+        publisher_.runTimer(*due);
+        time = std::chrono::steady_clock::now();
+        if (time >= end) {
+            return;
+        }
+    }
 }
 
 SteadyTime Loop::waitingEnds(SteadyTime now, std::chrono::milliseconds timeout) const {
-    if (!delayed_.empty()) {
+    if (!delayed_.empty() || tcp_.turnsWait() || publisher_.requestedAt()) {
         return now;
     }
     const auto next = std::min(timers_.next().value_or(SteadyTime::max()),
@@ -176,16 +189,27 @@ SteadyTime Loop::waitingEnds(SteadyTime now, std::chrono::milliseconds timeout) 
     return std::min(next, now + timeout);
 }
 
+/// Handlers do little but note who has something to say; that is heard turn by turn.
 void Loop::runReady() {
-    for (int left = kHandlersPerIteration; left > 0; --left) {
+    const auto end = std::chrono::steady_clock::now() + kSlice;
+    auto now = end - kSlice;
+    for (bool more = true; more && now < end; now = std::chrono::steady_clock::now()) {
+        const bool handled = runHandlers();
+        more = tcp_.takeTurn() || handled;
         const auto requested = publisher_.requestedAt();
-        if (requested && std::chrono::steady_clock::now() - *requested > kLongestCoalescing) {
+        if (requested && now - *requested > kLongestCoalescing) {
             flush();
         }
-        if (!reactor_.runReady()) {
-            return;
-        }
     }
+}
+
+/// \return whether there were any
+bool Loop::runHandlers() {
+    int ran = 0;
+    while (ran < kHandlersPerTurn && reactor_.runReady()) {
+        ++ran;
+    }
+    return ran > 0;
 }
 
 void Loop::flush() {

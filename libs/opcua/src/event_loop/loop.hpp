@@ -56,6 +56,7 @@ private:
     void setState(UA_EventLoopState state);
     void iterate(std::chrono::milliseconds timeout, std::unique_lock<std::recursive_mutex>& lock);
     void runTimers(SteadyTime now);
+    bool runHandlers();
     SteadyTime waitingEnds(SteadyTime now, std::chrono::milliseconds timeout) const;
     void runReady();
     void flush();

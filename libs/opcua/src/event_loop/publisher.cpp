@@ -7,7 +7,8 @@ namespace metier::opcua {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestRest{100};
-constexpr unsigned kDoublings = 7;  // to 128 ms, more than the longest
+constexpr std::chrono::milliseconds kLongestFlush{2};  // then peers are heard, then it goes on
+constexpr unsigned kDoublings = 7;                     // to 128 ms, more than the longest
 
 std::chrono::milliseconds restAfter(unsigned fruitless_in_a_row) {
     return std::min(kLongestRest,
@@ -86,15 +87,22 @@ void Publisher::request(std::span<const ConnectionId> connections, SteadyTime no
 void Publisher::flush(SteadyTime now) {
     requested_at_.reset();
     retry_at_.reset();
-    for (const auto id : std::exchange(wanted_, {})) {
-        const auto found = subscriptions_.find(id);
+    const auto end = now + kLongestFlush;
+    const auto wanted = std::exchange(wanted_, {});
+    for (auto next = wanted.begin(); next != wanted.end(); ++next) {
+        const auto found = subscriptions_.find(*next);
         if (found == subscriptions_.end() || !found->second.wanted) {
             continue;
         }
-        if (canPublish(found->second, now)) {
-            publishNow(id, now);
-        } else {
-            wanted_.push_back(id);
+        if (!canPublish(found->second, now)) {
+            wanted_.push_back(*next);
+            continue;
+        }
+        publishNow(*next, now);
+        if (std::chrono::steady_clock::now() >= end && next + 1 != wanted.end()) {
+            wanted_.insert(wanted_.begin(), next + 1, wanted.end());
+            requested_at_ = now;
+            return;
         }
     }
 }

@@ -2,7 +2,9 @@
 
 #include <open62541/plugin/log.h>
 
+#include <algorithm>
 #include <asio/post.hpp>
+#include <ctime>
 #include <utility>
 
 namespace metier::opcua {
@@ -10,7 +12,14 @@ namespace metier::opcua {
 namespace {
 
 constexpr std::size_t kReceiveBufferSize = std::size_t{64} << 10U;
-constexpr int kStallChecks = 8;  // within the stall limit
+constexpr int kStallChecks = 8;                // within the stall limit
+constexpr std::chrono::milliseconds kTurn{1};  // after it no other message is begun
+
+std::chrono::nanoseconds threadTime() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
 
 }  // namespace
 
@@ -123,6 +132,7 @@ void TcpConnectionManager::addTo(EventLoopStatistics& statistics) const {
     }
     statistics.accepted = counts_.accepted;
     statistics.refused = counts_.refused;
+    statistics.dropped_strangers = counts_.dropped_strangers;
     statistics.cut_peers = counts_.cut_peers;
 }
 
@@ -160,31 +170,69 @@ void TcpConnectionManager::tell(Connection& connection, UA_ConnectionState state
 void TcpConnectionManager::awaitReadable(Connection& connection) {
     connection.socket().async_wait(
         asio::ip::tcp::socket::wait_read,
-        reactor_.guarded([this, id = connection.id()](const asio::error_code& error) {
-            onReadable(id, error);
+        reactor_.guarded([this, id = connection.id()](const asio::error_code&) {
+            if (const auto* readable = find(id)) {
+                turns_.ready(id, readable->standing, std::chrono::steady_clock::now());
+            }
         }));
 }
 
-void TcpConnectionManager::onReadable(ConnectionId id, const asio::error_code& error) {
-    auto* connection = find(id);
-    if (connection == nullptr) {
+bool TcpConnectionManager::takeTurn() {
+    const auto id = turns_.next();
+    if (!id) {
+        return false;
+    }
+    if (auto* connection = find(*id)) {
+        turn_began_ = threadTime();
+        readFrom(*connection);  // it lives at least until its CLOSING callback
+        turns_.used(workOnTurn());
+        turn_began_.reset();
+    }
+    return true;
+}
+
+std::chrono::nanoseconds TcpConnectionManager::workOnTurn() const {
+    return turn_began_ ? threadTime() - *turn_began_ : std::chrono::nanoseconds::zero();
+}
+
+void TcpConnectionManager::readFrom(Connection& connection) {
+    if (connection.inbox.empty()) {
+        asio::error_code failed;
+        const auto received = connection.receive(receive_buffer_, failed);
+        if (failed && failed != asio::error::would_block) {
+            closeLater(connection);
+            return;
+        }
+        hear(connection, std::span(receive_buffer_).first(received));
+    } else {
+        hear(connection, {});
+    }
+    if (connection.closing()) {
         return;
     }
-    auto failed = error;
-    const auto received = failed ? 0 : connection->receive(receive_buffer_, failed);
-    if (failed && failed != asio::error::would_block) {
-        closeLater(*connection);
-        return;
-    }
-    if (received > 0) {
-        deliver(*connection, std::span(receive_buffer_).first(received));
-    }
-    if (!connection->closing()) {  // it lives at least until its CLOSING callback
-        awaitReadable(*connection);
+    if (!connection.inbox.empty()) {
+        turns_.ready(connection.id(), connection.standing, std::chrono::steady_clock::now());
+    } else {
+        awaitReadable(connection);
     }
 }
 
+void TcpConnectionManager::hear(Connection& connection, std::span<std::uint8_t> bytes) {
+    if (connection.origin() == Origin::opened) {
+        deliver(connection, bytes);
+        return;
+    }
+    connection.inbox.push(bytes);
+    while (!connection.closing() && !connection.inbox.empty() && workOnTurn() < kTurn) {
+        deliver(connection, connection.inbox.take());
+    }
+    connection.inbox.done();
+}
+
 void TcpConnectionManager::deliver(Connection& connection, std::span<std::uint8_t> bytes) {
+    if (bytes.empty()) {
+        return;
+    }
     if (connection.origin() == Origin::opened && !connection.gate.feed(bytes)) {
         return cut(connection, "sends what is no answer");
     }
@@ -243,6 +291,8 @@ void TcpConnectionManager::closeLater(Connection& connection) {
         return;
     }
     connection.close();
+    ++closing_;
+    turns_.forget(connection.id());
     publisher_.closed(connection.id());
     asio::post(reactor_.io(), reactor_.guarded([this, id = connection.id()] { finish(id); }));
 }
@@ -264,6 +314,7 @@ void TcpConnectionManager::finish(ConnectionId id) {
     }
     const auto connection = std::move(found->second);
     connections_.erase(found);
+    --closing_;
     tell(*connection, UA_CONNECTIONSTATE_CLOSING, UA_KEYVALUEMAP_NULL, UA_BYTESTRING_NULL);
 }
 

@@ -2,12 +2,15 @@
 
 #include <array>
 #include <memory>
+#include <optional>
+#include <random>
 #include <unordered_map>
 
 #include "connection.hpp"
 #include "listener.hpp"
 #include "publisher.hpp"
 #include "reactor.hpp"
+#include "turns.hpp"
 
 namespace metier::opcua {
 
@@ -46,6 +49,15 @@ public:
     /// \return whether there was something to look at
     bool deliverLeftovers();
 
+    /// Reads from whoever's turn it is, and has the stack process it. \return whether there was one
+    bool takeTurn();
+    std::chrono::nanoseconds workOnTurn() const;
+    bool turnsWait() const { return !turns_.empty(); }
+
+    void vouchFor(ConnectionId id);
+    void admit(ConnectionId id);
+    void dismiss(ConnectionId id);
+
     ConnectionId currentAccepted() const { return current_accepted_; }
     void addTo(EventLoopStatistics& statistics) const;
     std::vector<ListenAddress> listening() const;
@@ -72,11 +84,19 @@ private:
     void onConnected(ConnectionId id);
 
     void awaitReadable(Connection& connection);
-    void onReadable(ConnectionId id, const asio::error_code& error);
+    void readFrom(Connection& connection);
+    void hear(Connection& connection, std::span<std::uint8_t> bytes);
     void deliver(Connection& connection, std::span<std::uint8_t> bytes);
     void awaitWritable(Connection& connection);
     void onWritable(ConnectionId id);
     void watchStall(Connection& connection, SteadyTime progress);
+
+    bool isFull() const { return connections_.size() - closing_ >= options_.max_connections; }
+    void makeRoom();
+    Connection* mostExpendable();
+    void beginAsStranger(Connection& connection);
+    void limitPatience(Connection& connection);
+    void drop(Connection& connection, const char* reason);
 
     void closeLater(Connection& connection);
     void closeListener(Listener& listener);
@@ -94,6 +114,10 @@ private:
     std::unordered_map<ConnectionId, std::unique_ptr<Connection>> connections_;
     std::unordered_map<ConnectionId, std::unique_ptr<Listener>> listeners_;
     std::vector<ConnectionId> leftovers_;
+    Turns turns_;
+    std::optional<std::chrono::nanoseconds> turn_began_;  // in the thread's own time
+    std::size_t closing_ = 0;                             // connections
+    std::minstd_rand chance_;
     std::vector<std::uint8_t> receive_buffer_;
     ConnectionId last_id_ = 0;
     ConnectionId current_accepted_ = 0;

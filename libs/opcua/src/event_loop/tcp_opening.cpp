@@ -2,6 +2,8 @@
 
 #include <open62541/plugin/log.h>
 
+#include <array>
+#include <asio/buffer.hpp>
 #include <asio/ip/host_name.hpp>
 #include <asio/post.hpp>
 #include <utility>
@@ -15,6 +17,16 @@ namespace {
 using asio::ip::tcp;
 
 constexpr std::chrono::milliseconds kAcceptRetry{100};  // after running out of file descriptors
+
+/// Tells the peer BadTcpServerTooBusy and no reason (OPC 10000-6, 7.1.2.5), if it listens; closes.
+void refuse(tcp::socket& socket) {
+    constexpr std::array<unsigned char, 16> kTooBusy{'E', 'R', 'R',  'F',  16,   0,    0,    0,
+                                                     0,   0,   0x7D, 0x80, 0xFF, 0xFF, 0xFF, 0xFF};
+    asio::error_code ignored;
+    socket.non_blocking(true, ignored);
+    socket.write_some(asio::buffer(kTooBusy), ignored);
+    socket.close(ignored);
+}
 
 }  // namespace
 
@@ -92,9 +104,11 @@ void TcpConnectionManager::onAccepted(ConnectionId id, const asio::error_code& e
 }
 
 void TcpConnectionManager::startAccepted(Listener& listener, tcp::socket socket) {
-    if (connections_.size() >= options_.max_connections) {
+    makeRoom();
+    if (isFull()) {
         ++counts_.refused;
-        return;  // closes the socket
+        refuse(socket);
+        return;
     }
     asio::error_code gone;
     const auto remote = socket.remote_endpoint(gone);
@@ -102,10 +116,12 @@ void TcpConnectionManager::startAccepted(Listener& listener, tcp::socket socket)
         return;
     }
     auto& connection = add(std::move(socket), listener.application(), Origin::accepted);
+    connection.address = remote.address().to_string();
     publisher_.accepted(connection.id());
     ++counts_.accepted;
+    beginAsStranger(connection);
     CallbackParameters parameters;
-    parameters.address("remote-address", remote.address().to_string());
+    parameters.address("remote-address", connection.address);
     if (connection.configure(options_.kernel_send_buffer)) {
         closeLater(connection);
     }

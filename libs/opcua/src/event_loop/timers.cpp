@@ -23,7 +23,7 @@ bool Timers::modify(const Timer& changed, SteadyTime next) {
         return false;
     }
     auto& entry = found->second;
-    order_.erase({entry.due, changed.id});
+    orderOf(entry.timer).erase({entry.due, changed.id});
     entry.timer.interval = changed.interval;
     entry.timer.policy = changed.policy;
     schedule(entry, next);
@@ -35,21 +35,22 @@ void Timers::remove(TimerId id) {
     if (found == entries_.end()) {
         return;
     }
-    order_.erase({found->second.due, id});
+    orderOf(found->second.timer).erase({found->second.due, id});
     entries_.erase(found);
 }
 
 void Timers::clear() {
     order_.clear();
+    waiting_order_.clear();
     entries_.clear();
 }
 
-std::optional<Timer> Timers::takeDue(SteadyTime now) {
-    if (order_.empty() || order_.begin()->first > now) {
+std::optional<Timer> Timers::take(Order& order, SteadyTime now) {
+    if (order.empty() || order.begin()->first > now) {
         return std::nullopt;
     }
-    const auto found = entries_.find(order_.begin()->second);
-    order_.erase(order_.begin());
+    const auto found = entries_.find(order.begin()->second);
+    order.erase(order.begin());
     auto& entry = found->second;
     const Timer timer = entry.timer;
     if (timer.interval == std::chrono::nanoseconds::zero()) {
@@ -67,12 +68,18 @@ std::optional<Timer> Timers::takeDue(SteadyTime now) {
 }
 
 std::optional<SteadyTime> Timers::next() const {
-    return order_.empty() ? std::nullopt : std::optional(order_.begin()->first);
+    std::optional<SteadyTime> next;
+    for (const auto* order : {&order_, &waiting_order_}) {
+        if (!order->empty() && (!next || order->begin()->first < *next)) {
+            next = order->begin()->first;
+        }
+    }
+    return next;
 }
 
 void Timers::schedule(Entry& entry, SteadyTime due) {
     entry.due = due;
-    order_.emplace(due, entry.timer.id);
+    orderOf(entry.timer).emplace(due, entry.timer.id);
 }
 
 }  // namespace metier::opcua

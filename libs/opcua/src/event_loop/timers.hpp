@@ -23,6 +23,7 @@ struct Timer {
     std::chrono::nanoseconds interval{0};  ///< 0: once
     UA_TimerPolicy policy = UA_TIMER_HANDLE_CYCLEMISS_WITH_CURRENTTIME;
     TimerId id = 0;
+    bool can_wait = false;  ///< works for a peer: others come first
 };
 
 /// The stack's cyclic and one-shot timers, each due exactly when it was asked for.
@@ -39,9 +40,11 @@ public:
     void remove(TimerId id);
     void clear();
 
-    /// The earliest timer due at `now`. A cyclic one is already scheduled again, later than `now`;
-    /// a one-shot is gone.
-    std::optional<Timer> takeDue(SteadyTime now);
+    /// The earliest timer due at `now` that cannot wait. A cyclic one is already scheduled again,
+    /// later than `now`; a one-shot is gone.
+    std::optional<Timer> takeDue(SteadyTime now) { return take(order_, now); }
+    /// The same of those that can.
+    std::optional<Timer> takeWaiting(SteadyTime now) { return take(waiting_order_, now); }
     std::optional<SteadyTime> next() const;
 
 private:
@@ -50,10 +53,14 @@ private:
         SteadyTime due;
     };
 
+    using Order = std::set<std::pair<SteadyTime, TimerId>>;
+    Order& orderOf(const Timer& timer) { return timer.can_wait ? waiting_order_ : order_; }
+    std::optional<Timer> take(Order& order, SteadyTime now);
     void schedule(Entry& entry, SteadyTime due);
 
     std::unordered_map<TimerId, Entry> entries_;
-    std::set<std::pair<SteadyTime, TimerId>> order_;
+    Order order_;
+    Order waiting_order_;
     TimerId last_id_ = 0;
 };
 

@@ -34,8 +34,14 @@ enum class EventPublishing {
 
 /// What clients may ask of a server; beyond it they are refused or given less.
 struct ServerLimits {
+    /// Connections, each with a SecureChannel or on the way to one. When all are taken, one without
+    /// a Session makes room for the next.
     std::uint16_t secure_channels = 150;
+    /// How long a connection may be without a Session.
+    std::chrono::milliseconds handshake_timeout{10'000};
     std::uint16_t sessions = 100;
+    /// Of one application, known by its certificate; for a closed server.
+    std::uint16_t sessions_per_application = 10;
     std::chrono::milliseconds session_timeout{60'000};
     std::uint32_t message_size = 1U << 20U;  ///< [byte]
     std::uint32_t chunks_per_message = 32;
@@ -55,6 +61,7 @@ struct ServerLimits {
     std::uint32_t nodes_per_write = 200;
     std::uint32_t nodes_per_call = 10;
     std::uint32_t nodes_per_browse = 1'000;
+    std::uint32_t references_per_node = 1'000;  ///< of a Browse, at once
 };
 
 struct UserPassword {
