@@ -5,13 +5,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-
 #include <utility>
 
 #include "kinematics_conversion.hpp"
 #include "metier/geometry/frame.hpp"
 #include "metier/opcua_skill/gripper_node.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
+#include "server_limits.hpp"
 
 namespace metier::app {
 namespace {
@@ -139,6 +139,7 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     options.nodesets.insert(options.nodesets.begin(), {"device", "robotics", "metier"});
     options.event_publishing = config_.publish_at_once ? opcua::EventPublishing::at_once
                                                        : opcua::EventPublishing::at_interval;
+    options.limits = limitsOf(config_.limits);
     auto access = secureServer(options, applicationUriOf(config_), clock_);
     if (!access) {
         return fail(access.error());

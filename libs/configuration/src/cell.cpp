@@ -7,6 +7,7 @@
 
 #include "cell_reading.hpp"
 #include "component_reading.hpp"
+#include "limits_reading.hpp"
 #include "metier/configuration/toml_file.hpp"
 
 namespace metier::configuration {
@@ -102,6 +103,9 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     server.publish_at_once = table.flagOr("publish_at_once", true);
     server.stall_limit =
         secondsWithin(table, "stall_limit", server.stall_limit, {kShortestStall, kLongestStall});
+    if (table.has("limits")) {
+        server.limits = readLimits(table.table("limits"));
+    }
     server.discovery = readDiscovery(table, of_cell);
     const auto kind = table.text("kind");
     if (kind == "arm") {

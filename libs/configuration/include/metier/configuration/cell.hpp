@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
+#include "metier/configuration/limits.hpp"
 #include "metier/configuration/settings.hpp"
 
 namespace metier::configuration {
@@ -118,6 +119,8 @@ struct ServerConfig {
     std::filesystem::path state_folder;
     /// Longest time without a sign of life of the server's thread; then its device is stopped [s].
     double stall_limit = 0.25;
+    /// What clients may ask of it, where that is not as opcua::ServerLimits has it.
+    std::vector<Limit> limits;
     Discovery discovery;
     ArmServer arm;                    ///< for ServerKind::arm
     GripperServer gripper;            ///< for ServerKind::gripper
