@@ -26,6 +26,7 @@ BenchServer::BenchServer(BenchOptions options) : options_(std::move(options)) {
     server_options.application_name = options_.application_name;
     server_options.port = options_.port;
     server_options.limits = options_.limits;
+    server_options.application_uri = options_.application_uri;
     server_options.security = options_.security;
     server_options.nodesets = {"device", "robotics", "metier"};
     server_options.namespaces = {kNamespace};

@@ -21,6 +21,7 @@ struct BenchOptions {
     std::string application_name = "metier";
     std::uint16_t port = 0;  ///< 0: a free one
     opcua::ServerLimits limits{};
+    std::string application_uri = "urn:metier:server";
     std::optional<opcua::ServerSecurity> security{};  ///< none: that of a lab
     /// Both or none: time that is moved by hand. The clock must outlive the server.
     const Clock* clock = nullptr;

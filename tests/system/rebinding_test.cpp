@@ -5,9 +5,9 @@
 #include <csignal>
 #include <optional>
 
+#include "cable.hpp"
 #include "discovered_cell.hpp"
 #include "metier/base/queue.hpp"
-#include "owner_death/cable.hpp"
 
 namespace metier::system_tests {
 namespace {

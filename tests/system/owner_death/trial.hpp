@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "../cable.hpp"
+#include "../load_meter.hpp"
 #include "../metier_program.hpp"
-#include "cable.hpp"
 #include "commander.hpp"
-#include "load_meter.hpp"
 #include "metier/base/queue.hpp"
 #include "owned_server.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ public:
 
     /// The command, run at the far end.
     std::vector<std::string> atFarEnd(std::vector<std::string> command) const;
+    /// Puts the calling thread there, and the threads that it starts from then on.
+    void enterFarEnd() const;
+    /// Where the far end reaches servers of this process.
+    static constexpr const char* kNearAddress = "10.77.0.1";
     /// Of a server of this process, as the far end sees it.
     static std::string addressOf(const std::string& url);
 
@@ -34,6 +39,9 @@ public:
     /// Loses packets at random.
     /// \param percent in each direction
     void lose(int percent);
+    /// What is sent from here waits for its turn at this rate, and at most so long: beyond it is
+    /// lost. Holds as long as the cable.
+    void slowDown(int bits_per_second, std::chrono::milliseconds queue);
     /// Plugged in, and lets everything through.
     void restore();
     /// Packets that it lost so far, by lose() and by the drop...() since the last restore().

@@ -1,5 +1,6 @@
 #include "cable.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sched.h>
@@ -15,7 +16,6 @@ namespace {
 
 constexpr const char* kNear = "metier0";
 constexpr const char* kFar = "metier1";
-constexpr const char* kNearAddress = "10.77.0.1";
 constexpr const char* kFarAddress = "10.77.0.2";
 // Before connection tracking, on what arrives: TCP notices nothing of the loss at its own end.
 constexpr const char* kChain = "{ type filter hook prerouting priority -300; }";
@@ -96,6 +96,15 @@ std::vector<std::string> Cable::atFarEnd(std::vector<std::string> command) const
     return command;
 }
 
+void Cable::enterFarEnd() const {
+    const int far = ::open(fmt::format("/proc/{}/ns/net", far_end_.pid()).c_str(), O_RDONLY);
+    const bool entered = far >= 0 && ::setns(far, CLONE_NEWNET) == 0;
+    ::close(far);
+    if (!entered) {
+        throw std::system_error(errno, std::generic_category(), "the far network namespace");
+    }
+}
+
 std::string Cable::addressOf(const std::string& url) {
     return fmt::format("opc.tcp://{}{}", kNearAddress, url.substr(url.rfind(':')));
 }
@@ -122,6 +131,11 @@ void Cable::lose(int percent) {
     };
     run(rule(kNear));
     run(atFarEnd(rule(kFar)));
+}
+
+void Cable::slowDown(int bits_per_second, std::chrono::milliseconds queue) {
+    run(words(fmt::format("tc qdisc add dev {} root tbf rate {}bit burst 5kb latency {}ms", kNear,
+                          bits_per_second, queue.count())));
 }
 
 void Cable::restore() {
