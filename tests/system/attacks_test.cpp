@@ -71,7 +71,7 @@ TEST(SlowReader, IsNotCut) {
         cable.enterFarEnd();
         RawPeer peer(Cable::kNearAddress, server.port(), 64 * 1024);
         ASSERT_TRUE(peer.logIn());
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < 60; ++i) {  // some 10 kB each
             peer.request(request::kBrowse, browseOf(10));
         }
         read = readAll(peer, kMuch);
