@@ -7,6 +7,7 @@
 #include "guard.hpp"
 #include "metier/opcua/text.hpp"
 #include "server_core.hpp"
+#include "stack_methods.hpp"
 
 namespace metier::opcua {
 
@@ -122,14 +123,6 @@ UA_StatusCode writeSource(UA_Server* /*server*/, const UA_NodeId* /*session_id*/
     });
 }
 
-/// Methods of OPC UA that tell of, or change, only what the own session has subscribed.
-bool isOfOwnSession(const UA_NodeId& method) noexcept {
-    constexpr std::array kMethods{UA_NS0ID_SERVER_GETMONITOREDITEMS, UA_NS0ID_SERVER_RESENDDATA};
-    return method.namespaceIndex == 0 && method.identifierType == UA_NODEIDTYPE_NUMERIC &&
-           std::find(kMethods.begin(), kMethods.end(),
-                     static_cast<int>(method.identifier.numeric)) != kMethods.end();
-}
-
 }  // namespace
 
 UA_StatusCode callMethod(UA_Server* server, const UA_NodeId* /*session_id*/, void* session_context,
@@ -181,11 +174,13 @@ void* auditorsOnly() noexcept {
 bool mayCall(UA_Server* server, const void* session_context, const UA_NodeId& method_id,
              const void* method_context) noexcept {
     auto& core = ServerCore::of(server);
-    if (session_context == nullptr || mayCommand(core.sessions().of(session_context).role) ||
-        isOfOwnSession(method_id)) {
+    if (session_context == nullptr || StackMethods::isOfOwnSession(method_id)) {
         return true;
     }
     const auto* hooks = core.hooks().at(method_context);
+    if (hooks != nullptr && mayCommand(core.sessions().of(session_context).role)) {
+        return true;
+    }
     const auto* method = hooks == nullptr ? nullptr : std::get_if<MethodHooks>(&hooks->work);
     return method != nullptr && method->effect == MethodEffect::tells;
 }

@@ -138,6 +138,9 @@ Result<> ServerCore::build() {
     for (const auto& uri : options_.namespaces) {
         UA_Server_addNamespace(native(), uri.c_str());
     }
+    if (auto guarded = stack_methods_.guard(native()); !guarded) {
+        return guarded;
+    }
     // The stack's own source says false.
     return nodes_.setDataSource(ids::kServerAuditing,
                                 {.read =

@@ -20,6 +20,7 @@
 #include "peer_check.hpp"
 #include "pending_timers.hpp"
 #include "sessions.hpp"
+#include "stack_methods.hpp"
 #include "work_queue.hpp"
 
 namespace metier::opcua {
@@ -50,6 +51,7 @@ public:
     Sessions& sessions() noexcept { return sessions_; }
     HookRegistry& hooks() noexcept { return hooks_; }
     AddressSpace& nodes() noexcept { return nodes_; }
+    const StackMethods& stackMethods() const noexcept { return stack_methods_; }
     AuditTrail& audit() noexcept { return audit_; }
     spdlog::logger& log() noexcept { return log_.target(); }
 
@@ -97,6 +99,7 @@ private:
     EventWatch watch_;
     std::unordered_map<NodeId, ConnectionId> seats_;  ///< where each Session is used
     HookRegistry hooks_;
+    StackMethods stack_methods_;
     AddressSpace nodes_;
     std::unordered_map<NodeId, std::vector<NodeId>> notifiers_;
     std::unique_ptr<UA_Server, DeleteServer> server_;
