@@ -85,6 +85,9 @@ Result<Certificate> Certificate::fromDer(std::string_view der) {
     const EVP_PKEY* key = X509_get0_pubkey(parsed.get());
     Certificate certificate;
     certificate.der_ = derOf(parsed.get());
+    if (!der.starts_with(certificate.der_)) {  // it would have other thumbprints elsewhere
+        return fail(Errc::invalid_argument, "a certificate that is encoded, but not by DER");
+    }
     certificate.thumbprint_ = thumbprintOf(certificate.der_);
     certificate.subject_ = nameText(X509_get_subject_name(parsed.get()));
     certificate.issuer_ = nameText(X509_get_issuer_name(parsed.get()));

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "metier/trust/identity.hpp"
+
 #include <fstream>
 
 #include "authority.hpp"
@@ -78,6 +80,21 @@ TEST(Certificate, IsNotMadeOfAnythingElse) {
 }
 
 // As many devices have: their time seemed over long ago, since a number ran over.
+// OpenSSL also reads lengths that are longer than they need to be, and writes the short ones.
+TEST(Certificate, IsRefusedInAnotherEncodingThanDer) {
+    const auto identity =
+        makeIdentity({.application_name = "arm", .application_uri = "urn:arm", .hosts = {"host"}},
+                     std::chrono::system_clock::now())
+            .value();
+    const auto& der = identity.certificate.der();
+    ASSERT_EQ(der.substr(0, 2), "\x30\x82") << "a sequence with a length of two bytes";
+    const auto longer = std::string("\x30\x83\0", 3) + der.substr(2);
+    const auto refused = Certificate::fromDer(longer);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+    EXPECT_TRUE(Certificate::fromDer(der));
+}
+
 TEST(Certificate, MayBeValidForThousandsOfYears) {
     const auto certificate =
         Certificate::fromFile(std::string(METIER_TRUST_SEEDS) + "/without_end.der");
