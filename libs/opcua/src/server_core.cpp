@@ -295,7 +295,8 @@ void ServerCore::close() {
 }
 
 void ServerCore::stop() {
-    queue_.close();
+    // What work owns may use the server's timers: it ends when the thread has.
+    const auto dropped = queue_.close();
     if (thread_.joinable()) {
         thread_.request_stop();
         loop_.post([] {});  // wakes it

@@ -19,12 +19,12 @@ void WorkQueue::drain(const std::function<void(const std::function<void()>&)>& r
     }
 }
 
-void WorkQueue::close() {
+std::vector<std::function<void()>> WorkQueue::close() {
     {
         const std::lock_guard lock(mutex_);
         closed_ = true;
     }
-    takeAll();
+    return takeAll();
 }
 
 std::vector<std::function<void()>> WorkQueue::takeAll() {

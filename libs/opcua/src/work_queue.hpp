@@ -17,8 +17,8 @@ public:
     Pushed push(std::function<void()> work);
     /// Does what was there at the beginning, oldest first, without holding the lock.
     void drain(const std::function<void(const std::function<void()>&)>& run);
-    /// Drops what waits and refuses more.
-    void close();
+    /// Refuses more. \return what waited and will not be done
+    [[nodiscard]] std::vector<std::function<void()>> close();
 
 private:
     std::vector<std::function<void()>> takeAll();

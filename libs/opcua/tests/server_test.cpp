@@ -6,6 +6,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <semaphore>
 #include <sstream>
 #include <thread>
 
@@ -231,6 +232,24 @@ TEST(ServerThread, CallsAreCancelledWhenTheServerStopped) {
     server->stop();
     std::jthread caller(
         [&] { EXPECT_EQ(server->call([] { return 1; }).error().code, Errc::cancelled); });
+}
+
+// The last owner of a timer's handle may be such work.
+TEST(ServerThread, WorkThatIsDroppedEndsAfterTheThreadHas) {
+    const auto server = makeServer();
+    ASSERT_TRUE(server->start());
+    std::binary_semaphore begun{0};
+    std::binary_semaphore gone{0};
+    bool while_working = false;
+    server->post([&] {
+        begun.release();
+        while_working = gone.try_acquire_for(300ms);
+    });
+    begun.acquire();
+    server->post([last = std::shared_ptr<void>(nullptr, [&](void*) { gone.release(); })] {});
+    server->stop();
+    EXPECT_FALSE(while_working);
+    EXPECT_TRUE(gone.try_acquire());
 }
 
 TEST(ServerThread, TicksWithoutAnyClient) {
