@@ -50,7 +50,8 @@ TEST_F(ClosedCell, ComposesOverSeveralServers) {
     const auto arm = here_.serve("ur5");
     const ServerProcess component(here_.command({"serve", simulatedCell().string(), "--server",
                                                  "ur5-move", "--port", "0", "--robot", arm.url()}));
-    const auto moved = here_.run({"square", component.url(), "--laps", "1"});
+    const auto moved = here_.run({"square", component.url(), "--laps", "1", "--svg",
+                                  (here_.folder() / "square.svg").string()});
     EXPECT_EQ(moved.status, 0) << moved.output;
 }
 
