@@ -1,6 +1,7 @@
 #include "tcp_connection_manager.hpp"
 
 #include <open62541/plugin/log.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <asio/post.hpp>
@@ -14,6 +15,13 @@ namespace {
 constexpr std::size_t kReceiveBufferSize = std::size_t{64} << 10U;
 constexpr int kStallChecks = 8;                // within the stall limit
 constexpr std::chrono::milliseconds kTurn{1};  // after it no other message is begun
+
+/// Whether the peer closed and nothing of it is left to be read. That is no work that has to wait
+/// for its turn: until it is known, others' events would be sent to it, and be lost.
+bool hasLeft(Connection& connection) {
+    char next = 0;
+    return ::recv(connection.socket().native_handle(), &next, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+}
 
 std::chrono::nanoseconds threadTime() {
     timespec time{};
@@ -171,7 +179,10 @@ void TcpConnectionManager::awaitReadable(Connection& connection) {
     connection.socket().async_wait(
         asio::ip::tcp::socket::wait_read,
         reactor_.guarded([this, id = connection.id()](const asio::error_code&) {
-            if (const auto* readable = find(id)) {
+            auto* readable = find(id);
+            if (readable != nullptr && hasLeft(*readable)) {
+                closeLater(*readable);
+            } else if (readable != nullptr) {
                 turns_.ready(id, readable->standing, std::chrono::steady_clock::now());
             }
         }));
