@@ -1,6 +1,7 @@
 #include "client_core.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <utility>
@@ -55,10 +56,13 @@ EventLoopOptions loopOptions(const ClientOptions& options, const UA_Logger* logg
 }
 
 ClientOptions withPresentIdentity(ClientOptions options) {
-    if (options.security && !options.security->identity_folder.empty()) {
-        if (auto present = trust::loadIdentity(options.security->identity_folder)) {
-            options.security->identity = std::move(*present);
-        }
+    if (!options.security || options.security->identity_folder.empty()) {
+        return options;
+    }
+    if (auto present = trust::loadIdentity(options.security->identity_folder)) {
+        options.security->identity = std::move(*present);
+    } else {
+        spdlog::warn("connecting with the certificate known before: {}", present.error().message);
     }
     return options;
 }

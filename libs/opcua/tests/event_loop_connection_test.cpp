@@ -183,6 +183,22 @@ TEST_F(LoopConnections, TellTheEndLaterWhenClosedFromTheirOwnCallback) {
     EXPECT_THAT(closed_, ElementsAre(opened_.front()));
 }
 
+// What somebody has to say may make events, which would be lost on who is no longer there.
+TEST_F(LoopConnections, TellWhoHasLeftBeforeWhatOthersSay) {
+    start();
+    const auto port = listen();
+    Peer talker(port);
+    established(1);
+    Peer leaver(port);
+    const auto left = established(2);
+    std::vector<ConnectionId> closed_when_heard;
+    on_message_ = [&](ConnectionId) { closed_when_heard = closed_; };
+    talker.say("hello");
+    leaver.hangUp();
+    ASSERT_TRUE(runUntil([&] { return heard_ == "hello"; }));
+    EXPECT_THAT(closed_when_heard, ElementsAre(left));
+}
+
 TEST_F(LoopConnections, CutAPeerThatIsOwedTooMuch) {
     start({.send_queue_limit = 1U << 20U, .stall_limit = 1h, .kernel_send_buffer = 8192});
     const auto port = listen();
