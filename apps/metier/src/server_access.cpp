@@ -142,7 +142,15 @@ void ServerAccess::look(opcua::Server& server) {
 
 void ServerAccess::takeRenewed(opcua::Server& server) {
     const auto present = trust::loadIdentity(own_.identity_folder);
-    if (!present || present->certificate == own_.identity.certificate) {
+    if (!present) {
+        if (unread_ != present.error().message) {
+            unread_ = present.error().message;
+            spdlog::error("the server keeps its certificate: {}", unread_);
+        }
+        return;
+    }
+    unread_.clear();
+    if (present->certificate == own_.identity.certificate) {
         return;
     }
     own_.identity = *present;
@@ -170,7 +178,7 @@ void ServerAccess::warnOfEnd() {
 bool ServerAccess::isTrustedStill(const std::string& thumbprint) {
     const auto let_in = let_in_.find(thumbprint);
     if (let_in == let_in_.end()) {
-        return true;
+        return false;
     }
     const auto certificate = trust::Certificate::fromDer(let_in->second);
     if (!certificate) {

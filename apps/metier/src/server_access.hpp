@@ -60,6 +60,7 @@ private:
     trust::TrustStore store_;
     std::map<std::string, std::string> let_in_;  // DER of applications by thumbprint
     std::filesystem::file_time_type seen_{};     // the latest change of the folder
+    std::string unread_;  // why the folder's certificate could not be read; empty: it could
     SteadyTime warned_{};
     opcua::TimerHandle timer_;
 
