@@ -12,11 +12,13 @@
 #include <string_view>
 
 #include "../tests/session_bench.hpp"
+#include "input.hpp"
 
 namespace {
 
 using namespace metier;
 using namespace metier::edo_driver;
+using fuzz::Input;
 
 /// Messages in which % stands for a number and @ for the id of the last call.
 constexpr std::array<std::string_view, 9> kMessages{
@@ -49,24 +51,6 @@ public:
     }
 
     std::string last_id;
-};
-
-/// Takes bytes off the front of the input; 0 when there are none left.
-class Input {
-public:
-    Input(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
-    bool isEmpty() const { return left_ == 0; }
-    std::uint8_t next() {
-        if (left_ == 0) {
-            return 0;
-        }
-        --left_;
-        return *data_++;
-    }
-
-private:
-    const std::uint8_t* data_;
-    std::size_t left_;
 };
 
 std::string softwareText(const char* version, const std::string& id) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "input.hpp"
 #include "metier/geometry/frame.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "pilot.hpp"
@@ -18,28 +19,9 @@ namespace {
 
 using namespace metier;
 using namespace metier::iiwa_driver;
+using fuzz::Input;
 
 constexpr std::size_t kAxes = 7;
-
-/// Takes bytes off the front of the input; 0 when there are none left.
-class Input {
-public:
-    Input(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
-    bool isEmpty() const { return left_ == 0; }
-    std::uint8_t next() {
-        if (left_ == 0) {
-            return 0;
-        }
-        --left_;
-        return *data_++;
-    }
-    /// From -bound to bound.
-    double number(double bound) { return (next() / 127.5 - 1.0) * bound; }
-
-private:
-    const std::uint8_t* data_;
-    std::size_t left_;
-};
 
 const motion::RobotModel& iiwa7() {
     static const auto model =
