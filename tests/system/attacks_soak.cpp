@@ -1,7 +1,8 @@
 // Attacks on a server over a cable between network namespaces (MTU 1500), as root:
 //   metier_attacks SECONDS [ATTACK...]     each attack for so long; prints what Halt took
 //   metier_attacks SECONDS churn           strangers come and go while an operator connects
-// Fails if Halt took longer than the bounds allow. `chrt -r 1` keeps the machine's other work out.
+// Fails if Halt took longer than the bounds allow. `nice -n -20` puts it before
+// the machine's other work.
 #include <fmt/format.h>
 #include <sys/resource.h>
 

@@ -1,6 +1,5 @@
 #include "responses.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "known.hpp"
@@ -13,7 +12,6 @@ namespace {
 constexpr std::string_view kNone = "http://opcfoundation.org/UA/SecurityPolicy#None";
 constexpr std::string_view kTransport =
     "http://opcfoundation.org/UA-Profile/Transport/uatcp-uasc-uabinary";
-constexpr std::uint32_t kMostItems = 2'000;
 /// Names that a client of skills looks for.
 constexpr std::array<std::string_view, 26> kNames{
     "Start",        "Suspend",      "Resume",        "Halt",       "Reset",
@@ -261,41 +259,7 @@ void writeServers(Writer& writer, const std::string& url) {
     }
 }
 
-/// What precedes the array of a request whose elements are counted.
-std::size_t bytesBeforeItems(std::uint32_t type, Reader& reader) {
-    switch (type) {
-        case 527:  // Browse: view, and how many references at most
-            reader.id();
-            return 8 + 4 + 4;
-        case 533:  // BrowseNext
-            return 1;
-        case 631:  // Read
-            return 8 + 4;
-        case 751:  // CreateMonitoredItems
-            return 4 + 4;
-        case 781:  // DeleteMonitoredItems
-            return 4;
-        default:
-            return 0;
-    }
-}
-
 }  // namespace
-
-Asked readRequest(Reader reader) {
-    Asked asked;
-    asked.type = reader.standardId();
-    reader.id();
-    reader.number<std::uint64_t>();
-    asked.handle = reader.number<std::uint32_t>();
-    reader.number<std::uint32_t>();
-    reader.text();
-    reader.number<std::uint32_t>();
-    reader.skipExtension();
-    reader.raw(bytesBeforeItems(asked.type, reader));
-    asked.items = std::min(reader.number<std::uint32_t>(), kMostItems);
-    return asked;
-}
 
 Bytes respondOpen(Writer writer, const Asked& asked) {
     constexpr std::uint32_t response = 449;
