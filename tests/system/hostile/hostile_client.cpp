@@ -140,6 +140,9 @@ void HostileClient::sendOther(Random& random) {
             Bytes noise(random.below(3'000), '\0');
             damage(random, noise);
             transmit(noise);
+            if (stage_ == Stage::greeted) {
+                stage_ = Stage::connected;  // what comes next may be taken for the rest of it
+            }
             break;
         }
         default:
