@@ -1,0 +1,106 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/records/execution.hpp"
+#include "metier/records/store.hpp"
+
+namespace metier::records {
+
+/// What could not be recorded.
+struct Dropped {
+    std::uint64_t executions = 0;
+    std::uint64_t events = 0;  ///< transitions and intermediate results
+    std::uint64_t samples = 0;
+
+    bool any() const noexcept { return executions + events + samples > 0; }
+    friend bool operator==(const Dropped&, const Dropped&) = default;
+};
+
+/// What recording is in.
+enum class Health {
+    writing,
+    failing,  ///< nothing can be written, or it takes too long: something is or may get lost
+};
+
+/// What the server should tell as an alarm: once when recording fails, once when it works again.
+struct HealthReport {
+    Health health = Health::writing;
+    std::string text{};  ///< for a person: the reason and what was lost, "records work again: ..."
+    Dropped dropped{};   ///< since the recorder was made
+};
+
+/// Records the executions of one server. Every call returns at once, whatever the disk does.
+///
+/// A writer thread of its own writes at least every 500 ms: a crash of the server loses at most the
+/// last second. While the store cannot be written or opened, events wait in a queue of a fixed
+/// size; beyond it new executions and events are dropped, of samples the oldest. An end is never
+/// dropped if its begin was not. What the server left under way when it died before is closed as
+/// kLost. The store is trimmed to its retention at the beginning and then every hour.
+class Recorder {
+public:
+    /// One execution of this recorder; 0: it was dropped, and all that is told of it is, too.
+    using Key = std::uint64_t;
+
+    struct Options {
+        std::string url{};     ///< as Store::open() takes it
+        std::string server{};  ///< ApplicationUri; nobody else records under it
+        Retention keep{};
+        /// On a thread of the recorder, at each change of its health. May be empty.
+        std::function<void(const HealthReport&)> on_health{};
+        std::size_t most_waiting = 10'000;          ///< executions and events
+        std::size_t most_waiting_samples = 16'384;  ///< about 220 byte each, taken at once
+        /// A write that takes longer is told as failing.
+        std::chrono::milliseconds patience{5'000};
+    };
+
+    /// How it is, for metrics.
+    struct Status {
+        Health health = Health::writing;
+        std::size_t waiting = 0;          ///< executions and events in the queue
+        std::size_t waiting_samples = 0;  ///< about
+        std::uint64_t written = 0;        ///< executions that began and are in the store
+        Dropped dropped{};
+    };
+
+    /// Does not wait for the store: one that cannot be opened is tried again and told as failing.
+    /// Errors: invalid_argument (no such URL, no server's name).
+    static Result<std::unique_ptr<Recorder>> create(Options options);
+    /// Tries once to write what is waiting.
+    ~Recorder();
+    Recorder(const Recorder&) = delete;
+    Recorder& operator=(const Recorder&) = delete;
+
+    /// An execution begins; its server is Options::server whatever it says. Its state changes with
+    /// its transitions. Threads: any, but no cycle thread (allocates, locks for a moment); the same
+    /// for all but sample().
+    Key begin(Execution execution);
+    /// Of one execution in the order of their times; the 100,000 first are kept.
+    void transition(Key key, Transition transition);
+    void intermediate(Key key, Intermediate intermediate);
+    /// Threads: any, cycle threads as well; neither locks nor allocates. One at a time for a key.
+    void sample(Key key, const PathSample& sample) noexcept;
+    /// Nothing may be told of it any more.
+    void end(Key key, Outcome outcome);
+
+    /// Waits until all that was told before is in the store; false at the deadline. For tests and
+    /// tools, not for servers.
+    bool flush(SteadyTime deadline);
+    /// Threads: any.
+    Status status() const;
+
+private:
+    class Impl;
+    explicit Recorder(std::unique_ptr<Impl> impl);
+
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace metier::records

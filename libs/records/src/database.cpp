@@ -1,0 +1,79 @@
+#include "database.hpp"
+
+#include <fmt/format.h>
+
+#include "postgres_database.hpp"
+#include "schema.hpp"
+#include "sqlite_database.hpp"
+
+namespace metier::records {
+namespace {
+
+constexpr std::string_view kSqlite = "sqlite:";
+
+bool isPostgres(std::string_view url) {
+    return url.starts_with("postgresql://") || url.starts_with("postgres://");
+}
+
+/// "sqlite:FILE", "sqlite:///FILE" or the file itself.
+std::string fileOf(std::string_view url) {
+    if (url.starts_with(kSqlite)) {
+        url.remove_prefix(kSqlite.size());
+        if (url.starts_with("///")) {
+            url.remove_prefix(2);
+        }
+    }
+    return std::string(url);
+}
+
+}  // namespace
+
+std::int64_t Row::integer(std::size_t column) const {
+    const auto* value = std::get_if<std::int64_t>(&cells_.at(column));
+    return value == nullptr ? 0 : *value;
+}
+
+std::string Row::text(std::size_t column) const {
+    const auto* value = std::get_if<std::string>(&cells_.at(column));
+    return value == nullptr ? std::string() : *value;
+}
+
+Bytes Row::bytes(std::size_t column) const {
+    const auto* value = std::get_if<Bytes>(&cells_.at(column));
+    return value == nullptr ? Bytes() : *value;
+}
+
+Result<void> checkUrl(const std::string& url) {
+    if (isPostgres(url)) {
+        return {};
+    }
+    const auto file = fileOf(url);
+    if (file.empty() || file.find("://") != std::string::npos) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("'{}': records are kept in a file, sqlite:FILE or "
+                                "postgresql://USER@HOST/DATABASE",
+                                url));
+    }
+    return {};
+}
+
+Result<std::unique_ptr<Database>> connect(const std::string& url, Store::Access access) {
+    if (auto known = checkUrl(url); !known) {
+        return fail(known.error());
+    }
+    return isPostgres(url) ? PostgresDatabase::open(url)
+                           : SqliteDatabase::open(fileOf(url), access);
+}
+
+Result<std::unique_ptr<Database>> openDatabase(const std::string& url, Store::Access access) {
+    auto database = connect(url, access);
+    if (!database) {
+        return database;
+    }
+    if (auto ready = prepareSchema(**database, access); !ready) {
+        return fail(ready.error());
+    }
+    return database;
+}
+
+}  // namespace metier::records

@@ -1,0 +1,275 @@
+#include "sqlite_database.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <system_error>
+
+namespace metier::records {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Dialect kDialect{.number_key = "INTEGER PRIMARY KEY AUTOINCREMENT", .blob = "BLOB"};
+/// How long others that write are waited for [ms]; only ever on a thread that may wait.
+constexpr int kBusyTimeout = 2'000;
+/// Statements that are kept; lists make many that are used once.
+constexpr std::size_t kMostStatements = 64;
+constexpr mode_t kOwnerOnly = 0600;
+
+/// The folder and the empty file, which others may not read.
+Result<void> makeFile(const fs::path& file) {
+    std::error_code error;  // who opens the file is told what is wrong
+    if (file.has_parent_path() && fs::create_directories(file.parent_path(), error)) {
+        fs::permissions(file.parent_path(), fs::perms::owner_all, error);
+    }
+    const int made = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerOnly);
+    if (made < 0) {
+        return fail(Errc::resource_unavailable,
+                    fmt::format("{}: {}", file.string(), std::generic_category().message(errno)));
+    }
+    ::close(made);
+    return {};
+}
+
+/// Percent-encoded, as SQLite takes it in a URI.
+std::string encoded(std::string_view path) {
+    std::string text;
+    for (const char c : path) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' ||
+                           c == '.' || c == '-' || c == '_';
+        text += plain
+                    ? std::string(1, c)
+                    : fmt::format("%{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    }
+    return text;
+}
+
+Errc codeOf(int status) {
+    switch (status) {
+        case SQLITE_CORRUPT:
+        case SQLITE_NOTADB:
+            return Errc::invalid_argument;
+        case SQLITE_ERROR:
+        case SQLITE_MISUSE:
+        case SQLITE_RANGE:
+            return Errc::internal;
+        default:
+            return Errc::resource_unavailable;
+    }
+}
+
+int bind(sqlite3_stmt* statement, int index, const Cell& cell) {
+    if (const auto* number = std::get_if<std::int64_t>(&cell)) {
+        return sqlite3_bind_int64(statement, index, *number);
+    }
+    // The parameters outlive the execution of the statement.
+    if (const auto* text = std::get_if<std::string>(&cell)) {
+        return sqlite3_bind_text64(statement, index, text->data(), text->size(), SQLITE_STATIC,
+                                   SQLITE_UTF8);
+    }
+    const auto& bytes = std::get<Bytes>(cell);
+    return sqlite3_bind_blob64(statement, index,
+                               bytes.empty() ? "" : static_cast<const void*>(bytes.data()),
+                               bytes.size(), SQLITE_STATIC);
+}
+
+Cell column(sqlite3_stmt* statement, int index) {
+    const auto size = [&] {
+        return static_cast<std::size_t>(sqlite3_column_bytes(statement, index));
+    };
+    switch (sqlite3_column_type(statement, index)) {
+        case SQLITE_TEXT: {
+            const auto* text = static_cast<const char*>(sqlite3_column_blob(statement, index));
+            return text == nullptr ? std::string() : std::string(text, size());
+        }
+        case SQLITE_BLOB: {
+            const auto* bytes =
+                static_cast<const std::uint8_t*>(sqlite3_column_blob(statement, index));
+            return bytes == nullptr ? Bytes() : Bytes(bytes, bytes + size());
+        }
+        default:
+            return static_cast<std::int64_t>(sqlite3_column_int64(statement, index));
+    }
+}
+
+Row rowOf(sqlite3_stmt* statement) {
+    std::vector<Cell> cells;
+    const int count = sqlite3_column_count(statement);
+    cells.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        cells.push_back(column(statement, i));
+    }
+    return Row(std::move(cells));
+}
+
+}  // namespace
+
+void SqliteDatabase::Close::operator()(sqlite3* connection) const noexcept {
+    sqlite3_close_v2(connection);
+}
+
+void SqliteDatabase::Close::operator()(sqlite3_stmt* statement) const noexcept {
+    sqlite3_finalize(statement);
+}
+
+SqliteDatabase::~SqliteDatabase() = default;
+
+const Dialect& SqliteDatabase::dialect() const noexcept {
+    return kDialect;
+}
+
+Result<std::unique_ptr<Database>> SqliteDatabase::open(const fs::path& file, Store::Access access) {
+    std::error_code none;
+    if (access == Store::Access::read && !fs::exists(file, none)) {
+        return fail(Errc::not_found, fmt::format("{}: there are no records", file.string()));
+    }
+    if (access == Store::Access::write) {
+        if (auto made = makeFile(file); !made) {
+            return fail(made.error());
+        }
+    }
+    std::unique_ptr<SqliteDatabase> database(new SqliteDatabase(file.string()));
+    if (auto connected = database->connect(access); !connected) {
+        return fail(connected.error());
+    }
+    if (auto ready = database->setUp(access); !ready) {
+        return fail(ready.error());
+    }
+    return std::unique_ptr<Database>(std::move(database));
+}
+
+Result<void> SqliteDatabase::connect(Store::Access access) {
+    std::error_code none;
+    auto uri = "file:" + encoded(fs::absolute(name_, none).string());
+    const bool read_only_folder =
+        access == Store::Access::read &&
+        ::access(fs::absolute(name_, none).parent_path().c_str(), W_OK) != 0;
+    // A reader, too, needs the files beside, and in a folder that it cannot write they are there
+    // only while somebody writes. Without them nobody does.
+    if (read_only_folder && !fs::exists(name_ + "-wal", none)) {
+        uri += "?immutable=1";
+    }
+    const int flags =
+        (access == Store::Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE) |
+        SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
+    sqlite3* connection = nullptr;
+    const int status = sqlite3_open_v2(uri.c_str(), &connection, flags, nullptr);
+    connection_.reset(connection);
+    if (status != SQLITE_OK) {
+        return failed();
+    }
+    sqlite3_busy_timeout(connection, kBusyTimeout);
+    return {};
+}
+
+Result<void> SqliteDatabase::setUp(Store::Access access) {
+    if (access == Store::Access::read) {
+        return script("PRAGMA query_only = 1");
+    }
+    // The first one works only before the first table; the rest of the space is given back by it.
+    return script(
+        "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+        "PRAGMA journal_size_limit = 16777216; PRAGMA temp_store = MEMORY");
+}
+
+tl::unexpected<Error> SqliteDatabase::failed() const {
+    if (connection_ == nullptr) {
+        return fail(Errc::resource_unavailable, name_ + ": no memory");
+    }
+    const int status = sqlite3_errcode(connection_.get());
+    const auto* why = sqlite3_errmsg(connection_.get());
+    return fail(codeOf(status), status == SQLITE_NOTADB ? fmt::format("{} is no SQLite file", name_)
+                                                        : fmt::format("{}: {}", name_, why));
+}
+
+Result<sqlite3_stmt*> SqliteDatabase::prepared(std::string_view sql) {
+    if (const auto known = statements_.find(sql); known != statements_.end()) {
+        return known->second.get();
+    }
+    if (statements_.size() >= kMostStatements) {
+        statements_.clear();
+    }
+    sqlite3_stmt* made = nullptr;
+    if (sqlite3_prepare_v2(connection_.get(), sql.data(), static_cast<int>(sql.size()), &made,
+                           nullptr) != SQLITE_OK) {
+        return failed();
+    }
+    return statements_.emplace(std::string(sql), Statement(made)).first->second.get();
+}
+
+Result<Rows> SqliteDatabase::query(std::string_view sql, std::span<const Cell> parameters) {
+    const auto statement = prepared(sql);
+    if (!statement) {
+        return fail(statement.error());
+    }
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const auto parameter = fmt::format("${}", i + 1);
+        const int index = sqlite3_bind_parameter_index(*statement, parameter.c_str());
+        if (index > 0 && bind(*statement, index, parameters[i]) != SQLITE_OK) {
+            return failed();
+        }
+    }
+    Rows rows;
+    int status = sqlite3_step(*statement);
+    for (; status == SQLITE_ROW; status = sqlite3_step(*statement)) {
+        rows.push_back(rowOf(*statement));
+    }
+    auto result = status == SQLITE_DONE ? Result<Rows>(std::move(rows)) : Result<Rows>(failed());
+    sqlite3_reset(*statement);
+    sqlite3_clear_bindings(*statement);
+    return result;
+}
+
+Result<void> SqliteDatabase::script(const std::string& sql) {
+    return sqlite3_exec(connection_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK
+               ? Result<void>()
+               : Result<void>(failed());
+}
+
+void SqliteDatabase::rollBack() noexcept {
+    if (sqlite3_get_autocommit(connection_.get()) == 0) {
+        sqlite3_exec(connection_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+    }
+}
+
+Result<std::int64_t> SqliteDatabase::number(std::string_view sql) {
+    const auto rows = query(sql, {});
+    if (!rows) {
+        return fail(rows.error());
+    }
+    return rows->empty() ? 0 : rows->front().integer(0);
+}
+
+Result<bool> SqliteDatabase::hasTable(std::string_view name) {
+    const auto rows = query("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = $1",
+                            std::vector<Cell>{std::string(name)});
+    return rows ? Result<bool>(!rows->empty()) : Result<bool>(fail(rows.error()));
+}
+
+Result<bool> SqliteDatabase::isEmpty() {
+    const auto tables = number("SELECT count(*) FROM sqlite_master");
+    return tables ? Result<bool>(*tables == 0) : Result<bool>(fail(tables.error()));
+}
+
+Result<std::uint64_t> SqliteDatabase::bytes() {
+    std::int64_t size = 0;
+    const auto pages = number("PRAGMA page_count");
+    const auto unused = number("PRAGMA freelist_count");
+    const auto page_size = number("PRAGMA page_size");
+    for (const auto* one : {&pages, &unused, &page_size}) {
+        if (!*one) {
+            return fail(one->error());
+        }
+    }
+    size = (*pages - *unused) * *page_size;
+    return static_cast<std::uint64_t>(size);
+}
+
+Result<void> SqliteDatabase::shrink() {
+    return script("PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+}  // namespace metier::records

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "database.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace metier::records {
+
+/// A SQLite file in WAL mode: one writes while others read.
+class SqliteDatabase final : public Database {
+public:
+    /// Errors: as Store::open().
+    static Result<std::unique_ptr<Database>> open(const std::filesystem::path& file,
+                                                  Store::Access access);
+    ~SqliteDatabase() override;
+    SqliteDatabase(const SqliteDatabase&) = delete;
+    SqliteDatabase& operator=(const SqliteDatabase&) = delete;
+
+    const Dialect& dialect() const noexcept override;
+    Result<Rows> query(std::string_view sql, std::span<const Cell> parameters) override;
+    Result<void> script(const std::string& sql) override;
+    Result<void> begin() override { return script("BEGIN IMMEDIATE"); }
+    Result<void> commit() override { return script("COMMIT"); }
+    void rollBack() noexcept override;
+    Result<bool> hasTable(std::string_view name) override;
+    Result<bool> isEmpty() override;
+    Result<std::uint64_t> bytes() override;
+    Result<void> shrink() override;
+    const std::string& name() const noexcept override { return name_; }
+
+private:
+    struct Close {
+        void operator()(sqlite3* connection) const noexcept;
+        void operator()(sqlite3_stmt* statement) const noexcept;
+    };
+    using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+
+    explicit SqliteDatabase(std::string name) : name_(std::move(name)) {}
+    Result<void> connect(Store::Access access);
+    Result<void> setUp(Store::Access access);
+    Result<sqlite3_stmt*> prepared(std::string_view sql);
+    Result<std::int64_t> number(std::string_view sql);
+    tl::unexpected<Error> failed() const;
+
+    std::string name_;
+    std::unique_ptr<sqlite3, Close> connection_;
+    std::map<std::string, Statement, std::less<>> statements_;  // end before the connection
+};
+
+}  // namespace metier::records

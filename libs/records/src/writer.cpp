@@ -1,0 +1,261 @@
+#include "writer.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "text.hpp"
+
+namespace metier::records {
+namespace {
+
+/// Of one execution.
+constexpr std::size_t kMostEvents = 100'000;
+constexpr std::string_view kLostText = "the server ended while this was under way";
+
+template <typename... Texts>
+void makeStorable(Texts&... texts) {
+    ((texts = storable(texts)), ...);
+}
+
+/// The latest time that is known of an execution under way.
+Result<UtcTime> lastHeardOf(Database& database, const Execution& execution) {
+    const auto rows = database.query(
+        "SELECT events, samples FROM parts WHERE part >= $1 AND part < $2 ORDER BY part DESC "
+        "LIMIT 1",
+        std::array<Cell, 2>{execution.number * kMostParts, (execution.number + 1) * kMostParts});
+    if (!rows) {
+        return fail(rows.error());
+    }
+    auto last = execution.started;
+    if (rows->empty()) {
+        return last;
+    }
+    std::vector<Event> events;
+    decodeEvents(rows->front().text(0), events);
+    for (const auto& event : events) {
+        last = std::max(last, std::visit([](const auto& one) { return one.time; }, event));
+    }
+    std::vector<PathSample> samples;
+    decodeSamples(rows->front().bytes(1), samples);
+    if (!samples.empty()) {
+        const std::chrono::duration<double> time(samples.back().time);
+        last =
+            std::max(last, execution.started + std::chrono::duration_cast<UtcTime::duration>(time));
+    }
+    return last;
+}
+
+}  // namespace
+
+Dropped Writer::take(std::vector<Message> messages, const std::vector<KeyedSample>& samples) {
+    dropped_ = {};
+    for (auto& message : messages) {
+        std::visit([&](auto& content) { take(message.key, std::move(content)); }, message.content);
+    }
+    const auto early = std::exchange(early_, {});
+    takeSamples(early);
+    takeSamples(samples);
+    return dropped_;
+}
+
+void Writer::take(Recorder::Key key, Execution&& e) {
+    makeStorable(e.id, e.server, e.server_name, e.skill, e.controller, e.device, e.parent,
+                 e.parent_server, e.session, e.client_name, e.user, e.thumbprint, e.parameters,
+                 e.check, e.state, e.reason, e.reason_text, e.result);
+    e.number = 0;
+    newest_ = std::max(newest_, key);
+    auto& active = active_[key];
+    active.execution = std::move(e);
+    note(key, active);
+}
+
+void Writer::take(Recorder::Key key, Transition&& t) {
+    auto* active = findForEvent(key);
+    if (active == nullptr) {
+        return;
+    }
+    makeStorable(t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
+    auto& execution = active->execution;
+    if (execution.state != t.to) {
+        execution.state = t.to;
+        execution.reason = t.reason;
+        execution.reason_text = t.reason_text;
+        active->row_changed = true;
+    }
+    active->events.emplace_back(std::move(t));
+    note(key, *active);
+}
+
+void Writer::take(Recorder::Key key, Intermediate&& intermediate) {
+    if (auto* active = findForEvent(key)) {
+        makeStorable(intermediate.value);
+        active->events.emplace_back(std::move(intermediate));
+        note(key, *active);
+    }
+}
+
+void Writer::take(Recorder::Key key, Outcome&& o) {
+    auto* active = find(key);
+    if (active == nullptr) {
+        return;
+    }
+    makeStorable(o.state, o.reason, o.reason_text, o.result);
+    auto& execution = active->execution;
+    execution.ended = std::max(o.time, execution.started);
+    execution.state = std::move(o.state);
+    execution.reason = std::move(o.reason);
+    execution.reason_text = std::move(o.reason_text);
+    execution.result = std::move(o.result);
+    execution.missed_cycles = o.missed_cycles;
+    active->row_changed = true;
+    note(key, *active);
+}
+
+void Writer::takeSamples(const std::vector<KeyedSample>& samples) {
+    for (const auto& sample : samples) {
+        dropped_.samples += takeSample(sample) ? 0 : 1;
+    }
+}
+
+bool Writer::takeSample(const KeyedSample& sample) {
+    auto* active = find(sample.key);
+    if (active == nullptr && sample.key > newest_) {
+        early_.push_back(sample);
+        return true;
+    }
+    if (active == nullptr || active->parts >= kMostParts) {
+        return false;
+    }
+    encodeSample(sample.sample, active->samples);
+    note(sample.key, *active);
+    return true;
+}
+
+Writer::Active* Writer::find(Recorder::Key key) {
+    const auto found = active_.find(key);
+    return found == active_.end() ? nullptr : &found->second;
+}
+
+Writer::Active* Writer::findForEvent(Recorder::Key key) {
+    auto* active = find(key);
+    if (active == nullptr || active->events_kept >= kMostEvents || active->parts >= kMostParts) {
+        ++dropped_.events;
+        return nullptr;
+    }
+    ++active->events_kept;
+    return active;
+}
+
+void Writer::note(Recorder::Key key, Active& active) {
+    if (!std::exchange(active.changed, true)) {
+        changed_.push_back(key);
+    }
+}
+
+Result<void> Writer::write(Database& database) {
+    if (changed_.empty()) {
+        return {};
+    }
+    auto done = inTransaction(database, [&] { return writeAll(database); });
+    if (done) {
+        kept();
+    } else {
+        undone();
+    }
+    return done;
+}
+
+Result<void> Writer::writeAll(Database& database) {
+    RowWriter rows(database, kinds_);
+    if (auto taken = rows.takeRevisions(static_cast<std::int64_t>(changed_.size())); !taken) {
+        return taken;
+    }
+    for (const auto key : changed_) {
+        if (auto written = writeOne(rows, key, active_.at(key)); !written) {
+            return written;
+        }
+    }
+    return {};
+}
+
+Result<void> Writer::writeOne(RowWriter& rows, Recorder::Key key, Active& active) {
+    auto& execution = active.execution;
+    if (execution.number == 0) {
+        numbered_.push_back(key);
+        const auto there = in_doubt_ ? rows.numberOf(execution) : Result<std::int64_t>(0);
+        if (!there) {
+            return fail(there.error());
+        }
+        execution.number = *there;
+    }
+    if (active.row_changed) {
+        if (auto saved = rows.save(execution); !saved) {
+            return saved;
+        }
+    }
+    if (active.events.empty() && active.samples.empty()) {
+        return {};
+    }
+    return rows.addPart(execution.number * kMostParts + active.parts, encodeEvents(active.events),
+                        active.samples);
+}
+
+/// All that was written is in the store.
+void Writer::kept() {
+    for (const auto key : changed_) {
+        auto& active = active_.at(key);
+        if (active.execution.isOver()) {
+            active_.erase(key);
+            continue;
+        }
+        active.parts += active.events.empty() && active.samples.empty() ? 0 : 1;
+        active.events.clear();
+        active.samples.clear();
+        active.row_changed = false;
+        active.changed = false;
+    }
+    written_ += numbered_.size();
+    numbered_.clear();
+    changed_.clear();
+    in_doubt_ = false;
+}
+
+/// Nothing of it is, unless the answer to the commit was lost.
+void Writer::undone() {
+    for (const auto key : numbered_) {
+        active_.at(key).execution.number = 0;
+    }
+    numbered_.clear();
+    kinds_.clear();
+    in_doubt_ = true;
+}
+
+Result<void> Writer::closeLost(Database& database, const std::string& server) {
+    return inTransaction(database, [&]() -> Result<void> {
+        const auto rows =
+            database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
+                               " FROM history WHERE ended = 0 AND server = $1 ORDER BY number",
+                           std::array<Cell, 1>{storable(server)});
+        if (!rows) {
+            return fail(rows.error());
+        }
+        KindCache kinds;
+        RowWriter writer(database, kinds);
+        auto done = writer.takeRevisions(static_cast<std::int64_t>(rows->size()));
+        for (std::size_t i = 0; done && i < rows->size(); ++i) {
+            auto execution = toExecution((*rows)[i]);
+            const auto ended = lastHeardOf(database, execution);
+            if (!ended) {
+                return fail(ended.error());
+            }
+            execution.ended = *ended;
+            execution.state = kLost;
+            execution.reason = kServerLost;
+            execution.reason_text = kLostText;
+            done = writer.save(execution);
+        }
+        return done;
+    });
+}
+
+}  // namespace metier::records

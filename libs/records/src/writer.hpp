@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "database.hpp"
+#include "metier/records/execution.hpp"
+#include "metier/records/recorder.hpp"
+#include "parts.hpp"
+#include "rows.hpp"
+
+namespace metier::records {
+
+/// What is told to a recorder.
+struct Message {
+    Recorder::Key key = 0;
+    std::variant<Execution, Transition, Intermediate, Outcome> content{};
+};
+
+struct KeyedSample {
+    Recorder::Key key = 0;
+    PathSample sample{};
+};
+
+/// Turns what a recorder was told into rows. Threading: one thread.
+class Writer {
+public:
+    /// Takes the messages in their order, then the samples; nothing is written yet.
+    /// \return how much was too much for its execution
+    Dropped take(std::vector<Message> messages, const std::vector<KeyedSample>& samples);
+    /// Writes what was taken, all of it or nothing; may be called again after an error, also with
+    /// another connection to the same store.
+    Result<void> write(Database& database);
+    /// Closes what the server left under way when it died; before the first write().
+    static Result<void> closeLost(Database& database, const std::string& server);
+
+    bool hasChanges() const noexcept { return !changed_.empty(); }
+    /// Whether executions are under way.
+    bool isBusy() const noexcept { return !active_.empty(); }
+    /// Executions that began and are in the store.
+    std::uint64_t written() const noexcept { return written_; }
+
+private:
+    /// An execution that is under way, or over and not written yet.
+    struct Active {
+        Execution execution{};
+        std::int64_t parts = 0;
+        std::size_t events_kept = 0;
+        std::vector<Event> events{};  // that are not written yet
+        Bytes samples{};              // as well
+        bool row_changed = true;
+        bool changed = false;
+    };
+    void take(Recorder::Key key, Execution&& execution);
+    void take(Recorder::Key key, Transition&& transition);
+    void take(Recorder::Key key, Intermediate&& intermediate);
+    void take(Recorder::Key key, Outcome&& outcome);
+    void takeSamples(const std::vector<KeyedSample>& samples);
+    bool takeSample(const KeyedSample& sample);
+    Active* find(Recorder::Key key);
+    Active* findForEvent(Recorder::Key key);
+    void note(Recorder::Key key, Active& active);
+    Result<void> writeAll(Database& database);
+    Result<void> writeOne(RowWriter& rows, Recorder::Key key, Active& active);
+    void kept();
+    void undone();
+
+    std::unordered_map<Recorder::Key, Active> active_;
+    std::vector<Recorder::Key> changed_;
+    std::vector<KeyedSample> early_;  // of executions that were not taken yet
+    Recorder::Key newest_ = 0;
+    std::uint64_t written_ = 0;
+    Dropped dropped_;
+    bool in_doubt_ = false;  // the last write failed; whether it was committed is not known
+    std::vector<Recorder::Key> numbered_;  // who got a number in this transaction
+    KindCache kinds_;
+};
+
+}  // namespace metier::records
