@@ -61,7 +61,7 @@ Result<std::unique_ptr<Database>> connect(const std::string& url, Store::Access 
     if (auto known = checkUrl(url); !known) {
         return fail(known.error());
     }
-    return isPostgres(url) ? PostgresDatabase::open(url)
+    return isPostgres(url) ? PostgresDatabase::open(url, access)
                            : SqliteDatabase::open(fileOf(url), access);
 }
 

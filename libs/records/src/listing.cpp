@@ -17,6 +17,10 @@ namespace {
 /// Subqueries in one statement; SQLite takes 500.
 constexpr std::size_t kAtOnce = 100;
 constexpr std::uint32_t kLargestPage = 10'000;
+/// All names that a text is looked for in.
+constexpr std::string_view kNames =
+    "server || ' ' || server_name || ' ' || controller || ' ' || skill || ' ' || device || ' ' || "
+    "user_name || ' ' || state || ' ' || reason";
 
 /// For LIKE ... ESCAPE '\': any text with `part` in it.
 std::string containing(std::string_view part) {
@@ -137,9 +141,7 @@ Result<std::vector<std::int64_t>> Search::kinds(bool with_text) {
     add("reason = ${0}", filter_.reason);
     add("user_name = ${0}", filter_.user);
     if (with_text) {
-        add("lower(server || ' ' || server_name || ' ' || controller || ' ' || skill || ' ' || "
-            "device || ' ' || user_name || ' ' || state || ' ' || reason) LIKE lower(${0}) "
-            "ESCAPE '\\'",
+        add(fmt::format("lower({}) LIKE lower(${{0}}) ESCAPE '\\'", kNames),
             containing(filter_.text));
     }
     return numbers(database_.query(sql, cells));
@@ -200,17 +202,15 @@ Result<void> Search::takeText() {
 
 /// Of one parent there are few.
 Result<void> Search::takeChildren(const std::string& of_kinds) {
-    const auto condition = filter_.text.empty()
-                               ? std::string("TRUE")
-                               : std::string(
-                                     "number IN (SELECT number FROM history WHERE parent = "
-                                     "$5 AND parent <> '' AND (id = $6 OR lower(server || ' ' || "
-                                     "server_name || ' ' || controller || ' ' || skill || "
-                                     "' ' || device || ' ' || user_name || ' ' || state || "
-                                     "' ' || reason || ' ' || reason_text) LIKE lower($7) "
-                                     "ESCAPE '\\'))");
+    const auto children = fmt::format("parent = $5 AND parent <> '' AND {}", of_kinds);
+    if (filter_.text.empty()) {
+        return take(newest(children), {storable(filter_.parent)});
+    }
     return take(
-        newest(fmt::format("parent = $5 AND parent <> '' AND {} AND {}", of_kinds, condition)),
+        newest(fmt::format("{} AND (id = $6 OR number IN (SELECT number FROM history WHERE "
+                           "parent = $5 AND lower({} || ' ' || reason_text) LIKE lower($7) "
+                           "ESCAPE '\\'))",
+                           children, kNames)),
         {storable(filter_.parent), storable(filter_.text), storable(containing(filter_.text))});
 }
 

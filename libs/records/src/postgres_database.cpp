@@ -1,9 +1,229 @@
 #include "postgres_database.hpp"
 
-namespace metier::records {
+#include <fmt/format.h>
 
-Result<std::unique_ptr<Database>> PostgresDatabase::open(const std::string& url) {
-    return fail(Errc::not_supported, url + ": not built with PostgreSQL");
+#include <array>
+#include <charconv>
+#include <pqxx/nontransaction>
+#include <pqxx/pqxx>
+
+namespace metier::records {
+namespace {
+
+constexpr Dialect kDialect{.number_key = "BIGSERIAL PRIMARY KEY", .blob = "BYTEA"};
+constexpr std::size_t kMostStatements = 64;
+/// Any number that others do not use: who writes records holds this lock.
+constexpr std::string_view kLock = "SELECT pg_advisory_xact_lock(5641903277)";
+/// Of a column, as pg_type has them.
+enum TypeOid : unsigned { kBytea = 17, kInt8 = 20, kInt2 = 21, kInt4 = 23 };
+
+/// The URL with deadlines for whatever its user did not set: the network may hang.
+std::string withDeadlines(std::string url) {
+    constexpr std::array kDeadlines{std::pair{"connect_timeout", "5"},
+                                    std::pair{"tcp_user_timeout", "10000"},
+                                    std::pair{"keepalives_idle", "10"}};
+    for (const auto& [name, value] : kDeadlines) {
+        if (url.find(name) == std::string::npos) {
+            url +=
+                fmt::format("{}{}={}", url.find('?') == std::string::npos ? '?' : '&', name, value);
+        }
+    }
+    return url;
+}
+
+/// Without user, password and options.
+std::string nameOf(std::string_view url) {
+    const auto begin = url.find("://") + 3;
+    auto rest = url.substr(begin, url.find('?', begin) - begin);
+    if (const auto at = rest.rfind('@'); at != std::string_view::npos) {
+        rest.remove_prefix(at + 1);
+    }
+    return fmt::format("postgresql://{}", rest);
+}
+
+std::string toHex(const Bytes& bytes) {
+    std::string text = "\\x";
+    text.reserve(2 + 2 * bytes.size());
+    for (const auto byte : bytes) {
+        fmt::format_to(std::back_inserter(text), "{:02x}", byte);
+    }
+    return text;
+}
+
+std::string toParameter(const Cell& cell) {
+    if (const auto* number = std::get_if<std::int64_t>(&cell)) {
+        return std::to_string(*number);
+    }
+    const auto* text = std::get_if<std::string>(&cell);
+    return text != nullptr ? *text : toHex(std::get<Bytes>(cell));
+}
+
+Bytes fromHex(std::string_view text) {
+    Bytes bytes;
+    for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+        std::uint8_t byte = 0;
+        std::from_chars(text.data() + i, text.data() + i + 2, byte, 16);
+        bytes.push_back(byte);
+    }
+    return bytes;
+}
+
+Cell toCell(const pqxx::field& field, unsigned type) {
+    const std::string_view text(field.c_str(), field.size());
+    if (type == kBytea) {
+        return fromHex(text);
+    }
+    if (type != kInt8 && type != kInt4 && type != kInt2) {
+        return std::string(text);
+    }
+    std::int64_t number = 0;
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number;
+}
+
+Rows toRows(const pqxx::result& result) {
+    Rows rows;
+    rows.reserve(static_cast<std::size_t>(result.size()));
+    for (const auto& row : result) {
+        std::vector<Cell> cells;
+        for (const auto& field : row) {
+            cells.push_back(toCell(field, field.type()));
+        }
+        rows.emplace_back(std::move(cells));
+    }
+    return rows;
+}
+
+/// The first line of what libpqxx says, which ends with the statement.
+std::string firstLine(const std::exception& error) {
+    const std::string_view text(error.what());
+    return std::string(text.substr(0, text.find('\n')));
+}
+
+}  // namespace
+
+/// What libpqxx throws, as an error.
+template <typename Work>
+auto PostgresDatabase::guarded(Work work) -> decltype(work()) {
+    try {
+        return work();
+    } catch (const pqxx::broken_connection& error) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", name_, firstLine(error)));
+    } catch (const pqxx::sql_error& error) {
+        return fail(Errc::resource_unavailable, fmt::format("{}: {}", name_, firstLine(error)));
+    } catch (const std::exception& error) {
+        return fail(Errc::internal, fmt::format("{}: {}", name_, firstLine(error)));
+    }
+}
+
+PostgresDatabase::PostgresDatabase(std::string name, const std::string& url)
+    : name_(std::move(name)), connection_(withDeadlines(url)) {}
+
+Result<std::unique_ptr<Database>> PostgresDatabase::open(const std::string& url,
+                                                         Store::Access access) {
+    std::unique_ptr<PostgresDatabase> database;
+    try {
+        database.reset(new PostgresDatabase(nameOf(url), url));
+    } catch (const std::exception& error) {
+        return fail(Errc::connection_lost, fmt::format("{}: {}", nameOf(url), firstLine(error)));
+    }
+    auto done = database->script(
+        "SET client_min_messages = warning; SET client_encoding = 'UTF8'; SET search_path TO "
+        "metier; SET lock_timeout = '5s'; SET statement_timeout = '30s'");
+    if (done && access == Store::Access::write) {
+        auto& made = *database;
+        done = inTransaction(made,
+                             [&made] { return made.script("CREATE SCHEMA IF NOT EXISTS metier"); });
+    } else if (done) {
+        done = database->script("SET default_transaction_read_only = on");
+    }
+    return done ? Result<std::unique_ptr<Database>>(std::move(database)) : fail(done.error());
+}
+
+const Dialect& PostgresDatabase::dialect() const noexcept {
+    return kDialect;
+}
+
+const std::string& PostgresDatabase::prepared(std::string_view sql) {
+    if (const auto known = statements_.find(sql); known != statements_.end()) {
+        return known->second;
+    }
+    if (statements_.size() >= kMostStatements) {
+        for (const auto& [text, name] : statements_) {
+            connection_.unprepare(name);
+        }
+        statements_.clear();
+    }
+    const auto name = fmt::format("metier_{}", ++made_);
+    connection_.prepare(name, std::string(sql));
+    return statements_.emplace(std::string(sql), name).first->second;
+}
+
+Result<Rows> PostgresDatabase::query(std::string_view sql, std::span<const Cell> parameters) {
+    std::vector<std::string> texts;
+    std::transform(parameters.begin(), parameters.end(), std::back_inserter(texts), toParameter);
+    const auto values = pqxx::prepare::make_dynamic_params(texts);
+    return guarded([&]() -> Result<Rows> {
+        const auto& name = prepared(sql);
+        if (transaction_ != nullptr) {
+            return toRows(transaction_->exec_prepared(name, values));
+        }
+        pqxx::nontransaction alone(connection_);
+        return toRows(alone.exec_prepared(name, values));
+    });
+}
+
+Result<void> PostgresDatabase::script(const std::string& sql) {
+    return guarded([&]() -> Result<void> {
+        if (transaction_ != nullptr) {
+            transaction_->exec(sql);
+        } else {
+            pqxx::nontransaction(connection_).exec(sql);
+        }
+        return {};
+    });
+}
+
+Result<void> PostgresDatabase::begin() {
+    return guarded([&]() -> Result<void> {
+        transaction_ = std::make_unique<pqxx::work>(connection_);
+        transaction_->exec(std::string(kLock));
+        return {};
+    });
+}
+
+Result<void> PostgresDatabase::commit() {
+    return guarded([&]() -> Result<void> {
+        transaction_->commit();
+        transaction_.reset();
+        return {};
+    });
+}
+
+void PostgresDatabase::rollBack() noexcept {
+    transaction_.reset();  // aborts; logs nothing and throws nothing
+}
+
+Result<bool> PostgresDatabase::hasTable(std::string_view name) {
+    const auto rows =
+        query("SELECT 1 FROM pg_tables WHERE schemaname = 'metier' AND tablename = $1",
+              std::array<Cell, 1>{std::string(name)});
+    return rows ? Result<bool>(!rows->empty()) : Result<bool>(fail(rows.error()));
+}
+
+Result<bool> PostgresDatabase::isEmpty() {
+    const auto rows = query("SELECT 1 FROM pg_tables WHERE schemaname = 'metier' LIMIT 1", {});
+    return rows ? Result<bool>(rows->empty()) : Result<bool>(fail(rows.error()));
+}
+
+/// Of the rows that are there: a table keeps the space of removed ones for new ones.
+Result<std::uint64_t> PostgresDatabase::bytes() {
+    const auto rows = query(
+        "SELECT (SELECT coalesce(sum(pg_column_size(e.*)), 0) FROM executions e)::bigint + "
+        "(SELECT coalesce(sum(pg_column_size(p.*)), 0) FROM parts p)::bigint",
+        {});
+    return rows ? Result<std::uint64_t>(static_cast<std::uint64_t>(rows->front().integer(0)))
+                : Result<std::uint64_t>(fail(rows.error()));
 }
 
 }  // namespace metier::records

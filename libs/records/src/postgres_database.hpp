@@ -2,17 +2,44 @@
 
 #include <map>
 #include <memory>
+#include <pqxx/connection>
+#include <pqxx/transaction>
 #include <string>
+#include <utility>
 
 #include "database.hpp"
 
 namespace metier::records {
 
-/// A PostgreSQL database by libpqxx.
-class PostgresDatabase {
+/// A PostgreSQL database; all tables are in its schema "metier".
+class PostgresDatabase final : public Database {
 public:
-    /// Errors: connection_lost, with what the database said.
-    static Result<std::unique_ptr<Database>> open(const std::string& url);
+    /// Errors: as Store::open().
+    static Result<std::unique_ptr<Database>> open(const std::string& url, Store::Access access);
+
+    const Dialect& dialect() const noexcept override;
+    Result<Rows> query(std::string_view sql, std::span<const Cell> parameters) override;
+    Result<void> script(const std::string& sql) override;
+    Result<void> begin() override;
+    Result<void> commit() override;
+    void rollBack() noexcept override;
+    Result<bool> hasTable(std::string_view name) override;
+    Result<bool> isEmpty() override;
+    Result<std::uint64_t> bytes() override;
+    Result<void> shrink() override { return {}; }  // autovacuum does
+    const std::string& name() const noexcept override { return name_; }
+
+private:
+    PostgresDatabase(std::string name, const std::string& url);
+    template <typename Work>
+    auto guarded(Work work) -> decltype(work());
+    const std::string& prepared(std::string_view sql);
+
+    std::string name_;
+    pqxx::connection connection_;
+    std::unique_ptr<pqxx::work> transaction_;                     // ends before the connection
+    std::map<std::string, std::string, std::less<>> statements_;  // names by their SQL
+    std::uint64_t made_ = 0;                                      // statements
 };
 
 }  // namespace metier::records

@@ -59,13 +59,13 @@ std::size_t sequenceAt(std::string_view text) {
 
 }  // namespace
 
-std::string storable(std::string_view text) {
+std::string storable(std::string_view text, std::size_t longest) {
     std::string result;
     result.reserve(text.size());
     while (!text.empty()) {
         const auto length = sequenceAt(text);
         const auto piece = length == 0 ? kReplacement : text.substr(0, length);
-        if (result.size() + piece.size() > kLongestText) {
+        if (result.size() + piece.size() > longest) {
             break;
         }
         result += piece;

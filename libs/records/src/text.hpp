@@ -6,11 +6,15 @@
 
 namespace metier::records {
 
-/// Longest text that a column takes [byte].
-inline constexpr std::size_t kLongestText = 65'536;
+/// Longest JSON or other text that nobody searches [byte].
+inline constexpr std::size_t kLongestText = 1'000'000;
+/// Longest name of which an index has eight together; PostgreSQL takes 2704 byte [byte].
+inline constexpr std::size_t kLongestName = 300;
+/// Longest id or reason's text, which an index has alone [byte].
+inline constexpr std::size_t kLongestKey = 2'000;
 
 /// Well-formed UTF-8 without NUL, as both databases take it: what does not fit becomes U+FFFD, and
-/// what is beyond kLongestText is cut off.
-std::string storable(std::string_view text);
+/// what is beyond `longest` is cut off.
+std::string storable(std::string_view text, std::size_t longest = kLongestText);
 
 }  // namespace metier::records

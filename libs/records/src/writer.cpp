@@ -13,8 +13,8 @@ constexpr std::size_t kMostEvents = 100'000;
 constexpr std::string_view kLostText = "the server ended while this was under way";
 
 template <typename... Texts>
-void makeStorable(Texts&... texts) {
-    ((texts = storable(texts)), ...);
+void cut(std::size_t longest, Texts&... texts) {
+    ((texts = storable(texts, longest)), ...);
 }
 
 /// The latest time that is known of an execution under way.
@@ -59,9 +59,10 @@ Dropped Writer::take(std::vector<Message> messages, const std::vector<KeyedSampl
 }
 
 void Writer::take(Recorder::Key key, Execution&& e) {
-    makeStorable(e.id, e.server, e.server_name, e.skill, e.controller, e.device, e.parent,
-                 e.parent_server, e.session, e.client_name, e.user, e.thumbprint, e.parameters,
-                 e.check, e.state, e.reason, e.reason_text, e.result);
+    cut(kLongestName, e.server, e.server_name, e.skill, e.controller, e.device, e.user, e.state,
+        e.reason, e.session, e.client_name, e.thumbprint, e.parent_server);
+    cut(kLongestKey, e.id, e.parent, e.reason_text);
+    cut(kLongestText, e.parameters, e.check, e.result);
     e.number = 0;
     newest_ = std::max(newest_, key);
     auto& active = active_[key];
@@ -74,7 +75,8 @@ void Writer::take(Recorder::Key key, Transition&& t) {
     if (active == nullptr) {
         return;
     }
-    makeStorable(t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
+    cut(kLongestName, t.from, t.to, t.sub_state, t.step, t.reason);
+    cut(kLongestKey, t.reason_text);
     auto& execution = active->execution;
     if (execution.state != t.to) {
         execution.state = t.to;
@@ -88,7 +90,7 @@ void Writer::take(Recorder::Key key, Transition&& t) {
 
 void Writer::take(Recorder::Key key, Intermediate&& intermediate) {
     if (auto* active = findForEvent(key)) {
-        makeStorable(intermediate.value);
+        cut(kLongestText, intermediate.value);
         active->events.emplace_back(std::move(intermediate));
         note(key, *active);
     }
@@ -99,7 +101,9 @@ void Writer::take(Recorder::Key key, Outcome&& o) {
     if (active == nullptr) {
         return;
     }
-    makeStorable(o.state, o.reason, o.reason_text, o.result);
+    cut(kLongestName, o.state, o.reason);
+    cut(kLongestKey, o.reason_text);
+    cut(kLongestText, o.result);
     auto& execution = active->execution;
     execution.ended = std::max(o.time, execution.started);
     execution.state = std::move(o.state);
@@ -235,7 +239,7 @@ Result<void> Writer::closeLost(Database& database, const std::string& server) {
         const auto rows =
             database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
                                " FROM history WHERE ended = 0 AND server = $1 ORDER BY number",
-                           std::array<Cell, 1>{storable(server)});
+                           std::array<Cell, 1>{storable(server, kLongestName)});
         if (!rows) {
             return fail(rows.error());
         }

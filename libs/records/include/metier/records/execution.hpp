@@ -19,8 +19,9 @@ inline constexpr std::string_view kServerLost = "ServerLost";
 
 /// One execution of a skill, whichever client started it.
 ///
-/// Text may be anything: what is no UTF-8 becomes U+FFFD when it is written, and texts are cut
-/// after 65,536 bytes. States and reasons are the names that OPC UA clients see.
+/// Text may be anything: what is no UTF-8 becomes U+FFFD when it is written; names are cut after
+/// 300 bytes, ids and a reason's text after 2000, JSON after 1,000,000. States and reasons are the
+/// names that OPC UA clients see.
 struct Execution {
     std::int64_t number = 0;      ///< within the store, from 1; 0: it is not in one yet
     std::string id{};             ///< as its server names it; unique within a skill of a server
