@@ -1,0 +1,332 @@
+// What a store holds and how it is found, the same in both databases.
+#include "metier/records/store.hpp"
+
+#include "recorded.hpp"
+#include "temporary_postgres.hpp"
+
+namespace metier::records {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class EitherStore : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        if (GetParam() == std::string("Sqlite")) {
+            url_ = (testFolder() / "records.db").string();
+        } else if (auto* postgres = TemporaryPostgres::instance()) {
+            url_ = postgres->freshDatabase();
+        } else {
+            GTEST_SKIP() << "PostgreSQL is not installed";
+        }
+    }
+    std::unique_ptr<Store> store() const {
+        auto opened = Store::open(url_);
+        if (!opened) {
+            throw std::runtime_error(opened.error().message);
+        }
+        return std::move(*opened);
+    }
+    /// Executions of two servers; "a" to "f" start one after another, one a second.
+    void recordSix() const {
+        const auto ur5 = recorderOf(url_);
+        const auto edo = recorderOf(url_, "urn:test:edo");
+        int second = 0;
+        for (const auto* id : {"a", "b", "c", "d", "e", "f"}) {
+            auto execution = moveOf(id, at(1'000 * second));
+            const bool even = second++ % 2 == 0;
+            execution.skill = even ? "JointPtpMoveSkill" : "CartesianLinearMoveSkill";
+            execution.user = second > 3 ? "ben" : "anna";
+            execution.server_name = even ? "ur5" : "edo";
+            recordOne(even ? *ur5 : *edo, execution,
+                      second == 3 ? halted(at(9'000), "axis 2: 3.5 rad/s over limit 3.1 rad/s")
+                                  : finished(at(9'000)));
+            ASSERT_TRUE((even ? *ur5 : *edo).flush(soon()));
+        }
+    }
+    std::vector<std::string> ids(const Filter& filter, const Page& page = {}) const {
+        const auto listing = store()->list(filter, page);
+        EXPECT_TRUE(listing) << listing.error().message;
+        std::vector<std::string> result;
+        for (const auto& execution : listing->executions) {
+            result.push_back(execution.id);
+        }
+        return result;
+    }
+
+    std::string url_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Of, EitherStore, ::testing::Values("Sqlite", "Postgres"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(EitherStore, HoldsAllThatWasTold) {
+    const auto recorder = recorderOf(url_);
+    auto told = moveOf("m-1");
+    told.parent = "p-1";
+    told.parent_server = "urn:test:pick";
+    const auto key = recorder->begin(told);
+    recorder->transition(key, {.time = at(0),
+                               .from = "Ready",
+                               .to = "Running",
+                               .sub_state = "Executing",
+                               .step = "approach",
+                               .reason = {},
+                               .reason_text = {}});
+    const std::array actual{0.1, 0.2};
+    const std::array commanded{0.11, 0.21};
+    const std::array force{1.0, 2.0, 3.0, 0.1, 0.2, 0.3};
+    const PathSample sample{.time = 0.5,
+                            .actual = SampleValues(actual),
+                            .commanded = SampleValues(commanded),
+                            .force = SampleValues(force)};
+    recorder->sample(key, sample);
+    recorder->intermediate(key, {.time = at(600), .value = "0.5"});
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_FALSE(store()->find("m-1")->isOver());
+    recorder->sample(key, sampleAt(0.9, 0.3));
+    recorder->end(key, finished(at(1'000)));
+    ASSERT_TRUE(recorder->flush(soon()));
+
+    const auto reading = store();
+    const auto found = reading->find("m-1");
+    ASSERT_TRUE(found) << found.error().message;
+    const auto& e = *found;
+    EXPECT_THAT(
+        (std::array{e.server, e.server_name, e.controller, e.skill, e.device, e.user}),
+        ElementsAre("urn:test:ur5", "ur5", "Controller", "JointPtpMoveSkill", "ur5", "anna"));
+    EXPECT_THAT((std::array{e.parent, e.parent_server, e.session, e.client_name, e.thumbprint}),
+                ElementsAre("p-1", "urn:test:pick", "s-7", "metier command", "ab12"));
+    EXPECT_THAT(
+        (std::array{e.parameters, e.check, e.result, e.state, e.reason, e.reason_text}),
+        ElementsAre(told.parameters, told.check, R"({"Duration":1.0})", "Ready", "Finished", ""));
+    EXPECT_EQ(e.started, at(0));
+    EXPECT_EQ(e.ended, at(1'000));
+    EXPECT_EQ(e.missed_cycles, 2U);
+    const auto transitions = reading->transitions(e.number).value();
+    ASSERT_EQ(transitions.size(), 1U);
+    EXPECT_EQ(transitions[0].step, "approach");
+    EXPECT_EQ(transitions[0].time, at(0));
+    ASSERT_EQ(reading->intermediates(e.number)->size(), 1U);
+    EXPECT_EQ(reading->intermediates(e.number)->front().value, "0.5");
+    const auto path = reading->path(e.number).value();
+    ASSERT_EQ(path.size(), 2U);
+    EXPECT_EQ(path[0].commanded, sample.commanded);
+    EXPECT_EQ(path[0].force, sample.force);
+    EXPECT_EQ(path[1].actual, sampleAt(0.9, 0.3).actual);
+    EXPECT_EQ(reading->find(std::to_string(e.number))->id, "m-1");
+    EXPECT_EQ(reading->find("m-2").error().code, Errc::not_found);
+}
+
+TEST_P(EitherStore, ListsTheNewestFirstByPages) {
+    recordSix();
+    EXPECT_THAT(ids({}), ElementsAre("f", "e", "d", "c", "b", "a"));
+    const auto reading = store();
+    const auto first = reading->list({}, {.before = 0, .count = 4}).value();
+    ASSERT_EQ(first.executions.size(), 4U);
+    EXPECT_TRUE(first.more);
+    const auto second =
+        reading->list({}, {.before = first.executions.back().number, .count = 4}).value();
+    ASSERT_EQ(second.executions.size(), 2U);
+    EXPECT_EQ(second.executions[0].id, "b");
+    EXPECT_FALSE(second.more);
+    EXPECT_THAT(reading->list({}, {.before = 77, .count = 4})->executions, IsEmpty());
+}
+
+TEST_P(EitherStore, FiltersByEachFieldAndAllTogether) {
+    recordSix();
+    const auto only = [this](auto member, const std::string& value) {
+        Filter filter;
+        filter.*member = value;
+        return ids(filter);
+    };
+    EXPECT_THAT(only(&Filter::server, "urn:test:edo"), ElementsAre("f", "d", "b"));
+    EXPECT_THAT(only(&Filter::server, "edo"), ElementsAre("f", "d", "b"));
+    EXPECT_THAT(only(&Filter::skill, "JointPtpMoveSkill"), ElementsAre("e", "c", "a"));
+    EXPECT_THAT(only(&Filter::state, "Halted"), ElementsAre("c"));
+    EXPECT_THAT(only(&Filter::reason, "Error"), ElementsAre("c"));
+    EXPECT_THAT(only(&Filter::user, "ben"), ElementsAre("f", "e", "d"));
+    EXPECT_THAT(only(&Filter::state, "Lost"), IsEmpty());
+    Filter several;
+    several.server = "ur5";
+    several.user = "anna";
+    several.from = at(1'000);
+    EXPECT_THAT(ids(several), ElementsAre("c"));
+    several.until = at(2'000);
+    EXPECT_THAT(ids(several), IsEmpty());
+    Filter times;
+    times.from = at(1'000);
+    times.until = at(3'000);
+    EXPECT_THAT(ids(times), ElementsAre("c", "b"));
+}
+
+TEST_P(EitherStore, FindsTextInNamesReasonsAndIds) {
+    recordSix();
+    const auto withText = [this](const std::string& text, const std::string& user = {}) {
+        Filter filter;
+        filter.text = text;
+        filter.user = user;
+        return ids(filter);
+    };
+    EXPECT_THAT(withText("OVER limit 3.1"), ElementsAre("c"));
+    EXPECT_THAT(withText("over limit", "ben"), IsEmpty());
+    EXPECT_THAT(withText("linear"), ElementsAre("f", "d", "b"));
+    EXPECT_THAT(withText("linear", "anna"), ElementsAre("b"));
+    EXPECT_THAT(withText("d"), ElementsAre("f", "e", "d", "c", "b", "a"));  // Ready, edo
+    EXPECT_THAT(withText("%"), IsEmpty());
+    EXPECT_THAT(withText("' OR 1=1 --"), IsEmpty());
+}
+
+TEST_P(EitherStore, FindsChildrenOnAnyServer) {
+    const auto pick = recorderOf(url_, "urn:test:pick");
+    const auto ur5 = recorderOf(url_);
+    recordOne(*pick, moveOf("p"), finished(at(5'000)));
+    auto child = moveOf("p/1");
+    child.parent = "p";
+    child.parent_server = "urn:test:pick";
+    recordOne(*ur5, child, finished(at(2'000)));
+    auto own = moveOf("p/2", at(3'000));
+    own.parent = "p";
+    recordOne(*pick, own, finished(at(4'000)));
+    auto of_another = moveOf("x/1");
+    of_another.parent = "p";  // of its own server, which is not that of p
+    recordOne(*ur5, of_another, finished(at(4'000)));
+    ASSERT_TRUE(pick->flush(soon()) && ur5->flush(soon()));
+
+    const auto reading = store();
+    const auto children = reading->children(reading->find("p")->number).value();
+    ASSERT_EQ(children.size(), 2U);
+    EXPECT_EQ(children[0].id, "p/1");
+    EXPECT_EQ(children[1].id, "p/2");
+    Filter filter;
+    filter.parent = "p";
+    EXPECT_EQ(ids(filter).size(), 3U);
+    filter.user = "ben";
+    EXPECT_THAT(ids(filter), IsEmpty());
+    filter.user.clear();
+    filter.text = "p/2";
+    EXPECT_THAT(ids(filter), ElementsAre("p/2"));
+}
+
+TEST_P(EitherStore, TellsWhatCameOrChanged) {
+    const auto recorder = recorderOf(url_);
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto reading = store();
+    const auto before = reading->latestRevision().value();
+    const auto key = recorder->begin(moveOf("m-1"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto began = reading->changes(before).value();
+    ASSERT_EQ(began.executions.size(), 1U);
+    EXPECT_FALSE(began.executions[0].isOver());
+    EXPECT_THAT(reading->changes(began.revision)->executions, IsEmpty());
+    recordOne(*recorder, moveOf("m-2"), finished(at(2'000)));
+    recorder->end(key, finished(at(2'000)));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto ended = reading->changes(began.revision).value();
+    ASSERT_EQ(ended.executions.size(), 2U);
+    EXPECT_TRUE(ended.executions[0].isOver() && ended.executions[1].isOver());
+    EXPECT_EQ(ended.revision, reading->latestRevision().value());
+}
+
+TEST_P(EitherStore, TakesAnyBytesAsNames) {
+    const auto recorder = recorderOf(url_);
+    auto strange = moveOf("id '\";--\xFF");
+    strange.user = std::string("a\0b", 3);
+    strange.client_name = "\xC0\xAF\xED\xA0\x80 \xF0\x9F\xA4\x96 $1 \\x41";
+    strange.skill = std::string(5'000, 's');
+    strange.parameters = std::string(2'000'000, '\xC3');
+    recordOne(*recorder, strange, halted(at(1'000), std::string(9'999, 'r')));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto found = store()->list({}, {}).value().executions.at(0);
+    EXPECT_EQ(found.id, "id '\";--\xEF\xBF\xBD");
+    EXPECT_EQ(found.user,
+              "a\xEF\xBF\xBD"
+              "b");
+    EXPECT_THAT(found.client_name, HasSubstr("\xF0\x9F\xA4\x96 $1 \\x41"));
+    EXPECT_EQ(found.skill.size(), 300U);
+    EXPECT_EQ(found.reason_text.size(), 2'000U);
+    EXPECT_LE(found.parameters.size(), 1'000'000U);
+}
+
+TEST_P(EitherStore, ClosesWhatADeadServerLeftUnderWayAsLost) {
+    {
+        const auto died = recorderOf(url_);
+        const auto key = died->begin(moveOf("m-1"));
+        died->sample(key, sampleAt(2.5, 0.1));
+        const auto other = recorderOf(url_, "urn:test:edo");
+        other->begin(moveOf("e-1"));
+        ASSERT_TRUE(died->flush(soon()) && other->flush(soon()));
+    }
+    ASSERT_FALSE(store()->find("m-1")->isOver());
+    const auto back = recorderOf(url_);
+    ASSERT_TRUE(back->flush(soon()));
+    const auto lost = store()->find("m-1").value();
+    EXPECT_EQ(lost.state, kLost);
+    EXPECT_EQ(lost.reason, kServerLost);
+    EXPECT_EQ(lost.ended, at(2'500));
+    EXPECT_THAT(lost.reason_text, HasSubstr("server ended"));
+    EXPECT_FALSE(store()->find("e-1")->isOver());
+}
+
+TEST_P(EitherStore, RemovesWhatIsOlderThanWanted) {
+    recordSix();
+    auto writing = Store::open(url_, Store::Access::write).value();
+    const auto removed = writing->retain({.age = 1h, .bytes = 0}, at(2'500) + 1h);
+    ASSERT_TRUE(removed) << removed.error().message;
+    EXPECT_EQ(*removed, 3U);
+    EXPECT_THAT(ids({}), ElementsAre("f", "e", "d"));
+    EXPECT_THAT(writing->path(1).value(), IsEmpty());
+    Filter gone;
+    gone.text = "over limit";
+    EXPECT_THAT(ids(gone), IsEmpty());
+}
+
+TEST_P(EitherStore, RemovesTheOldestBeyondItsSizeButNothingUnderWay) {
+    constexpr int kExecutions = 1'200;
+    const auto recorder = recorderOf(url_);
+    recorder->begin(moveOf("under way", at(-1)));
+    for (int i = 0; i < kExecutions; ++i) {
+        auto large = moveOf("m-" + std::to_string(i), at(i));
+        large.parameters = '"' + std::string(1'000, 'p') + '"';
+        recordOne(*recorder, large, finished(at(i + 1)));
+        if (i % 100 == 99) {
+            ASSERT_TRUE(recorder->flush(soon()));
+        }
+    }
+    auto writing = Store::open(url_, Store::Access::write).value();
+    const auto full = writing->bytes().value();
+    const auto removed = writing->retain({.age = 0h, .bytes = full / 2}, at(0));
+    ASSERT_TRUE(removed) << removed.error().message;
+    EXPECT_GT(*removed, 400U);
+    EXPECT_LT(*removed, 900U);
+    EXPECT_LE(writing->bytes().value(), full / 2);
+    EXPECT_TRUE(writing->find("under way"));
+    EXPECT_TRUE(writing->find("m-" + std::to_string(kExecutions - 1)));
+    EXPECT_FALSE(writing->find("m-0"));
+}
+
+TEST_P(EitherStore, IsNotThereUntilSomebodyRecords) {
+    EXPECT_EQ(Store::open(url_).error().code, Errc::not_found);
+}
+
+TEST(StoreUrl, IsAFileOrADatabase) {
+    EXPECT_EQ(Store::open("").error().code, Errc::invalid_argument);
+    EXPECT_EQ(Store::open("mysql://host/x").error().code, Errc::invalid_argument);
+    Recorder::Options options;
+    options.url = "mysql://host/x";
+    options.server = "urn:x";
+    EXPECT_EQ(Recorder::create(options).error().code, Errc::invalid_argument);
+    options.url = "records.db";
+    options.server.clear();
+    EXPECT_EQ(Recorder::create(options).error().code, Errc::invalid_argument);
+    const auto file = (testFolder() / "a ?#% b.db").string();
+    ASSERT_TRUE(recorderOf("sqlite:" + file)->flush(soon()));
+    EXPECT_TRUE(Store::open(file));
+    EXPECT_TRUE(Store::open("sqlite://" + file));
+}
+
+}  // namespace
+}  // namespace metier::records
