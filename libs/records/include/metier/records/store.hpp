@@ -31,6 +31,9 @@ struct Filter {
     std::string text{};
 };
 
+/// Whether the execution is one of those. Threads: any; pure.
+bool fits(const Execution& execution, const Filter& filter);
+
 /// A part of a list.
 struct Page {
     std::int64_t before = 0;    ///< number of the last one of the page before; 0: the first page

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/records/execution.hpp"
+#include "metier/records/store.hpp"
+
+namespace metier::records {
+
+/// "2026-11-22T09:30:00.125Z"; empty for the epoch, which means that there is none.
+std::string timeText(UtcTime time);
+
+/// A JSON object without line breaks, in UTF-8: the fields of Execution by their names, times as
+/// timeText() gives them (`ended` null while it is under way), `parameters`, `check` and `result`
+/// as JSON, and its `duration` [s], null while it is under way.
+std::string toJson(const Execution& execution);
+
+/// All that is known of one execution.
+struct Details {
+    Execution execution{};
+    std::vector<Execution> children{};
+    std::vector<Transition> transitions{};
+    std::vector<Intermediate> intermediates{};
+    std::vector<PathSample> path{};
+};
+
+/// Errors: not_found; those of Store.
+Result<Details> detailsOf(Store& store, std::int64_t number);
+/// The object of the execution with `transitions`, `intermediates`, `children` (objects as well)
+/// and `path`: a list of {time, actual, commanded, force}; the last two only where there are any.
+std::string toJson(const Details& details);
+
+}  // namespace metier::records

@@ -1,0 +1,134 @@
+#include "metier/records/json.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "execution_json.hpp"
+
+namespace metier::records {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json timeOrNull(UtcTime time) {
+    return time == UtcTime{} ? ordered_json() : ordered_json(timeText(time));
+}
+
+ordered_json jsonOf(const Transition& t) {
+    return {{"time", timeText(t.time)},    {"from", t.from}, {"to", t.to},
+            {"sub_state", t.sub_state},    {"step", t.step}, {"reason", t.reason},
+            {"reason_text", t.reason_text}};
+}
+
+ordered_json jsonOf(const Intermediate& i) {
+    return {{"time", timeText(i.time)}, {"value", parsed(i.value)}};
+}
+
+ordered_json jsonOf(const PathSample& sample) {
+    ordered_json json{{"time", sample.time}, {"actual", sample.actual.values()}};
+    if (!sample.commanded.empty()) {
+        json["commanded"] = sample.commanded.values();
+    }
+    if (!sample.force.empty()) {
+        json["force"] = sample.force.values();
+    }
+    return json;
+}
+
+template <typename T>
+ordered_json listOf(const std::vector<T>& all) {
+    auto list = ordered_json::array();
+    for (const auto& one : all) {
+        list.push_back(jsonOf(one));
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string timeText(UtcTime time) {
+    if (time == UtcTime{}) {
+        return {};
+    }
+    const auto milliseconds = std::chrono::floor<std::chrono::milliseconds>(time);
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(milliseconds);
+    return fmt::format("{:%FT%T}.{:03}Z",
+                       fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)),
+                       (milliseconds - seconds).count());
+}
+
+ordered_json parsed(const std::string& text) {
+    if (text.empty()) {
+        return nullptr;
+    }
+    auto json = ordered_json::parse(text, nullptr, false);
+    return json.is_discarded() ? ordered_json(text) : json;
+}
+
+std::string dump(const ordered_json& json) {
+    return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+ordered_json jsonOf(const Execution& e) {
+    ordered_json json{{"number", e.number},
+                      {"id", e.id},
+                      {"server", e.server},
+                      {"server_name", e.server_name},
+                      {"skill", e.skill},
+                      {"controller", e.controller},
+                      {"device", e.device},
+                      {"parent", e.parent},
+                      {"parent_server", e.parent_server},
+                      {"session", e.session},
+                      {"client_name", e.client_name},
+                      {"user", e.user},
+                      {"thumbprint", e.thumbprint},
+                      {"parameters", parsed(e.parameters)},
+                      {"check", parsed(e.check)},
+                      {"started", timeOrNull(e.started)},
+                      {"ended", timeOrNull(e.ended)},
+                      {"duration", nullptr},
+                      {"state", e.state},
+                      {"reason", e.reason},
+                      {"reason_text", e.reason_text},
+                      {"result", parsed(e.result)},
+                      {"missed_cycles", e.missed_cycles}};
+    if (e.isOver()) {
+        json["duration"] = std::chrono::duration<double>(e.ended - e.started).count();
+    }
+    return json;
+}
+
+std::string toJson(const Execution& execution) {
+    return dump(jsonOf(execution));
+}
+
+std::string toJson(const Details& details) {
+    auto json = jsonOf(details.execution);
+    json["transitions"] = listOf(details.transitions);
+    json["intermediates"] = listOf(details.intermediates);
+    json["children"] = listOf(details.children);
+    json["path"] = listOf(details.path);
+    return dump(json);
+}
+
+Result<Details> detailsOf(Store& store, std::int64_t number) {
+    auto execution = store.find(std::to_string(number));
+    if (!execution) {
+        return fail(execution.error());
+    }
+    auto children = store.children(number);
+    auto transitions = store.transitions(number);
+    auto intermediates = store.intermediates(number);
+    auto path = store.path(number);
+    if (!children || !transitions || !intermediates || !path) {
+        return fail(!children        ? children.error()
+                    : !transitions   ? transitions.error()
+                    : !intermediates ? intermediates.error()
+                                     : path.error());
+    }
+    return Details{std::move(*execution), std::move(*children), std::move(*transitions),
+                   std::move(*intermediates), std::move(*path)};
+}
+
+}  // namespace metier::records

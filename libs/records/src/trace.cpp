@@ -1,0 +1,215 @@
+#include "metier/records/trace.hpp"
+
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "execution_json.hpp"
+#include "metier/records/json.hpp"
+#include "parts.hpp"
+
+namespace metier::records {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// A composition that calls itself for ever does not exist; a damaged store might.
+constexpr std::size_t kMostExecutions = 100'000;
+
+/// The events of a trace, as they come.
+class Trace {
+public:
+    Trace(Store& store, UtcTime origin) : store_(store), origin_(toMicroseconds(origin)) {}
+
+    /// With all that it started. \param parent whose arrow leads to it; nullptr: nobody's
+    Result<void> add(const Execution& execution, const Execution* parent);
+    ordered_json events() && { return std::move(events_); }
+
+private:
+    struct Lane {
+        std::size_t process = 0;
+        std::size_t thread = 0;
+    };
+    struct Slice {
+        std::string name;
+        const char* category;
+        std::int64_t from;  // [us since 1970]
+        std::int64_t to;
+    };
+
+    Lane laneOf(const Execution& execution);
+    void nameIt(const char* what, const Lane& lane, const std::string& name);
+    void addSlice(const Slice& slice, const Lane& lane, ordered_json arguments);
+    void addArrow(const Execution& parent, const Execution& child);
+    Result<std::vector<Transition>> addEvents(const Execution& execution, std::int64_t& end);
+    void addStates(const std::vector<Transition>& transitions, const Execution& execution,
+                   std::int64_t end);
+
+    Store& store_;
+    const std::int64_t origin_;
+    ordered_json events_ = ordered_json::array();
+    std::map<std::string, std::size_t> processes_;
+    std::map<std::pair<std::size_t, std::string>, std::size_t> threads_;
+    std::set<std::int64_t> known_;
+};
+
+Result<void> Trace::add(const Execution& execution, const Execution* parent) {
+    if (known_.size() >= kMostExecutions || !known_.insert(execution.number).second) {
+        return {};
+    }
+    auto end = toMicroseconds(execution.isOver() ? execution.ended : execution.started);
+    const auto transitions = addEvents(execution, end);
+    const auto children = store_.children(execution.number);
+    if (!transitions || !children) {
+        return fail(!transitions ? transitions.error() : children.error());
+    }
+    addSlice({execution.skill, "execution", toMicroseconds(execution.started), end},
+             laneOf(execution), jsonOf(execution));
+    addStates(*transitions, execution, end);
+    if (parent != nullptr) {
+        addArrow(*parent, execution);
+    }
+    for (const auto& child : *children) {
+        if (auto added = add(child, &execution); !added) {
+            return added;
+        }
+    }
+    return {};
+}
+
+/// Intermediate results. \param end moved to the last event of an execution under way
+Result<std::vector<Transition>> Trace::addEvents(const Execution& execution, std::int64_t& end) {
+    auto transitions = store_.transitions(execution.number);
+    const auto intermediates = store_.intermediates(execution.number);
+    if (!transitions || !intermediates) {
+        return transitions ? fail(intermediates.error()) : transitions;
+    }
+    const auto lane = laneOf(execution);
+    for (const auto& one : *intermediates) {
+        const auto time = toMicroseconds(one.time);
+        end = execution.isOver() ? end : std::max(end, time);
+        events_.push_back({{"ph", "i"},
+                           {"s", "t"},
+                           {"name", "intermediate result"},
+                           {"cat", "result"},
+                           {"ts", time - origin_},
+                           {"pid", lane.process},
+                           {"tid", lane.thread},
+                           {"args", {{"value", parsed(one.value)}}}});
+    }
+    for (const auto& one : *transitions) {
+        end = execution.isOver() ? end : std::max(end, toMicroseconds(one.time));
+    }
+    return transitions;
+}
+
+/// States, and steps within them.
+void Trace::addStates(const std::vector<Transition>& transitions, const Execution& execution,
+                      std::int64_t end) {
+    const auto lane = laneOf(execution);
+    const auto within = [&](UtcTime time) {
+        return std::clamp(toMicroseconds(time), toMicroseconds(execution.started), end);
+    };
+    std::optional<Slice> state;
+    std::optional<Slice> step;
+    const auto close = [&](std::optional<Slice>& slice, std::int64_t time) {
+        if (slice && time > slice->from) {
+            slice->to = time;
+            addSlice(*slice, lane, ordered_json::object());
+        }
+        slice.reset();
+    };
+    for (const auto& t : transitions) {
+        const auto time = within(t.time);
+        const bool new_state = !state || state->name != t.to;
+        if (new_state || (step ? step->name : std::string()) != t.step) {
+            close(step, time);
+        }
+        if (new_state) {
+            close(state, time);
+            state = Slice{t.to, "state", time, time};
+        }
+        if (!step && !t.step.empty()) {
+            step = Slice{t.step, "step", time, time};
+        }
+    }
+    close(step, end);
+    close(state, end);
+}
+
+Trace::Lane Trace::laneOf(const Execution& e) {
+    const auto process = processes_.try_emplace(e.server, processes_.size() + 1);
+    const auto pid = process.first->second;
+    const auto skill = e.controller.empty() ? e.skill : e.controller + "/" + e.skill;
+    const auto thread = threads_.try_emplace({pid, skill}, threads_.size() + 1);
+    const Lane lane{pid, thread.first->second};
+    if (process.second) {
+        nameIt("process_name", lane, e.server_name.empty() ? e.server : e.server_name);
+    }
+    if (thread.second) {
+        nameIt("thread_name", lane, skill);
+    }
+    return lane;
+}
+
+void Trace::nameIt(const char* what, const Lane& lane, const std::string& name) {
+    events_.push_back({{"ph", "M"},
+                       {"name", what},
+                       {"pid", lane.process},
+                       {"tid", lane.thread},
+                       {"args", {{"name", name}}}});
+}
+
+void Trace::addSlice(const Slice& slice, const Lane& lane, ordered_json arguments) {
+    events_.push_back({{"ph", "X"},
+                       {"name", slice.name},
+                       {"cat", slice.category},
+                       {"ts", slice.from - origin_},
+                       {"dur", slice.to - slice.from},
+                       {"pid", lane.process},
+                       {"tid", lane.thread},
+                       {"args", std::move(arguments)}});
+}
+
+void Trace::addArrow(const Execution& parent, const Execution& child) {
+    const auto time = toMicroseconds(child.started) - origin_;
+    const auto from = laneOf(parent);
+    const auto to = laneOf(child);
+    const auto id = child.number;
+    events_.push_back({{"ph", "s"},
+                       {"name", "starts"},
+                       {"cat", "parent"},
+                       {"id", id},
+                       {"ts", time},
+                       {"pid", from.process},
+                       {"tid", from.thread}});
+    events_.push_back({{"ph", "f"},
+                       {"bp", "e"},
+                       {"name", "starts"},
+                       {"cat", "parent"},
+                       {"id", id},
+                       {"ts", time},
+                       {"pid", to.process},
+                       {"tid", to.thread}});
+}
+
+}  // namespace
+
+Result<std::string> chromeTrace(Store& store, std::int64_t number) {
+    const auto root = store.find(std::to_string(number));
+    if (!root) {
+        return fail(root.error());
+    }
+    Trace trace(store, root->started);
+    if (auto added = trace.add(*root, nullptr); !added) {
+        return fail(added.error());
+    }
+    ordered_json json{
+        {"traceEvents", std::move(trace).events()},
+        {"displayTimeUnit", "ms"},
+        {"otherData", {{"execution", root->id}, {"started", timeText(root->started)}}}};
+    return dump(json);
+}
+
+}  // namespace metier::records
