@@ -119,7 +119,7 @@ void CallActivity::onReset(const Result<void>& outcome) {
 void CallActivity::begin() {
     reset_limit_.cancel();
     refusal_.clear();
-    skill::StartRequest request{.on_owner_loss = run_.onOwnerLoss()};
+    skill::ValueMap parameters;
     for (const auto& argument : step_.arguments) {
         const auto& fields = child().description().parameters;
         const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
@@ -134,9 +134,11 @@ void CallActivity::begin() {
             over(failure(Reason::error, "has no value: " + value.error().message));
             return;
         }
-        request.parameters.emplace(argument.name, std::move(*value));
+        parameters.emplace(argument.name, std::move(*value));
     }
-    request.execution_id = run_.childExecution(step_.name);
+    auto request = run_.childExecution(step_.name, child());
+    request.parameters = std::move(parameters);
+    request.on_owner_loss = run_.onOwnerLoss();
     stage_ = Stage::runs;
     begun_ = run_.now();
     run_.used(step_.use).halted_by_us = false;

@@ -105,8 +105,11 @@ void Run::finished(const std::string& path, std::chrono::nanoseconds time) {
     }
 }
 
-std::string Run::childExecution(const std::string& step) {
-    return childExecutionId({setup_.origin, execution_.id(), step, ++begun_});
+skill::StartRequest Run::childExecution(const std::string& step, const Child& child) {
+    skill::StartRequest request{.parent = {.id = execution_.id()}};
+    request.execution_id = childExecutionId({setup_.origin, execution_.id(), step, ++begun_});
+    execution_.started({request.execution_id, child.description().name, child.serverUrl()});
+    return request;
 }
 
 void Run::detach(CallActivity& call) {

@@ -93,8 +93,8 @@ public:
     /// A step has finished. \param time that it took
     void finished(const std::string& path, std::chrono::nanoseconds time);
     SteadyTime now() const { return setup_.clock.now(); }
-    /// The id of the next execution of a used skill.
-    std::string childExecution(const std::string& step);
+    /// The next execution of a used skill, named and told to whoever watches this one.
+    skill::StartRequest childExecution(const std::string& step, const Child& child);
     void attach(CallActivity& call) { calls_.push_back(&call); }
     void detach(CallActivity& call);
 

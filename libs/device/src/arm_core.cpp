@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace metier::device {
 
 ArmCore::ArmCore(ArmInfo info)
@@ -54,6 +56,19 @@ bool ArmCore::stopRequested() noexcept {
 void ArmCore::publish(ArmState state) noexcept {
     state.safety = safety_.state();
     published_.write(state);
+    measure(state.safety == SafetyState::disconnected ? SteadyTime{} : state.stamp);
+}
+
+/// A state may be published twice.
+void ArmCore::measure(SteadyTime stamp) noexcept {
+    if (stamp == last_stamp_) {
+        return;
+    }
+    if (stamp != SteadyTime{} && last_stamp_ != SteadyTime{}) {
+        const std::chrono::duration<double> off = stamp - last_stamp_ - info_.cycle;
+        jitter_.add(std::abs(off.count()));
+    }
+    last_stamp_ = stamp;
 }
 
 void ArmCore::end(EndCause cause) noexcept {

@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace metier::device {
 namespace {
+
+using namespace std::chrono_literals;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -107,6 +110,43 @@ TEST_F(Core, TellsASourceThatItsDriverEnds) {
         ASSERT_TRUE(ending.attach(source));
     }
     EXPECT_THAT(source->causes, ElementsAre(EndCause::disconnected));
+}
+
+struct MeasuredCycles : Core {
+    void publishAt(std::chrono::microseconds time) {
+        ArmState state;
+        state.stamp = SteadyTime(std::chrono::seconds(1) + time);
+        core.publish(state);
+    }
+    std::uint64_t count() const {
+        const auto counts = core.cycleJitter()->read().counts;
+        return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+    }
+};
+
+TEST_F(MeasuredCycles, TellHowFarTheyWereOffThePeriod) {
+    publishAt(0us);
+    publishAt(8'000us);
+    publishAt(16'300us);  // 300 us late
+    publishAt(24'000us);  // and back
+    EXPECT_EQ(count(), 3U);
+    EXPECT_NEAR(core.cycleJitter()->read().sum, 600e-6, 1e-9);
+}
+
+TEST_F(MeasuredCycles, CountNoPauseOfALostConnection) {
+    publishAt(0us);
+    core.setSafety({SafetyState::disconnected, "robot: gone"});
+    publishAt(8'000us);
+    core.setSafety({});
+    publishAt(9'000'000us);
+    EXPECT_EQ(count(), 0U);
+}
+
+TEST_F(MeasuredCycles, CountAStateThatIsPublishedTwiceOnce) {
+    publishAt(0us);
+    publishAt(8'000us);
+    publishAt(8'000us);
+    EXPECT_EQ(count(), 1U);
 }
 
 }  // namespace

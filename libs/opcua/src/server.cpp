@@ -78,6 +78,14 @@ SteadyTime Server::lastTick() const noexcept {
     return core_->lastTick();
 }
 
+ServerStatistics Server::statistics() const {
+    return core_->statistics();
+}
+
+const TimeHistogram& Server::publishLatency() const noexcept {
+    return core_->publishLatency();
+}
+
 bool Server::onServerThread() const noexcept {
     return core_->onServerThread();
 }

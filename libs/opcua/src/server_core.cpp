@@ -16,6 +16,7 @@ namespace metier::opcua {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{100};
+constexpr std::chrono::milliseconds kFiguresEvery{50};
 
 EventLoopOptions loopOptions(const ServerOptions& options, const UA_Logger* logger) {
     EventLoopOptions result;
@@ -230,8 +231,31 @@ void ServerCore::run(const std::stop_token& stop, std::promise<Result<>>& opened
         if (auto iterated = loop_.runOnce(kLongestWait); !iterated) {
             log().error("{}", iterated.error().message);
         }
+        takeStatistics();
     }
     close();
+}
+
+void ServerCore::takeStatistics() {
+    if (loop_.lastIteration() - figures_taken_ < kFiguresEvery) {
+        return;
+    }
+    figures_taken_ = loop_.lastIteration();
+    const auto now = loop_.statistics();
+    figures_.connections = now.connections;
+    figures_.sessions = sessions_.count();
+    figures_.queued_bytes = now.queued_bytes;
+    figures_.refused_connections = now.refused;
+    figures_.cut_peers = now.cut_peers;
+}
+
+ServerStatistics ServerCore::statistics() const {
+    return {.connections = figures_.connections,
+            .sessions = figures_.sessions,
+            .queued_bytes = figures_.queued_bytes,
+            .waiting_work = queue_.size(),
+            .refused_connections = figures_.refused_connections,
+            .cut_peers = figures_.cut_peers};
 }
 
 Result<> ServerCore::open() {

@@ -45,6 +45,8 @@ public:
     bool onServerThread() const noexcept;
     std::uint16_t port() const noexcept { return port_; }
     SteadyTime lastTick() const noexcept { return loop_.lastIteration(); }
+    ServerStatistics statistics() const;
+    const TimeHistogram& publishLatency() const noexcept { return loop_.publishLatency(); }
     const ServerOptions& options() const noexcept { return options_; }
 
     UA_Server* native() noexcept { return server_.get(); }
@@ -88,6 +90,7 @@ private:
     void seat(const Session& session);
     void unseat(const Session& session);
     void close();
+    void takeStatistics();
     void runGuarded(const std::function<void()>& work) noexcept;
     const std::vector<NodeId>& notifiersAbove(const NodeId& source);
 
@@ -107,6 +110,16 @@ private:
     AuditTrail audit_;
     WorkQueue queue_;
     std::atomic<std::uint16_t> port_{0};
+    /// For those who must not wait for the thread that counts.
+    struct Figures {
+        std::atomic<std::size_t> connections{0};
+        std::atomic<std::size_t> sessions{0};
+        std::atomic<std::size_t> queued_bytes{0};
+        std::atomic<std::uint64_t> refused_connections{0};
+        std::atomic<std::uint64_t> cut_peers{0};
+    };
+    Figures figures_;
+    SteadyTime figures_taken_{};
     const std::thread::id creator_ = std::this_thread::get_id();
     std::atomic<std::thread::id> owner_ = creator_;
     bool started_ = false;

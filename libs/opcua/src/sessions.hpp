@@ -36,6 +36,7 @@ public:
     /// Calls whenever a session is not activated; its user is the one that was claimed.
     void onRefused(RefusedHandler handler) { refused_ = std::move(handler); }
     void onClosed(Handler handler) { closed_.push_back(std::move(handler)); }
+    std::size_t count() const noexcept { return sessions_.size(); }
     /// Whether an application may create one more, which it is then about to do.
     bool mayCreate(const ApplicationSessions::Application& application);
     void closeIf(UA_Server* server, const std::function<bool(const Session&)>& which);

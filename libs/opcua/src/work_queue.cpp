@@ -19,6 +19,11 @@ void WorkQueue::drain(const std::function<void(const std::function<void()>&)>& r
     }
 }
 
+std::size_t WorkQueue::size() const {
+    const std::lock_guard lock(mutex_);
+    return waiting_.size();
+}
+
 std::vector<std::function<void()>> WorkQueue::close() {
     {
         const std::lock_guard lock(mutex_);

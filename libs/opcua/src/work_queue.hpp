@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <mutex>
 #include <vector>
@@ -17,13 +18,15 @@ public:
     Pushed push(std::function<void()> work);
     /// Does what was there at the beginning, oldest first, without holding the lock.
     void drain(const std::function<void(const std::function<void()>&)>& run);
+    /// Any thread.
+    std::size_t size() const;
     /// Refuses more. \return what waited and will not be done
     [[nodiscard]] std::vector<std::function<void()>> close();
 
 private:
     std::vector<std::function<void()>> takeAll();
 
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::vector<std::function<void()>> waiting_;
     bool closed_ = false;
 };

@@ -125,4 +125,18 @@ Result<ModelIds> ModelIds::of(const opcua::AddressSpace& nodes) {
     return ids;
 }
 
+Result<opcua::NodeId> typeDirectlyBelow(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
+                                        const opcua::QualifiedName& name) {
+    const auto types = nodes.browse(base, {opcua::ids::kHasSubtype});
+    if (!types) {
+        return fail(types.error());
+    }
+    for (const auto& type : *types) {
+        if (type.browse_name == name) {
+            return type.target;
+        }
+    }
+    return fail(Errc::not_found, "the server has no type " + name.name);
+}
+
 }  // namespace metier::opcua_skill

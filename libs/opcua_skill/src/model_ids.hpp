@@ -35,6 +35,11 @@ struct ModelIds {
     static Result<ModelIds> of(const opcua::AddressSpace& nodes);
 };
 
+/// The type of that name directly below `base`.
+/// Errors: not_found.
+Result<opcua::NodeId> typeDirectlyBelow(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
+                                        const opcua::QualifiedName& name);
+
 /// The number that the model gives to a sub-state; 0 for none.
 std::uint32_t numberOf(skill::SubState sub_state);
 /// The state that a sub-state belongs to; nothing but `none` belongs to Suspended.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "diagnostic.hpp"
+#include "metier/opcua_skill/start_keys.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "owner_loss.hpp"
 #include "value_part.hpp"
@@ -19,6 +20,8 @@ using opcua::LocalizedText;
 using opcua::NodeId;
 using opcua::Session;
 using opcua::Value;
+
+constexpr std::size_t kLongestParent = 256;
 
 template <typename Name>
 LocalizedText textOf(Name name) {
@@ -74,7 +77,7 @@ const std::string* Refusals::find(const Session& session, const SkillNode& skill
 }
 
 skill::Caller callerOf(const Session& session) {
-    return {session.id.toString(), session.application_name, session.user};
+    return {session.id.toString(), session.application_name, session.user, session.thumbprint};
 }
 
 SkillNode::SkillNode(NodeId id, std::unique_ptr<skill::Program> program, SkillContext& context)
@@ -280,29 +283,46 @@ Result<void> SkillNode::call(const Session& session, skill::Method method) {
     return fail(Errc::internal, "unknown method");
 }
 
-Result<skill::ValueMap> SkillNode::parametersFrom(const Value& pairs) const {
-    const auto given = pairs.as<std::vector<opcua::KeyValue>>();
-    if (!given) {
-        return fail(given.error());
-    }
+Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) const {
+    const auto& name = given.key.name;
     const auto& fields = program_->description().parameters;
-    skill::ValueMap values;
-    for (const auto& [key, value] : *given) {
-        const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
-            return candidate.name == key.name;
-        });
-        if (field == fields.end()) {
-            return fail(Errc::invalid_argument, fmt::format("no parameter {}", key.name));
-        }
-        auto taken = fromOpcua(value, field->type);
-        if (!taken) {
-            return fail(taken.error().code, fmt::format("{}: {}", key.name, taken.error().message));
-        }
-        if (!values.emplace(key.name, std::move(*taken)).second) {
-            return fail(Errc::invalid_argument, fmt::format("{} is given twice", key.name));
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
+        return candidate.name == name;
+    });
+    const bool is_field = field != fields.end();
+    const bool is_parent = !is_field && (name == kParentExecution || name == kParentServer);
+    if (!is_field && !is_parent) {
+        return fail(Errc::invalid_argument, fmt::format("no parameter {}", name));
+    }
+    auto taken = fromOpcua(given.value, is_field ? field->type : skill::ValueType::text);
+    if (!taken) {
+        return fail(taken.error().code, fmt::format("{}: {}", name, taken.error().message));
+    }
+    if (!into.parameters.emplace(name, std::move(*taken)).second) {
+        return fail(Errc::invalid_argument, fmt::format("{} is given twice", name));
+    }
+    if (is_parent) {
+        auto& text = name == kParentServer ? into.parent.server : into.parent.id;
+        const auto value = into.parameters.extract(name);
+        if (const auto* said = std::get_if<std::string>(&value.mapped())) {
+            text = said->substr(0, kLongestParent);
         }
     }
-    return values;
+    return {};
+}
+
+Result<SkillNode::Given> SkillNode::givenIn(const Value& pairs) const {
+    const auto all = pairs.as<std::vector<opcua::KeyValue>>();
+    if (!all) {
+        return fail(all.error());
+    }
+    Given given;
+    for (const auto& one : *all) {
+        if (auto taken = takeGiven(one, given); !taken) {
+            return fail(std::move(taken.error()));
+        }
+    }
+    return given;
 }
 
 std::vector<opcua::KeyValue> SkillNode::pairsOf(const skill::ValueMap& values) const {
@@ -316,13 +336,13 @@ std::vector<opcua::KeyValue> SkillNode::pairsOf(const skill::ValueMap& values) c
 Result<std::vector<Value>> SkillNode::startWith(const Session& session,
                                                 std::span<const Value> inputs) {
     const auto id = inputs[0].as<std::string>();
-    auto parameters = parametersFrom(inputs[1]);
+    auto given = givenIn(inputs[1]);
     const auto action = inputs[2].as<std::int32_t>();
     const auto epoch = inputs[3].as<std::uint64_t>();
     const auto deadline = inputs[4].as<UtcTime>();
-    if (!id || !parameters || !action || !epoch || !deadline) {
-        auto refused = remember(session, parameters ? fail(Errc::type_mismatch, "StartWith")
-                                                    : fail(parameters.error()));
+    if (!id || !given || !action || !epoch || !deadline) {
+        auto refused = remember(session, given ? fail(Errc::type_mismatch, "StartWith")
+                                               : fail(given.error()));
         return fail(std::move(refused.error()));
     }
     const auto on_owner_loss = ownerLossActionFrom(*action);
@@ -333,10 +353,11 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
     auto started = program_->startWith(
         callerOf(session),
         {.execution_id = *id,
-         .parameters = std::move(*parameters),
+         .parameters = std::move(given->parameters),
          .on_owner_loss = *on_owner_loss,
          .epoch = *epoch,
-         .deadline = *deadline <= UtcTime{} ? std::optional<UtcTime>{} : *deadline});
+         .deadline = *deadline <= UtcTime{} ? std::optional<UtcTime>{} : *deadline,
+         .parent = std::move(given->parent)});
     if (!started) {
         auto refused = remember(session, fail(started.error()));
         return fail(std::move(refused.error()));
@@ -346,13 +367,13 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
 }
 
 Result<std::vector<Value>> SkillNode::check(const Session& session, std::span<const Value> inputs) {
-    const auto parameters = parametersFrom(inputs[0]);
+    const auto given = givenIn(inputs[0]);
     skill::CheckReport report;
-    if (parameters) {
-        report = program_->check(callerOf(session), *parameters);
+    if (given) {
+        report = program_->check(callerOf(session), given->parameters);
     } else {
         report.possible = false;
-        report.reason = parameters.error().message;
+        report.reason = given.error().message;
         report.first_failing_fraction = 0.0;
     }
     return std::vector{Value::of(report.possible), Value::of(report.reason),

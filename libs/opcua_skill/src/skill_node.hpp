@@ -91,7 +91,13 @@ private:
                                             std::span<const opcua::Value> inputs);
     Result<std::vector<opcua::Value>> getExecution(std::span<const opcua::Value> inputs) const;
     /// The skill's parameters by name from KeyValuePair[].
-    Result<skill::ValueMap> parametersFrom(const opcua::Value& pairs) const;
+    /// What StartWith and Check are called with.
+    struct Given {
+        skill::ValueMap parameters{};
+        skill::ParentExecution parent{};
+    };
+    Result<void> takeGiven(const opcua::KeyValue& given, Given& into) const;
+    Result<Given> givenIn(const opcua::Value& pairs) const;
     std::vector<opcua::KeyValue> pairsOf(const skill::ValueMap& values) const;
     opcua::Value readState(Purpose purpose) const;
     opcua::Value readTransition(Purpose purpose) const;

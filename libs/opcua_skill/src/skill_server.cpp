@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "control_node.hpp"
+#include "metier/opcua_skill/execution_records.hpp"
 #include "metier/opcua_skill/server_executor.hpp"
 #include "skill_factory.hpp"
 #include "skill_node.hpp"
@@ -73,6 +74,17 @@ public:
         controls_.push_back(
             std::make_unique<ControlNode>(std::move(control), server_, context_.log));
         return controls_.back()->bind(server_.nodes(), controller);
+    }
+
+    Result<void> publishRecords() {
+        for (const auto& skill : skills_) {
+            if (auto published =
+                    publishExecutionRecords(server_.nodes(), skill->id(), skill->program());
+                !published) {
+                return published;
+            }
+        }
+        return {};
     }
 
     std::vector<skill::Program*> programs() const {
@@ -165,6 +177,10 @@ Result<skill::Program*> SkillServer::publish(const opcua::NodeId& skills,
 Result<void> SkillServer::serveControl(const opcua::NodeId& controller,
                                        std::shared_ptr<skill::Control> control) {
     return state_->serveControl(controller, std::move(control));
+}
+
+Result<void> SkillServer::publishRecords() {
+    return state_->publishRecords();
 }
 
 std::vector<skill::Program*> SkillServer::programs() const {

@@ -15,21 +15,6 @@ using opcua::NodeId;
 const NodeId kNonHierarchicalReferences{0, 32U};
 constexpr const char* kFolder = "UsedSkills";
 
-/// The type of the Metier NodeSet directly below `base`.
-Result<NodeId> typeBelow(const AddressSpace& nodes, const NodeId& base,
-                         const opcua::QualifiedName& name) {
-    const auto types = nodes.browse(base, {opcua::ids::kHasSubtype});
-    if (!types) {
-        return fail(types.error());
-    }
-    for (const auto& type : *types) {
-        if (type.browse_name == name) {
-            return type.target;
-        }
-    }
-    return fail(Errc::not_found, "the server has no type " + name.name);
-}
-
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& user, std::uint16_t metier) {
     if (auto found = nodes.find(user, {metier, kFolder})) {
         return found;
@@ -67,7 +52,7 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const NodeId& u
     if (!metier) {
         return fail(metier.error());
     }
-    const auto uses = typeBelow(nodes, kNonHierarchicalReferences, {*metier, "UsesSkill"});
+    const auto uses = typeDirectlyBelow(nodes, kNonHierarchicalReferences, {*metier, "UsesSkill"});
     return uses ? nodes.addReference(user, *uses, used) : Result<void>(fail(uses.error()));
 }
 
@@ -77,7 +62,7 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
         return fail(metier.error());
     }
     const auto folder = folderOf(nodes, user, *metier);
-    const auto type = typeBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "UsedSkillType"});
+    const auto type = typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "UsedSkillType"});
     if (!folder || !type) {
         return fail(folder ? type.error() : folder.error());
     }

@@ -107,6 +107,7 @@ void RemoteChild::compareClocks(std::function<void(Result<composition::ClockOffs
 void RemoteChild::begin(skill::StartRequest request, ChildListener& listener) {
     listener_ = &listener;
     execution_ = request.execution_id;
+    request.parent.server = connection_.options().own_server;
     started_ = halt_wanted_ = suspend_wanted_ = left_over_ = false;
     const auto sent =
         skill_

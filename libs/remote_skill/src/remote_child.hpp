@@ -27,6 +27,7 @@ public:
 
     const std::string& name() const override { return name_; }
     const skill::SkillDescription& description() const override { return description_; }
+    std::string serverUrl() const override { return connection_.options().url; }
     Result<void> available() const override;
     skill::State state() const override { return state_; }
     std::string reasonText() const override { return reason_text_; }

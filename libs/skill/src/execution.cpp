@@ -60,4 +60,10 @@ void Execution::step(std::string name) const {
          [name = std::move(name)](ExecutionSink& sink) mutable { sink.onStep(std::move(name)); });
 }
 
+void Execution::started(StartedExecution child) const {
+    post(core_, [child = std::move(child)](ExecutionSink& sink) mutable {
+        sink.onStarted(std::move(child));
+    });
+}
+
 }  // namespace metier::skill

@@ -19,7 +19,7 @@ ExecutionRecord* ExecutionHistory::find(std::string_view id) noexcept {
 
 void ExecutionHistory::add(ExecutionRecord record) {
     if (records_.size() == kMost) {
-        records_.erase(records_.begin());
+        records_.pop_front();
     }
     records_.push_back(std::move(record));
 }

@@ -35,7 +35,7 @@ Result<void> Program::startNow(const Caller& caller) {
     if (auto complete = parameters_.checkComplete(); !complete) {
         return complete;
     }
-    return begin(caller, parameters_.values(), {}, OwnerLossAction::skill_default);
+    return begin(caller, parameters_.values(), {});
 }
 
 Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) {
@@ -65,7 +65,10 @@ Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) 
     if (!snapshot) {
         return metier::fail(std::move(snapshot.error()));
     }
-    if (auto begun = begin(caller, *snapshot, request.execution_id, request.on_owner_loss);
+    if (auto begun = begin(caller, std::move(*snapshot),
+                           {.id = request.execution_id,
+                            .on_owner_loss = request.on_owner_loss,
+                            .parent = std::move(request.parent)});
         !begun) {
         return begun;
     }
@@ -82,8 +85,7 @@ Result<void> Program::checkEpoch(const Caller& caller, std::uint64_t epoch) cons
 }
 
 /// Running, with the body that the skill prepares for `snapshot`.
-Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std::string id,
-                            OwnerLossAction on_owner_loss) {
+Result<void> Program::begin(const Caller& caller, ValueMap snapshot, Order order) {
     auto body = guarded([&] { return skill_->prepare(snapshot); });
     if (!body) {
         return metier::fail(std::move(body.error()));
@@ -91,8 +93,8 @@ Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std:
     if (!*body) {
         return metier::fail(Errc::internal, "the skill made no body");
     }
-    if (!id.empty()) {
-        if (auto noted = options_.names->note(description_.name, id); !noted) {
+    if (!order.id.empty()) {
+        if (auto noted = options_.names->note(description_.name, order.id); !noted) {
             return noted;
         }
     }
@@ -100,14 +102,18 @@ Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std:
         options_.resource->acquire(description_.name);
     }
     body_ = std::move(*body);
-    if (id.empty()) {
-        id = fmt::format("{}-{}", boot_id_, ++execution_count_);
-    }
-    execution_id_ = id;
-    execution_ = std::make_shared<ExecutionCore>(executor_, id, static_cast<ExecutionSink&>(*this));
+    execution_id_ = order.id.empty() ? fmt::format("{}-{}", boot_id_, ++execution_count_)
+                                     : std::move(order.id);
+    execution_ = std::make_shared<ExecutionCore>(executor_, execution_id_,
+                                                 static_cast<ExecutionSink&>(*this));
     owner_session_ = caller.session_id;
-    on_owner_loss_ = on_owner_loss;
-    history_.add({.id = std::move(id), .client = caller, .start_time = clock_.utcNow()});
+    on_owner_loss_ = order.on_owner_loss;
+    history_.add({.id = execution_id_,
+                  .client = caller,
+                  .parent = std::move(order.parent),
+                  .parameters = std::make_shared<const ValueMap>(std::move(snapshot)),
+                  .start_time = clock_.utcNow()});
+    notify([this](ProgramObserver& observer) { observer.onBegin(history_.last()); });
     commit(TransitionNumber::ready_to_running, {});
     releaseParameters();
     startBody();
@@ -115,15 +121,20 @@ Result<void> Program::begin(const Caller& caller, const ValueMap& snapshot, std:
 }
 
 CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
-    auto report = checkNow(caller, parameters);
-    if (report) {
-        return std::move(*report);
+    auto checked = checkNow(caller, parameters);
+    CheckReport report;
+    if (checked) {
+        report = std::move(*checked);
+    } else {
+        report.possible = false;
+        report.reason = checked.error().message;
+        report.first_failing_fraction = 0.0;
     }
-    CheckReport refusal;
-    refusal.possible = false;
-    refusal.reason = report.error().message;
-    refusal.first_failing_fraction = 0.0;
-    return refusal;
+    if (!busy_) {
+        const Turn turn(*this);
+        notify([&](ProgramObserver& observer) { observer.onCheck(caller, parameters, report); });
+    }
+    return report;
 }
 
 Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& parameters) {
@@ -426,6 +437,12 @@ void Program::onProgress(Value intermediate) {
     inTurn([this, value = std::move(intermediate)]() mutable {
         intermediate_ = std::move(value);
         notify([this](ProgramObserver& observer) { observer.onProgress(intermediate_); });
+    });
+}
+
+void Program::onStarted(StartedExecution child) {
+    inTurn([this, child = std::move(child)] {
+        notify([&](ProgramObserver& observer) { observer.onStarted(child); });
     });
 }
 

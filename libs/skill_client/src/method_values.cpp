@@ -4,6 +4,7 @@
 
 #include "metier/opcua/text.hpp"
 #include "metier/opcua/types.hpp"
+#include "metier/opcua_skill/start_keys.hpp"
 #include "metier/opcua_skill/values.hpp"
 
 namespace metier::skill_client {
@@ -26,18 +27,30 @@ skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& result
     return values;
 }
 
-}  // namespace
-
-opcua::Value pairsOf(const skill::ValueMap& values) {
+std::vector<opcua::KeyValue> listOf(const skill::ValueMap& values) {
     std::vector<opcua::KeyValue> pairs;
     for (const auto& [name, value] : values) {
         pairs.push_back({{0, name}, opcua_skill::toOpcua(value)});
     }
-    return opcua::Value::of(pairs);
+    return pairs;
 }
 
-std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request) {
-    return {opcua::Value::of(request.execution_id), pairsOf(request.parameters),
+}  // namespace
+
+opcua::Value pairsOf(const skill::ValueMap& values) {
+    return opcua::Value::of(listOf(values));
+}
+
+std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,
+                                          const SkillNodes& nodes) {
+    auto parameters = listOf(request.parameters);
+    if (!nodes.records.isNull() && !request.parent.id.empty()) {
+        parameters.push_back({{0, std::string(opcua_skill::kParentExecution)},
+                              opcua::Value::of(request.parent.id)});
+        parameters.push_back({{0, std::string(opcua_skill::kParentServer)},
+                              opcua::Value::of(request.parent.server)});
+    }
+    return {opcua::Value::of(request.execution_id), opcua::Value::of(parameters),
             opcua::Value::of(static_cast<std::int32_t>(request.on_owner_loss)),
             opcua::Value::of(request.epoch),
             opcua::Value::of(request.deadline.value_or(UtcTime{}))};

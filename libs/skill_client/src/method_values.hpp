@@ -10,6 +10,7 @@
 #include "metier/skill/field.hpp"
 #include "metier/skill/program.hpp"
 #include "metier/skill/skill.hpp"
+#include "skill_nodes.hpp"
 
 namespace metier::skill_client {
 
@@ -17,7 +18,8 @@ namespace metier::skill_client {
 // of another shape, with the skill's name.
 
 opcua::Value pairsOf(const skill::ValueMap& values);
-std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request);
+std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,
+                                          const SkillNodes& nodes);
 opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value>& outputs,
                                                   std::string_view skill);
 /// \param results as the skill declares them

@@ -264,7 +264,7 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
     auto outputs =
-        impl_->callMetier(&SkillNodes::start_with, "StartWith", startWithInputs(request));
+        impl_->callMetier(&SkillNodes::start_with, "StartWith", startWithInputs(request, impl_->nodes));
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }

@@ -168,12 +168,13 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
         return lacks(address, "CurrentState/Number");
     }
     nodes.state_number = *number;
-    const std::array<std::pair<std::string_view, NodeId*>, 5> optional{
+    const std::array<std::pair<std::string_view, NodeId*>, 6> optional{
         {{"ReasonText", &nodes.reason_text},
          {"ExecutionId", &nodes.execution_id},
          {"StartWith", &nodes.start_with},
          {"Check", &nodes.check},
-         {"GetExecution", &nodes.get_execution}}};
+         {"GetExecution", &nodes.get_execution},
+         {"ExecutionRecords", &nodes.records}}};
     for (const auto& [name, node] : optional) {
         if (const auto* found = findNamed(children, name)) {
             *node = found->target;

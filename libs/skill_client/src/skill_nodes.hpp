@@ -27,6 +27,8 @@ struct SkillNodes {
     opcua::NodeId state_number;
     opcua::NodeId reason_text;  ///< null if the server has none, as the next
     opcua::NodeId execution_id;
+    /// Null if the server keeps no records for clients; then it takes no parent of a start, either.
+    opcua::NodeId records;
     std::vector<FieldNode> parameters;
     std::vector<FieldNode> results;
 };

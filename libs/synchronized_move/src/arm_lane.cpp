@@ -97,7 +97,8 @@ void ArmLane::compareClocks(std::function<void(std::optional<LaneFailure>)> done
 void ArmLane::begin(const Start& start) {
     const auto time = start.time.time_since_epoch() + offset_.ahead;
     skill::StartRequest request{.execution_id = start.execution_id,
-                                .on_owner_loss = skill::OwnerLossAction::halt};
+                                .on_owner_loss = skill::OwnerLossAction::halt,
+                                .parent = {.id = start.parent}};
     request.parameters = {{"TargetJointPosition", way_.back()},
                           {"ToolFrame", setup_.tool_frame},
                           {"StartTime", std::chrono::duration<double>(time).count()}};

@@ -72,10 +72,13 @@ public:
 
     struct Start {
         std::string execution_id;
+        std::string parent;       ///< execution that moves the arms
         double duration;  ///< [s]
         UtcTime time;     ///< by the clock of this machine
     };
     void begin(const Start& start);
+    /// The skill that moves the arm.
+    const composition::Child& move() const { return *setup_.arm.joint_move; }
     /// Asks the arm to come to rest; changed() follows.
     void suspend();
     /// Whether the arm's move is Suspended, or was Halted here, so that none can begin.

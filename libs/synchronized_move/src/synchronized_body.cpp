@@ -100,7 +100,9 @@ void SynchronizedBody::begin() {
         if (!arrived(*lane)) {
             const auto id = composition::childExecutionId(
                 {options_.origin, execution_.id(), lane->name(), ++begun_});
-            lane->begin({id, duration, time});
+            const auto& move = lane->move();
+            execution_.started({id, move.description().name, move.serverUrl()});
+            lane->begin({id, execution_.id(), duration, time});
         }
     }
     timer_ = options_.executor->after(nanoseconds((1.0 - kShareForDoubt) * options_.start_delay),

@@ -14,7 +14,9 @@ void SimulatorDrive::run(const std::stop_token& stop) {
     TimeBase time_base(std::chrono::steady_clock::now() + period, period);
     while (!stop.stop_requested()) {
         std::this_thread::sleep_until(time_base.next());
-        const auto due = time_base.begin(std::chrono::steady_clock::now());
+        const auto now = std::chrono::steady_clock::now();
+        const auto due = time_base.begin(now);
+        arm_.measure(now - due);
         if (arm_.cycle(due, time_base.missed())) {
             notifier_.signal();
         }

@@ -110,6 +110,10 @@ device::ArmState IiwaArm::state() const noexcept {
     return machine_->pilot().core().state();
 }
 
+const TimeHistogram* IiwaArm::cycleJitter() const noexcept {
+    return machine_->pilot().core().cycleJitter();
+}
+
 device::Safety IiwaArm::safety() const {
     return machine_->pilot().core().safety();
 }

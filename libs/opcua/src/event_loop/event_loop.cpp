@@ -59,6 +59,10 @@ void AsioEventLoop::dropOpened() {
     loop_->tcp().dropOpened();
 }
 
+const TimeHistogram& AsioEventLoop::publishLatency() const noexcept {
+    return loop_->publishLatency();
+}
+
 EventLoopStatistics AsioEventLoop::statistics() const {
     const auto held = loop_->lock();
     return loop_->statistics();

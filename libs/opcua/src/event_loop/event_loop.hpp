@@ -13,6 +13,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/base/histogram.hpp"
 
 namespace metier::opcua {
 
@@ -134,6 +135,10 @@ public:
     /// with nothing to do iterates at least as often as its owner's timeout.
     /// Threads: any.
     SteadyTime lastIteration() const noexcept;
+    /// From flushPublishing() until what there was to say has been handed to the sockets, for each
+    /// Subscription.
+    /// Threads: any.
+    const TimeHistogram& publishLatency() const noexcept;
 
 private:
     std::unique_ptr<Loop> loop_;

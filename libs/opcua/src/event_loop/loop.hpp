@@ -45,6 +45,7 @@ public:
     const TcpConnectionManager& tcp() const { return tcp_; }
     TcpConnectionManager& tcp() { return tcp_; }
     SteadyTime lastIteration() const;
+    const TimeHistogram& publishLatency() const { return publisher_.latency(); }
 
 private:
     struct Handle : UA_EventLoop {

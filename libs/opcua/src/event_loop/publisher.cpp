@@ -1,6 +1,7 @@
 #include "publisher.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace metier::opcua {
 
@@ -85,7 +86,7 @@ void Publisher::request(std::span<const ConnectionId> connections, SteadyTime no
 }
 
 void Publisher::flush(SteadyTime now) {
-    requested_at_.reset();
+    const auto requested = std::exchange(requested_at_, std::nullopt).value_or(now);
     retry_at_.reset();
     const auto end = now + kLongestFlush;
     const auto wanted = std::exchange(wanted_, {});
@@ -98,10 +99,10 @@ void Publisher::flush(SteadyTime now) {
             wanted_.push_back(*next);
             continue;
         }
-        publishNow(*next, now);
+        publishNow(*next, now, requested);
         if (std::chrono::steady_clock::now() >= end && next + 1 != wanted.end()) {
             wanted_.insert(wanted_.begin(), next + 1, wanted.end());
-            requested_at_ = now;
+            requested_at_ = requested;
             return;
         }
     }
@@ -119,11 +120,16 @@ bool Publisher::canPublish(const Subscription& subscription, SteadyTime now) {
     return true;
 }
 
-void Publisher::publishNow(TimerId id, SteadyTime now) {
+void Publisher::publishNow(TimerId id, SteadyTime now, SteadyTime requested) {
     const Timer timer = subscriptions_.at(id).publish;
     ++flushes_;
     const bool fruitful = publish(timer);
-    fruitless_ += fruitful ? 0 : 1;
+    if (fruitful) {
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - requested;
+        latency_.add(took.count());
+    } else {
+        ++fruitless_;
+    }
     const auto found = subscriptions_.find(id);
     if (found == subscriptions_.end()) {
         return;  // deleted by its own callback

@@ -43,6 +43,8 @@ public:
 
     std::uint64_t flushes() const { return flushes_; }
     std::uint64_t fruitless() const { return fruitless_; }
+    /// From the request to what it led to. Any thread.
+    const TimeHistogram& latency() const { return latency_; }
 
 private:
     struct Peer {
@@ -61,7 +63,7 @@ private:
     /// \return whether the callback sent something
     bool publish(const Timer& timer);
     bool canPublish(const Subscription& subscription, SteadyTime now);
-    void publishNow(TimerId id, SteadyTime now);
+    void publishNow(TimerId id, SteadyTime now, SteadyTime requested);
 
     Publishing mode_;
     UA_Callback publish_callback_ = nullptr;
@@ -74,6 +76,7 @@ private:
     ConnectionId sent_to_ = 0;  ///< by the publish callback that runs
     std::uint64_t flushes_ = 0;
     std::uint64_t fruitless_ = 0;
+    TimeHistogram latency_;
 };
 
 }  // namespace metier::opcua

@@ -59,6 +59,8 @@ public:
     /// For texts: "GraspGripperSkill of wsg50".
     virtual const std::string& name() const = 0;
     virtual const skill::SkillDescription& description() const = 0;
+    /// Address of its server; empty for a skill of the same server.
+    virtual std::string serverUrl() const { return {}; }
 
     /// Whether it can be reached.
     /// Errors: connection_lost.

@@ -11,6 +11,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/base/histogram.hpp"
 #include "metier/device/joint_array.hpp"
 
 namespace metier::device {
@@ -126,6 +127,9 @@ public:
 
     /// The newest safety state with its reason.
     virtual Safety safety() const = 0;
+
+    /// How far the time from one cycle to the next was off the period [s]; null: not measured.
+    virtual const TimeHistogram* cycleJitter() const noexcept { return nullptr; }
 
     /// Lets `source` move the arm from the next cycle on, until it is done or the arm is stopped.
     /// The source's first set-point is judged against state().commanded_position.

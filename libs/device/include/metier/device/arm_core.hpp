@@ -25,6 +25,7 @@ public:
     const ArmInfo& info() const noexcept { return info_; }
     ArmState state() const noexcept { return published_.read(); }
     Safety safety() const { return safety_.safety(); }
+    const TimeHistogram* cycleJitter() const noexcept { return &jitter_; }
     Result<void> attach(std::shared_ptr<SetPointSource> source);
     void stop() noexcept;
     Registration onSafetyChange(Arm::SafetyCallback callback);
@@ -50,9 +51,12 @@ public:
 
 private:
     void tellEnd();
+    void measure(SteadyTime stamp) noexcept;
 
     const ArmInfo info_;
     SharedValue<ArmState> published_;
+    TimeHistogram jitter_;
+    SteadyTime last_stamp_{};  // of the cycle thread; none: nothing to compare with
     SafetyPublisher safety_;
     std::atomic<SetPointSource*> active_{nullptr};
     std::atomic<SetPointSource*> stop_target_{nullptr};

@@ -19,6 +19,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/base/histogram.hpp"
 #include "metier/opcua/address_space.hpp"
 #include "metier/opcua/audit.hpp"
 #include "metier/opcua/security.hpp"
@@ -101,6 +102,16 @@ struct ServerOptions {
     ServerLimits limits;
     /// Shared with its other users, as spdlog does; null: spdlog's default logger.
     std::shared_ptr<spdlog::logger> logger;
+};
+
+/// What a server does; figures of at most the last 100 ms while its thread works.
+struct ServerStatistics {
+    std::size_t connections = 0;
+    std::size_t sessions = 0;
+    std::size_t queued_bytes = 0;  ///< [byte] waiting for peers to read
+    std::size_t waiting_work = 0;  ///< posted to the server's thread and not begun, now
+    std::uint64_t refused_connections = 0;
+    std::uint64_t cut_peers = 0;  ///< did not take what was sent to them
 };
 
 /// A timer that is cancelled at the end of its life.
@@ -194,6 +205,11 @@ public:
     /// When the server's thread was last seen working; it is at least every 100 ms. Any thread.
     SteadyTime lastTick() const noexcept;
     bool onServerThread() const noexcept;
+    /// Any thread; does not wait for the server's.
+    ServerStatistics statistics() const;
+    /// From an event until it was handed to the socket, for each Subscription that is told at once.
+    /// Any thread.
+    const TimeHistogram& publishLatency() const noexcept;
 
 private:
     friend class EventEmitter;

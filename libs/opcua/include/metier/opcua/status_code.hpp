@@ -65,6 +65,7 @@ inline constexpr StatusCode kBadRequestCancelledByClient{0x802C0000};
 inline constexpr StatusCode kBadDeviceFailure{0x808B0000};
 inline constexpr StatusCode kBadLocked{0x80E90000};
 inline constexpr StatusCode kBadStateNotActive{0x80BF0000};
+inline constexpr StatusCode kBadNoData{0x809B0000};
 inline constexpr StatusCode kBadDataLost{0x809D0000};
 inline constexpr StatusCode kBadArgumentsMissing{0x80760000};
 inline constexpr StatusCode kBadTooManyArguments{0x80E50000};

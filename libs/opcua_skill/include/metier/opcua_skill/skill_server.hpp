@@ -77,6 +77,10 @@ public:
     Result<void> serveControl(const opcua::NodeId& controller,
                               std::shared_ptr<skill::Control> control);
 
+    /// Shows the last executions of each skill that is served by now, see
+    /// publishExecutionRecords(). Before Server::start(); once.
+    Result<void> publishRecords();
+
     /// All Programs, in the order in which they came; they end in the opposite one.
     std::vector<skill::Program*> programs() const;
 

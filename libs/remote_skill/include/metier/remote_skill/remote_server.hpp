@@ -25,6 +25,8 @@ struct RemoteServerOptions {
     std::chrono::milliseconds session_timeout{5'000};
     std::chrono::milliseconds retry_interval{500};  ///< between attempts to connect again
     std::optional<opcua::Credentials> security{};   ///< as opcua::ClientOptions::security
+    /// ApplicationUri of the component, which the executions that it starts are told; may be empty.
+    std::string own_server{};
 };
 
 struct OpenSkill;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "metier/skill/executor.hpp"
+#include "metier/skill/parent_execution.hpp"
 #include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
 
@@ -20,6 +21,7 @@ public:
     virtual void onAtRest(std::uint32_t stop_request) = 0;
     virtual void onProgress(Value intermediate) = 0;
     virtual void onStep(std::string name) = 0;
+    virtual void onStarted(StartedExecution child) = 0;
 };
 
 struct ExecutionCore;
@@ -50,6 +52,8 @@ public:
     void progress(Value intermediate) const;
     /// The step that a sequence is in, shown as a sub-state of Executing.
     void step(std::string name) const;
+    /// The work has another skill started, here or elsewhere.
+    void started(StartedExecution child) const;
 
 private:
     // Shared by the Program and all handles, since a handle may outlive the Program.

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <deque>
+#include <memory>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "metier/base/clock.hpp"
 #include "metier/skill/caller.hpp"
+#include "metier/skill/parent_execution.hpp"
 #include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
 
@@ -14,6 +18,9 @@ namespace metier::skill {
 struct ExecutionRecord {
     std::string id{};
     Caller client{};               ///< who started it
+    ParentExecution parent{};      ///< on whose behalf
+    /// Snapshot of Start; shared with whoever writes it down, and does not change.
+    std::shared_ptr<const ValueMap> parameters{};
     State state = State::running;  ///< that it is in, or ended in
     Reason reason = Reason::none;
     std::string reason_text{};
@@ -35,9 +42,13 @@ public:
     void add(ExecutionRecord record);
     /// The latest; there must be one.
     const ExecutionRecord& last() const noexcept { return records_.back(); }
+    /// The one that came `back` before the latest, or nullptr. Valid until the next add().
+    const ExecutionRecord* recent(std::size_t back) const noexcept {
+        return back < records_.size() ? &records_[records_.size() - 1 - back] : nullptr;
+    }
 
 private:
-    std::vector<ExecutionRecord> records_;  // oldest first
+    std::deque<ExecutionRecord> records_;  // oldest first
 };
 
 }  // namespace metier::skill

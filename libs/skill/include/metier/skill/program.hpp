@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -47,6 +48,7 @@ struct StartRequest {
     OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
     std::uint64_t epoch = 0;            ///< of the caller's lease; 0: it need not hold one
     std::optional<UtcTime> deadline{};  ///< after which nothing is started any more
+    ParentExecution parent{};           ///< on whose behalf; told on, and believed by nobody
 };
 
 /// The state machine of one skill, and the only one that changes its state.
@@ -98,6 +100,11 @@ public:
     /// What became of an execution; of the last ExecutionHistory::kMost.
     /// Errors: not_found.
     Result<ExecutionRecord> execution(std::string_view id) const;
+    /// The last executions; 0 the latest. Null if there were not as many. Valid until the next
+    /// one begins.
+    const ExecutionRecord* recentExecution(std::size_t back) const noexcept {
+        return history_.recent(back);
+    }
 
     /// Errors: not_supported; whatever Body::suspend() says.
     Result<void> suspend(const Caller& caller);
@@ -157,6 +164,7 @@ private:
     void onAtRest(std::uint32_t stop_request) override;
     void onProgress(Value intermediate) override;
     void onStep(std::string name) override;
+    void onStarted(StartedExecution child) override;
     void onControlLost(std::string_view session, OwnerLossAction action,
                        const std::string& text) override;
 
@@ -181,8 +189,13 @@ private:
     Result<void> startWithNow(const Caller& caller, StartRequest& request);
     Result<void> checkFree(const Caller& caller) const;
     Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
-    Result<void> begin(const Caller& caller, const ValueMap& snapshot, std::string id,
-                       OwnerLossAction on_owner_loss);
+    /// What a Start says of its execution.
+    struct Order {
+        std::string id{};  ///< empty: to be named
+        OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
+        ParentExecution parent{};
+    };
+    Result<void> begin(const Caller& caller, ValueMap snapshot, Order order);
     void startBody();
     Result<CheckReport> checkNow(const Caller& caller, const ValueMap& parameters);
     Result<void> suspendNow(Cause cause);

@@ -6,10 +6,15 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/skill/caller.hpp"
+#include "metier/skill/parent_execution.hpp"
 #include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
 
 namespace metier::skill {
+
+struct CheckReport;
+struct ExecutionRecord;
 
 /// What the event of a transition tells.
 struct TransitionEvent {
@@ -60,6 +65,13 @@ public:
     virtual void onResult(const ValueMap& result) = 0;
     virtual void onProgress(const Value& intermediate) = 0;
     virtual void onDiagnostic(const Diagnostic& diagnostic) = 0;
+    /// An execution begins; its transition to Running follows.
+    virtual void onBegin(const ExecutionRecord& /*execution*/) {}
+    /// The execution that is under way has started another one.
+    virtual void onStarted(const StartedExecution& /*child*/) {}
+    /// Somebody asked what Start would say. Nothing has changed.
+    virtual void onCheck(const Caller& /*caller*/, const ValueMap& /*parameters*/,
+                         const CheckReport& /*report*/) {}
 };
 
 }  // namespace metier::skill

@@ -54,6 +54,7 @@ public:
     const device::ArmInfo& info() const noexcept override { return info_; }
     device::ArmState state() const noexcept override { return published_.read(); }
     device::Safety safety() const override;
+    const TimeHistogram* cycleJitter() const noexcept override { return &jitter_; }
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
     void stop() noexcept override;
     Result<void> resetFault() override;
@@ -64,6 +65,10 @@ public:
     /// \param missed    cycles so far that began more than one period late
     /// \return whether dispatch() has something to tell
     bool cycle(SteadyTime scheduled, std::uint64_t missed) noexcept;
+    /// How late the cycle's thread woke up. Cycle thread.
+    void measure(std::chrono::nanoseconds late) noexcept {
+        jitter_.add(std::chrono::duration<double>(late).count());
+    }
 
     /// Tells sources and callbacks what happened. Not from the cycle thread.
     void dispatch();
@@ -117,6 +122,7 @@ private:
 
     // Between the cycle thread and the others.
     device::SharedValue<device::ArmState> published_;
+    TimeHistogram jitter_;
     device::SharedValue<StopReason> reason_;
     std::atomic<device::SafetyState> safety_{device::SafetyState::normal};
     std::atomic<bool> standing_{true};

@@ -68,6 +68,7 @@ public:
     const device::ArmInfo& info() const noexcept override { return core().info(); }
     device::ArmState state() const noexcept override { return core().state(); }
     device::Safety safety() const override { return core().safety(); }
+    const TimeHistogram* cycleJitter() const noexcept override { return core().cycleJitter(); }
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override {
         return connection_.attach(std::move(source));
     }

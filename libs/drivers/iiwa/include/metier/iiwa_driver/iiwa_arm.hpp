@@ -54,6 +54,7 @@ public:
     const device::ArmInfo& info() const noexcept override;
     device::ArmState state() const noexcept override;
     device::Safety safety() const override;
+    const TimeHistogram* cycleJitter() const noexcept override;
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
     void stop() noexcept override;
     Result<void> resetFault() override;

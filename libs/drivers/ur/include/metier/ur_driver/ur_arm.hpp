@@ -49,6 +49,7 @@ public:
     const device::ArmInfo& info() const noexcept override { return core_.info(); }
     device::ArmState state() const noexcept override { return core_.state(); }
     device::Safety safety() const override { return core_.safety(); }
+    const TimeHistogram* cycleJitter() const noexcept override { return core_.cycleJitter(); }
     /// Errors: also device_fault if the speed slider is below 100 % or the controller runs a
     ///         program that is not this driver's.
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;

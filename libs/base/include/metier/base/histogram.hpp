@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace metier {
+
+/// Times by how long they were [s], in the buckets 10 us, 20 us, 50 us, ... 100 s and beyond.
+///
+/// Threading: any threads, at the same time; nobody waits, locks or allocates, so a cycle thread
+/// may add. A reader sees every value that was added before, and maybe some of those that are added
+/// meanwhile.
+class TimeHistogram {
+public:
+    /// Largest value of each bucket but the last, which has none [s].
+    static constexpr std::array<double, 22> kBounds{
+        10e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 1e-3, 2e-3, 5e-3, 10e-3, 20e-3,
+        50e-3, 0.1,   0.2,   0.5,    1.0,    2.0,    5.0,  10.0, 20.0, 50.0,  100.0};
+    static constexpr std::size_t kBuckets = kBounds.size() + 1;
+
+    /// \param seconds >= 0
+    void add(double seconds) noexcept {
+        std::size_t bucket = 0;
+        while (bucket < kBounds.size() && seconds > kBounds[bucket]) {
+            ++bucket;
+        }
+        counts_[bucket].fetch_add(1, std::memory_order_relaxed);
+        sum_.fetch_add(seconds, std::memory_order_relaxed);
+    }
+
+    struct Snapshot {
+        std::array<std::uint64_t, kBuckets> counts{};  ///< of each bucket, not cumulated
+        double sum = 0;                                ///< of all values [s]
+    };
+    Snapshot read() const noexcept {
+        Snapshot snapshot;
+        for (std::size_t i = 0; i < kBuckets; ++i) {
+            snapshot.counts[i] = counts_[i].load(std::memory_order_relaxed);
+        }
+        snapshot.sum = sum_.load(std::memory_order_relaxed);
+        return snapshot;
+    }
+
+private:
+    std::array<std::atomic<std::uint64_t>, kBuckets> counts_{};
+    std::atomic<double> sum_{0};
+};
+
+}  // namespace metier

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "metier/base/error.hpp"
+
+namespace metier::metrics {
+
+/// Whether a server does what it is for, and in words why not.
+struct Health {
+    bool good = true;
+    std::string text{};
+};
+
+/// An HTTP server of its own threads with `/metrics` and `/healthz`.
+///
+/// It has no log-in and no encryption: whoever reaches the address reads the figures. A client gets
+/// one answer per connection and two seconds to ask; two are answered at the same time.
+/// Threading: one thread makes and ends it, and waits for answers that are under way.
+class Endpoint {
+public:
+    struct Options {
+        std::string address = "127.0.0.1";  ///< to listen on, IPv4 or IPv6
+        std::uint16_t port = 0;             ///< 0: a free one
+        /// The page for Prometheus. On threads of the endpoint, several at the same time; must not
+        /// wait.
+        std::function<std::string()> metrics{};
+        /// 200 if good, 503 if not, with the text. As `metrics`.
+        std::function<Health()> health{};
+    };
+
+    /// Errors: resource_unavailable (the address cannot be listened on).
+    static Result<std::unique_ptr<Endpoint>> start(Options options);
+    ~Endpoint();
+    Endpoint(const Endpoint&) = delete;
+    Endpoint& operator=(const Endpoint&) = delete;
+
+    std::uint16_t port() const noexcept;
+
+private:
+    class Server;
+    explicit Endpoint(std::unique_ptr<Server> server);
+
+    std::unique_ptr<Server> server_;
+};
+
+}  // namespace metier::metrics

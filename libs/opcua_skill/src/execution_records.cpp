@@ -1,0 +1,124 @@
+#include "metier/opcua_skill/execution_records.hpp"
+
+#include <array>
+#include <string>
+
+#include "metier/opcua/status_code.hpp"
+#include "metier/opcua/value.hpp"
+#include "metier/skill/json.hpp"
+#include "model_ids.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+using opcua::AddressSpace;
+using opcua::NodeId;
+using opcua::Value;
+using skill::ExecutionRecord;
+
+constexpr const char* kFolder = "ExecutionRecords";
+
+/// A property of a record.
+struct Item {
+    const char* name;
+    Value (*read)(const ExecutionRecord& record, const skill::Program& program);
+};
+
+Value timeOf(UtcTime time) {
+    return Value::of(time == UtcTime{} ? UtcTime::min() : time);
+}
+
+const std::array<Item, 13>& items() {
+    using Record = const ExecutionRecord&;
+    using Program = const skill::Program&;
+    static const std::array<Item, 13> kItems{
+        {{"ExecutionId", [](Record r, Program) { return Value::of(r.id); }},
+         {"SkillName", [](Record, Program p) { return Value::of(p.description().name); }},
+         {"Client", [](Record r, Program) { return Value::of(r.client.client_name); }},
+         {"User", [](Record r, Program) { return Value::of(r.client.user_name); }},
+         {"ParentExecution", [](Record r, Program) { return Value::of(r.parent.id); }},
+         {"ParentServer", [](Record r, Program) { return Value::of(r.parent.server); }},
+         {"StartTime", [](Record r, Program) { return timeOf(r.start_time); }},
+         {"EndTime", [](Record r, Program) { return timeOf(r.end_time); }},
+         {"EndState",
+          [](Record r, Program) { return Value::of(static_cast<std::uint32_t>(r.state)); }},
+         {"Reason",
+          [](Record r, Program) { return Value::of(static_cast<std::int32_t>(r.reason)); }},
+         {"ReasonText", [](Record r, Program) { return Value::of(r.reason_text); }},
+         {"Parameters",
+          [](Record r, Program) {
+              return Value::of(r.parameters ? skill::jsonOf(*r.parameters) : std::string());
+          }},
+         {"Result", [](Record r, Program) {
+              return Value::of(r.result.empty() ? std::string() : skill::jsonOf(r.result));
+          }}}};
+    return kItems;
+}
+
+Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t metier) {
+    if (auto found = nodes.find(skill, {metier, kFolder})) {
+        return found;
+    }
+    opcua::ObjectSpec spec;
+    spec.node.parent = skill;
+    spec.node.browse_name = {metier, kFolder};
+    spec.node.description = {"en", "The last executions, the latest first."};
+    spec.type = opcua::ids::kFolderType;
+    return nodes.addObject(spec);
+}
+
+/// Of the execution that came `back` before the latest.
+Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& type,
+                       const skill::Program& program, std::size_t back) {
+    opcua::ObjectSpec spec;
+    spec.node.parent = folder;
+    spec.node.browse_name = {type.namespaceIndex(),
+                             back == 0 ? "Latest" : "Latest-" + std::to_string(back)};
+    spec.node.description = {"en", "What is kept of one execution."};
+    spec.type = type;
+    const auto object = nodes.addObject(spec);
+    if (!object) {
+        return fail(object.error());
+    }
+    for (const auto& item : items()) {
+        const auto node = nodes.find(*object, {type.namespaceIndex(), item.name});
+        if (!node) {
+            return fail(node.error());
+        }
+        const auto read = [&program, back, &item](const opcua::Session& /*reader*/) {
+            const auto* record = program.recentExecution(back);
+            return record == nullptr
+                       ? opcua::DataValue{{}, opcua::status::kBadNoData, {}, {}}
+                       : opcua::DataValue{item.read(*record, program), {}, {}, {}};
+        };
+        if (auto set = nodes.setDataSource(*node, {read, nullptr}); !set) {
+            return set;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<void> publishExecutionRecords(AddressSpace& nodes, const NodeId& skill,
+                                     const skill::Program& program) {
+    const auto metier = nodes.namespaceIndex(kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    const auto type = typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType,
+                                        {*metier, "ExecutionRecordType"});
+    const auto folder = folderOf(nodes, skill, *metier);
+    if (!type || !folder) {
+        return fail(type ? folder.error() : type.error());
+    }
+    for (std::size_t back = 0; back < kBrowsableExecutions; ++back) {
+        if (auto added = addRecord(nodes, *folder, *type, program, back); !added) {
+            return added;
+        }
+    }
+    return {};
+}
+
+}  // namespace metier::opcua_skill

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "metier/records/recorder.hpp"
+#include "metier/recording/path_sampler.hpp"
+#include "metier/skill/program.hpp"
+
+namespace metier::recording {
+
+/// Makes a record of each execution of one Program.
+///
+/// Threading: the Program's owner. Nothing waits for a disk.
+class ProgramRecorder final : private skill::ProgramObserver {
+public:
+    /// What the records tell of their Program; texts may be empty.
+    struct Place {
+        std::string server_name{};  ///< as its cell file names it
+        std::string controller{};   ///< BrowseName of what the Program belongs to
+        std::string device{};       ///< the arm or gripper it moves
+    };
+
+    /// \param program  must outlive this, as the recorder and the sampler
+    /// \param sampler  of the arm that the Program moves; null: it moves none
+    ProgramRecorder(skill::Program& program, records::Recorder& recorder, PathSampler* sampler,
+                    Place place);
+    ~ProgramRecorder() override;
+    ProgramRecorder(const ProgramRecorder&) = delete;
+    ProgramRecorder& operator=(const ProgramRecorder&) = delete;
+
+private:
+    void onBegin(const skill::ExecutionRecord& execution) override;
+    void onTransition(const skill::TransitionEvent& event) override;
+    void onSubState(skill::SubState sub_state, std::string_view step) override;
+    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
+    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
+    void onResult(const skill::ValueMap& /*result*/) override {}
+    void onProgress(const skill::Value& intermediate) override;
+    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
+    void onStarted(const skill::StartedExecution& child) override;
+    void onCheck(const skill::Caller& caller, const skill::ValueMap& parameters,
+                 const skill::CheckReport& report) override;
+
+    void end(const skill::TransitionEvent& event);
+    std::string checkOf(const skill::ExecutionRecord& execution) const;
+
+    skill::Program& program_;
+    records::Recorder& recorder_;
+    PathSampler* sampler_;
+    const Place place_;
+
+    records::Recorder::Key key_ = 0;  ///< of the execution that is under way; 0: none
+    skill::State state_;              ///< that was told last
+    skill::SubState sub_state_ = skill::SubState::none;
+    std::string step_;
+    /// What a session asked last before it starts.
+    struct Checked {
+        std::string session{};
+        skill::ValueMap parameters{};
+        std::string report{};  ///< JSON
+    };
+    Checked checked_;
+};
+
+}  // namespace metier::recording
