@@ -41,6 +41,8 @@ inline constexpr std::chrono::milliseconds kPublishingInterval{100};
 
 /// Errors of the functions that they hold: exceptions.
 Side metierSide(opcua_skill::NodeStyle style = opcua_skill::NodeStyle::readable);
+/// The same, which records every execution in that file.
+Side recordingSide(const std::string& file);
 Side bareSide();
 /// metier's server with open62541 alone as its client; can only call().
 Side metierServerBareClient();

@@ -12,6 +12,8 @@
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
+#include "metier/recording/program_recorder.hpp"
+#include "metier/records/recorder.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "metier/skill_client/skill_finder.hpp"
 
@@ -67,7 +69,8 @@ skill::SkillDescription moveDescription(std::string name) {
 /// An OPC UA server with skills that end as soon as they are started.
 class SkillServers {
 public:
-    SkillServers(std::size_t idle, opcua_skill::NodeStyle style) {
+    /// \param records file for a record of each execution; empty: none
+    SkillServers(std::size_t idle, opcua_skill::NodeStyle style, const std::string& records = {}) {
         auto& nodes = server_->nodes();
         const auto index = orThrow(nodes.namespaceIndex("urn:benchmark"));
         const auto system = orThrow(opcua_skill::publishMotionDeviceSystem(
@@ -76,8 +79,19 @@ public:
         for (std::size_t i = 0; i < idle; ++i) {
             publish(system.skills, fmt::format("JointPtpMoveSkill{}", i), style);
         }
+        if (!records.empty()) {
+            record(records);
+        }
         orThrow(server_->start().map([] { return true; }));
     }
+    /// Observers let go of their Programs between the server's thread and the Programs' end.
+    ~SkillServers() {
+        server_->stop();
+        program_recorders_.clear();
+        recorder_.reset();
+    }
+    SkillServers(const SkillServers&) = delete;
+    SkillServers& operator=(const SkillServers&) = delete;
     std::string url() const { return server_->endpointUrl(); }
 
 private:
@@ -89,6 +103,14 @@ private:
         options.logger = std::make_shared<spdlog::logger>("quiet");
         return options;
     }
+    void record(const std::string& file) {
+        recorder_ = orThrow(records::Recorder::create({.url = file, .server = "urn:benchmark"}));
+        for (auto* program : skills_->programs()) {
+            program_recorders_.push_back(std::make_unique<recording::ProgramRecorder>(
+                *program, *recorder_, nullptr,
+                recording::ProgramRecorder::Place{"benchmark", "Benchmark", ""}));
+        }
+    }
     void publish(const opcua::NodeId& folder, std::string name, opcua_skill::NodeStyle style) {
         auto skill = std::make_unique<skill::LambdaSkill>(moveDescription(std::move(name)),
                                                           skill::SkillFunctions{});
@@ -99,6 +121,8 @@ private:
     std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(options()));
     std::unique_ptr<opcua_skill::SkillServer> skills_ = orThrow(opcua_skill::SkillServer::create(
         *server_, clock_, std::make_shared<spdlog::logger>("quiet")));
+    std::unique_ptr<records::Recorder> recorder_;
+    std::vector<std::unique_ptr<recording::ProgramRecorder>> program_recorders_;
 };
 
 class MetierCaller final : public Caller {
@@ -198,6 +222,16 @@ Side metierSide(opcua_skill::NodeStyle style) {
                 return Served{server->url(), server};
             },
             [](const std::string& url) { return std::make_unique<MetierCaller>(url); }};
+}
+
+Side recordingSide(const std::string& file) {
+    auto side = metierSide();
+    side.serve = [file](std::size_t idle) {
+        const auto server =
+            std::make_shared<SkillServers>(idle, opcua_skill::NodeStyle::readable, file);
+        return Served{server->url(), server};
+    };
+    return side;
 }
 
 }  // namespace metier::benchmarks

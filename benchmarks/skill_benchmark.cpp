@@ -22,13 +22,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdlib>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "both_sides.hpp"
+#include "throughput.hpp"
 
 namespace metier::benchmarks {
 namespace {
@@ -38,9 +38,7 @@ using std::chrono::steady_clock;
 constexpr std::size_t kRounds = 10;
 constexpr std::size_t kCallsPerRound = 500;
 constexpr std::size_t kEventsPerRound = 10;
-constexpr std::size_t kManyClients = 8;
 constexpr std::size_t kIdleClients = 10;
-constexpr std::chrono::seconds kThroughputTime{2};
 constexpr std::chrono::seconds kIdleTime{5};
 
 struct Line {
@@ -125,40 +123,11 @@ void eventLatency() {
            "< 2000 us"});
 }
 
-enum class Watching { unseen, seen };
-
-/// Executions per second with eight clients on one Program.
-double throughput(const Side& side, Watching watching) {
-    const ServerProcess server([&] { return side.serve(0); });
-    std::atomic<std::size_t> count{0};
-    std::vector<std::unique_ptr<Caller>> callers;
-    for (std::size_t i = 0; i < kManyClients; ++i) {
-        callers.push_back(side.connect(server.url()));
-        if (watching == Watching::seen) {
-            callers.back()->subscribe();
-        }
-    }
-    const auto begin = steady_clock::now();
-    {
-        std::vector<std::jthread> threads;
-        for (const auto& caller : callers) {
-            threads.emplace_back([&count, &caller, end = begin + kThroughputTime] {
-                while (steady_clock::now() < end) {
-                    caller->start();
-                    ++count;
-                }
-            });
-        }
-    }
-    const std::chrono::duration<double> passed = steady_clock::now() - begin;
-    return static_cast<double>(count) / passed.count();
-}
-
 void executions() {
     for (const auto watching : {Watching::unseen, Watching::seen}) {
         const bool seen = watching == Watching::seen;
-        const auto metier = throughput(metierSide(), watching);
-        const auto bare = throughput(bareSide(), watching);
+        const auto metier = throughput(metierSide(), watching).per_second;
+        const auto bare = throughput(bareSide(), watching).per_second;
         print({seen ? "executions, 8 clients, seen" : "executions, 8 clients, unseen", "1/s",
                metier, bare, "> 2000/s"});
     }

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
-#include <sched.h>
-#include <sys/mount.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -13,8 +11,9 @@
 #include "discovered_cell.hpp"
 #include "installation.hpp"
 #include "metier/audit/audit_log.hpp"
-#include "metier/base/queue.hpp"
 #include "metier/skill_client/control_handle.hpp"
+#include "server_events.hpp"
+#include "small_disk.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -37,43 +36,10 @@ std::string textOf(const std::filesystem::path& file) {
     return text.str();
 }
 
-/// The messages of events of the Server object.
-class ServerEvents {
-public:
-    ServerEvents(opcua::Client& client, const opcua::NodeId& type) {
-        auto subscription = client.subscribeEvents(
-            opcua::ids::kServer, {.fields = {{{0, "Message"}}}, .of_type = type},
-            [messages = messages_](const opcua::EventNotice& notice) {
-                // Who may not audit is sent Null.
-                if (notice.kind == opcua::EventNotice::Kind::event && !notice.fields[0].isEmpty()) {
-                    messages->tryPush(notice.fields[0].toString());
-                }
-            });
-        if (!subscription) {
-            throw std::runtime_error(subscription.error().message);
-        }
-        subscription_ = std::move(*subscription);
-    }
-    /// The next one that says `text`; those before are dropped. Empty if there is none in a minute.
-    std::string next(const std::string& text) {
-        auto message = messages_->popUntil(inAMinute());
-        while (message && message->find(text) == std::string::npos) {
-            message = messages_->popUntil(inAMinute());
-        }
-        return message.value_or("");
-    }
-    bool anyWaiting() { return messages_->popUntil({}).has_value(); }
-
-private:
-    // Shared with the callback, which may run until the subscription has ended.
-    std::shared_ptr<Queue<std::string>> messages_ = std::make_shared<Queue<std::string>>(10'000);
-    opcua::Subscription subscription_;
-};
-
 class AuditedArm : public ::testing::Test {
 protected:
     std::vector<std::string> serving() const {
-        return {"--port", "0", "--state", folder_.string()};
+        return {"--port", "0", "--state", folder_.string(), "--records", "off"};
     }
     std::filesystem::path log() const { return folder_ / "audit" / "iiwa-127.0.0.1-0.log"; }
     /// The first line with all of this, once there is one.
@@ -219,28 +185,6 @@ TEST_F(AuditedArm, KeepsWhoWasDeniedWhat) {
     line({R"("event":"LoginRefused")", R"("user":"erna")", R"("status":"BadUserAccessDenied")"});
     EXPECT_EQ(verify().status, 0);
 }
-
-/// A disk of 64 kB, which this thread and the processes that it starts see.
-class SmallDisk {
-public:
-    explicit SmallDisk(const std::filesystem::path& folder) : filler_(folder / "filler") {
-        const bool mounted = ::unshare(CLONE_NEWNS) == 0 &&
-                             ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-                             ::mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=64k") == 0;
-        if (!mounted) {
-            throw std::system_error(errno, std::generic_category(), "a tmpfs");
-        }
-    }
-    void fill() const {
-        std::ofstream file(filler_, std::ios::binary);
-        while (file << std::string(512, 'x') << std::flush) {
-        }
-    }
-    void makeRoom() const { std::filesystem::remove(filler_); }
-
-private:
-    std::filesystem::path filler_;
-};
 
 TEST_F(AuditedArm, MovesOnWhileTheDiskIsFullAndSaysSo) {
     if (::geteuid() != 0) {

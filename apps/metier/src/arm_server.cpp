@@ -137,7 +137,8 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
             return shown;
         }
     }
-    return host_->publishArm(*system, {*device_.arm, model_, config.arm.payload});
+    return host_->publishArm(*system, {*device_.arm, model_, config.arm.payload,
+                                       sensor_ ? sensor_->force_torque_sensor : nullptr});
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,

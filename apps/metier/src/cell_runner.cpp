@@ -102,7 +102,7 @@ Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
     const auto security = securityArguments();
     command.insert(command.begin() + 1, security.begin(), security.end());
     if (ports == Ports::free) {
-        command.insert(command.end(), {"--port", "0"});
+        command.insert(command.end(), {"--port", "0", "--metrics", "off"});
     }
     const auto robot = std::find_if(running_.begin(), running_.end(), [&](const Running& other) {
         return other.name == server.move.robot;

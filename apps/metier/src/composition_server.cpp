@@ -267,7 +267,8 @@ Result<std::shared_ptr<remote_skill::RemoteServer>> CompositionServer::connectFo
     auto server = remote_skill::RemoteServer::connect({.url = found.found.url,
                                                        .name = found.found.name,
                                                        .application_name = "metier " + name_,
-                                                       .security = ownCredentials()},
+                                                       .security = ownCredentials(),
+                                                       .own_server = host_->applicationUri()},
                                                       host_->skills().executor());
     if (!server) {
         return fail(std::move(server.error()));
@@ -281,7 +282,8 @@ Result<void> CompositionServer::connect(const std::vector<configuration::UsedSer
         auto server = remote_skill::RemoteServer::connect({.url = used.url,
                                                            .name = used.name,
                                                            .application_name = "metier " + name_,
-                                                           .security = ownCredentials()},
+                                                           .security = ownCredentials(),
+                                                           .own_server = host_->applicationUri()},
                                                           host_->skills().executor());
         if (!server) {
             return fail(std::move(server.error()));

@@ -73,6 +73,7 @@ RobotMoves::RobotMoves(ConnectedRobot robot, std::unique_ptr<SkillHost> host)
 
 Result<void> RobotMoves::offer(const std::string& name) {
     auto& arm = *robot_.arm;
+    arm.nameOwner(host_->applicationUri());
     const auto system =
         opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(name, arm.info()));
     if (!system) {

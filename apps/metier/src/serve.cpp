@@ -32,6 +32,8 @@ struct ServeOptions {
     std::string state;
     std::vector<std::string> discovery;
     std::string announce_as;
+    std::string records;
+    std::string metrics;
 };
 
 /// A server on any free port is another one each time, and keeps nothing unless it is told where.
@@ -47,6 +49,30 @@ std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t por
         return {};
     }
     return folder;
+}
+
+/// Beside what else outlives a server, unless somebody says where.
+void chooseRecords(const ServeOptions& options, configuration::ServerConfig& config) {
+    auto& url = config.records.url;
+    url = options.records.empty() ? url : options.records;
+    if (url == "off") {
+        url.clear();
+    } else if (url.empty() && !config.state_folder.empty()) {
+        url = (config.state_folder / "records.db").string();
+    }
+}
+
+Result<void> chooseMetrics(const ServeOptions& options, configuration::ServerConfig& config) {
+    if (options.metrics == "off") {
+        config.metrics.reset();
+    } else if (!options.metrics.empty()) {
+        auto address = configuration::parseHttpAddress(options.metrics);
+        if (!address) {
+            return fail(address.error().code, "--metrics " + address.error().message);
+        }
+        config.metrics = std::move(*address);
+    }
+    return {};
 }
 
 /// A virtual controller of the same file is reached at its configured address.
@@ -76,6 +102,10 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
     auto config = *server;
     config.port = options.port.value_or(config.port);
     config.state_folder = stateFolder(options, config.port);
+    chooseRecords(options, config);
+    if (auto chosen = chooseMetrics(options, config); !chosen) {
+        return fail(chosen.error());
+    }
     if (!options.robot.empty()) {
         config.move.robot = options.robot;
         config.move.discover = false;
@@ -211,6 +241,12 @@ void addServe(CLI::App& app, Exit& exit) {
     command->add_option("--state", options->state,
                         "Folder for what outlives the server: the names of executions. Else that "
                         "of the user, and none with --port 0");
+    command->add_option("--records", options->records,
+                        "Where every execution is recorded, instead of the file's: a file, "
+                        "postgresql://..., or off. Else records.db in the state folder");
+    command->add_option("--metrics", options->metrics,
+                        "Tell figures at http://ADDRESS:PORT/metrics and /healthz, instead of the "
+                        "file's; PORT alone is one of 127.0.0.1; off");
     command->callback([options, &exit] { exit = runServe(*options); });
 }
 

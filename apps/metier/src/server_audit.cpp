@@ -11,9 +11,6 @@
 namespace metier::app {
 namespace {
 
-constexpr std::uint16_t kAlarm = 800;
-constexpr std::uint16_t kOver = 100;
-
 audit::Entry entryOf(const opcua::AuditRecord& record) {
     audit::Entry entry{record.time, record.event, {}};
     const auto add = [&](const char* name, const std::string& value) {
@@ -46,8 +43,7 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::Serv
         spdlog::warn("{}: no state folder, so no audit log", config.name);
         return nullptr;
     }
-    std::unique_ptr<ServerAudit> audit(new ServerAudit());
-    audit->name_ = config.name;
+    std::unique_ptr<ServerAudit> audit(new ServerAudit(config.name));
     auto log = audit::AuditLog::open(
         {.file = config.state_folder / "audit" /
                  fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
@@ -69,43 +65,16 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::Serv
 }
 
 Result<void> ServerAudit::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
-    auto emitter = opcua::EventEmitter::create(server, opcua::ids::kSystemEventType, {});
-    if (!emitter) {
-        return fail(emitter.error());
-    }
-    emitter_ = std::move(*emitter);
-    const std::lock_guard lock(mutex_);
-    executor_ = std::move(executor);
-    return {};
+    return alarm_.follow(server, std::move(executor));
 }
 
 void ServerAudit::tell(audit::Health health, const std::string& why) {
-    const auto text =
-        health == audit::Health::failing
-            ? fmt::format("the audit log cannot be written: {}; up to 10000 entries wait", why)
-            : std::string("the audit log is written again");
-    spdlog::log(health == audit::Health::failing ? spdlog::level::err : spdlog::level::warn,
-                "{}: {}", name_, text);
-    std::shared_ptr<skill::Executor> executor;
-    {
-        const std::lock_guard lock(mutex_);
-        executor = executor_;
-    }
-    if (executor) {
-        executor->post([this, health, text] { raise(health, text); });
-    }
-}
-
-void ServerAudit::raise(audit::Health health, const std::string& text) {
-    const auto raised =
-        emitter_->emit({.source = opcua::ids::kServer,
-                        .source_name = "AuditLog",
-                        .time = std::chrono::system_clock::now(),
-                        .severity = health == audit::Health::failing ? kAlarm : kOver,
-                        .message = {"en", text},
-                        .fields = {}});
-    if (!raised) {
-        spdlog::error("{}: no event: {}", name_, raised.error().message);
+    if (health == audit::Health::failing) {
+        alarm_.tell(
+            ServerAlarm::Kind::begins,
+            fmt::format("the audit log cannot be written: {}; up to 10000 entries wait", why));
+    } else {
+        alarm_.tell(ServerAlarm::Kind::over, "the audit log is written again");
     }
 }
 

@@ -1,16 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
 
 #include "metier/audit/audit_log.hpp"
 #include "metier/base/error.hpp"
 #include "metier/configuration/cell.hpp"
-#include "metier/opcua/event_emitter.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/skill/executor.hpp"
+#include "server_alarm.hpp"
 
 namespace metier::app {
 
@@ -30,18 +29,16 @@ public:
 
     /// Raises the events at that server. Before its start.
     Result<void> follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor);
+    /// Entries that are not in the file yet. Any thread.
+    std::size_t waiting() const { return log_->waiting(); }
 
 private:
-    ServerAudit() = default;
+    explicit ServerAudit(const std::string& name) : alarm_(name, "AuditLog") {}
     /// On the log's thread.
     void tell(audit::Health health, const std::string& why);
-    void raise(audit::Health health, const std::string& text);
 
-    std::string name_;
-    std::optional<opcua::EventEmitter> emitter_;
-    std::mutex mutex_;
-    std::shared_ptr<skill::Executor> executor_;  // of the server, shared with its Programs
-    std::unique_ptr<audit::AuditLog> log_;       // ends first, and its thread
+    ServerAlarm alarm_;
+    std::unique_ptr<audit::AuditLog> log_;  // ends first, and its thread
 };
 
 }  // namespace metier::app

@@ -98,6 +98,17 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
         !followed) {
         return fail(followed.error());
     }
+    auto records = ServerRecords::open(config, host->application_uri_);
+    if (!records) {
+        return fail(records.error());
+    }
+    host->records_ = std::move(*records);
+    if (auto followed = host->records_ == nullptr
+                            ? Result<void>()
+                            : host->records_->follow(*host->server_, host->skills_->executor());
+        !followed) {
+        return fail(followed.error());
+    }
     if (auto published = opcua_skill::publishDictionary(host->nodes()); !published) {
         return fail(published.error());
     }
@@ -162,9 +173,57 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     return {};
 }
 
-SkillHost::~SkillHost() = default;
+/// Whatever watches the Programs lets go of them between the server's thread and their end.
+SkillHost::~SkillHost() {
+    announcement_.reset();
+    stall_watch_.reset();
+    device_watch_.reset();
+    if (server_ != nullptr) {
+        server_->stop();
+    }
+    metrics_.reset();
+    records_.reset();
+}
 
 Result<void> SkillHost::start() {
+    if (auto watched = watchPrograms(); !watched) {
+        return watched;
+    }
+    watchStalls();
+    auto started = server_->start();
+    if (started) {
+        announcement_.emplace(config_, application_uri_, url());
+    }
+    return started;
+}
+
+Result<void> SkillHost::watchPrograms() {
+    if (auto published = skills_->publishRecords(); !published) {
+        return published;
+    }
+    const auto programs = skills_->programs();
+    if (records_ != nullptr) {
+        records_->record(programs, controller_, moved_);
+    }
+    if (!config_.metrics) {
+        return {};
+    }
+    auto metrics = ServerMetrics::start(
+        config_, {.server = *server_,
+                  .control = *control_,
+                  .programs = programs,
+                  .arm = moved_.arm,
+                  .gripper = gripper_,
+                  .recorder = records_ == nullptr ? nullptr : &records_->recorder(),
+                  .audit = audit_.get()});
+    if (!metrics) {
+        return fail(metrics.error());
+    }
+    metrics_ = std::move(*metrics);
+    return {};
+}
+
+void SkillHost::watchStalls() {
     const std::chrono::duration<double> stall_limit(config_.stall_limit);
     std::function<void()> stop_all;
     if (!stops_.empty()) {
@@ -181,15 +240,11 @@ Result<void> SkillHost::start() {
             .stop = std::move(stop_all),
             .log = [](const std::string& line) { spdlog::error("{}", line); }},
         skills_->executor(), skills_->programs(), clock_);
-    auto started = server_->start();
-    if (started) {
-        announcement_.emplace(config_, application_uri_, url());
-    }
-    return started;
 }
 
 Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system,
                                    const ShownArm& shown) {
+    moved_ = {&shown.arm, shown.sensor, shown.arm.info().name};
     auto data = toKinematicsData(shown.model);
     data.payload = shown.payload;
     return opcua_skill::publishKinematics(
@@ -199,6 +254,10 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
 
 Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,
                                        const device::Gripper& gripper) {
+    gripper_ = &gripper;
+    if (moved_.name.empty()) {
+        moved_.name = gripper.info().name;
+    }
     return opcua_skill::publishPartHeld(server_->nodes(), parent,
                                         [&gripper]() -> std::optional<bool> {
                                             const auto state = gripper.state();
@@ -209,6 +268,11 @@ Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,
 }
 
 Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {
+    const auto name = server_->nodes().browseNameOf(controller);
+    if (!name) {
+        return fail(name.error());
+    }
+    controller_ = name->name;
     return skills_->serveControl(controller, control_);
 }
 

@@ -21,6 +21,8 @@
 #include "metier/robot_skills/stall_watch.hpp"
 #include "server_access.hpp"
 #include "server_audit.hpp"
+#include "server_metrics.hpp"
+#include "server_records.hpp"
 
 namespace metier::app {
 
@@ -61,7 +63,8 @@ public:
     struct ShownArm {
         const device::Arm& arm;
         const motion::RobotModel& model;
-        double payload = 0;  ///< [kg]; 0: unknown
+        double payload = 0;                                 ///< [kg]; 0: unknown
+        const device::ForceTorqueSensor* sensor = nullptr;  ///< of its flange; must outlive this
     };
     /// Shows what is known of the arm, and its live state.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const ShownArm& shown);
@@ -71,6 +74,8 @@ public:
     Result<void> offerControl(const opcua::NodeId& controller);
     /// For the Programs of the controller's skills.
     const std::shared_ptr<skill::Control>& control() const noexcept { return control_; }
+    /// Of this server, as others are told.
+    const std::string& applicationUri() const noexcept { return application_uri_; }
     /// For the Programs of the server.
     const std::shared_ptr<skill::ExecutionNames>& names() const noexcept { return names_; }
     /// Offers those of `skills` that are `wanted`: at the nodes of the NodeSet that have their
@@ -99,6 +104,8 @@ private:
     explicit SkillHost(configuration::ServerConfig config);
     Result<void> makeServer(std::vector<std::string> nodesets);
     Result<void> keepNames(const configuration::ServerConfig& config);
+    Result<void> watchPrograms();
+    void watchStalls();
 
     std::optional<process::NameLock> port_lock_;  // until the server is gone
     const configuration::ServerConfig config_;
@@ -107,9 +114,14 @@ private:
     std::unique_ptr<ServerAccess> access_;  // none in an insecure lab
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<ServerAudit> audit_;  // none without a state folder
+    std::string controller_;              // BrowseName
+    MovedDevice moved_;
+    const device::Gripper* gripper_ = nullptr;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::shared_ptr<skill::Control> control_;       // shared with the Programs
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs
+    std::unique_ptr<ServerRecords> records_;        // none if nothing is recorded
+    std::unique_ptr<ServerMetrics> metrics_;        // none unless told where
     std::optional<robot_skills::DeviceWatch> device_watch_;
     std::vector<std::function<void()>> stops_;
     std::optional<robot_skills::StallWatch> stall_watch_;

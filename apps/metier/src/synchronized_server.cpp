@@ -70,7 +70,8 @@ Result<Arm> SynchronizedServer::connect(const configuration::UsedServer& used,
                                                        .name = used.name,
                                                        .application_name = "metier " + component,
                                                        .session_timeout = kSessionTimeout,
-                                                       .security = ownCredentials()},
+                                                       .security = ownCredentials(),
+                                                       .own_server = host_->applicationUri()},
                                                       host_->skills().executor());
     if (!server) {
         return fail(std::move(server.error()));

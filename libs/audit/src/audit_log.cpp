@@ -58,6 +58,11 @@ void AuditLog::append(Entry entry) {
     changed_.notify_all();
 }
 
+std::size_t AuditLog::waiting() const {
+    const std::lock_guard lock(mutex_);
+    return waiting_.size();
+}
+
 bool AuditLog::flush(SteadyTime deadline) {
     std::unique_lock lock(mutex_);
     const auto all = appended_;

@@ -94,8 +94,14 @@ void checkDiscovers(bool wanted, const char* key, const Discovery& discovery,
     }
 }
 
+/// What a cell says for all its servers.
+struct Shared {
+    Discovery discovery;
+    Records records;
+};
+
 ServerConfig readServer(const TomlTable& table, const std::filesystem::path& folder,
-                        const Discovery& of_cell) {
+                        const Shared& of_cell) {
     ServerConfig server;
     server.name = table.text("name");
     server.port = static_cast<std::uint16_t>(table.integerOr("port", 0, 0, kMaxPort));
@@ -106,7 +112,9 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     if (table.has("limits")) {
         server.limits = readLimits(table.table("limits"));
     }
-    server.discovery = readDiscovery(table, of_cell);
+    server.discovery = readDiscovery(table, of_cell.discovery);
+    server.records = of_cell.records;
+    server.metrics = readMetrics(table);
     const auto kind = table.text("kind");
     if (kind == "arm") {
         server.kind = ServerKind::arm;
@@ -246,10 +254,10 @@ Result<CellConfig> readCell(const TomlFile& toml, const std::filesystem::path& f
     CellConfig cell;
     cell.file = std::filesystem::absolute(file);
     cell.name = root.text("name");
-    const auto discovery = readDiscovery(root, {});
+    const Shared shared{readDiscovery(root, {}), readRecords(root, cell.file.parent_path())};
     const auto tables = root.tables("server");
     for (const auto& table : tables) {
-        cell.servers.push_back(readServer(table, cell.file.parent_path(), discovery));
+        cell.servers.push_back(readServer(table, cell.file.parent_path(), shared));
     }
     const auto virtual_tables = root.tables("virtual");
     for (const auto& table : virtual_tables) {

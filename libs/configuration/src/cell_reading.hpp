@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,12 @@ std::vector<std::string> textOrTexts(const TomlTable& table, std::string_view ke
 
 /// How others find a server.
 /// \param preset what the cell says, for a server
+/// The table `[records]` of a cell. A file is relative to `folder`.
+Records readRecords(const TomlTable& cell, const std::filesystem::path& folder);
+/// The key `metrics` of a server.
+std::optional<HttpAddress> readMetrics(const TomlTable& table);
+
+/// How others find a server.
 Discovery readDiscovery(const TomlTable& table, Discovery preset);
 
 }  // namespace metier::configuration

@@ -48,8 +48,8 @@ std::string textOf(double value) {
 
 void TextPage::family(std::string_view name, Kind kind, std::string_view help) {
     family_ = name;
-    text_ += fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, escaped(help, ""), name,
-                         typeName(kind));
+    text_ +=
+        fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, escaped(help, ""), name, typeName(kind));
 }
 
 void TextPage::add(const Labels& labels, double value) {

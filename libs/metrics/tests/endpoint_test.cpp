@@ -21,7 +21,7 @@ protected:
         };
         return options;
     }
-    httplib::Client client() const { return {"127.0.0.1", endpoint_->port()}; }
+    httplib::Client client() const { return httplib::Client("127.0.0.1", endpoint_->port()); }
 
     std::atomic<bool> good_{true};
     std::unique_ptr<Endpoint> endpoint_ = std::move(*Endpoint::start(options()));

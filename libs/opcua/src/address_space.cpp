@@ -322,6 +322,15 @@ Result<VariableShape> AddressSpace::shapeOf(const NodeId& variable) const {
     return shape;
 }
 
+Result<QualifiedName> AddressSpace::browseNameOf(const NodeId& id) const {
+    Owned<UA_QualifiedName> name(UA_TYPES[UA_TYPES_QUALIFIEDNAME]);
+    const auto code = UA_Server_readBrowseName(core_.native(), viewOf(id), name.get());
+    if (code != UA_STATUSCODE_GOOD) {
+        return fail(outcome(code, "read the BrowseName of", id).error());
+    }
+    return fromNative(*name);
+}
+
 Result<LocalizedText> AddressSpace::descriptionOf(const NodeId& id) const {
     Owned<UA_LocalizedText> text(UA_TYPES[UA_TYPES_LOCALIZEDTEXT]);
     const auto code = UA_Server_readDescription(core_.native(), viewOf(id), text.get());

@@ -88,9 +88,8 @@ Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& 
         }
         const auto read = [&program, back, &item](const opcua::Session& /*reader*/) {
             const auto* record = program.recentExecution(back);
-            return record == nullptr
-                       ? opcua::DataValue{{}, opcua::status::kBadNoData, {}, {}}
-                       : opcua::DataValue{item.read(*record, program), {}, {}, {}};
+            return record == nullptr ? opcua::DataValue{{}, opcua::status::kBadNoData, {}, {}}
+                                     : opcua::DataValue{item.read(*record, program), {}, {}, {}};
         };
         if (auto set = nodes.setDataSource(*node, {read, nullptr}); !set) {
             return set;
@@ -107,8 +106,8 @@ Result<void> publishExecutionRecords(AddressSpace& nodes, const NodeId& skill,
     if (!metier) {
         return fail(metier.error());
     }
-    const auto type = typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType,
-                                        {*metier, "ExecutionRecordType"});
+    const auto type =
+        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "ExecutionRecordType"});
     const auto folder = folderOf(nodes, skill, *metier);
     if (!type || !folder) {
         return fail(type ? folder.error() : type.error());

@@ -286,9 +286,8 @@ Result<void> SkillNode::call(const Session& session, skill::Method method) {
 Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) const {
     const auto& name = given.key.name;
     const auto& fields = program_->description().parameters;
-    const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
-        return candidate.name == name;
-    });
+    const auto field = std::find_if(fields.begin(), fields.end(),
+                                    [&](const auto& candidate) { return candidate.name == name; });
     const bool is_field = field != fields.end();
     const bool is_parent = !is_field && (name == kParentExecution || name == kParentServer);
     if (!is_field && !is_parent) {
@@ -341,8 +340,8 @@ Result<std::vector<Value>> SkillNode::startWith(const Session& session,
     const auto epoch = inputs[3].as<std::uint64_t>();
     const auto deadline = inputs[4].as<UtcTime>();
     if (!id || !given || !action || !epoch || !deadline) {
-        auto refused = remember(session, given ? fail(Errc::type_mismatch, "StartWith")
-                                               : fail(given.error()));
+        auto refused =
+            remember(session, given ? fail(Errc::type_mismatch, "StartWith") : fail(given.error()));
         return fail(std::move(refused.error()));
     }
     const auto on_owner_loss = ownerLossActionFrom(*action);

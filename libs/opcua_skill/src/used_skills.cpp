@@ -62,7 +62,8 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
         return fail(metier.error());
     }
     const auto folder = folderOf(nodes, user, *metier);
-    const auto type = typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "UsedSkillType"});
+    const auto type =
+        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "UsedSkillType"});
     if (!folder || !type) {
         return fail(folder ? type.error() : folder.error());
     }

@@ -11,8 +11,8 @@ using records::Recorder;
 using records::SampleValues;
 
 // What is less than that is no motion.
-constexpr double kAngle = 1e-4;  // [rad]
-constexpr double kForce = 0.5;   // [N]
+constexpr double kAngle = 1e-4;   // [rad]
+constexpr double kForce = 0.5;    // [N]
 constexpr double kTorque = 0.05;  // [Nm]
 constexpr std::chrono::seconds kLongestPause{1};
 
@@ -69,8 +69,8 @@ void PathSampler::begin(Recorder::Key key) {
 
 std::uint64_t PathSampler::end(Recorder::Key key) {
     const std::lock_guard lock(mutex_);
-    const auto path = std::find_if(paths_.begin(), paths_.end(),
-                                   [&](const Path& one) { return one.key == key; });
+    const auto path =
+        std::find_if(paths_.begin(), paths_.end(), [&](const Path& one) { return one.key == key; });
     if (path == paths_.end()) {
         return 0;
     }

@@ -59,8 +59,11 @@ ProgramRecorder::ProgramRecorder(skill::Program& program, records::Recorder& rec
 
 ProgramRecorder::~ProgramRecorder() {
     program_.detach(*this);
-    if (sampler_ != nullptr) {
-        sampler_->end(key_);
+    if (key_ != 0) {
+        end({.to = State::halted,
+             .time = std::chrono::system_clock::now(),
+             .reason = skill::Reason::error,
+             .reason_text = "the server was stopped"});
     }
 }
 
@@ -120,8 +123,8 @@ void ProgramRecorder::onSubState(skill::SubState sub_state, std::string_view ste
 
 void ProgramRecorder::onProgress(const skill::Value& intermediate) {
     if (key_ != 0) {
-        recorder_.intermediate(key_, {.time = std::chrono::system_clock::now(),
-                                      .value = skill::jsonOf(intermediate)});
+        recorder_.intermediate(
+            key_, {.time = std::chrono::system_clock::now(), .value = skill::jsonOf(intermediate)});
     }
 }
 

@@ -25,6 +25,10 @@ const opcua_skill::KinematicsData& RemoteArm::kinematics() const noexcept {
     return worker_->kinematics();
 }
 
+void RemoteArm::nameOwner(std::string application_uri) {
+    worker_->nameOwner(std::move(application_uri));
+}
+
 std::optional<RemoteArm::Absence> RemoteArm::absence() const {
     return worker_->absence();
 }

@@ -199,15 +199,17 @@ StreamSession::Observed StreamSession::observed() const {
     return notes_->observed;
 }
 
-Result<void> StreamSession::startStream() {
+Result<void> StreamSession::startStream(const skill::ParentExecution& parent) {
     notes_->note([](Observed& seen) {
         seen.stream_end.reset();
         seen.refused.clear();
     });
-    if (auto started = stream_.start(); !started) {
-        return fail(started.error());
+    if (!parent.id.empty() && stream_.takesParents()) {
+        const auto started = stream_.startWith({.parent = parent});
+        return started ? Result<void>() : fail(started.error());
     }
-    return {};
+    const auto started = stream_.start();
+    return started ? Result<void>() : fail(started.error());
 }
 
 void StreamSession::send(const device::JointArray& set_point, UtcTime meant_for) {

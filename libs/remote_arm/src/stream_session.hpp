@@ -44,7 +44,8 @@ public:
     Observed observed() const;
 
     /// Starts the stream skill; a stream that was halted is not reset here.
-    Result<void> startStream();
+    /// \param parent the execution that it is started for, if that is known
+    Result<void> startStream(const skill::ParentExecution& parent);
     /// Sends a set-point; nothing waits. Its failure shows in observed().
     void send(const device::JointArray& set_point, UtcTime meant_for);
     Result<skill::State> streamState();

@@ -88,6 +88,18 @@ Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> s
     return {};
 }
 
+void RemoteArm::Worker::nameOwner(std::string application_uri) {
+    const std::lock_guard lock(mutex_);
+    owner_ = std::move(application_uri);
+}
+
+/// The stream may serve further motions, but it was this one that had it started.
+skill::ParentExecution RemoteArm::Worker::parent() const {
+    const std::lock_guard lock(mutex_);
+    return owner_.empty() ? skill::ParentExecution{}
+                          : skill::ParentExecution{std::string(source_->execution()), owner_};
+}
+
 void RemoteArm::Worker::stop() noexcept {
     {
         const std::lock_guard lock(mutex_);
@@ -381,7 +393,7 @@ void RemoteArm::Worker::startStream() {
             return;
         }
     }
-    if (const auto started = session_->startStream(); !started) {
+    if (const auto started = session_->startStream(parent()); !started) {
         fault_ = started.error().message;  // the next look at it ends the motion
         return;
     }

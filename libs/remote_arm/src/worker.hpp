@@ -30,6 +30,7 @@ public:
     device::ArmState state() const noexcept { return published_.read(); }
     device::Safety safety() const;
     std::optional<Absence> absence() const;
+    void nameOwner(std::string application_uri);
     Result<void> attach(std::shared_ptr<device::SetPointSource> source);
     void stop() noexcept;
     Result<void> resetFault();
@@ -64,6 +65,7 @@ private:
     void stopNow();
 
     void startStream();
+    skill::ParentExecution parent() const;
     void cycle();
     /// One set-point of the source, or of holding still.
     void nextSetPoint();
@@ -79,6 +81,7 @@ private:
     device::SharedValue<device::ArmState> published_;
 
     mutable std::mutex mutex_;
+    std::string owner_;  // ApplicationUri of the server whose motions these are
     bool stop_asked_ = false;
     bool taken_ = false;  // a source is attached or about to be
     std::shared_ptr<device::SetPointSource> pending_;

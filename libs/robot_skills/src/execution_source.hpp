@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string_view>
 #include <utility>
 
 #include "metier/device/arm.hpp"
@@ -44,6 +45,7 @@ public:
     virtual device::JointArray restingPlace() const noexcept = 0;
 
     void ended(device::EndCause cause, const device::Safety& safety) final;
+    std::string_view execution() const noexcept final { return tell_.id(); }
 
 protected:
     /// Cycle thread: what was asked since the last cycle.

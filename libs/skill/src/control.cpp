@@ -105,6 +105,7 @@ void Control::leaseDue() {
 void Control::lose(const std::string& text) {
     const auto session = leaser_.session_id;
     const auto action = on_loss_;
+    losses_.fetch_add(1, std::memory_order_relaxed);
     endLease();
     for (auto* listener : listeners_) {
         listener->onControlLost(session, action, text);

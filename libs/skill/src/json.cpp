@@ -27,10 +27,8 @@ public:
         }
     }
     template <typename Integer>
-        requires std::is_integral_v<Integer>
-    void operator()(Integer value) {
-        fmt::format_to(std::back_inserter(buffer_), "{}", value);
-    }
+    requires std::is_integral_v<Integer>
+    void operator()(Integer value) { fmt::format_to(std::back_inserter(buffer_), "{}", value); }
     void operator()(const std::string& text) { quoted(text); }
     void operator()(const Frame& f) {
         number("{\"x\":", f.x);

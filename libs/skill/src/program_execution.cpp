@@ -102,8 +102,8 @@ Result<void> Program::begin(const Caller& caller, ValueMap snapshot, Order order
         options_.resource->acquire(description_.name);
     }
     body_ = std::move(*body);
-    execution_id_ = order.id.empty() ? fmt::format("{}-{}", boot_id_, ++execution_count_)
-                                     : std::move(order.id);
+    execution_id_ =
+        order.id.empty() ? fmt::format("{}-{}", boot_id_, ++execution_count_) : std::move(order.id);
     execution_ = std::make_shared<ExecutionCore>(executor_, execution_id_,
                                                  static_cast<ExecutionSink&>(*this));
     owner_session_ = caller.session_id;

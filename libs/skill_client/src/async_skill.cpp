@@ -118,8 +118,8 @@ Answer<AsyncSkill::Now> AsyncSkill::now() const {
 Answer<> AsyncSkill::startWith(const skill::StartRequest& request, Done<std::string> done) const {
     const auto method = static_cast<std::size_t>(skill::Method::start_with);
     return impl_->send<std::string>(
-        impl_->nodes.methods.at(method), "StartWith", startWithInputs(request, impl_->nodes), std::move(done),
-        [](const std::vector<opcua::Value>& outputs) -> Answer<std::string> {
+        impl_->nodes.methods.at(method), "StartWith", startWithInputs(request, impl_->nodes),
+        std::move(done), [](const std::vector<opcua::Value>& outputs) -> Answer<std::string> {
             return outputs.empty() ? std::string() : outputs.front().as<std::string>().value_or("");
         });
 }

@@ -45,8 +45,8 @@ std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,
                                           const SkillNodes& nodes) {
     auto parameters = listOf(request.parameters);
     if (!nodes.records.isNull() && !request.parent.id.empty()) {
-        parameters.push_back({{0, std::string(opcua_skill::kParentExecution)},
-                              opcua::Value::of(request.parent.id)});
+        parameters.push_back(
+            {{0, std::string(opcua_skill::kParentExecution)}, opcua::Value::of(request.parent.id)});
         parameters.push_back({{0, std::string(opcua_skill::kParentServer)},
                               opcua::Value::of(request.parent.server)});
     }

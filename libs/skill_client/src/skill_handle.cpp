@@ -197,6 +197,10 @@ bool SkillHandle::knowsExecutions() const noexcept {
     return impl_->nodes.start_with != opcua::NodeId{} && impl_->tellsExecutions();
 }
 
+bool SkillHandle::takesParents() const noexcept {
+    return knowsExecutions() && !impl_->nodes.records.isNull();
+}
+
 Answer<> SkillHandle::refresh() {
     return impl_->refresh();
 }
@@ -263,8 +267,8 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
 }
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
-    auto outputs =
-        impl_->callMetier(&SkillNodes::start_with, "StartWith", startWithInputs(request, impl_->nodes));
+    auto outputs = impl_->callMetier(&SkillNodes::start_with, "StartWith",
+                                     startWithInputs(request, impl_->nodes));
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }

@@ -72,9 +72,9 @@ public:
 
     struct Start {
         std::string execution_id;
-        std::string parent;       ///< execution that moves the arms
-        double duration;  ///< [s]
-        UtcTime time;     ///< by the clock of this machine
+        std::string parent;  ///< execution that moves the arms
+        double duration;     ///< [s]
+        UtcTime time;        ///< by the clock of this machine
     };
     void begin(const Start& start);
     /// The skill that moves the arm.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -64,6 +65,8 @@ public:
 
     /// Returns at once.
     void append(Entry entry);
+    /// Entries that are not in the file yet.
+    std::size_t waiting() const;
     /// Waits until all that was appended before is in the file; false at the deadline.
     bool flush(SteadyTime deadline);
 
@@ -77,7 +80,7 @@ private:
     const Options options_;
     std::unique_ptr<File> file_;  // of the thread
     Health health_ = Health::writing;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     std::deque<Entry> waiting_;
     std::uint64_t lost_ = 0;

@@ -102,6 +102,21 @@ struct SynchronizedServer {
     double start_delay = 0.5;
 };
 
+/// Where what the servers do is recorded.
+struct Records {
+    /// A file, absolute, "sqlite:FILE", "postgresql://..." or "off"; empty: as whoever starts a
+    /// server says.
+    std::string url;
+    double keep_days = 90.0;         ///< 0: for ever
+    double keep_megabytes = 2000.0;  ///< [10^6 byte]; 0: without bound
+};
+
+/// Where a server tells its figures by HTTP.
+struct HttpAddress {
+    std::string host = "127.0.0.1";
+    std::uint16_t port = 0;  ///< 0: a free one
+};
+
 enum class ServerKind { arm, gripper, move, composition, synchronized };
 
 /// One process of a cell: one OPC UA server.
@@ -122,11 +137,13 @@ struct ServerConfig {
     /// What clients may ask of it, where that is not as opcua::ServerLimits has it.
     std::vector<Limit> limits;
     Discovery discovery;
-    ArmServer arm;                    ///< for ServerKind::arm
-    GripperServer gripper;            ///< for ServerKind::gripper
-    MoveComponent move;               ///< for ServerKind::move
-    CompositionServer composition;    ///< for ServerKind::composition
-    SynchronizedServer synchronized;  ///< for ServerKind::synchronized
+    Records records;                     ///< of the cell
+    std::optional<HttpAddress> metrics;  ///< none: it does not
+    ArmServer arm;                       ///< for ServerKind::arm
+    GripperServer gripper;               ///< for ServerKind::gripper
+    MoveComponent move;                  ///< for ServerKind::move
+    CompositionServer composition;       ///< for ServerKind::composition
+    SynchronizedServer synchronized;     ///< for ServerKind::synchronized
     /// Files with skills made of the server's own; absolute. For ServerKind::arm.
     std::vector<std::filesystem::path> own_compositions;
 
@@ -163,6 +180,10 @@ struct CellConfig {
     /// The world of the virtual controllers, or nullptr.
     const VirtualController* world() const;
 };
+
+/// "HOST:PORT" or "PORT", which is one of 127.0.0.1; an IPv6 address in brackets.
+/// Errors: invalid_argument.
+Result<HttpAddress> parseHttpAddress(std::string_view text);
 
 /// Reads and checks a cell file. Relative paths in it are relative to the file.
 /// Errors: not_found, invalid_argument with a line "file:line: key: why" for all that is wrong.

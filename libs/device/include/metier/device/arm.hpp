@@ -85,6 +85,10 @@ public:
     /// exactly once for each attach, by the arm's notifying thread (never its cycle thread); may
     /// lock, should not wait. The arm can be attached to again from within.
     virtual void ended(EndCause cause, const Safety& safety) = 0;
+
+    /// Names what it moves the arm for, for records; empty: nothing is known. Any thread, while it
+    /// is attached.
+    virtual std::string_view execution() const noexcept { return {}; }
 };
 
 /// Ends a registration when it is destroyed: from then on no call begins, but one that already

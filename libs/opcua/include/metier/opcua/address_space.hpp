@@ -180,6 +180,8 @@ public:
     /// Errors: not_found; invalid_argument (no Variable).
     Result<VariableShape> shapeOf(const NodeId& variable) const;
     /// Errors: not_found.
+    Result<QualifiedName> browseNameOf(const NodeId& id) const;
+    /// Errors: not_found.
     Result<LocalizedText> descriptionOf(const NodeId& id) const;
 
     Result<DataValue> read(const NodeId& variable) const;

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "metier/records/recorder.hpp"
 #include "metier/recording/path_sampler.hpp"
+#include "metier/records/recorder.hpp"
 #include "metier/skill/program.hpp"
 
 namespace metier::recording {

@@ -43,6 +43,10 @@ public:
     /// Chain and limits, as the server published them at connect().
     const opcua_skill::KinematicsData& kinematics() const noexcept;
 
+    /// Says whose motions it makes: the ApplicationUri of a server whose executions they are, which
+    /// the position stream is told, if its server keeps records. Any thread.
+    void nameOwner(std::string application_uri);
+
     /// Why the arm cannot be used, though its server may be.
     struct Absence {
         SteadyTime since;

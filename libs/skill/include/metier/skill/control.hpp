@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -97,6 +98,8 @@ public:
     bool leasedBy(std::string_view session_id) const noexcept;
     /// Until the lease ends without a heartbeat; 0 if there is none.
     std::chrono::nanoseconds leaseRemaining() const noexcept;
+    /// Leases that ended without being given back. Any thread.
+    std::uint64_t losses() const noexcept { return losses_.load(std::memory_order_relaxed); }
     bool isLocked() const noexcept { return locked_; }
     const Caller& locker() const noexcept { return locker_; }
     /// Until the lock ends without a renewal; 0 if there is none.
@@ -118,6 +121,7 @@ private:
     const Clock& clock_;
     std::vector<Listener*> listeners_;
 
+    std::atomic<std::uint64_t> losses_{0};
     bool leased_ = false;
     Caller leaser_;
     std::uint64_t epoch_ = 0;

@@ -17,8 +17,8 @@ namespace metier::skill {
 /// What is kept of one execution.
 struct ExecutionRecord {
     std::string id{};
-    Caller client{};               ///< who started it
-    ParentExecution parent{};      ///< on whose behalf
+    Caller client{};           ///< who started it
+    ParentExecution parent{};  ///< on whose behalf
     /// Snapshot of Start; shared with whoever writes it down, and does not change.
     std::shared_ptr<const ValueMap> parameters{};
     State state = State::running;  ///< that it is in, or ended in

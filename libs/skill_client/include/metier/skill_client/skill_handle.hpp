@@ -67,6 +67,8 @@ public:
     /// Whether the server can start with an id and tell what became of it: startWith() and
     /// execution().
     bool knowsExecutions() const noexcept;
+    /// Whether startWith() tells the server on whose behalf it starts.
+    bool takesParents() const noexcept;
     /// What startWith() would say now. Errors: not_supported.
     opcua::Answer<skill::CheckReport> check(const skill::ValueMap& parameters);
     /// What became of an execution, also of another session's. Errors: not_found, not_supported.

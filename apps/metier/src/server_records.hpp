@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/error.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/device/force_torque_sensor.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/recording/path_sampler.hpp"
+#include "metier/recording/program_recorder.hpp"
+#include "metier/records/recorder.hpp"
+#include "server_alarm.hpp"
+
+namespace metier::app {
+
+/// What the Programs of a server move; each may be missing.
+struct MovedDevice {
+    const device::Arm* arm = nullptr;
+    const device::ForceTorqueSensor* sensor = nullptr;
+    std::string name{};
+};
+
+/// Records every execution of a server's Programs, and says when that does not work: in the
+/// program's log, and by an event of the Server object.
+///
+/// Threading: made, followed and ended as its server; ends before its Programs, once the server is
+/// stopped, and before the device.
+class ServerRecords {
+public:
+    /// \param server ApplicationUri
+    /// \return null if nothing is to be recorded
+    /// Errors: invalid_argument (the URL).
+    static Result<std::unique_ptr<ServerRecords>> open(const configuration::ServerConfig& config,
+                                                       const std::string& server);
+    ServerRecords(const ServerRecords&) = delete;
+    ServerRecords& operator=(const ServerRecords&) = delete;
+
+    /// Raises the events at that server. Before its start.
+    Result<void> follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor);
+    /// Records what these do. Before the server's start; once.
+    void record(const std::vector<skill::Program*>& programs, const std::string& controller,
+                const MovedDevice& device);
+
+    const records::Recorder& recorder() const noexcept { return *recorder_; }
+
+private:
+    explicit ServerRecords(const std::string& name) : name_(name), alarm_(name, "Records") {}
+
+    const std::string name_;
+    ServerAlarm alarm_;
+    std::unique_ptr<records::Recorder> recorder_;
+    std::optional<recording::PathSampler> sampler_;
+    std::vector<std::unique_ptr<recording::ProgramRecorder>> programs_;
+};
+
+}  // namespace metier::app

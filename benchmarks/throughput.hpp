@@ -1,0 +1,21 @@
+#pragma once
+
+#include <chrono>
+
+#include "both_sides.hpp"
+
+namespace metier::benchmarks {
+
+enum class Watching { unseen, seen };
+
+/// Executions of one Program that eight clients start, each of them again and again.
+struct Throughput {
+    double per_second = 0;
+    double server_cpu = 0;  ///< of a core, while they start
+};
+
+/// Of a server in a process of its own. Seen: each client is told of all events of the Program.
+Throughput throughput(const Side& side, Watching watching,
+                      std::chrono::milliseconds time = std::chrono::seconds(2));
+
+}  // namespace metier::benchmarks
