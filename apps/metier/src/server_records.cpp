@@ -42,6 +42,11 @@ Result<void> ServerRecords::follow(opcua::Server& server,
     return alarm_.follow(server, std::move(executor));
 }
 
+void ServerRecords::letGo() {
+    programs_.clear();
+    sampler_.reset();
+}
+
 void ServerRecords::record(const std::vector<skill::Program*>& programs,
                            const std::string& controller, const MovedDevice& device) {
     if (device.arm != nullptr) {

@@ -27,8 +27,9 @@ struct MovedDevice {
 /// Records every execution of a server's Programs, and says when that does not work: in the
 /// program's log, and by an event of the Server object.
 ///
-/// Threading: made, followed and ended as its server; ends before its Programs, once the server is
-/// stopped, and before the device.
+/// Threading: made, followed and ended as its server. It lets go of its Programs and their device
+/// before these end, once the server is stopped, and ends before the server; its end waits for what
+/// is still to be written.
 class ServerRecords {
 public:
     /// \param server ApplicationUri
@@ -44,6 +45,9 @@ public:
     /// Records what these do. Before the server's start; once.
     void record(const std::vector<skill::Program*>& programs, const std::string& controller,
                 const MovedDevice& device);
+
+    /// The Programs are about to end: what is under way is over. Waits for nothing.
+    void letGo();
 
     const records::Recorder& recorder() const noexcept { return *recorder_; }
 

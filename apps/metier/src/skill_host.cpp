@@ -173,7 +173,8 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     return {};
 }
 
-/// Whatever watches the Programs lets go of them between the server's thread and their end.
+/// Whatever watches the Programs lets go of them between the server's thread and their end. A disk
+/// that hangs is waited for once they have stopped their device.
 SkillHost::~SkillHost() {
     announcement_.reset();
     stall_watch_.reset();
@@ -182,7 +183,9 @@ SkillHost::~SkillHost() {
         server_->stop();
     }
     metrics_.reset();
-    records_.reset();
+    if (records_ != nullptr) {
+        records_->letGo();
+    }
 }
 
 Result<void> SkillHost::start() {

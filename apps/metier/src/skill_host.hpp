@@ -117,10 +117,10 @@ private:
     std::string controller_;              // BrowseName
     MovedDevice moved_;
     const device::Gripper* gripper_ = nullptr;
+    std::unique_ptr<ServerRecords> records_;  // none if nothing is recorded
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::shared_ptr<skill::Control> control_;       // shared with the Programs
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs
-    std::unique_ptr<ServerRecords> records_;        // none if nothing is recorded
     std::unique_ptr<ServerMetrics> metrics_;        // none unless told where
     std::optional<robot_skills::DeviceWatch> device_watch_;
     std::vector<std::function<void()>> stops_;

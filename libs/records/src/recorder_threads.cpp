@@ -56,10 +56,9 @@ Recorder::Key Recorder::Impl::begin(Execution&& execution) {
             ++dropped_.executions;
         } else {
             key = ++newest_;
-            waiting_.push_back({key, std::move(execution)});
+            push({key, std::move(execution)});
         }
     }
-    changed_.notify_all();
     return key;
 }
 
@@ -72,10 +71,9 @@ void Recorder::Impl::tell(Message&& message) {
         if (waiting_.size() >= options_.most_waiting) {
             ++dropped_.events;
         } else {
-            waiting_.push_back(std::move(message));
+            push(std::move(message));
         }
     }
-    changed_.notify_all();
 }
 
 /// An execution ends once, so that beyond the queue's size there are never more than began.
@@ -83,11 +81,17 @@ void Recorder::Impl::end(Message&& message) {
     if (message.key == 0) {
         return;
     }
-    {
-        const std::lock_guard lock(mutex_);
-        waiting_.push_back(std::move(message));
+    const std::lock_guard lock(mutex_);
+    push(std::move(message));
+}
+
+/// With the lock. The writer is woken when it has something to wait for no longer, since waking a
+/// thread costs more than all else here.
+void Recorder::Impl::push(Message&& message) {
+    waiting_.push_back(std::move(message));
+    if (waiting_.size() == 1 || waiting_.size() == options_.most_waiting / 2 + 1) {
+        changed_.notify_all();
     }
-    changed_.notify_all();
 }
 
 void Recorder::Impl::sample(const KeyedSample& sample) noexcept {
