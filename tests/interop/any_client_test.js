@@ -3,6 +3,8 @@
 'use strict';
 
 const assert = require('node:assert');
+const fs = require('node:fs');
+const os = require('node:os');
 const path = require('node:path');
 const { after, before, test } = require('node:test');
 const {
@@ -10,18 +12,21 @@ const {
   NodeClass, OPCUAClient, SecurityPolicy, StatusCodes, TimestampsToReturn, VariantArrayType,
   constructEventFilter, resolveNodeId,
 } = require('node-opcua');
-const { startServer } = require('./metier_process');
+const { runMetier, startServer } = require('./metier_process');
 
 const kCell = path.join(__dirname, '..', 'system', 'simulated.toml');
 const kProgramStateMachineType = 'ns=0;i=2391';
 const kEventDeadlineMs = 20000;
+const kFolder = fs.mkdtempSync(path.join(os.tmpdir(), 'any_client_'));
+const kRecords = path.join(kFolder, 'records.db');
 
 let server;
 let client;
 let session;
 
 before(async () => {
-  server = await startServer(['serve', kCell, '--server', 'iiwa', '--port', '0']);
+  server = await startServer(['serve', kCell, '--server', 'iiwa', '--port', '0',
+    '--records', kRecords]);
   client = OPCUAClient.create({
     endpointMustExist: false,
     securityMode: MessageSecurityMode.None,
@@ -35,6 +40,7 @@ after(async () => {
   await session?.close();
   await client?.disconnect();
   await server?.stop();
+  fs.rmSync(kFolder, { recursive: true });
 });
 
 /** Children of a node by hierarchical references. */
@@ -190,6 +196,31 @@ test('write, Start, and the events arrive at the skill, the device and the Serve
   const state = await child(skill.nodeId, 'CurrentState');
   assert.strictEqual((await read(state)).text, 'Ready');
   assert.strictEqual(await read(await child(state, 'Number')), 12);
+});
+
+test('the server has recorded what this client did', async () => {
+  const programs = await findPrograms(await deviceSet());
+  const skill = programs.get('JointPtpMoveSkill');
+  const latest = await child(await child(skill.nodeId, 'ExecutionRecords'), 'Latest');
+  const id = await read(await child(latest, 'ExecutionId'));
+  assert.strictEqual(await read(await child(latest, 'EndState')), 12);
+  assert.ok(JSON.parse(await read(await child(latest, 'Result'))).Duration > 0);
+  const deadline = Date.now() + kEventDeadlineMs;
+  let record;
+  while (record?.state !== 'Ready' && Date.now() < deadline) {
+    const { output } = await runMetier(['history', '--json', '--records', kRecords]);
+    record = output.trim() === '' ? undefined : JSON.parse(output.trim().split('\n')[0]);
+  }
+  assert.strictEqual(record.id, id);
+  assert.strictEqual(record.skill, 'JointPtpMoveSkill');
+  assert.strictEqual(record.reason, 'Finished');
+  assert.strictEqual(record.session, session.sessionId.toString());
+  assert.deepStrictEqual(record.parameters.TargetJointPosition, [0.1, 0.5, 0.1, -1.4, 0.1, 0.9, 0.1]);
+  assert.ok(record.client_name.length > 0);
+  const shown = JSON.parse(
+    (await runMetier(['history', 'show', String(record.number), '--json', '--records', kRecords])).output);
+  assert.ok(shown.path.length >= 3);
+  assert.ok(Math.abs(shown.path.at(-1).actual[1] - 0.5) < 1e-2);
 });
 
 test('UserExecutable and ProgramDiagnostic tell what may be called and what was called', async () => {

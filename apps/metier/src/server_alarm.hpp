@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "metier/base/error.hpp"
 #include "metier/opcua/event_emitter.hpp"
