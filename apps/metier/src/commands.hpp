@@ -43,6 +43,7 @@ void addGraph(CLI::App& app, Exit& exit);
 void addSkillCommands(CLI::App& app, Exit& exit);
 void addOwn(CLI::App& app, Exit& exit);
 void addAudit(CLI::App& app, Exit& exit);
+void addDashboard(CLI::App& app, Exit& exit);
 void addTrust(CLI::App& app, Exit& exit);
 void addUser(CLI::App& app, Exit& exit);
 void addCompletion(CLI::App& app, Exit& exit);

@@ -45,6 +45,7 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addCheck(app, exit);
     metier::app::addPlot(app, exit);
     metier::app::addGraph(app, exit);
+    metier::app::addDashboard(app, exit);
     metier::app::addVirtual(app, exit);
     metier::app::addTrust(app, exit);
     metier::app::addUser(app, exit);

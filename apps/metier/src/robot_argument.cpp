@@ -60,4 +60,16 @@ Result<motion::RobotModel> loadRobot(const std::string& robot) {
     return motion::RobotModel::load(folder / (robot + std::string(kExtension)));
 }
 
+Result<std::vector<motion::RobotModel>> loadAllRobots() {
+    std::vector<motion::RobotModel> models;
+    for (const auto& name : namesIn(modelsFolder())) {
+        auto model = loadRobot(name);
+        if (!model) {
+            return fail(model.error());
+        }
+        models.push_back(std::move(*model));
+    }
+    return models;
+}
+
 }  // namespace metier::app

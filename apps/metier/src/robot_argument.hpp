@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "metier/motion/robot_model.hpp"
@@ -14,5 +15,7 @@ void addRobot(CLI::App& command, std::string& robot);
 /// looked up in share/metier/models beside the program's bin, then in the source tree's models.
 /// Errors: invalid_argument, with the names there are, or as RobotModel::load().
 Result<motion::RobotModel> loadRobot(const std::string& robot);
+/// All models there, by name. Errors: as RobotModel::load().
+Result<std::vector<motion::RobotModel>> loadAllRobots();
 
 }  // namespace metier::app

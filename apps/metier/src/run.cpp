@@ -8,11 +8,11 @@
 
 #include "metier/skill_client/control_handle.hpp"
 #include "metier/skill_client/skill_handle.hpp"
+#include "metier/skill_json/values.hpp"
 #include "owner_options.hpp"
 #include "printable.hpp"
 #include "servers.hpp"
 #include "stop_signal.hpp"
-#include "value_json.hpp"
 #include "value_text.hpp"
 
 namespace metier::app {
@@ -88,7 +88,7 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
 void printResult(const skill::ValueMap& result, const RunOptions& options) {
     if (options.json) {
         fmt::print("{}\n",
-                   toJson(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+                   skill_json::toJson(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
         return;
     }
     fmt::print("done\n");

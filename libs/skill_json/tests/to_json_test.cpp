@@ -1,8 +1,8 @@
-#include "value_json.hpp"
+#include "metier/skill_json/values.hpp"
 
 #include <gtest/gtest.h>
 
-namespace metier::app {
+namespace metier::skill_json {
 namespace {
 
 TEST(ToJson, KeepsNumbersTextsAndLists) {
@@ -36,4 +36,4 @@ TEST(ToJson, NamesTheValuesOfAMap) {
 }
 
 }  // namespace
-}  // namespace metier::app
+}  // namespace metier::skill_json

@@ -1,0 +1,198 @@
+// metier dashboard: the page of a cell.
+#include "metier/dashboard/dashboard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "commands.hpp"
+#include "discovered_servers.hpp"
+#include "metier/configuration/cell.hpp"
+#include "robot_argument.hpp"
+#include "security.hpp"
+#include "servers.hpp"
+#include "stop_signal.hpp"
+
+namespace metier::app {
+namespace {
+
+namespace fs = std::filesystem;
+using dashboard::Cell;
+using dashboard::CellServer;
+using dashboard::Dashboard;
+
+struct DashboardOptions {
+    ServerChoice servers;
+    std::string endpoints;
+    std::vector<std::string> discovery;
+    bool mdns = false;
+    std::string address = "127.0.0.1";
+    std::uint16_t port = 8080;
+    std::string host_name;
+    std::string web;
+    std::string meshes;
+};
+
+/// The page's files: of the installed program, else of the build.
+fs::path webFolder(const std::string& chosen) {
+    std::error_code error;
+    const auto program = fs::read_symlink("/proc/self/exe", error);
+    const auto installed = program.parent_path().parent_path() / "share" / "metier" / "web";
+    if (!chosen.empty()) {
+        return chosen;
+    }
+    return !error && fs::is_directory(installed, error) ? installed : fs::path(METIER_WEB_DIR);
+}
+
+CellServer serverAt(const std::string& url) {
+    constexpr std::string_view kScheme = "opc.tcp://";
+    return {.name = url.starts_with(kScheme) ? url.substr(kScheme.size()) : url, .url = url};
+}
+
+/// A name is part of keys, which are divided by "/".
+CellServer serverOf(const discovery::FoundServer& found) {
+    auto server = serverAt(found.url);
+    if (!found.name.empty()) {
+        server.name = fmt::format("{} ({})", found.name, server.name);
+    }
+    std::replace(server.name.begin(), server.name.end(), '/', '_');
+    return server;
+}
+
+Result<Cell> cellOf(const DashboardOptions& options) {
+    Cell cell;
+    if (!options.servers.cell.empty()) {
+        const auto config = configuration::loadCell(options.servers.cell);
+        if (!config) {
+            return fail(config.error());
+        }
+        const auto endpoints = options.endpoints.empty()
+                                   ? dashboard::Endpoints{}
+                                   : dashboard::loadEndpoints(options.endpoints);
+        if (!endpoints) {
+            return fail(endpoints.error());
+        }
+        cell = dashboard::cellFrom(*config, *endpoints);
+    }
+    for (const auto& url : options.servers.urls) {
+        cell.servers.push_back(serverAt(url));
+    }
+    if (cell.servers.empty() && options.discovery.empty() && !options.mdns) {
+        return fail(Errc::invalid_argument,
+                    "name servers, a cell with --cell FILE, or who knows of them with --discovery");
+    }
+    return cell;
+}
+
+/// Servers that discovery tells of are added as they come, until the signal.
+void watchDiscovery(Dashboard& page, const DashboardOptions& options, const StopSignal& stop) {
+    constexpr std::chrono::seconds kBetween{10};
+    configuration::Discovery discovery;
+    discovery.servers = options.discovery;
+    discovery.mdns = options.mdns;
+    while (!stop.came()) {
+        for (const auto& found : announcedServers(discovery, {})) {
+            page.addServer(serverOf(found));
+        }
+        if (stop.waitUntil(std::chrono::steady_clock::now() + kBetween)) {
+            return;
+        }
+    }
+}
+
+Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
+    auto cell = cellOf(options);
+    if (!cell) {
+        return reportUsage(cell.error());
+    }
+    if (isInsecureLab() && !options.address.starts_with("127.") && options.address != "::1") {
+        return reportUsage({Errc::invalid_argument,
+                            fmt::format("an insecure lab is for this machine alone: {} is not a "
+                                        "loopback address",
+                                        options.address)});
+    }
+    auto models = loadAllRobots();
+    if (!models) {
+        return fail(models.error());
+    }
+    const SystemClock clock;
+    auto page = Dashboard::start(
+        {.cell = std::move(*cell),
+         .connector = {.options = [](const std::string& url) -> Result<opcua::ClientOptions> {
+                           opcua::ClientOptions client;
+                           client.application_name = "metier dashboard";
+                           auto secured = secure(client, url);
+                           return secured ? Result<opcua::ClientOptions>(std::move(client))
+                                          : fail(secured.error());
+                       },
+                       .advice = &adviceOn},
+         .lab = isInsecureLab(),
+         .address = options.address,
+         .port = options.port,
+         .host_name = options.host_name,
+         .web = webFolder(options.web),
+         .meshes = options.meshes,
+         .models = std::move(*models)},
+        clock);
+    if (!page) {
+        return fail(page.error());
+    }
+    fmt::print("dashboard http://{}:{}/\n", options.address, (*page)->port());
+    std::fflush(stdout);
+    if (options.discovery.empty() && !options.mdns) {
+        stop.wait();
+    } else {
+        watchDiscovery(**page, options, stop);
+    }
+    return Exit::success;
+}
+
+Exit runDashboard(const DashboardOptions& options) {
+    const StopSignal stop;
+    if (isInsecureLab()) {
+        fmt::print(stderr, "{}\n", kInsecureLab);
+    }
+    const auto served = serve(options, stop);
+    return served ? *served : report(served.error());
+}
+
+void addHttpOptions(CLI::App& command, DashboardOptions& options) {
+    command
+        .add_option("--address", options.address, "Address of this machine to serve the page at")
+        ->capture_default_str();
+    command.add_option("--port", options.port, "TCP port of the page; 0: a free one")
+        ->capture_default_str();
+    command.add_option("--host-name", options.host_name,
+                       "Name by which people reach the page, besides addresses and localhost");
+    command.add_option("--web", options.web, "Folder with the files of the page")
+        ->check(CLI::ExistingDirectory);
+    command
+        .add_option("--meshes", options.meshes,
+                    "Folder with URDF files and meshes of your own, to draw arms with")
+        ->check(CLI::ExistingDirectory);
+}
+
+}  // namespace
+
+void addDashboard(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callback, which reads it.
+    auto options = std::make_shared<DashboardOptions>();
+    auto* command = app.add_subcommand(
+        "dashboard", "Serve a page to watch and drive servers with a browser, until Ctrl-C");
+    addServerChoice(*command, options->servers);
+    command->add_option("--endpoints", options->endpoints,
+                        "Take the addresses of the cell from this file of `metier up --endpoints`");
+    command->add_option("--discovery", options->discovery,
+                        "Also show the servers that these discovery servers know");
+    command->add_flag("--mdns", options->mdns, "Also show the servers that mDNS tells of");
+    addHttpOptions(*command, *options);
+    command->callback([options, &exit] { exit = runDashboard(*options); });
+}
+
+}  // namespace metier::app

@@ -1,0 +1,83 @@
+#include "access.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+namespace metier::dashboard {
+namespace {
+
+/// Without the port: "127.0.0.1", "::1", "localhost".
+std::string hostOf(const std::string& header) {
+    if (header.starts_with('[')) {
+        const auto end = header.find(']');
+        return end == std::string::npos ? "" : header.substr(1, end - 1);
+    }
+    return header.substr(0, header.find(':'));
+}
+
+bool isAddress(const std::string& host) {
+    std::array<unsigned char, sizeof(in6_addr)> address{};
+    return inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
+           inet_pton(AF_INET6, host.c_str(), address.data()) == 1;
+}
+
+}  // namespace
+
+Result<void> checkOrigin(const httplib::Request& request, const std::string& host_name) {
+    const auto header = request.get_header_value("Host");
+    const auto host = hostOf(header);
+    if (request.get_header_value_count("Host") != 1 ||
+        !(isAddress(host) || host == "localhost" || (!host.empty() && host == host_name))) {
+        return fail(
+            Errc::access_denied,
+            "the page is reached by an address, by localhost, or by the name of --host-name");
+    }
+    const auto origin = request.get_header_value("Origin");
+    if (!origin.empty() && origin != "http://" + header && origin != "https://" + header) {
+        return fail(Errc::access_denied, "the request comes from another page");
+    }
+    return {};
+}
+
+Result<void> checkIntent(const httplib::Request& request) {
+    if (request.get_header_value("X-Metier") != "1") {
+        return fail(Errc::access_denied, "the header X-Metier: 1 is missing");
+    }
+    if (!request.get_header_value("Content-Type").starts_with("application/json")) {
+        return fail(Errc::invalid_argument, "Content-Type is to be application/json");
+    }
+    return {};
+}
+
+std::string cookie(const httplib::Request& request, const std::string& name) {
+    const auto header = request.get_header_value("Cookie");
+    std::string_view rest = header;
+    while (!rest.empty()) {
+        const auto end = rest.find(';');
+        auto one = rest.substr(0, end);
+        rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+        while (one.starts_with(' ')) {
+            one.remove_prefix(1);
+        }
+        if (one.starts_with(name) && one.substr(name.size()).starts_with('=')) {
+            return std::string(one.substr(name.size() + 1));
+        }
+    }
+    return {};
+}
+
+httplib::Headers protectiveHeaders() {
+    return {{"Content-Security-Policy",
+             "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+             "font-src 'self'; connect-src 'self'; manifest-src 'self'; base-uri 'none'; "
+             "form-action 'self'; frame-ancestors 'none'"},
+            {"X-Content-Type-Options", "nosniff"},
+            {"X-Frame-Options", "DENY"},
+            {"Referrer-Policy", "no-referrer"},
+            {"Cross-Origin-Resource-Policy", "same-origin"}};
+}
+
+}  // namespace metier::dashboard

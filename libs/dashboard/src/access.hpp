@@ -1,0 +1,30 @@
+#pragma once
+
+#include "http.hpp"
+
+#include <string>
+
+#include "metier/base/error.hpp"
+
+namespace metier::dashboard {
+
+// What a request must be like before it is looked at any further. Threads: any; pure.
+
+/// Whether a browser may have been made to send it by another page: the Host must be an address or
+/// `localhost`, so that no foreign name was pointed at this machine, and the Origin, if there is
+/// one, this page. \param host_name by which people reach this page besides; empty: none Errors:
+/// access_denied, saying what is wrong.
+Result<void> checkOrigin(const httplib::Request& request, const std::string& host_name);
+
+/// Whether a request that changes something says that it comes from the page's own program: header
+/// `X-Metier: 1`, which no other page can make a browser send, and a body of JSON.
+/// Errors: access_denied; invalid_argument.
+Result<void> checkIntent(const httplib::Request& request);
+
+/// The value of a cookie; empty if there is none.
+std::string cookie(const httplib::Request& request, const std::string& name);
+
+/// Headers that every answer has: what the page may load and who may show it.
+httplib::Headers protectiveHeaders();
+
+}  // namespace metier::dashboard

@@ -1,0 +1,182 @@
+#include "api.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "access.hpp"
+#include "random_name.hpp"
+
+namespace metier::dashboard {
+
+using httplib::Request;
+using httplib::Response;
+using nlohmann::json;
+
+namespace {
+
+constexpr const char* kCookie = "metier";
+
+Reply notLoggedIn() {
+    return errorReply(401, "login_required", "log in first");
+}
+
+std::string sessionCookie(const std::string& token) {
+    return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", kCookie, token,
+                       token.empty() ? "; Max-Age=0" : "");
+}
+
+}  // namespace
+
+Api::Api(const Parts& parts)
+    : options_(parts.options),
+      board_(parts.board),
+      watches_(parts.watches),
+      people_(parts.people),
+      streams_(parts.board, parts.options.limits) {}
+
+std::shared_ptr<Person> Api::personOf(const Request& request) const {
+    return people_.find(cookie(request, kCookie));
+}
+
+void Api::get(HttpServer& server, const std::string& path, Get handler) {
+    server.Get(path,
+               [this, handler = std::move(handler)](const Request& request, Response& response) {
+                   const auto person = personOf(request);
+                   write(person ? handler(request, person) : notLoggedIn(), response);
+               });
+}
+
+void Api::post(HttpServer& server, const std::string& path, Post handler) {
+    server.Post(path,
+                [this, handler = std::move(handler)](const Request& request, Response& response) {
+                    if (const auto meant = checkIntent(request); !meant) {
+                        return write(errorReply(meant.error()), response);
+                    }
+                    const auto person = personOf(request);
+                    if (!person) {
+                        return write(notLoggedIn(), response);
+                    }
+                    const auto body = parseBody(request.body);
+                    write(body ? handler(*body, person) : errorReply(body.error()), response);
+                });
+}
+
+Reply Api::me(const std::shared_ptr<Person>& person) const {
+    const bool lab = people_.isLab();
+    return {200,
+            {{"user", person ? person->user() : ""},
+             {"role", person ? person->role() : ""},
+             {"lab", lab},
+             {"login_required", !lab}}};
+}
+
+void Api::bindLogin(HttpServer& server) {
+    server.Get("/api/me", [this](const Request& request, Response& response) {
+        write(me(personOf(request)), response);
+    });
+    server.Post("/api/login", [this](const Request& request, Response& response) {
+        if (const auto meant = checkIntent(request); !meant) {
+            return write(errorReply(meant.error()), response);
+        }
+        const auto body = parseBody(request.body);
+        const auto user =
+            body ? textOrNone(*body, "user") : Result<std::string>(fail(body.error()));
+        const auto password =
+            user ? textOrNone(*body, "password") : Result<std::string>(fail(user.error()));
+        if (!password) {
+            return write(errorReply(password.error()), response);
+        }
+        const auto token = people_.login(*user, *password, request.remote_addr);
+        if (!token) {
+            const bool wait = token.error().code == Errc::resource_unavailable;
+            const bool denied = token.error().code == Errc::access_denied;
+            return write(wait     ? errorReply(429, "resource_unavailable", token.error().message)
+                         : denied ? errorReply(401, "access_denied", token.error().message)
+                                  : errorReply(token.error()),
+                         response);
+        }
+        response.set_header("Set-Cookie", sessionCookie(*token));
+        write(me(people_.find(*token)), response);
+    });
+    server.Post("/api/logout", [this](const Request& request, Response& response) {
+        if (const auto meant = checkIntent(request); !meant) {
+            return write(errorReply(meant.error()), response);
+        }
+        people_.logout(cookie(request, kCookie));
+        response.set_header("Set-Cookie", sessionCookie(""));
+        write(me(nullptr), response);
+    });
+}
+
+void Api::beginStream(const Request& request, Response& response) {
+    const auto person = personOf(request);
+    if (!person) {
+        return write(notLoggedIn(), response);
+    }
+    const auto tab = randomName();
+    if (const auto begun = streams_.begin(tab, response, [] {}); !begun) {
+        write(errorReply(503, toString(begun.error().code), begun.error().message), response);
+    }
+}
+
+void Api::bindFiles(HttpServer& server) {
+    for (const auto& [extension, type] : {std::pair{"stl", "model/stl"},
+                                          {"dae", "model/vnd.collada+xml"},
+                                          {"obj", "model/obj"},
+                                          {"glb", "model/gltf-binary"},
+                                          {"urdf", "application/xml"},
+                                          {"js", "text/javascript"},
+                                          {"webmanifest", "application/manifest+json"}}) {
+        server.set_file_extension_and_mimetype_mapping(extension, type);
+    }
+    if (!options_.meshes.empty()) {
+        server.set_mount_point("/meshes", options_.meshes.string());
+    }
+    if (!server.set_mount_point("/", options_.web.string(), {{"Cache-Control", "no-cache"}})) {
+        server.Get("/", [web = options_.web.string()](const Request& /*any*/, Response& response) {
+            response.status = 503;
+            response.set_content(
+                fmt::format("The files of the page are not there: {} is no folder. The API is at "
+                            "/api.\n",
+                            web),
+                "text/plain");
+        });
+    }
+}
+
+void Api::bind(HttpServer& server) {
+    server.set_default_headers(protectiveHeaders());
+    server.set_pre_routing_handler([this](const Request& request, Response& response) {
+        const auto own = checkOrigin(request, options_.host_name);
+        if (!own) {
+            write(errorReply(own.error()), response);
+        }
+        return own ? httplib::Server::HandlerResponse::Unhandled
+                   : httplib::Server::HandlerResponse::Handled;
+    });
+    server.set_exception_handler(
+        [](const Request& /*request*/, Response& response, std::exception_ptr /*thrown*/) {
+            write(errorReply(500, "internal", "a defect of this program; see its log"), response);
+        });
+    server.set_error_handler([](const Request& request, Response& response) {
+        if (response.body.empty()) {
+            write(errorReply(response.status, "http",
+                             fmt::format("{} {}", response.status, request.path)),
+                  response);
+        }
+    });
+    bindFiles(server);
+    bindLogin(server);
+    get(server, "/api/cell",
+        [this](const Request& /*request*/, const std::shared_ptr<Person>& /*person*/) {
+            auto cell = board_.cell();
+            cell["lab"] = people_.isLab();
+            return Reply{200, std::move(cell)};
+        });
+    server.Get("/api/stream", [this](const Request& request, Response& response) {
+        beginStream(request, response);
+    });
+}
+
+}  // namespace metier::dashboard

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "board.hpp"
+#include "http_server.hpp"
+#include "metier/dashboard/dashboard.hpp"
+#include "people.hpp"
+#include "reply.hpp"
+#include "stream.hpp"
+#include "watches.hpp"
+
+namespace metier::dashboard {
+
+/// The paths below /api, and the files of the page.
+///
+/// Threading: handlers run on the connections' threads, many at once.
+class Api {
+public:
+    struct Parts {
+        const Options& options;
+        Board& board;
+        Watches& watches;
+        People& people;
+    };
+
+    /// What it is given must outlive this, and this the server's end.
+    explicit Api(const Parts& parts);
+
+    /// Tells the server every path.
+    void bind(HttpServer& server);
+
+private:
+    using Get = std::function<Reply(const httplib::Request&, const std::shared_ptr<Person>&)>;
+    using Post = std::function<Reply(const nlohmann::json&, const std::shared_ptr<Person>&)>;
+
+    /// Who asks; nullptr: nobody that is known.
+    std::shared_ptr<Person> personOf(const httplib::Request& request) const;
+    void get(HttpServer& server, const std::string& path, Get handler);
+    void post(HttpServer& server, const std::string& path, Post handler);
+    void bindFiles(HttpServer& server);
+    void bindLogin(HttpServer& server);
+    void beginStream(const httplib::Request& request, httplib::Response& response);
+    Reply me(const std::shared_ptr<Person>& person) const;
+
+    const Options& options_;
+    Board& board_;
+    Watches& watches_;
+    People& people_;
+    Streams streams_;
+};
+
+}  // namespace metier::dashboard

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/quantities.hpp"
+#include "metier/dashboard/cell.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/opcua_skill/kinematics_data.hpp"
+
+namespace metier::dashboard {
+
+// Threads: any; pure.
+
+/// What is known of an arm besides its kinematics.
+struct ArmOrigin {
+    std::string key;
+    std::string server;
+    std::string device;                      ///< BrowseName of the motion device
+    std::optional<Frame> world_from_base{};  ///< none: nobody says
+};
+
+/// An arm as the page draws it. Shape, maker and tool frames are those of the model whose axes are
+/// as the server tells, none if there is no such model.
+nlohmann::json armJson(const ArmOrigin& origin, const opcua_skill::KinematicsData& data,
+                       const std::vector<motion::RobotModel>& models);
+
+/// The model whose axes are where the server says, to 5 mm and 0.02 rad, as arms of one kind are
+/// alike but for their calibration; the closest one. nullptr: none.
+const motion::RobotModel* modelOf(const opcua_skill::KinematicsData& data,
+                                  const std::vector<motion::RobotModel>& models);
+
+/// x, y, z [m], a, b, c [rad], rounded.
+nlohmann::json frameJson(const Frame& frame);
+
+}  // namespace metier::dashboard

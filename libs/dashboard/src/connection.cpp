@@ -1,0 +1,120 @@
+#include "connection.hpp"
+
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace metier::dashboard {
+namespace {
+
+using std::chrono::milliseconds;
+
+void addressOf(const sockaddr_storage& address, std::string& ip, int& port) {
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    if (address.ss_family == AF_INET) {
+        sockaddr_in v4{};
+        std::memcpy(&v4, &address, sizeof v4);
+        inet_ntop(AF_INET, &v4.sin_addr, text.data(), text.size());
+        port = ntohs(v4.sin_port);
+    } else if (address.ss_family == AF_INET6) {
+        sockaddr_in6 v6{};
+        std::memcpy(&v6, &address, sizeof v6);
+        inet_ntop(AF_INET6, &v6.sin6_addr, text.data(), text.size());
+        port = ntohs(v6.sin6_port);
+    }
+    ip = text.data();
+}
+
+}  // namespace
+
+Connection::Connection(int socket, const HttpLimits& limits) : socket_(socket), limits_(limits) {}
+
+short Connection::waitFor(short events, milliseconds longest) const {
+    const auto deadline = std::chrono::steady_clock::now() + longest;
+    for (;;) {
+        const auto left =
+            std::chrono::ceil<milliseconds>(deadline - std::chrono::steady_clock::now());
+        pollfd waiting{socket_, events, 0};
+        const int ready =
+            poll(&waiting, 1, static_cast<int>(std::max(left, milliseconds(0)).count()));
+        if (ready >= 0 || errno != EINTR) {
+            return ready > 0 ? waiting.revents : short{0};
+        }
+    }
+}
+
+bool Connection::awaitRequest() {
+    return begin_ < end_ || (waitFor(POLLIN, limits_.idle_time) & POLLIN) != 0;
+}
+
+void Connection::beginRequest() {
+    budget_ = limits_.head_bytes;
+    deadline_ = std::chrono::steady_clock::now() + limits_.request_time;
+}
+
+void Connection::beginBody() {
+    budget_ = limits_.body_bytes;
+}
+
+bool Connection::is_readable() const {
+    return begin_ < end_ || (waitFor(POLLIN, milliseconds(0)) & POLLIN) != 0;
+}
+
+bool Connection::is_writable() const {
+    const auto events = waitFor(POLLOUT | POLLRDHUP, limits_.send_time);
+    return (events & POLLOUT) != 0 && (events & (POLLRDHUP | POLLHUP | POLLERR)) == 0;
+}
+
+bool Connection::fill() {
+    const auto left = std::chrono::ceil<milliseconds>(deadline_ - std::chrono::steady_clock::now());
+    if (left.count() <= 0 || waitFor(POLLIN, left) == 0) {
+        return false;
+    }
+    const auto count = recv(socket_, buffer_.data(), buffer_.size(), 0);
+    begin_ = 0;
+    end_ = count > 0 ? static_cast<std::size_t>(count) : 0;
+    return count > 0;
+}
+
+ssize_t Connection::read(char* bytes, size_t size) {
+    if (budget_ == 0 || (begin_ == end_ && !fill())) {
+        return -1;
+    }
+    const auto count = std::min({size, end_ - begin_, budget_});
+    std::memcpy(bytes, buffer_.data() + begin_, count);
+    begin_ += count;
+    budget_ -= count;
+    return static_cast<ssize_t>(count);
+}
+
+ssize_t Connection::write(const char* bytes, size_t size) {
+    for (;;) {
+        if ((waitFor(POLLOUT, limits_.send_time) & POLLOUT) == 0) {
+            return -1;
+        }
+        const auto count = send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (count >= 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
+            return count;
+        }
+    }
+}
+
+void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {
+    sockaddr_storage address{};
+    socklen_t length = sizeof address;
+    getpeername(socket_, reinterpret_cast<sockaddr*>(&address), &length);  // NOLINT: POSIX's way
+    addressOf(address, ip, port);
+}
+
+void Connection::get_local_ip_and_port(std::string& ip, int& port) const {
+    sockaddr_storage address{};
+    socklen_t length = sizeof address;
+    getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length);  // NOLINT: POSIX's way
+    addressOf(address, ip, port);
+}
+
+}  // namespace metier::dashboard

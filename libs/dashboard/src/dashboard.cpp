@@ -1,0 +1,91 @@
+#include "metier/dashboard/dashboard.hpp"
+
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+#include "api.hpp"
+#include "board.hpp"
+#include "http_server.hpp"
+#include "people.hpp"
+#include "ticker.hpp"
+#include "watches.hpp"
+#include "world_watch.hpp"
+
+namespace metier::dashboard {
+namespace {
+
+nlohmann::json fixedPart(const Cell& cell) {
+    nlohmann::json fixed{{"name", cell.name}, {"world", nullptr}};
+    if (cell.world) {
+        fixed["world"] = cell.world->fixed;
+    }
+    return fixed;
+}
+
+}  // namespace
+
+struct Dashboard::Impl {
+    Impl(Options chosen, const Clock& clock)
+        : options(std::move(chosen)),
+          board(fixedPart(options.cell), clock),
+          watches(board, options.connector, options.models),
+          people(options.connector, watches, options.lab, clock),
+          api({options, board, watches, people}),
+          http(options.limits) {}
+
+    const Options options;
+    Board board;
+    Watches watches;
+    People people;
+    Api api;
+    HttpServer http;
+    std::uint16_t port = 0;
+    std::unique_ptr<WorldWatch> world;
+    Ticker ticker{board};
+};
+
+Result<std::unique_ptr<Dashboard>> Dashboard::start(Options options, const Clock& clock) {
+    auto impl = std::make_unique<Impl>(std::move(options), clock);
+    auto& own = *impl;
+    if (own.options.cell.world) {
+        own.world = std::make_unique<WorldWatch>(*own.options.cell.world, own.board);
+    }
+    own.board.onWatched([&own](bool watched) {
+        own.watches.showLive(watched);
+        own.ticker.run(watched);
+        if (own.world) {
+            own.world->show(watched);
+        }
+    });
+    own.api.bind(own.http);
+    const auto port = own.http.serve(own.options.address, own.options.port);
+    if (!port) {
+        return fail(port.error());
+    }
+    own.port = *port;
+    std::unique_ptr<Dashboard> dashboard(new Dashboard(std::move(impl)));  // NOLINT: private
+    for (const auto& server : own.options.cell.servers) {
+        dashboard->addServer(server);
+    }
+    return dashboard;
+}
+
+Dashboard::Dashboard(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Dashboard::~Dashboard() {
+    impl_->board.closeAll();
+    impl_->http.end();
+    impl_->world.reset();
+    impl_->watches.end();
+}
+
+std::uint16_t Dashboard::port() const noexcept {
+    return impl_->port;
+}
+
+void Dashboard::addServer(const CellServer& server) {
+    impl_->watches.add(server);
+}
+
+}  // namespace metier::dashboard

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "http.hpp"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+
+#include "connection.hpp"
+#include "metier/base/error.hpp"
+#include "metier/dashboard/dashboard.hpp"
+
+namespace metier::dashboard {
+
+/// httplib's server with limits: how many connections, how long a request may be and take, and how
+/// long a peer may not read. One thread for each connection that is open.
+///
+/// Routes are set before listen(). Threading: handlers run on the connections' threads.
+class HttpServer final : public httplib::Server {
+public:
+    explicit HttpServer(const HttpLimits& limits);
+    /// Not without stop().
+    ~HttpServer() override;
+
+    /// Serves from then on. \return the port
+    /// Errors: invalid_argument, already_exists.
+    Result<std::uint16_t> serve(const std::string& address, std::uint16_t port);
+    /// Ends all connections, whatever they wait for, and waits for their threads. Once.
+    void end();
+    bool isEnding() const noexcept { return ending_; }
+
+private:
+    bool process_and_close_socket(int socket) override;
+    void converse(Connection& connection);
+    template <typename Self>
+    static bool serveOne(Self& self, Connection& connection, bool& closed);
+    static void refuse(int socket);
+
+    const HttpLimits limits_;
+    std::atomic<bool> ending_ = false;
+    std::atomic<bool> listened_ = false;  // and does no longer
+    std::mutex mutex_;
+    std::set<int> sockets_;
+    std::jthread accepting_;
+};
+
+}  // namespace metier::dashboard

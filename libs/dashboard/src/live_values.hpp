@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+
+namespace metier::dashboard {
+
+/// What changes all the time: joint positions, safety, missed cycles, grippers, parts.
+///
+/// Threading: one thread at a time.
+class LiveValues {
+public:
+    /// Measured joint positions [rad] of an arm, true at `time`; the velocity follows from them.
+    void setJoints(const std::string& arm, const std::vector<double>& joints, UtcTime time);
+    /// Any other value of an arm by its name in the stream: "safety", "missed".
+    void setOfArm(const std::string& arm, const std::string& name, nlohmann::json value);
+    void setOfGripper(const std::string& gripper, const std::string& name, nlohmann::json value);
+    void setPart(const std::string& part, nlohmann::json value);
+    /// Parts that are not among these any more are gone.
+    void keepParts(const nlohmann::json& present);
+
+    /// All there is.
+    nlohmann::json all(UtcTime now) const;
+    /// What has changed since the last call; null if nothing did.
+    nlohmann::json changes(UtcTime now);
+    /// Whether an arm's joints changed since the last changes().
+    bool moving() const noexcept { return moving_; }
+
+private:
+    struct Joints {
+        std::vector<double> position;
+        UtcTime time{};
+    };
+    void set(nlohmann::json& values, const std::string& group, const std::string& key,
+             const std::string& name, nlohmann::json value);
+
+    std::map<std::string, Joints> joints_;
+    nlohmann::json values_ = nlohmann::json::object();  // arms, grippers, parts
+    nlohmann::json changed_ = nlohmann::json::object();
+    bool moving_ = false;
+};
+
+/// A number as it is sent: rounded to a millionth, so that it is short.
+double rounded(double value);
+nlohmann::json rounded(const std::vector<double>& values);
+
+}  // namespace metier::dashboard

@@ -1,0 +1,230 @@
+#include "people.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "metier/opcua/text.hpp"
+#include "random_name.hpp"
+
+namespace metier::dashboard {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMostLogins = 200;
+constexpr std::size_t kMostFailures = 1'000;
+constexpr auto kLongestLogin = 12h;
+constexpr auto kLongestRest = 1h;
+constexpr int kFreeOfUser = 3;   // wrong passwords for one name before waiting begins
+constexpr int kFreeOfPeer = 10;  // from one address, for whatever names
+constexpr auto kConnect = 5'000ms;
+constexpr const char* kMetier = "urn:metier:skills";
+
+bool isDenial(const opcua::Failure& failure) {
+    return failure.code == Errc::access_denied ||
+           failure.status == opcua::status::kBadUserAccessDenied ||
+           failure.status == opcua::status::kBadIdentityTokenRejected ||
+           failure.status == opcua::status::kBadIdentityTokenInvalid;
+}
+
+/// Whether a session may take control of a controller.
+bool mayCommand(opcua::Client& client, const ServerLink& link) {
+    const auto metier = client.namespaceIndex(kMetier);
+    if (!metier || link.controllers().empty()) {
+        return false;
+    }
+    const auto method =
+        client.translate(link.controllers().front().node, {{*metier, "AcquireControl"}});
+    const auto executable =
+        method ? client.readUserExecutable(*method) : opcua::Answer<bool>(false);
+    return executable && *executable;
+}
+
+}  // namespace
+
+std::string Person::role() const {
+    const std::lock_guard lock(mutex_);
+    return role_;
+}
+
+void Person::setRole(std::string role) {
+    const std::lock_guard lock(mutex_);
+    role_ = std::move(role);
+}
+
+Result<std::unique_ptr<opcua::Client>> Person::connect(const std::string& server,
+                                                       const std::string& name) const {
+    const auto url = watches_.url(server);
+    if (!url) {
+        return fail(url.error());
+    }
+    auto options = connector_.options(*url);
+    if (!options) {
+        return fail(options.error());
+    }
+    options->application_name = name;
+    options->connect_timeout = kConnect;
+    if (!isOfLab() && options->security) {
+        options->user = opcua::UserName{user_, password_};
+    }
+    auto client = opcua::Client::connect(*url, *options);
+    if (!client) {
+        const auto code = isDenial(client.error()) ? Errc::access_denied : client.error().code;
+        return fail(code, opcua::sanitise(fmt::format("{}: {}", server, client.error().message)));
+    }
+    return std::move(*client);
+}
+
+Result<std::shared_ptr<opcua::Client>> Person::session(const std::string& server) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto known = sessions_.find(server);
+        if (known != sessions_.end() && known->second->state() == opcua::Client::State::connected) {
+            return known->second;
+        }
+    }
+    auto made =
+        connect(server, fmt::format("metier dashboard{}{}", user_.empty() ? "" : " of ", user_));
+    if (!made) {
+        return fail(made.error());
+    }
+    std::shared_ptr<opcua::Client> client = std::move(*made);
+    auto kept = client;
+    const std::lock_guard lock(mutex_);
+    sessions_[server].swap(kept);  // what was there ends after the lock
+    return client;
+}
+
+People::People(const Connector& connector, Watches& watches, bool lab, const Clock& clock)
+    : connector_(connector),
+      watches_(watches),
+      lab_(lab),
+      clock_(clock),
+      anybody_(std::make_shared<Person>(connector, watches, "", "")) {
+    anybody_->setRole("operator");
+}
+
+bool People::isLab() const {
+    return lab_ || !watches_.wantLogin();
+}
+
+Result<void> People::checkBar(const std::string& user, const std::string& peer) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& who : {"user " + user, "peer " + peer}) {
+        const auto found = failures_.find(who);
+        const auto left = found == failures_.end() ? std::chrono::nanoseconds(0)
+                                                   : found->second.barred_until - clock_.now();
+        if (left > 0ns) {
+            return fail(Errc::resource_unavailable,
+                        fmt::format("too many wrong passwords: wait {} s",
+                                    std::chrono::ceil<std::chrono::seconds>(left).count()));
+        }
+    }
+    return {};
+}
+
+void People::noteFailure(const std::string& who, int free_attempts) {
+    constexpr int kMostDoublings = 6;
+    constexpr std::chrono::seconds kLongest{60};
+    const std::lock_guard lock(mutex_);
+    if (failures_.size() >= kMostFailures && !failures_.contains(who)) {
+        failures_.erase(std::min_element(
+            failures_.begin(), failures_.end(), [](const auto& left, const auto& right) {
+                return left.second.barred_until < right.second.barred_until;
+            }));
+    }
+    auto& failures = failures_[who];
+    ++failures.count;
+    if (failures.count >= free_attempts) {
+        const int doublings = std::min(failures.count - free_attempts, kMostDoublings);
+        failures.barred_until =
+            clock_.now() + std::min(std::chrono::seconds(1LL << doublings), kLongest);
+    }
+}
+
+Result<std::shared_ptr<Person>> People::ask(const std::string& user, const std::string& password) {
+    auto person = std::make_shared<Person>(connector_, watches_, user, password);
+    Result<void> outcome =
+        fail(Errc::connection_lost, "no server is connected that could be asked");
+    for (const auto& server : watches_.servers()) {
+        const auto link = watches_.link(server);
+        if (!link) {
+            continue;
+        }
+        const auto session = person->session(server);
+        if (session) {
+            person->setRole(mayCommand(**session, *link) ? "operator" : "observer");
+            return person;
+        }
+        if (outcome.error().code != Errc::access_denied) {
+            outcome = fail(session.error());
+        }
+    }
+    return fail(outcome.error());
+}
+
+Result<std::string> People::login(const std::string& user, const std::string& password,
+                                  const std::string& peer) {
+    if (user.empty() || password.empty()) {
+        return fail(Errc::access_denied, "a name and a password are needed");
+    }
+    if (auto free = checkBar(user, peer); !free) {
+        return fail(free.error());
+    }
+    auto person = ask(user, password);
+    if (!person && person.error().code == Errc::access_denied) {
+        noteFailure("user " + user, kFreeOfUser);
+        noteFailure("peer " + peer, kFreeOfPeer);
+        return fail(Errc::access_denied, "wrong name or password");
+    }
+    if (!person) {
+        return fail(person.error());
+    }
+    auto token = randomName();
+    const auto now = clock_.now();
+    const std::lock_guard lock(mutex_);
+    forgetOld(now);
+    if (logins_.size() >= kMostLogins) {
+        return fail(Errc::resource_unavailable,
+                    fmt::format("{} people are logged in, and no more can be", kMostLogins));
+    }
+    failures_.erase("user " + user);
+    logins_[token] = {std::move(*person), now, now};
+    return token;
+}
+
+void People::logout(const std::string& token) {
+    Login gone;  // destroyed after the lock is
+    const std::lock_guard lock(mutex_);
+    if (const auto found = logins_.find(token); found != logins_.end()) {
+        gone = std::move(found->second);
+        logins_.erase(found);
+    }
+}
+
+void People::forgetOld(SteadyTime now) {
+    std::erase_if(logins_, [now](const auto& one) {
+        return now - one.second.begun > kLongestLogin || now - one.second.used > kLongestRest;
+    });
+}
+
+std::shared_ptr<Person> People::find(const std::string& token) {
+    if (isLab()) {
+        return anybody_;
+    }
+    const auto now = clock_.now();
+    const std::lock_guard lock(mutex_);
+    forgetOld(now);
+    const auto found = logins_.find(token);
+    if (found == logins_.end()) {
+        return nullptr;
+    }
+    found->second.used = now;
+    return found->second.person;
+}
+
+}  // namespace metier::dashboard

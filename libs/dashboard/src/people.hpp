@@ -1,0 +1,105 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/dashboard/dashboard.hpp"
+#include "metier/opcua/client.hpp"
+#include "watches.hpp"
+
+namespace metier::dashboard {
+
+/// Somebody who has logged in; in a lab, whoever reaches the page.
+///
+/// Threading: any.
+class Person {
+public:
+    /// \param password empty for the one of the lab, who has sessions without a user
+    Person(const Connector& connector, Watches& watches, std::string user, std::string password)
+        : connector_(connector),
+          watches_(watches),
+          user_(std::move(user)),
+          password_(std::move(password)) {}
+
+    const std::string& user() const noexcept { return user_; }
+    bool isOfLab() const noexcept { return user_.empty(); }
+    /// "operator": may command; "observer": may look.
+    std::string role() const;
+    void setRole(std::string role);
+
+    /// A new session of this person with a server.
+    /// \param name as which it is known there
+    /// Errors: not_found; those of Client::connect(), with advice.
+    Result<std::unique_ptr<opcua::Client>> connect(const std::string& server,
+                                                   const std::string& name) const;
+    /// A session of this person that may Check and Halt; kept until it is lost.
+    /// Errors: as connect().
+    Result<std::shared_ptr<opcua::Client>> session(const std::string& server);
+
+private:
+    const Connector& connector_;
+    Watches& watches_;
+    const std::string user_;
+    const std::string password_;
+    mutable std::mutex mutex_;
+    std::string role_ = "observer";
+    // With whoever asks something by them at this moment.
+    std::map<std::string, std::shared_ptr<opcua::Client>> sessions_;
+};
+
+/// Who is logged in.
+///
+/// A name and password are good if a server lets them in. Wrong ones make the next attempt for that
+/// name wait, and that from the same address, from one second up to a minute, without asking a
+/// server again: who guesses here does not lock this program out there.
+/// Threading: any.
+class People {
+public:
+    /// What it is given must outlive this.
+    People(const Connector& connector, Watches& watches, bool lab, const Clock& clock);
+
+    /// Nobody needs to log in: an insecure lab, or open servers of this machine.
+    bool isLab() const;
+    /// \param peer address from which somebody asks
+    /// \return a token that stands for the person until logout(), twelve hours, or an hour without
+    ///         a request
+    /// Errors: access_denied; resource_unavailable, how long to wait; connection_lost, no server
+    ///         could be asked.
+    Result<std::string> login(const std::string& user, const std::string& password,
+                              const std::string& peer);
+    void logout(const std::string& token);
+    /// nullptr: nobody. Nobody needs a token in a lab.
+    std::shared_ptr<Person> find(const std::string& token);
+
+private:
+    struct Login {
+        std::shared_ptr<Person> person;  // with its tabs
+        SteadyTime begun{};
+        SteadyTime used{};
+    };
+    struct Failures {
+        int count = 0;
+        SteadyTime barred_until{};
+    };
+
+    Result<void> checkBar(const std::string& user, const std::string& peer);
+    void noteFailure(const std::string& who, int free_attempts);
+    Result<std::shared_ptr<Person>> ask(const std::string& user, const std::string& password);
+    void forgetOld(SteadyTime now);
+
+    const Connector& connector_;
+    Watches& watches_;
+    const bool lab_;
+    const Clock& clock_;
+    const std::shared_ptr<Person> anybody_;  // of the lab
+    std::mutex mutex_;
+    std::map<std::string, Login> logins_;
+    std::map<std::string, Failures> failures_;
+};
+
+}  // namespace metier::dashboard

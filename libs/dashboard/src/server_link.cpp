@@ -1,0 +1,180 @@
+#include "server_link.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "metier/opcua/text.hpp"
+#include "survey.hpp"
+
+namespace metier::dashboard {
+namespace {
+
+using namespace std::chrono_literals;
+using opcua::Answer;
+using opcua::DataValue;
+
+constexpr auto kJoints = 33ms;  // 30 Hz
+constexpr auto kStates = 100ms;
+constexpr auto kSlow = 500ms;
+constexpr const char* kMetier = "urn:metier:skills";
+
+/// SafetyStateKind of the Metier NodeSet.
+std::string safetyName(std::int32_t kind) {
+    constexpr std::array kNames{"Unknown",        "Normal",        "Reduced",
+                                "ProtectiveStop", "EmergencyStop", "Fault"};
+    const auto index = static_cast<std::size_t>(kind);
+    return index < kNames.size() ? kNames[index] : "Unknown";
+}
+
+}  // namespace
+
+Answer<std::shared_ptr<ServerLink>> ServerLink::open(
+    const LinkContext& context, opcua::ClientOptions options,
+    std::function<void(const opcua::Failure&)> on_lost) {
+    options.publishing_interval = kJoints;
+    auto client = opcua::Client::connect(context.server.url, std::move(options));
+    if (!client) {
+        return tl::unexpected(client.error());
+    }
+    std::shared_ptr<ServerLink> link(new ServerLink(std::move(*client)));  // NOLINT: private
+    link->client_->onConnectionLost(std::move(on_lost));
+    link->board_ = &context.board;
+    link->server_ = context.server.name;
+    if (auto asked = Survey(context, *link).run(); !asked) {
+        return tl::unexpected(asked.error());
+    }
+    return link;
+}
+
+const LinkedSkill* ServerLink::find(const std::string& key) const {
+    const auto found = std::find_if(skills_.begin(), skills_.end(),
+                                    [&](const LinkedSkill& skill) { return skill.key == key; });
+    return found == skills_.end() ? nullptr : &*found;
+}
+
+void ServerLink::showLive(bool shown) {
+    live_.clear();
+    if (!shown) {
+        return;
+    }
+    for (const auto& arm : arms_) {
+        showArm(arm);
+    }
+    for (const auto& controller : controllers_) {
+        showController(controller);
+    }
+    for (const auto& skill : skills_) {
+        showSkill(skill);
+    }
+}
+
+/// What a server does not have, or does not let be read, is not shown.
+void ServerLink::subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
+                           std::function<void(const DataValue&)> callback) {
+    auto subscribed =
+        client_->subscribeData(node, {.sampling_interval = interval}, std::move(callback));
+    if (subscribed) {
+        live_.push_back(std::move(*subscribed));
+    }
+}
+
+void ServerLink::showArm(const Arm& arm) {
+    auto& board = *board_;
+    subscribe(
+        arm.nodes.actual_joint_position, kJoints, [&board, key = arm.key](const DataValue& notice) {
+            if (const auto joints = notice.value.as<std::vector<double>>();
+                joints && !joints->empty()) {
+                board.changeLive(
+                    [&](LiveValues& live) { live.setJoints(key, *joints, notice.source_time); });
+            }
+        });
+    subscribe(arm.nodes.safety_state, kStates, [&board, key = arm.key](const DataValue& notice) {
+        if (const auto kind = notice.value.as<std::int32_t>()) {
+            board.changeLive(
+                [&](LiveValues& live) { live.setOfArm(key, "safety", safetyName(*kind)); });
+        }
+    });
+    subscribe(arm.nodes.missed_cycles, kSlow, [&board, key = arm.key](const DataValue& notice) {
+        if (const auto missed = notice.value.as<std::uint64_t>()) {
+            board.changeLive([&](LiveValues& live) { live.setOfArm(key, "missed", *missed); });
+        }
+    });
+}
+
+void ServerLink::showController(const LinkedController& controller) {
+    const auto metier = client_->namespaceIndex(kMetier);
+    if (!metier) {
+        return;
+    }
+    auto& board = *board_;
+    if (const auto owner = client_->translate(controller.node, {{*metier, "ControlOwner"}})) {
+        subscribe(*owner, kStates, [&board, key = controller.key](const DataValue& notice) {
+            if (const auto name = notice.value.as<std::string>()) {
+                board.changeControl(
+                    key, [&](ControlState& state) { state.owner = opcua::sanitise(*name); });
+            }
+        });
+    }
+    if (const auto lease = client_->translate(controller.node, {{*metier, "LeaseRemaining"}})) {
+        subscribe(*lease, kSlow, [&board, key = controller.key](const DataValue& notice) {
+            if (const auto left = notice.value.as<double>()) {
+                board.changeControl(key, [&](ControlState& state) {
+                    state.lease_ms = rounded(*left);
+                    state.until =
+                        *left > 0.0 ? secondsOf(notice.source_time) + rounded(*left) / 1e3 : 0.0;
+                });
+            }
+        });
+    }
+    if (const auto held = client_->translate(controller.node, {{*metier, "PartHeld"}})) {
+        subscribe(*held, kStates, [&board, key = server_](const DataValue& notice) {
+            if (const auto part = notice.value.as<bool>()) {
+                board.changeLive([&](LiveValues& live) { live.setOfGripper(key, "held", *part); });
+            }
+        });
+    }
+}
+
+void ServerLink::showSkill(const LinkedSkill& skill) {
+    const auto metier = client_->namespaceIndex(kMetier);
+    if (!metier) {
+        return;
+    }
+    auto& board = *board_;
+    const auto& node = skill.address.node;
+    const auto onText = [&board, key = skill.key](std::string SkillState::*part,
+                                                  const std::string& text) {
+        board.changeSkill(key, [&](SkillState& state) {
+            if (state.state == "Running" || part != &SkillState::sub_state) {
+                state.*part = opcua::sanitise(text);
+            }
+        });
+    };
+    const auto sub_state =
+        client_->translate(node, {{*metier, "RunningSubStates"}, {0, "CurrentState"}});
+    if (sub_state) {
+        subscribe(*sub_state, kStates, [onText](const DataValue& notice) {
+            if (const auto text = notice.value.as<opcua::LocalizedText>();
+                text && !text->text.empty()) {
+                onText(&SkillState::sub_state, text->text);
+            }
+        });
+    }
+    if (const auto step = client_->translate(node, {{*metier, "CurrentStep"}})) {
+        subscribe(*step, kStates, [onText](const DataValue& notice) {
+            if (const auto text = notice.value.as<std::string>()) {
+                onText(&SkillState::step, *text);
+            }
+        });
+    }
+    if (const auto progress = client_->translate(node, {{*metier, "Progress"}})) {
+        subscribe(*progress, kStates, [&board, key = skill.key](const DataValue& notice) {
+            if (const auto part = notice.value.as<double>()) {
+                board.changeSkill(key, [&](SkillState& state) { state.progress = rounded(*part); });
+            }
+        });
+    }
+}
+
+}  // namespace metier::dashboard

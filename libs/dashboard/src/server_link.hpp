@@ -1,0 +1,95 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "board.hpp"
+#include "metier/dashboard/cell.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/skill_client/async_skill.hpp"
+#include "metier/skill_client/kinematics_reader.hpp"
+#include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::dashboard {
+
+/// What a link to one server needs to know of the cell.
+struct LinkContext {
+    CellServer server;
+    /// Name of the server at an address; empty: none of the cell. Any thread.
+    std::function<std::string(const std::string& url)> server_at;
+    const std::vector<motion::RobotModel>& models;
+    Board& board;
+};
+
+/// One skill of a server that is connected.
+struct LinkedSkill {
+    std::string key;
+    skill_client::SkillAddress address;
+    std::string control;  ///< key of its controller's control; empty: it has none
+    std::unique_ptr<skill_client::AsyncSkill> skill;
+};
+
+/// A controller of a server, whose skills somebody may take control of.
+struct LinkedController {
+    std::string key;
+    std::string name;
+    opcua::NodeId node;
+};
+
+/// A connection to one server, all that it offers, and the subscriptions by which the board hears
+/// of it. Good for one run of the server.
+///
+/// Threading: made by one thread; then any, but showLive(), which is of that thread.
+class ServerLink {
+public:
+    /// Connects and looks; tells the board of every skill's state from then on. Waits, seconds at
+    /// most for each question.
+    /// \param on_lost once, on the client's thread
+    /// Errors: those of the server.
+    static opcua::Answer<std::shared_ptr<ServerLink>> open(
+        const LinkContext& context, opcua::ClientOptions options,
+        std::function<void(const opcua::Failure&)> on_lost);
+
+    /// What it offers, for the board.
+    const ServerShown& offer() const noexcept { return offer_; }
+    opcua::Client& client() noexcept { return *client_; }
+    const std::vector<LinkedSkill>& skills() const noexcept { return skills_; }
+    const std::vector<LinkedController>& controllers() const noexcept { return controllers_; }
+    /// nullptr: none of that key.
+    const LinkedSkill* find(const std::string& key) const;
+
+    /// Subscribes to what changes all the time, or no longer. Waits.
+    void showLive(bool shown);
+
+private:
+    friend class Survey;
+    explicit ServerLink(std::unique_ptr<opcua::Client> client) : client_(std::move(client)) {}
+
+    /// An arm of its own.
+    struct Arm {
+        std::string key;
+        skill_client::KinematicsNodes nodes;
+    };
+    void showArm(const Arm& arm);
+    void showController(const LinkedController& controller);
+    void showSkill(const LinkedSkill& skill);
+    void subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
+                   std::function<void(const opcua::DataValue&)> callback);
+
+    std::unique_ptr<opcua::Client> client_;  // first: all below use it
+    Board* board_ = nullptr;
+    std::string server_;
+    ServerShown offer_;
+    std::vector<LinkedSkill> skills_;
+    std::vector<LinkedController> controllers_;
+    std::vector<Arm> arms_;
+    opcua::Subscription alarms_;
+    std::vector<opcua::Subscription> live_;
+};
+
+}  // namespace metier::dashboard

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "metier/dashboard/dashboard.hpp"
+#include "server_link.hpp"
+
+namespace metier::dashboard {
+
+/// Keeps a link to one server, as long as this lives: makes a new one whenever it is lost.
+///
+/// Threading: a thread of its own; the functions from any.
+class ServerWatch {
+public:
+    /// \param connector must outlive this, as what the context refers to
+    ServerWatch(LinkContext context, const Connector& connector);
+    ~ServerWatch();
+    ServerWatch(const ServerWatch&) = delete;
+    ServerWatch& operator=(const ServerWatch&) = delete;
+
+    const CellServer& server() const noexcept { return context_.server; }
+    /// The present link; nullptr while there is none.
+    std::shared_ptr<ServerLink> link() const;
+    /// Whether the server wants users to log in; nothing before it was reached.
+    std::optional<bool> isClosed() const;
+    /// Whether what changes all the time is to be shown.
+    void showLive(bool shown);
+
+private:
+    /// What the client's thread tells of a link; outlives this if the client does.
+    struct News {
+        std::mutex mutex;
+        std::condition_variable_any changed;
+        std::uint64_t link = 0;  ///< number of the present one
+        std::optional<std::string> lost{};
+        bool live = false;
+    };
+
+    void run(const std::stop_token& stop);
+    /// Tells the board why not.
+    std::shared_ptr<ServerLink> connect();
+    void keep(ServerLink& link, const std::stop_token& stop);
+    void present(std::shared_ptr<ServerLink> link);
+
+    const LinkContext context_;
+    const Connector& connector_;
+    const std::shared_ptr<News> news_ = std::make_shared<News>();  // with a client's callback
+    mutable std::mutex mutex_;                                     // of the next two
+    std::shared_ptr<ServerLink> link_;  // with whoever uses it at this moment
+    std::optional<bool> closed_;
+    std::jthread thread_;  // last: it uses everything above
+};
+
+}  // namespace metier::dashboard

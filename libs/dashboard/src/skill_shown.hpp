@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "metier/skill/field.hpp"
+#include "metier/skill_client/async_skill.hpp"
+
+namespace metier::dashboard {
+
+/// The arm that a skill moves.
+struct MovedArm {
+    std::string key{};  ///< empty: it moves none
+    std::size_t axes = 0;
+    std::vector<std::string> tools{};  ///< names of its tool frames
+};
+
+/// What a skill is, as the page makes a form of it.
+nlohmann::json skillJson(const std::string& key, const std::string& server,
+                         const skill_client::AsyncSkill& skill, const MovedArm& arm);
+
+nlohmann::json fieldJson(const skill::Field& field, const MovedArm& arm);
+
+/// A value with frames, vectors and ranges as lists of numbers, however deep they are.
+nlohmann::json inLists(const nlohmann::json& value);
+
+/// How far a gripper with these skills opens [m], as the range of their parameters says; 0: none
+/// does.
+double strokeIn(const nlohmann::json& skills);
+
+}  // namespace metier::dashboard

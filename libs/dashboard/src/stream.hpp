@@ -1,0 +1,34 @@
+#pragma once
+
+#include "http.hpp"
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "board.hpp"
+#include "metier/dashboard/dashboard.hpp"
+
+namespace metier::dashboard {
+
+/// The streams of all tabs, as server-sent events.
+///
+/// Threading: any; each stream keeps the thread of its connection.
+class Streams {
+public:
+    /// What it is given must outlive this.
+    Streams(Board& board, const HttpLimits& limits) : board_(board), limits_(limits) {}
+
+    /// Has the response be the stream of a new tab, of that name.
+    /// \param on_end once, when the tab is gone, on the connection's thread
+    /// Errors: resource_unavailable, if there are too many.
+    Result<void> begin(const std::string& tab, httplib::Response& response,
+                       std::function<void()> on_end);
+
+private:
+    Board& board_;
+    const HttpLimits& limits_;
+    std::atomic<std::size_t> open_ = 0;
+};
+
+}  // namespace metier::dashboard

@@ -1,0 +1,203 @@
+#include "survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "arm_json.hpp"
+#include "metier/opcua/text.hpp"
+#include "metier/skill_client/skill_references.hpp"
+#include "transitions.hpp"
+
+namespace metier::dashboard {
+namespace {
+
+using opcua::Answer;
+using opcua::NodeId;
+using skill_client::AsyncSkill;
+using skill_client::KinematicsNodes;
+using skill_client::SkillAddress;
+
+const NodeId kServerArray{0, 2254U};
+
+std::string applicationUri(opcua::Client& client) {
+    const auto value = client.read(kServerArray);
+    const auto uris = value ? value->as<std::vector<std::string>>()
+                            : Result<std::vector<std::string>>(std::vector<std::string>{});
+    return uris && !uris->empty() ? opcua::sanitise(uris->front()) : "";
+}
+
+/// s since 1970 UTC; 0 if the server does not tell.
+double lastTransition(opcua::Client& client, const NodeId& skill) {
+    const auto node = client.translate(skill, {{0, "LastTransition"}, {0, "TransitionTime"}});
+    const auto value = node ? client.read(*node) : Answer<opcua::Value>();
+    const auto time = value ? value->as<UtcTime>() : Result<UtcTime>(UtcTime{});
+    return time && *time > UtcTime{} ? secondsOf(*time) : 0.0;
+}
+
+}  // namespace
+
+Answer<> Survey::run() {
+    auto& client = link_.client();
+    const auto skills = skill_client::findSkills(client);
+    if (!skills) {
+        return tl::unexpected(skills.error());
+    }
+    link_.offer_.application_uri = applicationUri(client);
+    for (const auto& address : *skills) {
+        if (auto added = add(address); !added) {
+            return added;
+        }
+    }
+    if (!link_.arms_.empty()) {
+        link_.offer_.arm = link_.arms_.front().key;
+    }
+    if (const auto& gripper = context_.server.gripper) {
+        link_.offer_.gripper = {
+            {"arm", gripper->on.empty() ? nlohmann::json() : nlohmann::json(gripper->on)},
+            {"frame", frameJson(gripper->flange_from_jaws)},
+            {"stroke", strokeIn(link_.offer_.skills)}};
+    }
+    subscribeAlarms();
+    return {};
+}
+
+std::string Survey::uniqueKey(const SkillAddress& address) const {
+    const auto key =
+        fmt::format("{}/{}/{}", context_.server.name, address.controllerName(), address.name);
+    auto unique = key;
+    for (int number = 2; link_.find(unique) != nullptr; ++number) {
+        unique = fmt::format("{}#{}", key, number);
+    }
+    return unique;
+}
+
+Answer<> Survey::add(const SkillAddress& address) {
+    auto arm = armOf(address);
+    if (!arm) {
+        return tl::unexpected(arm.error());
+    }
+    LinkedSkill linked{uniqueKey(address), address, addController(address), nullptr};
+    auto skill =
+        AsyncSkill::open(link_.client(), address, transitionsTo(context_.board, linked.key));
+    if (!skill) {
+        return tl::unexpected(skill.error());
+    }
+    link_.offer_.skills.push_back(skillJson(linked.key, context_.server.name, *skill, *arm));
+    linked.skill = std::make_unique<AsyncSkill>(std::move(*skill));
+    readState(linked);
+    link_.skills_.push_back(std::move(linked));
+    return {};
+}
+
+std::string Survey::addController(const SkillAddress& address) {
+    const auto* controller = address.controller();
+    if (controller == nullptr) {
+        return {};
+    }
+    auto key = fmt::format("{}/{}", context_.server.name, controller->name);
+    auto& known = link_.controllers_;
+    const bool is_known = std::any_of(
+        known.begin(), known.end(), [&](const auto& one) { return one.node == controller->node; });
+    if (!is_known) {
+        known.push_back({key, controller->name, controller->node});
+        context_.board.changeControl(key, [&](ControlState& state) {
+            state.server = context_.server.name;
+            state.controller = controller->name;
+        });
+    }
+    return key;
+}
+
+Answer<MovedArm> Survey::armOf(const SkillAddress& address) {
+    const auto* controller = address.controller();
+    const auto node = controller == nullptr ? address.node : controller->node;
+    if (const auto known = arms_by_controller_.find(node); known != arms_by_controller_.end()) {
+        return known->second;
+    }
+    const auto kinematics = skill_client::findKinematics(link_.client(), address);
+    if (!kinematics && kinematics.error().code != Errc::not_found) {
+        return tl::unexpected(kinematics.error());
+    }
+    auto arm = kinematics ? addArm(*kinematics, address) : Answer<MovedArm>(MovedArm{});
+    if (arm) {
+        arms_by_controller_[node] = *arm;
+    }
+    return arm;
+}
+
+std::string Survey::ownerOfArm(const SkillAddress& address) {
+    if (!context_.server.arm_of.empty()) {
+        return context_.server.arm_of;
+    }
+    auto reader = skill_client::ReferenceReader::create(link_.client());
+    const auto references =
+        reader ? reader->read(address.node) : Answer<skill_client::SkillReferences>();
+    if (!references) {
+        return {};
+    }
+    for (const auto& use : references->uses) {
+        auto used = use.endpoint_url.empty() ? "" : context_.server_at(use.endpoint_url);
+        if (!used.empty()) {
+            return used;
+        }
+    }
+    return {};
+}
+
+Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const SkillAddress& address) {
+    if (const auto known = arms_by_object_.find(nodes.object); known != arms_by_object_.end()) {
+        return known->second;
+    }
+    const auto data = skill_client::readKinematics(link_.client(), nodes);
+    if (!data) {
+        return tl::unexpected(data.error());
+    }
+    const auto& name = context_.server.name;
+    const auto owner = ownerOfArm(address);
+    MovedArm arm{owner, data->axisCount(), data->tool_frames};
+    if (owner.empty() || owner == name) {
+        arm.key = link_.arms_.empty() ? name : fmt::format("{}/{}", name, nodes.device_name);
+        link_.offer_.arms.push_back(
+            armJson({arm.key, name, nodes.device_name, context_.server.world_from_base}, *data,
+                    context_.models));
+        link_.arms_.push_back({arm.key, nodes});
+    }
+    arms_by_object_[nodes.object] = arm;
+    return arm;
+}
+
+void Survey::readState(const LinkedSkill& linked) {
+    const auto now = linked.skill->now();
+    if (!now) {
+        return;  // the next transition tells
+    }
+    const auto since = lastTransition(link_.client(), linked.address.node);
+    context_.board.changeSkill(linked.key, [&](SkillState& state) {
+        if (state.state != "Unknown") {
+            return;  // a transition was quicker
+        }
+        state.state = toString(now->state);
+        state.reason_text = opcua::sanitise(now->reason_text);
+        state.execution = opcua::sanitise(now->execution_id);
+        state.since = since;
+    });
+}
+
+void Survey::subscribeAlarms() {
+    opcua::EventFilter filter{.fields = {{{0, "Message"}}, {{0, "Severity"}}, {{0, "Time"}}},
+                              .of_type = opcua::ids::kSystemEventType};
+    auto subscribed = link_.client().subscribeEvents(
+        opcua::ids::kServer, std::move(filter),
+        [&board = context_.board, server = context_.server.name](const opcua::EventNotice& notice) {
+            if (const auto alarm = alarmOf(server, notice)) {
+                board.raise(*alarm);
+            }
+        });
+    if (subscribed) {
+        link_.alarms_ = std::move(*subscribed);
+    }
+}
+
+}  // namespace metier::dashboard

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "server_link.hpp"
+#include "skill_shown.hpp"
+
+namespace metier::dashboard {
+
+/// Asks a server once what it offers, and fills a link with it.
+///
+/// Threading: one thread; waits.
+class Survey {
+public:
+    Survey(const LinkContext& context, ServerLink& link) : context_(context), link_(link) {}
+
+    /// Errors: those of the server.
+    opcua::Answer<> run();
+
+private:
+    opcua::Answer<> add(const skill_client::SkillAddress& address);
+    std::string uniqueKey(const skill_client::SkillAddress& address) const;
+    std::string addController(const skill_client::SkillAddress& address);
+    opcua::Answer<MovedArm> armOf(const skill_client::SkillAddress& address);
+    opcua::Answer<MovedArm> addArm(const skill_client::KinematicsNodes& nodes,
+                                   const skill_client::SkillAddress& address);
+    /// The server whose arm it is, if it is that of another one.
+    std::string ownerOfArm(const skill_client::SkillAddress& address);
+    void readState(const LinkedSkill& linked);
+    void subscribeAlarms();
+
+    const LinkContext& context_;
+    ServerLink& link_;
+    std::map<opcua::NodeId, MovedArm> arms_by_controller_;
+    std::map<opcua::NodeId, MovedArm> arms_by_object_;
+};
+
+}  // namespace metier::dashboard
