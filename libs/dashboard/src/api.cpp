@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "access.hpp"
@@ -33,6 +35,8 @@ Api::Api(const Parts& parts)
       board_(parts.board),
       watches_(parts.watches),
       people_(parts.people),
+      tabs_(parts.tabs),
+      commands_(parts.watches, parts.tabs),
       streams_(parts.board, parts.options.limits) {}
 
 std::shared_ptr<Person> Api::personOf(const Request& request) const {
@@ -115,9 +119,55 @@ void Api::beginStream(const Request& request, Response& response) {
         return write(notLoggedIn(), response);
     }
     const auto tab = randomName();
-    if (const auto begun = streams_.begin(tab, response, [] {}); !begun) {
+    tabs_.open(tab, person);
+    if (const auto begun = streams_.begin(tab, response, [this, tab] { tabs_.close(tab); });
+        !begun) {
+        tabs_.close(tab);
         write(errorReply(503, toString(begun.error().code), begun.error().message), response);
     }
+}
+
+void Api::bindCommands(HttpServer& server) {
+    using Command = Reply (Commands::*)(const json&, const std::shared_ptr<Person>&);
+    for (const auto& [path, command] :
+         {std::pair<const char*, Command>{"/api/control", &Commands::control},
+          {"/api/skills/check", &Commands::check},
+          {"/api/skills/start", &Commands::start},
+          {"/api/skills/halt", &Commands::haltSkill},
+          {"/api/halt", &Commands::halt}}) {
+        post(server, path, [this, command = command](const auto& body, const auto& person) {
+            return (commands_.*command)(body, person);
+        });
+    }
+    for (const auto& [path, method] : {std::pair{"/api/skills/suspend", skill::Method::suspend},
+                                       {"/api/skills/resume", skill::Method::resume},
+                                       {"/api/skills/reset", skill::Method::reset}}) {
+        post(server, path, [this, method = method](const auto& body, const auto& person) {
+            return commands_.call(method, body, person);
+        });
+    }
+}
+
+/// The URDF files of the folder of meshes, as paths in it.
+void Api::bindMeshes(HttpServer& server) {
+    if (options_.meshes.empty()) {
+        return;
+    }
+    server.set_mount_point("/meshes", options_.meshes.string());
+    get(server, "/api/meshes", [this](const Request& /*request*/, const auto& /*person*/) {
+        namespace fs = std::filesystem;
+        constexpr std::size_t kMost = 1'000;
+        auto files = json::array();
+        std::error_code error;
+        for (auto entry = fs::recursive_directory_iterator(options_.meshes, error);
+             !error && entry != fs::recursive_directory_iterator() && files.size() < kMost;
+             entry.increment(error)) {
+            if (entry->path().extension() == ".urdf") {
+                files.push_back(entry->path().lexically_relative(options_.meshes).string());
+            }
+        }
+        return Reply{200, {{"files", std::move(files)}}};
+    });
 }
 
 void Api::bindFiles(HttpServer& server) {
@@ -129,9 +179,6 @@ void Api::bindFiles(HttpServer& server) {
                                           {"js", "text/javascript"},
                                           {"webmanifest", "application/manifest+json"}}) {
         server.set_file_extension_and_mimetype_mapping(extension, type);
-    }
-    if (!options_.meshes.empty()) {
-        server.set_mount_point("/meshes", options_.meshes.string());
     }
     if (!server.set_mount_point("/", options_.web.string(), {{"Cache-Control", "no-cache"}})) {
         server.Get("/", [web = options_.web.string()](const Request& /*any*/, Response& response) {
@@ -166,8 +213,10 @@ void Api::bind(HttpServer& server) {
                   response);
         }
     });
+    bindMeshes(server);
     bindFiles(server);
     bindLogin(server);
+    bindCommands(server);
     get(server, "/api/cell",
         [this](const Request& /*request*/, const std::shared_ptr<Person>& /*person*/) {
             auto cell = board_.cell();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "board.hpp"
+#include "commands.hpp"
 #include "http_server.hpp"
 #include "metier/dashboard/dashboard.hpp"
 #include "people.hpp"
@@ -24,6 +25,7 @@ public:
         Board& board;
         Watches& watches;
         People& people;
+        Tabs& tabs;
     };
 
     /// What it is given must outlive this, and this the server's end.
@@ -42,6 +44,8 @@ private:
     void post(HttpServer& server, const std::string& path, Post handler);
     void bindFiles(HttpServer& server);
     void bindLogin(HttpServer& server);
+    void bindCommands(HttpServer& server);
+    void bindMeshes(HttpServer& server);
     void beginStream(const httplib::Request& request, httplib::Response& response);
     Reply me(const std::shared_ptr<Person>& person) const;
 
@@ -49,6 +53,8 @@ private:
     Board& board_;
     Watches& watches_;
     People& people_;
+    Tabs& tabs_;
+    Commands commands_;
     Streams streams_;
 };
 

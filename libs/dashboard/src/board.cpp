@@ -192,10 +192,11 @@ void Board::sendControl(const std::string& key, const ControlState& state) {
 
 void Board::raise(const Alarm& alarm) {
     const std::lock_guard lock(mutex_);
-    send(makeMessage("alarm", {{"server", alarm.server},
-                               {"severity", alarm.severity},
-                               {"message", alarm.message},
-                               {"time", alarm.time}}));
+    send(makeMessage("alarm",
+                     {{"server", alarm.server},
+                      {"severity", alarm.severity},
+                      {"message", alarm.message},
+                      {"time", alarm.time > 0.0 ? alarm.time : secondsOf(clock_.utcNow())}}));
 }
 
 void Board::noteRecord(std::int64_t number) {

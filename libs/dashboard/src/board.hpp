@@ -61,7 +61,7 @@ struct Alarm {
     std::string server{};
     int severity = 0;  ///< 1 to 1000, as OPC 10000-5 grades it
     std::string message{};
-    double time = 0.0;  ///< s since 1970 UTC
+    double time = 0.0;  ///< s since 1970 UTC; 0: now
 };
 
 /// s since 1970 UTC, to the millisecond; 0 for the epoch.

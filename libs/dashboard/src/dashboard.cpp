@@ -8,6 +8,7 @@
 #include "board.hpp"
 #include "http_server.hpp"
 #include "people.hpp"
+#include "tabs.hpp"
 #include "ticker.hpp"
 #include "watches.hpp"
 #include "world_watch.hpp"
@@ -31,13 +32,15 @@ struct Dashboard::Impl {
           board(fixedPart(options.cell), clock),
           watches(board, options.connector, options.models),
           people(options.connector, watches, options.lab, clock),
-          api({options, board, watches, people}),
+          tabs(board, watches),
+          api({options, board, watches, people, tabs}),
           http(options.limits) {}
 
     const Options options;
     Board board;
     Watches watches;
     People people;
+    Tabs tabs;
     Api api;
     HttpServer http;
     std::uint16_t port = 0;

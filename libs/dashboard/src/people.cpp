@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <utility>
 
 #include "metier/opcua/text.hpp"
@@ -79,24 +80,34 @@ Result<std::unique_ptr<opcua::Client>> Person::connect(const std::string& server
     return std::move(*client);
 }
 
-Result<std::shared_ptr<opcua::Client>> Person::session(const std::string& server) {
+Result<std::shared_ptr<SkillSession>> Person::session(const std::string& server) {
     {
         const std::lock_guard lock(mutex_);
         const auto known = sessions_.find(server);
-        if (known != sessions_.end() && known->second->state() == opcua::Client::State::connected) {
+        if (known != sessions_.end() && known->second->isConnected()) {
             return known->second;
         }
     }
-    auto made =
+    auto client =
         connect(server, fmt::format("metier dashboard{}{}", user_.empty() ? "" : " of ", user_));
-    if (!made) {
-        return fail(made.error());
+    if (!client) {
+        return fail(client.error());
     }
-    std::shared_ptr<opcua::Client> client = std::move(*made);
-    auto kept = client;
+    auto session = std::make_shared<SkillSession>(std::move(*client));
+    auto before = session;  // what was there ends after the lock
     const std::lock_guard lock(mutex_);
-    sessions_[server].swap(kept);  // what was there ends after the lock
-    return client;
+    sessions_[server].swap(before);
+    return session;
+}
+
+void Person::openSessions() {
+    std::vector<std::future<void>> opening;
+    for (const auto& server : watches_.servers()) {
+        if (watches_.link(server)) {
+            opening.push_back(std::async(std::launch::async,
+                                         [this, server] { static_cast<void>(session(server)); }));
+        }
+    }
 }
 
 People::People(const Connector& connector, Watches& watches, bool lab, const Clock& clock)
@@ -157,7 +168,8 @@ Result<std::shared_ptr<Person>> People::ask(const std::string& user, const std::
         }
         const auto session = person->session(server);
         if (session) {
-            person->setRole(mayCommand(**session, *link) ? "operator" : "observer");
+            person->setRole(mayCommand((*session)->client(), *link) ? "operator" : "observer");
+            person->openSessions();
             return person;
         }
         if (outcome.error().code != Errc::access_denied) {

@@ -10,6 +10,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/dashboard/dashboard.hpp"
 #include "metier/opcua/client.hpp"
+#include "skill_session.hpp"
 #include "watches.hpp"
 
 namespace metier::dashboard {
@@ -37,9 +38,11 @@ public:
     /// Errors: not_found; those of Client::connect(), with advice.
     Result<std::unique_ptr<opcua::Client>> connect(const std::string& server,
                                                    const std::string& name) const;
-    /// A session of this person that may Check and Halt; kept until it is lost.
+    /// A session of this person to Check and Halt by; kept until it is lost.
     /// Errors: as connect().
-    Result<std::shared_ptr<opcua::Client>> session(const std::string& server);
+    Result<std::shared_ptr<SkillSession>> session(const std::string& server);
+    /// Has a session with every server that is connected, so that nobody waits for it later.
+    void openSessions();
 
 private:
     const Connector& connector_;
@@ -49,7 +52,7 @@ private:
     mutable std::mutex mutex_;
     std::string role_ = "observer";
     // With whoever asks something by them at this moment.
-    std::map<std::string, std::shared_ptr<opcua::Client>> sessions_;
+    std::map<std::string, std::shared_ptr<SkillSession>> sessions_;
 };
 
 /// Who is logged in.

@@ -31,6 +31,7 @@ struct LinkedSkill {
     std::string key;
     skill_client::SkillAddress address;
     std::string control;  ///< key of its controller's control; empty: it has none
+    opcua::NodeId halt;   ///< its Method
     std::unique_ptr<skill_client::AsyncSkill> skill;
 };
 

@@ -78,7 +78,12 @@ Answer<> Survey::add(const SkillAddress& address) {
     if (!arm) {
         return tl::unexpected(arm.error());
     }
-    LinkedSkill linked{uniqueKey(address), address, addController(address), nullptr};
+    auto halt = link_.client().translate(address.node, {{0, "Halt"}});
+    if (!halt) {
+        return tl::unexpected(halt.error());
+    }
+    LinkedSkill linked{uniqueKey(address), address, addController(address), std::move(*halt),
+                       nullptr};
     auto skill =
         AsyncSkill::open(link_.client(), address, transitionsTo(context_.board, linked.key));
     if (!skill) {

@@ -1,0 +1,323 @@
+#include "commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+#include <optional>
+#include <utility>
+
+#include "metier/opcua/text.hpp"
+#include "metier/skill_json/values.hpp"
+
+namespace metier::dashboard {
+
+using nlohmann::json;
+using skill_client::AsyncSkill;
+
+namespace {
+
+/// A skill that a request names, and the session by which it is asked.
+struct Named {
+    ReachedSkill reached;
+    std::shared_ptr<TabSession> tab;        // null: a session of the person is used
+    std::shared_ptr<SkillSession> session;  // of the person
+    std::shared_ptr<AsyncSkill> skill;
+};
+
+std::string serverOf(const std::string& key) {
+    return key.substr(0, key.find('/'));
+}
+
+/// As somebody who needs no control.
+Result<Named> askedSkill(Watches& watches, const json& body, Person& person) {
+    const auto key = textIn(body, "key");
+    auto reached = key ? watches.skill(*key) : Result<ReachedSkill>(fail(key.error()));
+    if (!reached) {
+        return fail(reached.error());
+    }
+    auto session = person.session(serverOf(*key));
+    if (!session) {
+        return fail(session.error());
+    }
+    auto skill = (*session)->skill(*reached->skill);
+    if (!skill) {
+        return fail(skill.error());
+    }
+    return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
+}
+
+/// As the tab that has control.
+Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, const Person& person) {
+    const auto key = textIn(body, "key");
+    const auto tab = key ? textIn(body, "tab") : Result<std::string>(fail(key.error()));
+    if (!tab) {
+        return fail(tab.error());
+    }
+    auto reached = watches.skill(*key);
+    if (!reached) {
+        return fail(reached.error());
+    }
+    auto session = tabs.session(*tab, person, serverOf(*key));
+    if (!session) {
+        return fail(session.error());
+    }
+    auto skill = (*session)->session().skill(*reached->skill);
+    if (!skill) {
+        return fail(skill.error());
+    }
+    return Named{std::move(*reached), std::move(*session), nullptr, std::move(*skill)};
+}
+
+std::size_t thinned(std::size_t index, std::size_t kept, std::size_t all) {
+    return kept < 2 ? 0 : index * (all - 1) / (kept - 1);
+}
+
+}  // namespace
+
+Result<skill::ValueMap> parametersIn(const json& body, const skill::SkillDescription& skill) {
+    skill::ValueMap values;
+    const auto found = body.find("parameters");
+    if (found == body.end() || found->is_null()) {
+        return values;
+    }
+    if (!found->is_object()) {
+        return fail(Errc::invalid_argument, "parameters: an object expected");
+    }
+    for (const auto& [name, value] : found->items()) {
+        const auto field = std::find_if(skill.parameters.begin(), skill.parameters.end(),
+                                        [&](const skill::Field& one) { return one.name == name; });
+        if (field == skill.parameters.end()) {
+            return fail(Errc::not_found, fmt::format("{} has no parameter '{}'", skill.name,
+                                                     opcua::sanitise(name.substr(0, 60))));
+        }
+        auto typed = skill_json::valueFrom(value, field->type, name);
+        if (!typed) {
+            return fail(typed.error());
+        }
+        values[name] = std::move(*typed);
+    }
+    return values;
+}
+
+json checkJson(const skill::CheckReport& report) {
+    constexpr std::size_t kMost = 200;
+    const auto& path = report.joint_path;
+    const auto kept = std::min(path.size(), kMost);
+    auto preview = json::array();
+    for (std::size_t i = 0; i < kept; ++i) {
+        const auto row = thinned(i, kept, path.size());
+        const double fraction =
+            path.size() < 2 ? 0.0 : static_cast<double>(row) / static_cast<double>(path.size() - 1);
+        preview.push_back(
+            {{"time", rounded(fraction * report.planned_duration)}, {"q", rounded(path[row])}});
+    }
+    return {{"possible", report.possible},
+            {"code", report.possible ? "" : "refused"},
+            {"message", report.reason},
+            {"duration", rounded(report.planned_duration)},
+            {"first_failing_fraction", report.first_failing_fraction},
+            {"preview", std::move(preview)}};
+}
+
+Reply Commands::control(const json& body, const std::shared_ptr<Person>& person) {
+    const auto tab = textIn(body, "tab");
+    const auto action = tab ? textIn(body, "action") : Result<std::string>(fail(tab.error()));
+    const auto server =
+        action ? textOrNone(body, "server") : Result<std::string>(fail(action.error()));
+    if (!server) {
+        return errorReply(server.error());
+    }
+    if (*action != "take" && *action != "release") {
+        return errorReply({Errc::invalid_argument, "action: take or release expected"});
+    }
+    const auto servers =
+        server->empty() || *server == "all" ? watches_.servers() : std::vector{*server};
+    auto done = json::array();
+    auto failed = json::array();
+    std::optional<Error> first;
+    for (const auto& one : servers) {
+        const auto changed =
+            *action == "take" ? tabs_.take(*tab, person, one) : tabs_.release(*tab, *person, one);
+        if (changed) {
+            done.push_back(one);
+        } else {
+            failed.push_back({{"server", one},
+                              {"code", toString(changed.error().code)},
+                              {"message", changed.error().message}});
+            first = first ? first : changed.error();
+        }
+    }
+    if (first && done.empty()) {
+        return errorReply(*first);
+    }
+    return {200, {{*action == "take" ? "taken" : "released", done}, {"failed", failed}}};
+}
+
+Reply Commands::check(const json& body, const std::shared_ptr<Person>& person) {
+    auto named = askedSkill(watches_, body, *person);
+    if (!named) {
+        return errorReply(named.error());
+    }
+    auto values = parametersIn(body, named->skill->description());
+    if (!values) {
+        return errorReply(values.error());
+    }
+    const auto report = awaitAnswer<skill::CheckReport>(
+        [&](auto done) { return named->skill->check(*values, std::move(done)); });
+    return report ? Reply{200, checkJson(*report)}
+                  : errorReply(explained(report.error(), *named->skill, "Check"));
+}
+
+Reply Commands::start(const json& body, const std::shared_ptr<Person>& person) {
+    auto named = commandedSkill(watches_, tabs_, body, *person);
+    if (!named) {
+        return errorReply(named.error());
+    }
+    skill::StartRequest request;
+    auto values = parametersIn(body, named->skill->description());
+    auto execution =
+        values ? textOrNone(body, "execution") : Result<std::string>(fail(values.error()));
+    if (!execution) {
+        return errorReply(execution.error());
+    }
+    const auto& control = named->reached.skill->control;
+    const auto epoch = control.empty() ? Result<std::uint64_t>(0) : named->tab->epochOf(control);
+    if (!epoch) {
+        return errorReply(epoch.error());
+    }
+    request.execution_id = std::move(*execution);
+    request.parameters = std::move(*values);
+    request.epoch = *epoch;
+    const auto id = awaitAnswer<std::string>(
+        [&](auto done) { return named->skill->startWith(request, std::move(done)); });
+    return id ? Reply{200, {{"execution", opcua::sanitise(*id)}}}
+              : errorReply(explained(id.error(), *named->skill, "Start"));
+}
+
+Reply Commands::call(skill::Method method, const json& body,
+                     const std::shared_ptr<Person>& person) {
+    auto named = commandedSkill(watches_, tabs_, body, *person);
+    if (!named) {
+        return errorReply(named.error());
+    }
+    const auto called =
+        awaitAnswer<void>([&](auto done) { return named->skill->call(method, std::move(done)); });
+    return called ? Reply{}
+                  : errorReply(explained(called.error(), *named->skill, toString(method)));
+}
+
+Reply Commands::haltSkill(const json& body, const std::shared_ptr<Person>& person) {
+    const auto key = textIn(body, "key");
+    const auto reached = key ? watches_.skill(*key) : Result<ReachedSkill>(fail(key.error()));
+    return reached ? haltAll({{serverOf(*key), {*key}}}, person) : errorReply(reached.error());
+}
+
+Reply Commands::halt(const json& body, const std::shared_ptr<Person>& person) {
+    const auto server = textOrNone(body, "server");
+    const auto arm = server ? textOrNone(body, "arm") : Result<std::string>(fail(server.error()));
+    if (!arm) {
+        return errorReply(arm.error());
+    }
+    const auto skills = skillsOf(*server, *arm);
+    if (skills.empty() && !(server->empty() && arm->empty())) {
+        return errorReply({Errc::not_found, fmt::format("no skill of '{}' to halt",
+                                                        server->empty() ? *arm : *server)});
+    }
+    return haltAll(skills, person);
+}
+
+std::map<std::string, std::vector<std::string>> Commands::skillsOf(const std::string& server,
+                                                                   const std::string& arm) const {
+    std::map<std::string, std::vector<std::string>> wanted;
+    for (const auto& name : watches_.servers()) {
+        if (!server.empty() && server != name) {
+            continue;
+        }
+        const auto link = watches_.link(name);
+        auto keys = std::vector<std::string>();
+        for (const auto& skill : link ? link->offer().skills : json::array()) {
+            if (arm.empty() || skill.at("arm") == arm) {
+                keys.push_back(skill.at("key").get<std::string>());
+            }
+        }
+        // A server that is away is asked all the same: people are to hear that it did not halt.
+        if (!keys.empty() || (!link && arm.empty())) {
+            wanted[name] = std::move(keys);
+        }
+    }
+    return wanted;
+}
+
+Commands::Halted Commands::haltServer(const std::string& server,
+                                      const std::vector<std::string>& keys,
+                                      const std::shared_ptr<Person>& person) {
+    Halted halted{server};
+    const auto link = watches_.link(server);
+    if (!link) {
+        halted.error = fmt::format("{} is not connected", server);
+        return halted;
+    }
+    // In a lab everybody may halt, so that nobody needs a session of his own for it.
+    auto session = person->isOfLab() ? Result<std::shared_ptr<SkillSession>>(nullptr)
+                                     : person->session(server);
+    if (!session) {
+        halted.error = session.error().message;
+        return halted;
+    }
+    auto& client = *session == nullptr ? link->client() : (*session)->client();
+    std::vector<std::pair<std::string, std::future<opcua::Answer<opcua::CallResult>>>> asked;
+    for (const auto& key : keys) {
+        const auto* skill = link->find(key);
+        if (skill == nullptr) {
+            continue;
+        }
+        // With the callback, which may come after this has given up.
+        auto promise = std::make_shared<std::promise<opcua::Answer<opcua::CallResult>>>();
+        asked.emplace_back(key, promise->get_future());
+        auto sent = client.callAsync({skill->address.node, skill->halt, {}},
+                                     [promise](auto told) { promise->set_value(std::move(told)); });
+        if (!sent) {
+            promise->set_value(tl::unexpected(sent.error()));
+        }
+    }
+    for (auto& [key, answer] : asked) {
+        constexpr std::chrono::seconds kLongest{10};
+        if (answer.wait_for(kLongest) != std::future_status::ready) {
+            halted.error = fmt::format("{} does not answer", server);
+            continue;
+        }
+        const auto told = answer.get();
+        if (told || told.error().status == opcua::status::kBadInvalidState) {
+            halted.skills.push_back(key);  // else it stands still already
+        } else {
+            halted.error = opcua::sanitise(fmt::format("{}: {}", key, told.error().message));
+        }
+    }
+    return halted;
+}
+
+Reply Commands::haltAll(const std::map<std::string, std::vector<std::string>>& skills,
+                        const std::shared_ptr<Person>& person) {
+    std::vector<std::future<Halted>> asked;
+    for (const auto& [server, keys] : skills) {
+        asked.push_back(
+            std::async(std::launch::async, [this, &person, server = server, &keys = keys] {
+                return haltServer(server, keys, person);
+            }));
+    }
+    auto halted = json::array();
+    auto failed = json::array();
+    for (auto& answer : asked) {
+        const auto one = answer.get();
+        for (const auto& key : one.skills) {
+            halted.push_back(key);
+        }
+        if (!one.error.empty()) {
+            failed.push_back({{"server", one.server}, {"message", one.error}});
+        }
+    }
+    return {200, {{"halted", halted}, {"failed", failed}}};
+}
+
+}  // namespace metier::dashboard
