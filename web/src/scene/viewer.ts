@@ -1,0 +1,184 @@
+// The window into the cell: renderer, camera, light. Draws on demand, at most once per frame of the screen.
+
+import {
+    Box3, Color, DirectionalLight, Fog, HemisphereLight, PCFSoftShadowMap, PerspectiveCamera, Raycaster, Scene,
+    SRGBColorSpace, Vector2, Vector3, WebGLRenderer, type Object3D,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Theme } from '../ui/theme.js';
+import { Floor, type FloorColors } from './floor.js';
+
+interface Look extends FloorColors {
+    hemisphere: number;
+    below: string;
+    key: number;
+    fill: number;
+    shadow: number;
+}
+
+const kLooks: Record<Theme, Look> = {
+    light: { sky: '#eef0f4', ground: '#f2f3f5', line: '#c4c9d0', hemisphere: 1.75, below: '#b9bec6', key: 2.2, fill: 0.45, shadow: 0.3 },
+    dark: { sky: '#14181d', ground: '#1a1f25', line: '#343c46', hemisphere: 1.05, below: '#2a3038', key: 2.1, fill: 0.5, shadow: 0.5 },
+};
+
+export type View = 'fit' | 'top' | 'front' | 'side';
+
+/** A slower machine gets fewer pixels, not fewer frames: the range of the pixel ratio. */
+const kLeastRatio = 0.6;
+
+export class Viewer {
+    readonly scene = new Scene();
+    readonly floor = new Floor();
+    readonly camera = new PerspectiveCamera(38, 1, 0.05, 60);
+    private readonly renderer: WebGLRenderer;
+    private readonly controls: OrbitControls;
+    private readonly hemisphere = new HemisphereLight('#ffffff', '#888888', 1);
+    private readonly key = new DirectionalLight('#ffffff', 2);
+    private readonly fill = new DirectionalLight('#dfe8ff', 0.4);
+    private readonly middle = new Vector3();
+    private radius = 1.5;
+    private dirty = true;
+    private ratio: number;
+    private readonly frame_times: number[] = [];
+    private last_frame = 0;
+
+    /**
+     * \param before_draw changes the scene for this time [s, monotonic]; true: something moved
+     * Throws where the browser has no WebGL.
+     */
+    constructor(private readonly container: HTMLElement, private readonly before_draw: (now: number) => boolean) {
+        this.renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
+        this.renderer.outputColorSpace = SRGBColorSpace;
+        this.renderer.shadowMap.enabled = true;
+        this.renderer.shadowMap.type = PCFSoftShadowMap;
+        this.ratio = Math.min(devicePixelRatio, 2);
+        this.camera.up.set(0, 0, 1);
+        container.append(this.renderer.domElement);
+        this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+        this.controls.enableDamping = false;
+        this.controls.maxPolarAngle = Math.PI * 0.53;
+        this.controls.addEventListener('change', () => this.requestDraw());
+        this.light();
+        this.scene.add(this.floor.root);
+        new ResizeObserver(() => this.resize()).observe(container);
+        this.renderer.setAnimationLoop((time) => this.tick(time / 1000));
+    }
+
+    get canvas(): HTMLCanvasElement {
+        return this.renderer.domElement;
+    }
+
+    /** Frames per second over the last drawn ones; 0 while nothing moves. */
+    get framesPerSecond(): number {
+        const sum = this.frame_times.reduce((total, time) => total + time, 0);
+        return sum > 0 ? this.frame_times.length / sum : 0;
+    }
+
+    requestDraw(): void {
+        this.dirty = true;
+    }
+
+    setTheme(theme: Theme): void {
+        const look = kLooks[theme];
+        this.scene.background = new Color(look.sky);
+        this.scene.fog = new Fog(look.sky, 12, 40);
+        this.hemisphere.intensity = look.hemisphere;
+        this.hemisphere.groundColor.set(look.below);
+        this.key.intensity = look.key;
+        this.fill.intensity = look.fill;
+        this.floor.setColors(look, look.shadow);
+        this.requestDraw();
+    }
+
+    /** Takes the extent of the cell: where light falls and what "fit" shows [m]. */
+    setExtent(box: Box3): void {
+        const size = box.getSize(new Vector3());
+        box.getCenter(this.middle);
+        this.radius = Math.max(0.6, size.length() / 2);
+        this.floor.setReach(this.middle.x, this.middle.y, this.radius * 4);
+        const shadow = this.key.shadow.camera;
+        const half = this.radius * 1.15;
+        [shadow.left, shadow.right, shadow.top, shadow.bottom] = [-half, half, half, -half];
+        shadow.near = 0.1;
+        shadow.far = this.radius * 8;
+        shadow.updateProjectionMatrix();
+        this.key.position.copy(this.middle).add(new Vector3(-0.9, -1.3, 2.4).normalize().multiplyScalar(this.radius * 3));
+        this.key.target.position.copy(this.middle);
+        this.look('fit');
+    }
+
+    look(view: View, at: Vector3 = this.middle, radius: number = this.radius): void {
+        const from = { fit: [0.62, -1, 0.62], top: [0, -0.001, 1], front: [0, -1, 0.06], side: [1, 0, 0.06] }[view];
+        const narrow = Math.min(1, this.camera.aspect);
+        const far = (radius * (view === 'top' ? 1.02 : 0.9)) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.max(0.35, narrow);
+        const wide = this.camera.aspect > 1.5 ? 0.84 : 1;
+        this.controls.target.copy(at);
+        this.camera.position.copy(at).add(new Vector3(...(from as [number, number, number])).normalize().multiplyScalar(far * wide));
+        this.controls.update();
+        this.requestDraw();
+    }
+
+    /** The nearest object under a point of the window, or null. */
+    pick(x: number, y: number, objects: Object3D[]): Object3D | null {
+        const bounds = this.canvas.getBoundingClientRect();
+        const point = new Vector2(((x - bounds.left) / bounds.width) * 2 - 1, 1 - ((y - bounds.top) / bounds.height) * 2);
+        const ray = new Raycaster();
+        ray.setFromCamera(point, this.camera);
+        return ray.intersectObjects(objects, true)[0]?.object ?? null;
+    }
+
+    /** Where a point of the world is in the window [px]; null behind the camera. */
+    project(point: Vector3): { x: number; y: number } | null {
+        const p = point.clone().project(this.camera);
+        if (p.z > 1) return null;
+        return { x: ((p.x + 1) / 2) * this.canvas.clientWidth, y: ((1 - p.y) / 2) * this.canvas.clientHeight };
+    }
+
+    private light(): void {
+        this.hemisphere.position.set(0, 0, 1);
+        this.key.castShadow = true;
+        this.key.shadow.mapSize.set(2048, 2048);
+        this.key.shadow.bias = -0.0004;
+        this.key.shadow.normalBias = 0.012;
+        this.key.shadow.radius = 4;
+        this.fill.position.set(2, 1.5, 1.2);
+        this.scene.add(this.hemisphere, this.key, this.key.target, this.fill);
+    }
+
+    private resize(): void {
+        const { clientWidth: width, clientHeight: height } = this.container;
+        if (width === 0 || height === 0) return;
+        const was = this.camera.aspect;
+        this.camera.aspect = width / height;
+        this.camera.updateProjectionMatrix();
+        this.renderer.setPixelRatio(this.ratio);
+        this.renderer.setSize(width, height);
+        if (Math.abs(was - this.camera.aspect) > 0.25) this.look('fit');
+        this.requestDraw();
+    }
+
+    private tick(now: number): void {
+        const moved = this.before_draw(now);
+        if (!moved && !this.dirty) {
+            this.last_frame = 0;
+            return;
+        }
+        this.dirty = false;
+        this.renderer.render(this.scene, this.camera);
+        if (this.last_frame > 0) this.measure(now - this.last_frame);
+        this.last_frame = now;
+    }
+
+    private measure(frame_time: number): void {
+        this.frame_times.push(frame_time);
+        if (this.frame_times.length < 30) return;
+        const mean = this.frame_times.reduce((sum, time) => sum + time, 0) / this.frame_times.length;
+        this.frame_times.splice(0, 15);
+        const most = Math.min(devicePixelRatio, 2);
+        const wanted = mean > 1 / 32 ? this.ratio * 0.85 : mean < 1 / 55 ? this.ratio * 1.1 : this.ratio;
+        const ratio = Math.max(kLeastRatio, Math.min(most, wanted));
+        if (Math.abs(ratio - this.ratio) < 0.01) return;
+        this.ratio = ratio;
+        this.resize();
+    }
+}
