@@ -142,4 +142,5 @@ if (root !== null) {
     const app = new App(root);
     // For tests: whether it is smooth.
     Object.defineProperty(window, 'metierFramesPerSecond', { get: () => (app as unknown as { stage: Stage }).stage.framesPerSecond });
+    Object.assign(window, { metierApp: app });
 }

@@ -56,13 +56,13 @@ function file(response: ServerResponse, folder: string, path: string): void {
     }
 }
 
-function openStream(request: IncomingMessage, response: ServerResponse): void {
+function openStream(response: ServerResponse): void {
     const tab = `tab-${Math.random().toString(36).slice(2)}`;
     response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });
     streams.set(tab, response);
     send(response, 'hello', { tab });
     send(response, 'snapshot', cell.snapshot(tab));
-    request.on('close', () => {
+    response.on('close', () => {
         streams.delete(tab);
         cell.release(tab);
     });
@@ -94,7 +94,7 @@ function get(request: IncomingMessage, response: ServerResponse, url: URL): void
     if (path === '/api/me') return answer(response, 200, me(request));
     if (!isLoggedIn(request)) throw new Refusal(401, 'login_required', 'Log in first');
     if (path === '/api/cell') return answer(response, 200, cell.description.cell);
-    if (path === '/api/stream') return openStream(request, response);
+    if (path === '/api/stream') return openStream(response);
     if (path === '/api/records') return answer(response, 200, records(url.searchParams));
     if (path === '/api/meshes' && meshes !== null) {
         return answer(response, 200, { files: readdirSync(meshes, { recursive: true }).map(String).filter((name) => name.endsWith('.urdf')) });
@@ -161,7 +161,12 @@ const server = createServer((request, response) => {
 
 server.listen(Number(option('--port') ?? 0), '127.0.0.1', () => {
     if (options.includes('--square')) cell.drawSquares();
-    setInterval(() => cell.tick(kTick), kTick * 1000);
+    let last = performance.now();
+    setInterval(() => {
+        const now = performance.now();
+        cell.tick(Math.max(1e-3, (now - last) / 1000));
+        last = now;
+    }, kTick * 1000);
     setInterval(() => streams.forEach((stream) => send(stream, 'beat', {})), 1000);
     console.log(`http://127.0.0.1:${(server.address() as AddressInfo).port}`);
 });

@@ -190,6 +190,9 @@ VisualPrimitive readVisual(const TomlTable& table, std::size_t link_count) {
     visual.to_radius = table.numberOr("to_radius", visual.from_radius);
     const std::vector<double> color = numbers(table, "color", 3);
     visual.color = {color[0], color[1], color[2]};
+    if (table.has("edge")) {
+        visual.edge = positive(table, "edge");
+    }
     return visual;
 }
 

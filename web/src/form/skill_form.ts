@@ -105,6 +105,16 @@ export class SkillForm {
         }
     }
 
+    /** Puts where the arm is now into targets that nobody has set: a start that moves nothing, not a leap to zero. */
+    fillTargets(): void {
+        for (const row of this.rows) {
+            const role = row.field.role;
+            if (row.touched || row.editor.read() !== null) continue;
+            if (role === 'joints') row.editor.set(this.options.currentJoints());
+            else if (editorOf(row.field) === 'pose') row.editor.set(this.options.currentFrame(this.tool)());
+        }
+    }
+
     set(parameters: Record<string, unknown>): void {
         for (const row of this.rows) {
             if (row.field.name in parameters) row.editor.set(parameters[row.field.name]);

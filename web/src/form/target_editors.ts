@@ -46,7 +46,7 @@ export function jointsEditor(_field: Field, options: TargetOptions, arm: Arm | n
     const names = bounds.map((_, i) => arm?.joints[i]?.name ?? `axis ${i + 1}`);
     const rows = names.map((name, i) => jointRow(name, bounds[i] as Bounds, i === 0 ? options.id : `${options.id}-${i}`, options.changed));
     const set = (value: unknown): void => rows.forEach(({ input, slider }, i) => {
-        input.value = Array.isArray(value) && typeof value[i] === 'number' ? format(value[i] as number) : '';
+        input.value = Array.isArray(value) && typeof value[i] === 'number' ? format(Math.round((value[i] as number) * 1e5) / 1e5) : '';
         if (slider !== null) slider.value = input.value === '' ? '0' : input.value;
     });
     const fill = (): void => {
@@ -76,7 +76,7 @@ function poseInputs(id: string, label: string, changed: () => void): PoseInputs 
         { 'id': i === 0 ? id : `${id}-${name}`, 'aria-label': `${label} ${name} in ${kPoseUnits[i] as string}` }, i < 3 ? 0.01 : 0.05, changed));
     const cells = inputs.map((input, i) => h('label', { class: 'cell' }, h('span', {}, `${kPoseNames[i] as string} `, h('small', {}, kPoseUnits[i] as string)), input));
     const set = (value: unknown): void => inputs.forEach((input, i) => {
-        input.value = Array.isArray(value) && typeof value[i] === 'number' ? format(Math.round((value[i] as number) * 1e6) / 1e6) : '';
+        input.value = Array.isArray(value) && typeof value[i] === 'number' ? format(Math.round((value[i] as number) * 1e5) / 1e5) : '';
     });
     return { element: h('div', { class: 'cells pose' }, ...cells), inputs, set };
 }

@@ -12,7 +12,7 @@ import { Trace } from './trace.js';
 import { triad } from './triad.js';
 
 /** From where on commanded and actual are seen as different [rad]. */
-const kApart = 0.004;
+const kApart = 0.02;
 
 export interface Show {
     trace: boolean;

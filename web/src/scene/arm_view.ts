@@ -3,6 +3,7 @@
 import {
     BufferGeometry, Color, Group, Material, Mesh, MeshStandardMaterial, Object3D, Quaternion, Vector3,
 } from 'three';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { Arm, Visual } from '../api/types.js';
 import { poseOf } from '../kinematics/pose.js';
 import { coneGeometry } from './cone.js';
@@ -26,9 +27,17 @@ export interface Shape {
     geometry: BufferGeometry;
 }
 
+/** One shape for each colour of each link: fewer things to draw. */
 export function shapesOf(arm: Arm): Shape[] {
-    const visuals = arm.visuals.length > 0 ? arm.visuals : rods(arm);
-    return visuals.map((visual) => ({ link: visual.link, color: visual.color, geometry: coneGeometry(visual) }));
+    const groups = new Map<string, Visual[]>();
+    for (const visual of arm.visuals.length > 0 ? arm.visuals : rods(arm)) {
+        const key = `${visual.link} ${visual.color.join()}`;
+        groups.set(key, [...(groups.get(key) ?? []), visual]);
+    }
+    return [...groups.values()].map((visuals) => {
+        const { link, color } = visuals[0] as Visual;
+        return { link, color, geometry: mergeGeometries(visuals.map(coneGeometry)) };
+    });
 }
 
 /** The frames of an arm: base, one group per link, flange. */

@@ -30,8 +30,8 @@ function extentOf(arms: readonly Arm[], world: World | null | undefined): Box3 {
     const box = new Box3();
     for (const arm of arms) {
         const foot = new Vector3(arm.base[0], arm.base[1], arm.base[2]);
-        box.expandByPoint(foot.clone().add(new Vector3(-0.25, -0.5, 0)));
-        box.expandByPoint(foot.clone().add(new Vector3(0.55, 0.5, 0.85)));
+        box.expandByPoint(foot.clone().add(new Vector3(-0.2, -0.25, 0)));
+        box.expandByPoint(foot.clone().add(new Vector3(0.45, 0.25, 0.75)));
     }
     for (const part of world?.parts ?? []) box.expandByPoint(new Vector3(part.pose[0], part.pose[1], part.pose[2]));
     return box.isEmpty() ? new Box3(new Vector3(-1, -1, 0), new Vector3(1, 1, 1)) : box;

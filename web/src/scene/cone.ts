@@ -3,8 +3,8 @@
 import { BufferGeometry, LatheGeometry, Matrix4, Quaternion, Vector2, Vector3 } from 'three';
 import type { Visual } from '../api/types.js';
 
-const kArcSteps = 5;
-const kSegments = 40;
+const kArcSteps = 3;
+const kSegments = 32;
 
 /** Rounding of both edges where the model gives none: a quarter of the smaller radius, 14 mm at most [m]. */
 export function defaultEdge(from_radius: number, to_radius: number, length: number): number {

@@ -6,13 +6,10 @@ import {
 
 const kVertex = `
 varying vec2 at;
-varying float far;
 void main() {
     vec4 world = modelMatrix * vec4(position, 1.0);
     at = world.xy;
-    vec4 eye = viewMatrix * world;
-    far = length(eye.xyz);
-    gl_Position = projectionMatrix * eye;
+    gl_Position = projectionMatrix * viewMatrix * world;
 }`;
 
 const kFragment = `
@@ -22,19 +19,17 @@ uniform vec3 sky;
 uniform vec2 middle;
 uniform float reach;
 varying vec2 at;
-varying float far;
-float grid(float step, float width) {
-    vec2 cell = at / step;
-    vec2 derivative = max(fwidth(cell), 1e-6);
+float grid(vec2 cell, vec2 derivative, float width) {
     vec2 near = abs(fract(cell - 0.5) - 0.5) / derivative;
-    float visible = 1.0 - smoothstep(0.15, 0.6, max(derivative.x, derivative.y));
-    return (1.0 - min(min(near.x, near.y) / width, 1.0)) * visible;
+    float visible = 1.0 - clamp((max(derivative.x, derivative.y) - 0.12) * 2.2, 0.0, 1.0);
+    return clamp(1.0 - min(near.x, near.y) / width, 0.0, 1.0) * visible;
 }
 void main() {
-    float lines = max(grid(0.1, 1.0) * 0.45, grid(1.0, 1.4));
-    float fade = smoothstep(reach, reach * 0.35, distance(at, middle));
-    vec3 color = mix(ground, line, lines * fade);
-    gl_FragColor = vec4(mix(sky, color, smoothstep(reach * 1.25, reach * 0.4, distance(at, middle))), 1.0);
+    vec2 derivative = max(fwidth(at), 1e-6);
+    float share = distance(at, middle) / reach;
+    float lines = max(grid(at * 10.0, derivative * 10.0, 1.0) * 0.5, grid(at, derivative, 1.3));
+    vec3 color = mix(ground, line, lines * clamp((1.0 - share) * 1.5, 0.0, 1.0));
+    gl_FragColor = vec4(mix(color, sky, clamp((share - 0.4) * 1.2, 0.0, 1.0)), 1.0);
     #include <colorspace_fragment>
 }`;
 
@@ -62,6 +57,7 @@ export class Floor {
     readonly root = new Group();
     private readonly grid: ShaderMaterial;
     private readonly shadow = new ShadowMaterial({ opacity: 0.28 });
+    private readonly shade = new Mesh(new PlaneGeometry(1, 1), this.shadow);
     private readonly spot = new MeshBasicMaterial({ map: spotTexture(), transparent: true, opacity: 0.45, depthWrite: false });
 
     constructor() {
@@ -73,12 +69,9 @@ export class Floor {
                 middle: { value: [0, 0] }, reach: { value: 6 },
             },
         });
-        const plane = new PlaneGeometry(200, 200);
-        const ground = new Mesh(plane, this.grid);
-        const shade = new Mesh(plane, this.shadow);
-        shade.receiveShadow = true;
-        shade.position.z = 0.0008;
-        this.root.add(ground, shade);
+        this.shade.receiveShadow = true;
+        this.shade.position.z = 0.0008;
+        this.root.add(new Mesh(new PlaneGeometry(200, 200), this.grid), this.shade);
     }
 
     setColors(colors: FloorColors, shadow_opacity: number): void {
@@ -92,6 +85,8 @@ export class Floor {
     setReach(x: number, y: number, reach: number): void {
         (this.grid.uniforms['middle'] as { value: number[] }).value = [x, y];
         (this.grid.uniforms['reach'] as { value: number }).value = reach;
+        this.shade.position.set(x, y, 0.0008);
+        this.shade.scale.set(reach, reach, 1);
     }
 
     /** A contact shadow below what stands at x, y. */

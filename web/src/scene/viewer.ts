@@ -1,7 +1,7 @@
 // The window into the cell: renderer, camera, light. Draws on demand, at most once per frame of the screen.
 
 import {
-    Box3, Color, DirectionalLight, Fog, HemisphereLight, PCFSoftShadowMap, PerspectiveCamera, Raycaster, Scene,
+    Box3, Color, DirectionalLight, Fog, HemisphereLight, PCFShadowMap, PerspectiveCamera, Raycaster, Scene,
     SRGBColorSpace, Vector2, Vector3, WebGLRenderer, type Object3D,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -18,13 +18,42 @@ interface Look extends FloorColors {
 
 const kLooks: Record<Theme, Look> = {
     light: { sky: '#eef0f4', ground: '#f2f3f5', line: '#c4c9d0', hemisphere: 1.75, below: '#b9bec6', key: 2.2, fill: 0.45, shadow: 0.3 },
-    dark: { sky: '#14181d', ground: '#1a1f25', line: '#343c46', hemisphere: 1.05, below: '#2a3038', key: 2.1, fill: 0.5, shadow: 0.5 },
+    dark: { sky: '#171c22', ground: '#272e36', line: '#414b56', hemisphere: 1.05, below: '#2a3038', key: 2.1, fill: 0.5, shadow: 0.55 },
 };
 
 export type View = 'fit' | 'top' | 'front' | 'side';
 
-/** A slower machine gets fewer pixels, not fewer frames: the range of the pixel ratio. */
-const kLeastRatio = 0.6;
+/** A slower machine gets fewer pixels, not fewer frames: the least pixel ratio. */
+const kLeastRatio = 0.5;
+
+/** Where each view looks from. */
+const kFrom: Record<View, readonly [number, number, number]> = {
+    fit: [0.36, -1, 0.56], top: [0, -0.001, 1], front: [0, -1, 0.08], side: [1, 0, 0.08],
+};
+
+/** Whether the browser draws without a graphics card. */
+function drawsInSoftware(): boolean {
+    const context = document.createElement('canvas').getContext('webgl2');
+    const extension = context?.getExtension('WEBGL_debug_renderer_info');
+    if (context === null || extension === null || extension === undefined) return false;
+    const name = String(context.getParameter(extension.UNMASKED_RENDERER_WEBGL));
+    context.getExtension('WEBGL_lose_context')?.loseContext();
+    return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+/** How far away a camera sees all of a box, from a direction [m]. */
+export function distanceToSee(box: Box3, from: Vector3, up: Vector3, tan_x: number, tan_y: number): number {
+    const right = new Vector3().crossVectors(up, from).normalize();
+    const above = new Vector3().crossVectors(from, right).normalize();
+    const middle = box.getCenter(new Vector3());
+    let distance = 0;
+    for (let i = 0; i < 8; ++i) {
+        const corner = new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).sub(middle);
+        const needed = Math.max(Math.abs(corner.dot(right)) / tan_x, Math.abs(corner.dot(above)) / tan_y);
+        distance = Math.max(distance, corner.dot(from) + needed);
+    }
+    return distance;
+}
 
 export class Viewer {
     readonly scene = new Scene();
@@ -36,7 +65,9 @@ export class Viewer {
     private readonly key = new DirectionalLight('#ffffff', 2);
     private readonly fill = new DirectionalLight('#dfe8ff', 0.4);
     private readonly middle = new Vector3();
-    private radius = 1.5;
+    private readonly software: boolean;
+    private readonly most_ratio: number;
+    private box = new Box3(new Vector3(-1, -1, 0), new Vector3(1, 1, 1));
     private dirty = true;
     private ratio: number;
     private readonly frame_times: number[] = [];
@@ -47,11 +78,13 @@ export class Viewer {
      * Throws where the browser has no WebGL.
      */
     constructor(private readonly container: HTMLElement, private readonly before_draw: (now: number) => boolean) {
+        this.software = drawsInSoftware();
+        this.most_ratio = this.software ? 1 : Math.min(devicePixelRatio, 2);
         this.renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
         this.renderer.outputColorSpace = SRGBColorSpace;
         this.renderer.shadowMap.enabled = true;
-        this.renderer.shadowMap.type = PCFSoftShadowMap;
-        this.ratio = Math.min(devicePixelRatio, 2);
+        this.renderer.shadowMap.type = PCFShadowMap;
+        this.ratio = this.most_ratio;
         this.camera.up.set(0, 0, 1);
         container.append(this.renderer.domElement);
         this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -92,28 +125,27 @@ export class Viewer {
 
     /** Takes the extent of the cell: where light falls and what "fit" shows [m]. */
     setExtent(box: Box3): void {
-        const size = box.getSize(new Vector3());
+        this.box = box;
         box.getCenter(this.middle);
-        this.radius = Math.max(0.6, size.length() / 2);
-        this.floor.setReach(this.middle.x, this.middle.y, this.radius * 4);
+        const radius = Math.max(0.6, box.getSize(new Vector3()).length() / 2);
+        this.floor.setReach(this.middle.x, this.middle.y, radius * 3.2);
         const shadow = this.key.shadow.camera;
-        const half = this.radius * 1.15;
+        const half = radius * 1.15;
         [shadow.left, shadow.right, shadow.top, shadow.bottom] = [-half, half, half, -half];
         shadow.near = 0.1;
-        shadow.far = this.radius * 8;
+        shadow.far = radius * 8;
         shadow.updateProjectionMatrix();
-        this.key.position.copy(this.middle).add(new Vector3(-0.9, -1.3, 2.4).normalize().multiplyScalar(this.radius * 3));
+        this.key.position.copy(this.middle).add(new Vector3(-0.9, -1.3, 2.4).normalize().multiplyScalar(radius * 3));
         this.key.target.position.copy(this.middle);
         this.look('fit');
     }
 
-    look(view: View, at: Vector3 = this.middle, radius: number = this.radius): void {
-        const from = { fit: [0.62, -1, 0.62], top: [0, -0.001, 1], front: [0, -1, 0.06], side: [1, 0, 0.06] }[view];
-        const narrow = Math.min(1, this.camera.aspect);
-        const far = (radius * (view === 'top' ? 1.02 : 0.9)) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.max(0.35, narrow);
-        const wide = this.camera.aspect > 1.5 ? 0.84 : 1;
-        this.controls.target.copy(at);
-        this.camera.position.copy(at).add(new Vector3(...(from as [number, number, number])).normalize().multiplyScalar(far * wide));
+    look(view: View): void {
+        const from = new Vector3(...kFrom[view]).normalize();
+        const tan_y = Math.tan((this.camera.fov * Math.PI) / 360) * 0.96;
+        const distance = distanceToSee(this.box, from, this.camera.up, tan_y * this.camera.aspect, tan_y);
+        this.controls.target.copy(this.middle);
+        this.camera.position.copy(this.middle).addScaledVector(from, distance);
         this.controls.update();
         this.requestDraw();
     }
@@ -137,10 +169,11 @@ export class Viewer {
     private light(): void {
         this.hemisphere.position.set(0, 0, 1);
         this.key.castShadow = true;
-        this.key.shadow.mapSize.set(2048, 2048);
+        const size = this.software ? 1024 : 2048;
+        this.key.shadow.mapSize.set(size, size);
         this.key.shadow.bias = -0.0004;
         this.key.shadow.normalBias = 0.012;
-        this.key.shadow.radius = 4;
+        this.key.shadow.radius = 3;
         this.fill.position.set(2, 1.5, 1.2);
         this.scene.add(this.hemisphere, this.key, this.key.target, this.fill);
     }
@@ -171,12 +204,11 @@ export class Viewer {
 
     private measure(frame_time: number): void {
         this.frame_times.push(frame_time);
-        if (this.frame_times.length < 30) return;
+        if (this.frame_times.length < 12) return;
         const mean = this.frame_times.reduce((sum, time) => sum + time, 0) / this.frame_times.length;
-        this.frame_times.splice(0, 15);
-        const most = Math.min(devicePixelRatio, 2);
-        const wanted = mean > 1 / 32 ? this.ratio * 0.85 : mean < 1 / 55 ? this.ratio * 1.1 : this.ratio;
-        const ratio = Math.max(kLeastRatio, Math.min(most, wanted));
+        this.frame_times.splice(0, 6);
+        const wanted = mean > 1 / 31 ? this.ratio * Math.max(0.7, Math.sqrt(1 / 33 / mean)) : mean < 1 / 55 ? this.ratio * 1.1 : this.ratio;
+        const ratio = Math.max(kLeastRatio, Math.min(this.most_ratio, wanted));
         if (Math.abs(ratio - this.ratio) < 0.01) return;
         this.ratio = ratio;
         this.resize();

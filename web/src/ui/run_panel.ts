@@ -99,6 +99,7 @@ export class RunPanel {
         }
         this.form = this.forms.get(skill.key) ?? this.makeForm(skill, state);
         this.forms.set(skill.key, this.form);
+        this.form.fillTargets();
         const server = state.cell?.servers.find((candidate) => candidate.key === skill.server);
         fill(this.element,
             h('div', { class: 'run-head' }, h('h2', {}, words(skill.display_name || skill.name)), this.pill.element,

@@ -71,7 +71,7 @@ export class FakeCell {
 
     control(server: string, tab: string): ControlEvent {
         const owner = this.owners.get(server) ?? '';
-        const until = owner === '' ? null : this.now + 1;
+        const until = owner === '' || owner === kOther ? null : this.now + 1;
         return { server, controller: 'Controller', owner: owner === '' ? '' : owner === tab ? 'operator' : kOther, mine: owner === tab && tab !== '', until, lease_ms: 1000 };
     }
 
@@ -234,7 +234,7 @@ export class FakeCell {
     private live(all: boolean): LiveEvent {
         const arms: Record<string, ArmSample> = {};
         for (const [key, arm] of this.arms) {
-            const commanded = arm.q.map((value, i) => value + (arm.v[i] as number) * 0.02);
+            const commanded = arm.q.map((value, i) => value + (arm.v[i] as number) * 0.008);
             arms[key] = { q: arm.q, c: commanded, v: arm.v, jitter: 0.00002 * (1 + Math.abs(Math.sin(this.now))), missed: 0, safety: 'normal' };
             if (key === 'iiwa') arms[key].f = [0.4, -0.2, 3.1, 0.02, 0, 0];
         }

@@ -25,7 +25,7 @@ struct Capsule {
     double radius = 0;  ///< [m]
 };
 
-/// A (capped) cone to draw a link with.
+/// A capped cone with rounded edges to draw a link with.
 struct VisualPrimitive {
     std::size_t link = 0;  ///< as in Capsule
     Eigen::Vector3d from;
@@ -33,6 +33,7 @@ struct VisualPrimitive {
     double from_radius = 0;         ///< [m]
     double to_radius = 0;           ///< [m]
     std::array<double, 3> color{};  ///< red, green, blue, 0 to 1
+    double edge = -1;               ///< rounding of both edges [m]; negative: up to who draws
 };
 
 /// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names.
