@@ -85,7 +85,7 @@ class App {
         document.title = `${cell.name} \u2013 metier`;
         this.stage.setCell(cell);
         const view = this.stage.view;
-        if (view !== null) void import('./scene/user_meshes.js').then((meshes) => meshes.useUserMeshes(view, () => this.stage.redraw()));
+        if (view !== null) void import('./scene/user_meshes.js').then((meshes) => meshes.useUserMeshes(view, (arm) => this.stage.usesMeshes(arm)));
     }
 
     private receive(name: string, data: unknown): void {
@@ -140,7 +140,6 @@ class App {
 const root = document.getElementById('app');
 if (root !== null) {
     const app = new App(root);
-    // For tests: whether it is smooth.
-    Object.defineProperty(window, 'metierFramesPerSecond', { get: () => (app as unknown as { stage: Stage }).stage.framesPerSecond });
-    Object.assign(window, { metierApp: app });
+    // For a look from the browser's console.
+    Object.assign(window, { metier: app });
 }

@@ -5,7 +5,7 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { kBuilt } from './fake/places.js';
+import { kBuilt, kSource } from './fake/places.js';
 
 const kMost = 300_000;
 
@@ -29,4 +29,14 @@ test('nothing is loaded from elsewhere', () => {
     assert.equal(/(src|href)="(https?:)?\/\//.test(html), false);
     const css = readFileSync(join(kBuilt, 'page/assets/style.css'), 'utf8');
     assert.equal(/@import|url\((?!["']?data:)/.test(css), false);
+});
+
+test('no data becomes markup', () => {
+    const folder = join(kSource, 'web/src');
+    const sources = readdirSync(folder, { recursive: true }).map(String).filter((name) => name.endsWith('.ts'));
+    assert.ok(sources.length > 30);
+    for (const name of sources) {
+        const text = readFileSync(join(folder, name), 'utf8');
+        assert.equal(/innerHTML|outerHTML|insertAdjacentHTML|document\.write|new Function|\beval\(/.test(text), false, name);
+    }
 });

@@ -1,159 +1,115 @@
 // Reads a URDF and puts its visual meshes on the links of an arm. The server's kinematics move it, not the file's:
-// the file's own chain only tells where each mesh is on its link.
+// the file's chain only tells where each mesh is on its link.
 
-import { Color, Group, Matrix4, Mesh, MeshStandardMaterial, Object3D } from 'three';
+import { Color, Group, Matrix4, Mesh, MeshStandardMaterial, type Object3D } from 'three';
 import { ColladaLoader } from 'three/examples/jsm/loaders/ColladaLoader.js';
 import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
-import type { Arm, Frame } from '../api/types.js';
-import { kIdentity, multiply, inverse, poseOf, type Pose } from '../kinematics/pose.js';
+import type { Arm, Frame, Vector3 } from '../api/types.js';
+import { inverse, kIdentity, multiply, poseOf, type Pose } from '../kinematics/pose.js';
 import { matrixOf } from './place.js';
-
-interface UrdfJoint {
-    name: string;
-    type: string;
-    parent: string;
-    child: string;
-    origin: Pose;
-    axis: readonly [number, number, number];
-}
+import { groupsOf, standOf, type UrdfJoint } from './urdf_chain.js';
 
 interface UrdfVisual {
     origin: Pose;
     file: string;
     scale: readonly number[];
-    color: string | null;
+    color: Color;
 }
 
-function numbers(text: string | null, fallback: readonly number[]): number[] {
+function numbers(text: string | null | undefined, fallback: readonly number[]): number[] {
     const values = (text ?? '').trim().split(/\s+/).filter((part) => part !== '').map(Number);
     return values.length === fallback.length && values.every(Number.isFinite) ? values : [...fallback];
-}
-
-function originOf(element: Element | null): Pose {
-    const xyz = numbers(element?.getAttribute('xyz') ?? null, [0, 0, 0]);
-    const rpy = numbers(element?.getAttribute('rpy') ?? null, [0, 0, 0]);
-    return poseOf([...xyz, ...rpy] as unknown as Frame);
 }
 
 function child(element: Element, name: string): Element | null {
     return [...element.children].find((candidate) => candidate.tagName === name) ?? null;
 }
 
+function originOf(element: Element): Pose {
+    const origin = child(element, 'origin');
+    return poseOf([...numbers(origin?.getAttribute('xyz'), [0, 0, 0]), ...numbers(origin?.getAttribute('rpy'), [0, 0, 0])] as unknown as Frame);
+}
+
 function readJoint(element: Element): UrdfJoint {
     return {
         name: element.getAttribute('name') ?? '', type: element.getAttribute('type') ?? '',
         parent: child(element, 'parent')?.getAttribute('link') ?? '', child: child(element, 'child')?.getAttribute('link') ?? '',
-        origin: originOf(child(element, 'origin')), axis: numbers(child(element, 'axis')?.getAttribute('xyz') ?? null, [1, 0, 0]) as [number, number, number],
+        origin: originOf(element), axis: numbers(child(element, 'axis')?.getAttribute('xyz'), [1, 0, 0]) as unknown as Vector3,
     };
 }
 
-function readVisuals(link: Element): UrdfVisual[] {
-    return [...link.children].filter((element) => element.tagName === 'visual').flatMap((visual) => {
-        const mesh = visual.querySelector('geometry > mesh');
-        const file = mesh?.getAttribute('filename');
-        if (mesh === null || file === null || file === undefined) return [];
-        const rgba = visual.querySelector('material > color')?.getAttribute('rgba');
-        const color = rgba === null || rgba === undefined ? null : `#${new Color().setRGB(...(numbers(rgba, [0, 0, 0, 1]).slice(0, 3) as [number, number, number]), 'srgb').getHexString()}`;
-        return [{ origin: originOf(child(visual, 'origin')), file, scale: numbers(mesh.getAttribute('scale'), [1, 1, 1]), color }];
-    });
+function readVisual(visual: Element): UrdfVisual | null {
+    const mesh = visual.querySelector('geometry > mesh');
+    const file = mesh?.getAttribute('filename') ?? '';
+    if (mesh === null || file === '') return null;
+    const [r, g, b] = numbers(visual.querySelector('material > color')?.getAttribute('rgba'), [0.78, 0.8, 0.82, 1]) as [number, number, number];
+    return { origin: originOf(visual), file, scale: numbers(mesh.getAttribute('scale'), [1, 1, 1]), color: new Color().setRGB(r, g, b, 'srgb') };
 }
 
-/** URDF files that may be of this arm, best first: those whose path names its product, then all others. */
-export function candidates(files: readonly string[], arm: Arm): string[] {
-    const plain = (text: string): string => text.toLowerCase().replace(/[^a-z0-9]/g, '');
-    const words = [arm.product, arm.name, arm.key].map(plain).filter((word) => word.length > 1);
-    const fits = files.filter((file) => words.some((word) => plain(file).includes(word) || word.includes(plain(file.split('/').at(-1)?.replace(/\..*$/, '') ?? ''))));
-    return fits;
+function readLinks(robot: Element): Map<string, UrdfVisual[]> {
+    const links = [...robot.children].filter((element) => element.tagName === 'link');
+    return new Map(links.map((link) => {
+        const visuals = [...link.children].filter((element) => element.tagName === 'visual').map(readVisual);
+        return [link.getAttribute('name') ?? '', visuals.filter((visual): visual is UrdfVisual => visual !== null)];
+    }));
 }
 
-/** The turning joints from the base on, as many as the arm has axes. */
-function chainOf(joints: readonly UrdfJoint[], axes: number): UrdfJoint[][] {
-    const children = new Set(joints.map((joint) => joint.child));
-    let links = [joints.find((joint) => !children.has(joint.parent))?.parent ?? ''];
-    const path: UrdfJoint[] = [];
-    // The longest way down: arms have one; a gripper's fingers branch off behind it.
-    const walk = (link: string): UrdfJoint[] => joints.filter((joint) => joint.parent === link)
-        .map((joint) => [joint, ...walk(joint.child)]).sort((a, b) => turning(b) - turning(a))[0] ?? [];
-    path.push(...walk(links[0] as string));
-    const groups: UrdfJoint[][] = [[]];
-    for (const joint of path) {
-        if (joint.type !== 'fixed' && groups.length > axes) break;
-        if (joint.type !== 'fixed') groups.push([]);
-        (groups.at(-1) as UrdfJoint[]).push(joint);
+async function loadMesh(address: string, color: Color): Promise<Object3D> {
+    if (!/\.dae$/i.test(address)) {
+        return new Mesh(await new STLLoader().loadAsync(address), new MeshStandardMaterial({ color, roughness: 0.5 }));
     }
-    if (groups.length !== axes + 1) throw new Error(`${groups.length - 1} turning joints, the arm has ${axes}`);
-    links = [];
-    return groups;
+    const collada = await new ColladaLoader().loadAsync(address);
+    if (collada === null) throw new Error(`${address}: no scene`);
+    return collada.scene;
 }
 
-function turning(joints: readonly UrdfJoint[]): number {
-    return joints.filter((joint) => joint.type !== 'fixed').length;
-}
-
-/** Turns the file's joint frame into the arm's: both turn about the same axis in space at joint position 0. */
-function armLinkFrames(arm: Arm): Pose[] {
-    const frames = [kIdentity];
-    let pose = kIdentity;
-    for (const joint of arm.joints) {
-        pose = multiply(pose, poseOf(joint.origin));
-        frames.push(pose);
-    }
-    return frames;
-}
-
-async function loadMesh(url: string, visual: UrdfVisual): Promise<Object3D> {
-    const material = new MeshStandardMaterial({ color: visual.color ?? '#c9ced4', roughness: 0.5 });
-    if (/\.dae$/i.test(url)) {
-        const collada = await new ColladaLoader().loadAsync(url);
-        if (collada === null) throw new Error(`${url}: no scene`);
-        return collada.scene;
-    }
-    return new Mesh(await new STLLoader().loadAsync(url), material);
-}
-
-/** Address of a mesh: `package://NAME/...` is looked for beside the URDF, the way such packages are laid out. */
+/** Address of a mesh: a `package://NAME/...` is looked for in the folder of meshes, any other beside the file. */
 export function meshAddress(urdf: string, file: string): string {
-    if (!file.startsWith('package://')) return new URL(file, new URL(urdf, location.href)).pathname;
-    const inside = file.slice('package://'.length);
-    return `/meshes/${inside}`;
+    if (file.startsWith('package://')) return `/meshes/${file.slice('package://'.length)}`;
+    return new URL(file.replace(/^file:\/\//, ''), new URL(urdf, 'http://page')).pathname;
+}
+
+/** The meshes of the file's links at their poses, in a frame of the arm. */
+async function fillGroup(group: Group, links: readonly (readonly [UrdfVisual, Pose])[], url: string): Promise<void> {
+    for (const [visual, link_from_visual] of links) {
+        const holder = new Group();
+        const [x, y, z] = visual.scale as [number, number, number];
+        holder.applyMatrix4(matrixOf(link_from_visual).multiply(new Matrix4().makeScale(x, y, z)));
+        holder.add(await loadMesh(meshAddress(url, visual.file), visual.color));
+        group.add(holder);
+    }
+}
+
+/** Where the arm's link frames are in its base with all joints at 0. */
+function linkFrames(arm: Arm): Pose[] {
+    let pose = kIdentity;
+    return [kIdentity, ...arm.joints.map((joint) => (pose = multiply(pose, poseOf(joint.origin))))];
 }
 
 /**
- * One object per link of the arm, 0 the base. The file's zero position must be the arm's.
- * Throws where the chain or a mesh does not fit.
+ * One object per link of the arm, 0 the base; null for a link without meshes.
+ * Throws where the file's chain is not the arm's, or a mesh cannot be read.
  */
 export async function loadLinks(url: string, arm: Arm): Promise<(Object3D | null)[]> {
-    const document = new DOMParser().parseFromString(await (await fetch(url)).text(), 'application/xml');
-    const robot = document.documentElement;
+    const text = await (await fetch(url)).text();
+    const robot = new DOMParser().parseFromString(text, 'application/xml').documentElement;
     const joints = [...robot.children].filter((element) => element.tagName === 'joint').map(readJoint);
-    const visuals = new Map([...robot.children].filter((element) => element.tagName === 'link').map((link) => [link.getAttribute('name') ?? '', readVisuals(link)]));
-    const groups = chainOf(joints, arm.joints.length);
-    const arm_frames = armLinkFrames(arm);
-    let pose = kIdentity;
-    const first = groups.flat()[0]?.parent ?? '';
-    const links: (Object3D | null)[] = [];
+    const visuals = readLinks(robot);
+    const groups = groupsOf(joints, arm.joints.length);
+    const frames = linkFrames(arm);
+    let pose = standOf(arm, groups);
+    const objects: (Object3D | null)[] = [];
     for (let i = 0; i < groups.length; ++i) {
-        const group = new Group();
-        const names: [string, Pose][] = i === 0 ? [[first, kIdentity]] : [];
-        for (const joint of groups[i] as UrdfJoint[]) {
+        const link_from_base = inverse(frames[i] as Pose);
+        const placed = (name: string): [UrdfVisual, Pose][] => (visuals.get(name) ?? []).map((visual) => [visual, multiply(multiply(link_from_base, pose), visual.origin)]);
+        const links = i === 0 ? placed(groups.flat()[0]?.parent ?? '') : [];
+        for (const joint of groups[i] ?? []) {
             pose = multiply(pose, joint.origin);
-            names.push([joint.child, pose]);
+            links.push(...placed(joint.child));
         }
-        await fillLink(group, names, visuals, url, inverse(arm_frames[i] as Pose));
-        links.push(group.children.length > 0 ? group : null);
+        const group = new Group();
+        await fillGroup(group, links, url);
+        objects.push(links.length > 0 ? group : null);
     }
-    return links;
-}
-
-async function fillLink(group: Group, names: readonly [string, Pose][], visuals: Map<string, UrdfVisual[]>, url: string, link_from_base: Pose): Promise<void> {
-    for (const [name, base_from_link] of names) {
-        for (const visual of visuals.get(name) ?? []) {
-            const object = await loadMesh(meshAddress(url, visual.file), visual);
-            const at = multiply(multiply(link_from_base, base_from_link), visual.origin);
-            const holder = new Group();
-            holder.applyMatrix4(matrixOf(at).multiply(new Matrix4().makeScale(visual.scale[0] ?? 1, visual.scale[1] ?? 1, visual.scale[2] ?? 1)));
-            holder.add(object);
-            group.add(holder);
-        }
-    }
+    return objects;
 }

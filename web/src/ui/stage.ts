@@ -77,6 +77,12 @@ export class Stage {
         this.viewer?.requestDraw();
     }
 
+    /** An arm is drawn with a user's meshes now. */
+    usesMeshes(arm: string): void {
+        this.element.dataset['meshes'] = `${this.element.dataset['meshes'] ?? ''} ${arm}`.trim();
+        this.redraw();
+    }
+
     /** Plays a planned path of an arm as a ghost; null ends it. */
     preview(arm: string | null, points: readonly PathPoint[] | null): void {
         if (this.planned !== null) this.view?.remove(this.planned);
