@@ -140,7 +140,7 @@ test('finds an execution, replays it, and compares two', () => withVisit(browser
     await page.locator('.transitions td', { hasText: 'Ready \u2192 Running' }).waitFor();
     await page.click('#replay');
     await page.locator('.replay strong', { hasText: 'not live' }).waitFor();
-    await waitForMotion(page);
+    await page.waitForFunction(() => Number(document.querySelector<HTMLInputElement>('.replay input')?.value) > 0);
     await picture(page, 'replay_light');
     await page.click('[aria-label="End the replay"]');
     await page.locator('tr[data-record] input[type=checkbox]').nth(0).check();

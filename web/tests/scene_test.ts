@@ -10,7 +10,7 @@ import { ArmFrames, shapesOf } from '../src/scene/arm_view.js';
 import { spread } from '../src/scene/cell_view.js';
 import { lengthOf, positionAt, timedPath } from '../src/scene/overlays.js';
 import { niceSpeed, speedColor } from '../src/scene/speed_color.js';
-import { distanceToSee } from '../src/scene/viewer.js';
+import { framing } from '../src/scene/viewer.js';
 import { Chain } from '../src/kinematics/chain.js';
 import { barsOf } from '../src/ui/strip.js';
 import { overlay, velocities } from '../src/ui/record_view.js';
@@ -55,10 +55,19 @@ test('arms on one spot are put beside each other', () => {
     assert.deepEqual(spread(apart), apart);
 });
 
-test('a camera is just so far away that it sees all of a box', () => {
+test('a camera is just so far away that it sees all of a box, in the middle', () => {
     const box = new Box3(new Vector3(-1, -1, -1), new Vector3(1, 1, 1));
-    const distance = distanceToSee(box, new Vector3(0, -1, 0), new Vector3(0, 0, 1), 1, 0.5);
-    assert.ok(Math.abs(distance - 3) < 1e-9, `${distance}`);
+    const level = framing(box, new Vector3(0, -1, 0), new Vector3(0, 0, 1), 1, 0.5);
+    assert.ok(Math.abs(level.distance - 3) < 1e-9 && level.target.length() < 1e-9, `${level.distance}`);
+    const from = new Vector3(0.4, -1, 0.6).normalize();
+    const { target, distance } = framing(box, from, new Vector3(0, 0, 1), 0.6, 0.4);
+    const right = new Vector3(0, 0, 1).cross(from).normalize();
+    const sides = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => {
+        const at = new Vector3(x, y, z).sub(target);
+        return at.dot(right) / (distance - at.dot(from));
+    })));
+    assert.ok(Math.abs(Math.max(...sides) + Math.min(...sides)) < 1e-3, 'it is in the middle');
+    assert.ok(Math.max(...sides) < 0.6 + 1e-9, 'it is all seen');
 });
 
 test('a path is on lines between its points, and rests at its ends', () => {

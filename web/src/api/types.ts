@@ -71,7 +71,8 @@ export interface Arm {
     base: Frame;
     joints: Joint[];
     flange: Frame;
-    tools: { name: string; frame: Frame }[];
+    /** A frame that nobody published is null. */
+    tools: { name: string; frame: Frame | null }[];
     visuals: Visual[];
     cycle_time: number;
 }
@@ -89,15 +90,14 @@ export interface Server {
     url: string;
     application_uri: string;
     connected: boolean;
-    error: string;
+    error: string | null;
     arm?: string | null;
     gripper?: GripperPlace | null;
     skills: Skill[];
 }
 
 export interface World {
-    table?: number | null;
-    parts: { name: string; size: Vector3; pose: Frame }[];
+    table?: { height: number } | null;
     walls?: { name: string; point: Vector3; normal: Vector3 }[];
 }
 
@@ -135,7 +135,7 @@ export interface ControlEvent {
 export interface ServerEvent {
     key: string;
     connected: boolean;
-    error: string;
+    error: string | null;
 }
 
 export interface AlarmEvent {
@@ -157,11 +157,19 @@ export interface ArmSample {
     width?: number;
 }
 
+/** In the world. */
+export interface Part {
+    pose: Frame;
+    size: Vector3;
+    held_by?: string | null;
+}
+
 export interface LiveEvent {
     t: number;
     arms?: Record<string, ArmSample>;
     grippers?: Record<string, { width?: number; held?: boolean }>;
-    parts?: Record<string, Frame>;
+    /** null: the part is gone. */
+    parts?: Record<string, Part | null>;
 }
 
 export interface Snapshot {

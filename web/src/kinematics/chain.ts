@@ -41,7 +41,8 @@ export class Chain {
 /** The tool frame of that name on an arm's flange; "" and "flange" and unknown names are the flange itself. */
 export function toolFrame(arm: Arm, name: string): Pose {
     const tool = arm.tools.find((candidate) => candidate.name === name);
-    return tool === undefined ? kIdentity : poseOf(tool.frame);
+    const frame = tool?.frame ?? null;
+    return frame === null ? kIdentity : poseOf(frame);
 }
 
 /** The pose of a tool in the base frame as a skill's parameter has it. */

@@ -13,6 +13,8 @@ import { triad } from './triad.js';
 
 /** From where on commanded and actual are seen as different [rad]. */
 const kApart = 0.02;
+/** Of a gripper that does not tell its largest width [m]. */
+const kStroke = 0.11;
 
 export interface Show {
     trace: boolean;
@@ -22,6 +24,11 @@ export interface Show {
 
 function largestDifference(a: readonly number[], b: readonly number[]): number {
     return a.reduce((most, value, i) => Math.max(most, Math.abs(value - (b[i] ?? value))), 0);
+}
+
+/** The frame of the first tool besides the flange; null if there is none. */
+function firstTool(arm: Arm): Frame | null {
+    return arm.tools.find((tool) => tool.name !== 'flange' && tool.frame !== null)?.frame ?? null;
 }
 
 /** The jaws of a gripper that is mounted on the arm, or of the arm's own. */
@@ -52,12 +59,12 @@ export class ArmActor {
         this.chain = new Chain(arm);
         this.base_from_world = poseOf(arm.base);
         const gripper = servers.find((server) => server.gripper?.arm === arm.key);
-        const frame = gripper?.gripper?.frame ?? arm.tools[0]?.frame ?? null;
+        const frame = gripper?.gripper?.frame ?? firstTool(arm);
         this.flange_from_tool = frame === null ? kIdentity : poseOf(frame);
         this.tool_triad = triad(0.09);
         if (frame !== null) placeFrame(this.tool_triad, frame);
         this.view.frames.flange.add(this.tool_triad);
-        if (gripper?.gripper !== undefined && gripper.gripper !== null) this.mount(gripper.key, gripper.gripper.frame, gripper.gripper.stroke);
+        if (gripper?.gripper !== undefined && gripper.gripper !== null) this.mount(gripper.key, gripper.gripper.frame, gripper.gripper.stroke || kStroke);
         this.root.add(this.view.frames.root, this.commanded.frames.root, this.trace.object);
         this.view.frames.setJoints(arm.joints.map(() => 0));
     }
@@ -110,7 +117,7 @@ export class ArmActor {
         const width = this.live.widths.get(this.jaws?.key ?? this.arm.key);
         if (width === undefined) return false;
         if (this.jaws === null) {
-            const frame = this.arm.tools[0]?.frame ?? ([0, 0, 0.06, 0, 0, 0] as const);
+            const frame = firstTool(this.arm) ?? ([0, 0, 0.06, 0, 0, 0] as const);
             this.mount(this.arm.key, frame, Math.max(width, 0.06));
         }
         this.jaws?.view.setWidth(width);

@@ -134,7 +134,7 @@ export class GhostView {
 
     constructor(arm: Arm, shapes: readonly Shape[], color: string, opacity: number) {
         this.frames = new ArmFrames(arm);
-        this.material = new MeshStandardMaterial({ color, roughness: 0.7, transparent: true, opacity, depthWrite: true });
+        this.material = new MeshStandardMaterial({ color, roughness: 0.7, transparent: true, opacity, depthWrite: true, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 });
         hang(this.frames, shapes, () => this.material, false);
         this.frames.root.traverse((node) => (node.renderOrder = 2));
     }

@@ -2,7 +2,7 @@
 
 import { Box3, Color, Group, Mesh, MeshStandardMaterial, Vector3, type Object3D } from 'three';
 import { RoundedBoxGeometry } from 'three/examples/jsm/geometries/RoundedBoxGeometry.js';
-import type { Arm, Cell, Frame, World } from '../api/types.js';
+import type { Arm, Cell, Frame, Part, World } from '../api/types.js';
 import type { LiveBuffer } from '../state/live_buffer.js';
 import { ArmActor, type Show } from './arm_actor.js';
 import { Paint } from './arm_view.js';
@@ -26,14 +26,13 @@ export function spread(arms: readonly Arm[]): Arm[] {
 }
 
 /** What the cell takes up [m]: feet, reach of the arms, parts. */
-function extentOf(arms: readonly Arm[], world: World | null | undefined): Box3 {
+function extentOf(arms: readonly Arm[]): Box3 {
     const box = new Box3();
     for (const arm of arms) {
         const foot = new Vector3(arm.base[0], arm.base[1], arm.base[2]);
         box.expandByPoint(foot.clone().add(new Vector3(-0.2, -0.25, 0)));
         box.expandByPoint(foot.clone().add(new Vector3(0.45, 0.25, 0.75)));
     }
-    for (const part of world?.parts ?? []) box.expandByPoint(new Vector3(part.pose[0], part.pose[1], part.pose[2]));
     return box.isEmpty() ? new Box3(new Vector3(-1, -1, 0), new Vector3(1, 1, 1)) : box;
 }
 
@@ -61,6 +60,7 @@ export class CellView {
     private readonly parts = new Map<string, Object3D>();
     private readonly paint = new Paint();
     private readonly table_paint = new MeshStandardMaterial({ color: new Color('#8d959e'), roughness: 0.75 });
+    private readonly part_paint = new MeshStandardMaterial({ color: new Color('#d99a4e'), roughness: 0.6 });
     private readonly overlays = new Set<Overlay>();
     private followed = -1;
     private on_scale: (scale: number) => void = () => {};
@@ -78,6 +78,7 @@ export class CellView {
         this.root.clear();
         this.actors.clear();
         this.parts.clear();
+        this.followed = -1;
         const arms = spread(cell.arms);
         for (const arm of arms) {
             const actor = new ArmActor(arm, this.live, this.paint, cell.servers);
@@ -86,7 +87,7 @@ export class CellView {
             this.viewer.floor.addSpot(arm.base[0], arm.base[1], 0.22);
         }
         this.addWorld(cell.world);
-        this.viewer.setExtent(extentOf(arms, cell.world));
+        this.viewer.setExtent(extentOf(arms));
         this.viewer.requestDraw();
     }
 
@@ -124,11 +125,24 @@ export class CellView {
         for (const actor of this.actors.values()) fastest = Math.max(fastest, actor.follow());
         const scale = niceSpeed(fastest);
         if (scale > this.speed_scale) this.setScale(scale);
-        for (const [name, frame] of this.live.parts) {
-            const part = this.parts.get(name);
-            if (part !== undefined) placeFrame(part, frame);
-        }
+        this.followParts();
         return true;
+    }
+
+    private followParts(): void {
+        for (const [name, mesh] of this.parts) {
+            if (this.live.parts.has(name)) continue;
+            mesh.removeFromParent();
+            this.parts.delete(name);
+        }
+        for (const [name, part] of this.live.parts) placeFrame(this.parts.get(name) ?? this.addPart(name, part), part.pose);
+    }
+
+    private addPart(name: string, part: Part): Object3D {
+        const mesh = solid(part.size as [number, number, number], this.part_paint);
+        this.parts.set(name, mesh);
+        this.root.add(mesh);
+        return mesh;
     }
 
     private setScale(scale: number): void {
@@ -139,14 +153,8 @@ export class CellView {
 
     private addWorld(world: World | null | undefined): void {
         if (world === null || world === undefined) return;
-        const paint = new MeshStandardMaterial({ color: new Color('#d99a4e'), roughness: 0.6 });
-        for (const part of world.parts) {
-            const mesh = solid(part.size as [number, number, number], paint);
-            placeFrame(mesh, part.pose);
-            this.parts.set(part.name, mesh);
-            this.root.add(mesh);
-        }
-        if (world.table !== null && world.table !== undefined && Math.abs(world.table) > 1e-3) this.addTable(world.table);
+        const height = world.table?.height ?? 0;
+        if (Math.abs(height) > 1e-3) this.addTable(height);
     }
 
     private addTable(height: number): void {

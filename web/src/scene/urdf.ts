@@ -56,7 +56,10 @@ function readLinks(robot: Element): Map<string, UrdfVisual[]> {
 
 async function loadMesh(address: string, color: Color): Promise<Object3D> {
     if (!/\.dae$/i.test(address)) {
-        return new Mesh(await new STLLoader().loadAsync(address), new MeshStandardMaterial({ color, roughness: 0.5 }));
+        const geometry = await new STLLoader().loadAsync(address);
+        // Many files leave the normals out.
+        geometry.computeVertexNormals();
+        return new Mesh(geometry, new MeshStandardMaterial({ color, roughness: 0.5 }));
     }
     const collada = await new ColladaLoader().loadAsync(address);
     if (collada === null) throw new Error(`${address}: no scene`);

@@ -25,6 +25,8 @@ export type View = 'fit' | 'top' | 'front' | 'side';
 
 /** A slower machine gets fewer pixels, not fewer frames: the least pixel ratio. */
 const kLeastRatio = 0.5;
+/** Without motion for so long the picture is drawn anew in full [s]. */
+const kRest = 0.4;
 
 /** Where each view looks from. */
 const kFrom: Record<View, readonly [number, number, number]> = {
@@ -41,18 +43,36 @@ function drawsInSoftware(): boolean {
     return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-/** How far away a camera sees all of a box, from a direction [m]. */
-export function distanceToSee(box: Box3, from: Vector3, up: Vector3, tan_x: number, tan_y: number): number {
+/** How far from its target a camera sees all of a box [m]. */
+function distanceToSee(box: Box3, target: Vector3, from: Vector3, right: Vector3, above: Vector3, tan_x: number, tan_y: number): number {
+    return Math.max(...cornersOf(box).map((corner) => {
+        const at = corner.sub(target);
+        return at.dot(from) + Math.max(Math.abs(at.dot(right)) / tan_x, Math.abs(at.dot(above)) / tan_y);
+    }));
+}
+
+/** From where a camera sees all of a box in the middle of its window: `from` a direction, tangents of half its angles [m]. */
+export function framing(box: Box3, from: Vector3, up: Vector3, tan_x: number, tan_y: number): { target: Vector3; distance: number } {
     const right = new Vector3().crossVectors(up, from).normalize();
     const above = new Vector3().crossVectors(from, right).normalize();
-    const middle = box.getCenter(new Vector3());
-    let distance = 0;
-    for (let i = 0; i < 8; ++i) {
-        const corner = new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z).sub(middle);
-        const needed = Math.max(Math.abs(corner.dot(right)) / tan_x, Math.abs(corner.dot(above)) / tan_y);
-        distance = Math.max(distance, corner.dot(from) + needed);
+    const target = box.getCenter(new Vector3());
+    let distance = distanceToSee(box, target, from, right, above, tan_x, tan_y);
+    // What is near looks larger: the middle of the window is not the middle of the box.
+    for (let round = 0; round < 8; ++round) {
+        const seen = cornersOf(box).map((corner) => {
+            const at = corner.sub(target);
+            const depth = distance - at.dot(from);
+            return { x: at.dot(right) / depth, y: at.dot(above) / depth };
+        });
+        const middle = (values: number[]): number => (Math.min(...values) + Math.max(...values)) / 2;
+        target.addScaledVector(right, middle(seen.map((one) => one.x)) * distance).addScaledVector(above, middle(seen.map((one) => one.y)) * distance);
+        distance = distanceToSee(box, target, from, right, above, tan_x, tan_y);
     }
-    return distance;
+    return { target, distance };
+}
+
+function cornersOf(box: Box3): Vector3[] {
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z));
 }
 
 export class Viewer {
@@ -72,6 +92,8 @@ export class Viewer {
     private ratio: number;
     private readonly frame_times: number[] = [];
     private last_frame = 0;
+    private last_motion = 0;
+    private sharp = false;
 
     /**
      * \param before_draw changes the scene for this time [s, monotonic]; true: something moved
@@ -143,9 +165,9 @@ export class Viewer {
     look(view: View): void {
         const from = new Vector3(...kFrom[view]).normalize();
         const tan_y = Math.tan((this.camera.fov * Math.PI) / 360) * 0.96;
-        const distance = distanceToSee(this.box, from, this.camera.up, tan_y * this.camera.aspect, tan_y);
-        this.controls.target.copy(this.middle);
-        this.camera.position.copy(this.middle).addScaledVector(from, distance);
+        const { target, distance } = framing(this.box, from, this.camera.up, tan_y * this.camera.aspect, tan_y);
+        this.controls.target.copy(target);
+        this.camera.position.copy(target).addScaledVector(from, distance);
         this.controls.update();
         this.requestDraw();
     }
@@ -184,7 +206,7 @@ export class Viewer {
         const was = this.camera.aspect;
         this.camera.aspect = width / height;
         this.camera.updateProjectionMatrix();
-        this.renderer.setPixelRatio(this.ratio);
+        this.renderer.setPixelRatio(this.sharp ? this.most_ratio : this.ratio);
         this.renderer.setSize(width, height);
         if (Math.abs(was - this.camera.aspect) > 0.25) this.look('fit');
         this.requestDraw();
@@ -192,14 +214,23 @@ export class Viewer {
 
     private tick(now: number): void {
         const moved = this.before_draw(now);
+        if (moved) this.last_motion = now;
+        const resting = now - this.last_motion > kRest;
+        if (resting !== this.sharp && this.ratio < this.most_ratio) this.setSharp(resting);
         if (!moved && !this.dirty) {
             this.last_frame = 0;
             return;
         }
         this.dirty = false;
         this.renderer.render(this.scene, this.camera);
-        if (this.last_frame > 0) this.measure(now - this.last_frame);
+        if (this.last_frame > 0 && !this.sharp) this.measure(now - this.last_frame);
         this.last_frame = now;
+    }
+
+    /** While nothing moves there is time for all pixels. */
+    private setSharp(sharp: boolean): void {
+        this.sharp = sharp;
+        this.resize();
     }
 
     private measure(frame_time: number): void {

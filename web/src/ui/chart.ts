@@ -22,7 +22,7 @@ function axis(size: number): uPlot.Axis {
     };
 }
 
-/** A chart that fills its element. `x` is in s. */
+/** A chart that fills its element. `x` is in s: the last `window` seconds, or all there is. `least_span` of y at least is shown. */
 export class Chart {
     readonly element: HTMLElement;
     private readonly box = h('div', { class: 'chart-box' });
@@ -30,7 +30,7 @@ export class Chart {
     private data: uPlot.AlignedData = [[]];
     private signature = '';
 
-    constructor(title: string, unit: string, private readonly sync: string, private readonly least_span = 0) {
+    constructor(title: string, unit: string, private readonly sync: string, private readonly least_span = 0, private readonly window = 0) {
         this.element = h('figure', { class: 'chart' }, h('figcaption', {}, title, h('small', {}, ` ${unit}`)), this.box);
         new ResizeObserver(() => this.resize()).observe(this.box);
     }
@@ -57,7 +57,7 @@ export class Chart {
         const options: uPlot.Options = {
             width: Math.max(width, 50), height: Math.max(height, 40),
             legend: { show: false }, cursor: { sync: { key: this.sync }, drag: { x: false, y: false }, points: { size: 5 } },
-            scales: { x: { time: false }, y: { range: (_plot, low, high) => this.range(low, high) } },
+            scales: { x: { time: false, ...(this.window > 0 ? { range: [-this.window, 0] as uPlot.Range.MinMax } : {}) }, y: { range: (_plot, low, high) => this.range(low, high) } },
             axes: [axis(20), axis(46)],
             padding: [6, 6, 0, 0],
             series: [{}, ...series.map((one, i) => ({

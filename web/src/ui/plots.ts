@@ -16,16 +16,19 @@ type Column = (sample: TimedSample) => number | null | undefined;
 /** Columns for uPlot: time against `now` [s], then a column for each series. */
 export function columnsOf(samples: readonly TimedSample[], now: number, columns: readonly Column[]): AlignedData {
     const recent = samples.filter((sample) => sample.t >= now - kWindow);
+    const last = samples.at(-1);
+    // Nothing is sent while nothing moves: the last sample holds until now.
+    if (last !== undefined && last.t < now) recent.push({ ...last, t: now });
     const time = recent.map((sample) => sample.t - now);
     return [time, ...columns.map((column) => recent.map((sample) => column(sample) ?? null))] as AlignedData;
 }
 
 export class Plots {
     readonly element: HTMLElement;
-    private readonly position = new Chart('Joint position', 'rad', 'live', 0.02);
-    private readonly velocity = new Chart('Joint velocity', 'rad/s', 'live', 0.02);
-    private readonly force = new Chart('Force', 'N, N m', 'live', 1);
-    private readonly jitter = new Chart('Cycle jitter', 'ms', 'live', 0.1);
+    private readonly position = new Chart('Joint position', 'rad', 'live', 0.02, kWindow);
+    private readonly velocity = new Chart('Joint velocity', 'rad/s', 'live', 0.02, kWindow);
+    private readonly force = new Chart('Force', 'N, N m', 'live', 1, kWindow);
+    private readonly jitter = new Chart('Cycle jitter', 'ms', 'live', 0.1, kWindow);
     private readonly names = h('div', { class: 'series' });
     private readonly arms = h('div', { class: 'segments', role: 'group', 'aria-label': 'Arm' });
     private drawn_arm: string | null = null;

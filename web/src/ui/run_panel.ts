@@ -10,7 +10,7 @@ import { durationText, subStateWords, words } from './format.js';
 import { Pill } from './pill.js';
 import { errorWords } from './server_card.js';
 
-const kEmpty = 'Choose a skill on the left to see and run it.';
+const kEmpty = 'Choose a skill in the list to see and run it.';
 
 export class RunPanel {
     readonly element = h('section', { class: 'panel run', 'aria-label': 'The chosen skill' });

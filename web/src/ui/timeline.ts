@@ -1,6 +1,6 @@
 // What was executed: filter, table, strip of time, and the detail of what is chosen.
 
-import type { RecordFilter } from '../api/client.js';
+import { ApiError, type RecordFilter } from '../api/client.js';
 import type { RecordRow } from '../api/types.js';
 import type { CellState } from '../state/cell_state.js';
 import { wallTime, type Context } from './context.js';
@@ -87,7 +87,8 @@ export class Timeline {
         } catch (error) {
             this.rows = [];
             this.more.hidden = true;
-            setText(this.note, error instanceof Error ? error.message : String(error));
+            const none = error instanceof ApiError && error.status === 404;
+            setText(this.note, none ? 'This dashboard reads no records.' : error instanceof Error ? error.message : String(error));
         }
         this.render();
     }

@@ -239,7 +239,7 @@ export class FakeCell {
             if (key === 'iiwa') arms[key].f = [0.4, -0.2, 3.1, 0.02, 0, 0];
         }
         const event: LiveEvent = { t: this.now, arms, grippers: { wsg50: { width: this.width, held: false } } };
-        if (all) event.parts = Object.fromEntries((this.description.cell.world?.parts ?? []).map((part) => [part.name, part.pose]));
+        if (all) event.parts = { cube: { pose: [0.5, 0.3, 0.015, 0, 0, 0], size: [0.03, 0.03, 0.03], held_by: null } };
         return event;
     }
 }
