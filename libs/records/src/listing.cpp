@@ -16,7 +16,6 @@ namespace {
 
 /// Subqueries in one statement; SQLite takes 500.
 constexpr std::size_t kAtOnce = 100;
-constexpr std::uint32_t kLargestPage = 10'000;
 /// All names that a text is looked for in.
 constexpr std::string_view kNames =
     "server || ' ' || server_name || ' ' || controller || ' ' || skill || ' ' || device || ' ' || "

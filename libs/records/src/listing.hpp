@@ -11,6 +11,8 @@
 
 namespace metier::records {
 
+inline constexpr std::size_t kLargestPage = 10'000;
+
 /// Finds the newest executions that fit a filter.
 ///
 /// What the filter says of names, states and reasons is answered by the few rows of `kinds`, what

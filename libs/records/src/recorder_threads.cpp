@@ -136,17 +136,9 @@ Dropped Recorder::Impl::dropped() const {
 void Recorder::Impl::write(const std::stop_token& stop) {
     while (true) {
         const bool go_on = waitForWork(stop);
-        auto taken = takeMessages();
-        // What cannot be written waits in the queue, which is bounded, not in the writer.
-        if (!writer_.hasChanges()) {
-            // NOLINTNEXTLINE(bugprone-use-after-move): moved here alone
-            const auto lost = writer_.take(std::move(taken.messages), takeSamples());
-            const std::lock_guard lock(mutex_);
-            dropped_.events += lost.events;
-            dropped_.samples += lost.samples;
-        }
-        const auto done = writeRound();
-        finishRound(done, taken.ticket);
+        std::uint64_t answered = 0;
+        const auto done = writeRound(answered);
+        finishRound(done, answered);
         if (!go_on && (!done || !somethingWaits())) {
             return;
         }
@@ -172,13 +164,24 @@ bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
     return !stop.stop_requested();
 }
 
-/// Nothing while the writer still has what it could not write.
-Recorder::Impl::Taken Recorder::Impl::takeMessages() {
-    const std::lock_guard lock(mutex_);
+/// Gives the writer what waits, unless it still has what it could not write: the queue is bounded.
+/// \return which flush is answered once that is written
+std::uint64_t Recorder::Impl::giveToWriter() {
     if (writer_.hasChanges()) {
-        return {{}, answered_};
+        return 0;
     }
-    return {std::exchange(waiting_, {}), asked_};
+    std::vector<Message> messages;
+    std::uint64_t asked = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        messages = std::exchange(waiting_, {});
+        asked = asked_;
+    }
+    const auto lost = writer_.take(std::move(messages), takeSamples());
+    const std::lock_guard lock(mutex_);
+    dropped_.events += lost.events;
+    dropped_.samples += lost.samples;
+    return asked;
 }
 
 std::vector<KeyedSample> Recorder::Impl::takeSamples() {
@@ -194,9 +197,10 @@ std::vector<KeyedSample> Recorder::Impl::takeSamples() {
     return taken;
 }
 
-Result<void> Recorder::Impl::writeRound() {
+Result<void> Recorder::Impl::writeRound(std::uint64_t& answered) {
     auto done = database_ == nullptr ? openStore() : Result<void>();
     if (done) {
+        answered = giveToWriter();
         done = writer_.write(*database_);
     }
     if (done) {
@@ -248,11 +252,11 @@ Result<void> Recorder::Impl::trim() {
     return {};
 }
 
-void Recorder::Impl::finishRound(const Result<void>& done, std::uint64_t ticket) {
+void Recorder::Impl::finishRound(const Result<void>& done, std::uint64_t answered) {
     {
         const std::lock_guard lock(mutex_);
         error_ = done ? std::string() : done.error().message;
-        answered_ = done ? ticket : answered_;
+        answered_ = done ? std::max(answered, answered_) : answered_;
         written_ = writer_.written();
         writer_busy_ = writer_.hasChanges() || writer_.isBusy();
         round_began_.reset();

@@ -35,21 +35,16 @@ public:
     Status status() const;
 
 private:
-    struct Taken {
-        std::vector<Message> messages{};
-        std::uint64_t ticket = 0;
-    };
-
     void push(Message&& message);
     void write(const std::stop_token& stop);
     bool somethingWaits() const;
     bool waitForWork(const std::stop_token& stop);
-    Taken takeMessages();
+    std::uint64_t giveToWriter();
     std::vector<KeyedSample> takeSamples();
-    Result<void> writeRound();
+    Result<void> writeRound(std::uint64_t& answered);
     Result<void> openStore();
     Result<void> trim();
-    void finishRound(const Result<void>& done, std::uint64_t ticket);
+    void finishRound(const Result<void>& done, std::uint64_t answered);
 
     void watch(const std::stop_token& stop);
     bool hangs() const;

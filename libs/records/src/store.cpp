@@ -101,8 +101,9 @@ Result<Listing> Store::list(const Filter& filter, const Page& page) {
         return fail(numbers.error());
     }
     Listing listing;
-    listing.more = numbers->size() > page.count;
-    numbers->resize(std::min<std::size_t>(numbers->size(), page.count));
+    const auto count = std::clamp<std::size_t>(page.count, 1, kLargestPage);
+    listing.more = numbers->size() > count;
+    numbers->resize(std::min(numbers->size(), count));
     if (numbers->empty()) {
         return listing;
     }

@@ -1,0 +1,370 @@
+// The recorder while its store is slow, full, away or somebody else's.
+#include "metier/records/recorder.hpp"
+
+#include <sched.h>
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "metier/base/testing/allocation_count.hpp"
+#include "recorded.hpp"
+#include "sqlite_database.hpp"
+#include "temporary_postgres.hpp"
+
+namespace metier::records {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+/// What a recorder told of its health.
+class Alarms {
+public:
+    std::function<void(const HealthReport&)> listener() {
+        return [this](const HealthReport& report) {
+            {
+                const std::lock_guard lock(mutex_);
+                reports_.push_back(report);
+            }
+            changed_.notify_all();
+        };
+    }
+    /// The report of that number, from 0; throws if it does not come.
+    HealthReport await(std::size_t number) {
+        std::unique_lock lock(mutex_);
+        if (!changed_.wait_until(lock, soon(), [&] { return reports_.size() > number; })) {
+            throw std::runtime_error("no report " + std::to_string(number));
+        }
+        return reports_[number];
+    }
+    std::size_t count() {
+        const std::lock_guard lock(mutex_);
+        return reports_.size();
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<HealthReport> reports_;
+};
+
+class TroubledRecorder : public ::testing::Test {
+protected:
+    Recorder::Options options() {
+        Recorder::Options options;
+        options.url = file_.string();
+        options.server = "urn:test:ur5";
+        options.on_health = alarms_.listener();
+        return options;
+    }
+    std::unique_ptr<Recorder> make(Recorder::Options options) {
+        return Recorder::create(std::move(options)).value();
+    }
+    std::unique_ptr<Store> store() const { return Store::open(file_.string()).value(); }
+    /// Somebody who writes and does not end: the file of a disk that hangs.
+    std::unique_ptr<Database> locked() const {
+        auto database = SqliteDatabase::open(file_, Store::Access::write).value();
+        EXPECT_TRUE(database->begin());
+        return database;
+    }
+
+    const fs::path folder_ = testFolder();
+    const fs::path file_ = folder_ / "records.db";
+    Alarms alarms_;
+};
+
+TEST_F(TroubledRecorder, KeepsWhatFitsWhileTheStoreIsAwayAndTellsWhatItLostOnce) {
+    fs::create_directories(folder_.parent_path());
+    std::ofstream(folder_) << "a file where the folder should be";
+    auto few = options();
+    few.most_waiting = 6;
+    const auto recorder = make(std::move(few));
+    EXPECT_EQ(alarms_.await(0).health, Health::failing);
+    EXPECT_THAT(alarms_.await(0).text, HasSubstr(file_.string()));
+    // A begin and an end each: after three of them six wait.
+    std::vector<Recorder::Key> keys;
+    for (int i = 0; i < 5; ++i) {
+        keys.push_back(recorder->begin(moveOf("m-" + std::to_string(i))));
+        recorder->transition(keys.back(), {.time = at(1),
+                                           .from = "Ready",
+                                           .to = "Running",
+                                           .sub_state = {},
+                                           .step = {},
+                                           .reason = {},
+                                           .reason_text = {}});
+    }
+    for (const auto key : keys) {
+        recorder->end(key, finished(at(2)));
+    }
+    EXPECT_EQ(recorder->status().dropped.executions, 2U);
+    EXPECT_EQ(recorder->status().health, Health::failing);
+    EXPECT_EQ(alarms_.count(), 1U);
+
+    fs::remove(folder_);
+    EXPECT_EQ(alarms_.await(1).health, Health::writing);
+    EXPECT_THAT(alarms_.await(1).text, HasSubstr("again"));
+    EXPECT_THAT(alarms_.await(1).text, HasSubstr("2 executions"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(recorder->status().written, 3U);
+    const auto kept = store()->list({}, {})->executions;
+    ASSERT_EQ(kept.size(), 3U);
+    for (const auto& execution : kept) {
+        EXPECT_EQ(execution.state, "Ready") << "an end must not be lost";
+    }
+    EXPECT_EQ(alarms_.count(), 2U);
+}
+
+TEST_F(TroubledRecorder, DelaysNobodyWhileTheDiskHangsAndDropsTheOldestSamples) {
+    auto few = options();
+    few.most_waiting_samples = 64;
+    few.patience = 100ms;
+    const auto recorder = make(std::move(few));
+    const auto key = recorder->begin(moveOf("m-1"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    constexpr int kSamples = 1'000;
+    {
+        const auto hanging = locked();
+        recorder->transition(key, {.time = at(1),
+                                   .from = "Running",
+                                   .to = "Suspended",
+                                   .sub_state = {},
+                                   .step = {},
+                                   .reason = {},
+                                   .reason_text = {}});
+        EXPECT_EQ(alarms_.await(0).health, Health::failing);
+        // The file is locked until the end of this block: nobody may wait for it.
+        for (int i = 0; i < kSamples; ++i) {
+            recorder->sample(key, sampleAt(i, i));
+        }
+        recorder->end(key, finished(at(2)));
+        EXPECT_GE(recorder->status().dropped.samples, kSamples - 2U * 64U);
+        EXPECT_FALSE(store()->find("m-1")->isOver());
+        hanging->rollBack();
+    }
+    EXPECT_EQ(alarms_.await(1).health, Health::writing);
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(store()->find("m-1")->state, "Ready");
+    const auto path = store()->path(1).value();
+    EXPECT_EQ(path.size() + recorder->status().dropped.samples, kSamples + 0U);
+    ASSERT_FALSE(path.empty());
+    EXPECT_EQ(path.back().time, kSamples - 1) << "the newest one is kept";
+}
+
+TEST_F(TroubledRecorder, DoesNotAnswerAFlushThatCannotBeDone) {
+    const auto recorder = make(options());
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto hanging = locked();
+    recorder->begin(moveOf("m-1"));
+    EXPECT_FALSE(recorder->flush(std::chrono::steady_clock::now() + 300ms));
+    hanging->rollBack();
+    EXPECT_TRUE(recorder->flush(soon()));
+}
+
+TEST_F(TroubledRecorder, WritesWhatWaitsWhenItEnds) {
+    {
+        const auto recorder = make(options());
+        recordOne(*recorder, moveOf("m-1"), finished(at(1)));
+    }
+    EXPECT_EQ(store()->find("m-1")->state, "Ready");
+    EXPECT_EQ(alarms_.count(), 0U);
+}
+
+TEST_F(TroubledRecorder, NeitherAllocatesNorWaitsForASample) {
+    const auto recorder = make(options());
+    const auto key = recorder->begin(moveOf("m-1"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto sample = sampleAt(1, 2);
+    const auto hanging = locked();
+    const auto before = allocationCount();
+    for (std::size_t i = 0; i < 100'000; ++i) {
+        recorder->sample(key, sample);
+    }
+    EXPECT_EQ(allocationCount() - before, 0U);
+    hanging->rollBack();
+}
+
+TEST_F(TroubledRecorder, LeavesADamagedFileAsItIs) {
+    fs::create_directories(folder_);
+    const std::string notes(20'000, 'x');
+    std::ofstream(file_) << notes;
+    {
+        const auto recorder = make(options());
+        EXPECT_THAT(alarms_.await(0).text, HasSubstr("is no SQLite file"));
+        recordOne(*recorder, moveOf("m-1"), finished(at(1)));
+    }
+    std::ifstream in(file_);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), notes);
+    EXPECT_EQ(Store::open(file_.string()).error().code, Errc::invalid_argument);
+}
+
+TEST_F(TroubledRecorder, TellsOfPagesThatAreDamaged) {
+    {
+        const auto recorder = make(options());
+        for (int i = 0; i < 2'000; ++i) {
+            recordOne(*recorder, moveOf("m-" + std::to_string(i)), finished(at(1)));
+        }
+        ASSERT_TRUE(recorder->flush(soon()));
+    }
+    const auto size = fs::file_size(file_);
+    std::fstream file(file_, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(8'192);
+    file << std::string(size - 16'384, '\xAA');
+    file.close();
+    auto opened = Store::open(file_.string());
+    const auto listing = opened ? (*opened)->list({}, {}) : Result<Listing>(fail(opened.error()));
+    ASSERT_FALSE(listing);
+    EXPECT_EQ(listing.error().code, Errc::invalid_argument) << listing.error().message;
+    const auto recorder = make(options());
+    recordOne(*recorder, moveOf("m-1"), finished(at(1)));
+    EXPECT_EQ(alarms_.await(0).health, Health::failing);
+}
+
+TEST_F(TroubledRecorder, LeavesTheTablesOfOthersAlone) {
+    fs::create_directories(folder_);
+    ASSERT_TRUE(SqliteDatabase::open(file_, Store::Access::write)
+                    .value()
+                    ->script("CREATE TABLE songs (title TEXT)"));
+    const auto recorder = make(options());
+    EXPECT_THAT(alarms_.await(0).text, HasSubstr("other tables"));
+    EXPECT_EQ(Store::open(file_.string()).error().code, Errc::invalid_argument);
+}
+
+TEST_F(TroubledRecorder, DoesNotTouchALaterSchema) {
+    ASSERT_TRUE(make(options())->flush(soon()));
+    ASSERT_TRUE(SqliteDatabase::open(file_, Store::Access::write)
+                    .value()
+                    ->script("UPDATE metier_records SET value = 7 WHERE name = 'schema_version'"));
+    const auto refused = Store::open(file_.string());
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::not_supported);
+    EXPECT_THAT(refused.error().message, HasSubstr("schema version 7"));
+    const auto recorder = make(options());
+    EXPECT_THAT(alarms_.await(0).text, HasSubstr("schema version 7"));
+}
+
+/// Somebody who is not root, until the end of the block.
+class AsNobody {
+public:
+    AsNobody() { allowed_ = ::getuid() != 0 || ::setresuid(65534, 65534, 0) == 0; }
+    ~AsNobody() {
+        if (::getuid() == 65534 && ::setresuid(0, 0, 0) != 0) {
+            std::abort();
+        }
+    }
+    AsNobody(const AsNobody&) = delete;
+    AsNobody& operator=(const AsNobody&) = delete;
+    bool allowed() const { return allowed_; }
+
+private:
+    bool allowed_ = false;
+};
+
+TEST_F(TroubledRecorder, InAFolderThatCannotBeWrittenIsReadButNotContinued) {
+    {
+        const auto recorder = make(options());
+        recordOne(*recorder, moveOf("m-1"), finished(at(1)));
+    }
+    // Whoever may not write finds no files beside it: the last server took them away.
+    ASSERT_FALSE(fs::exists(file_.string() + "-wal"));
+    fs::permissions(file_, fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read);
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::group_read |
+                                 fs::perms::group_exec | fs::perms::others_read |
+                                 fs::perms::others_exec);
+    {
+        const AsNobody nobody;
+        if (!nobody.allowed()) {
+            GTEST_SKIP() << "NOT TESTED: a folder that cannot be written";
+        }
+        const auto reading = Store::open(file_.string());
+        ASSERT_TRUE(reading) << reading.error().message;
+        EXPECT_EQ((*reading)->find("m-1")->state, "Ready");
+        const auto recorder = make(options());
+        recordOne(*recorder, moveOf("m-2"), finished(at(1)));
+        EXPECT_EQ(alarms_.await(0).health, Health::failing);
+        EXPECT_THAT(alarms_.await(0).text, HasSubstr(file_.string()));
+    }
+    fs::permissions(folder_, fs::perms::owner_all);
+}
+
+/// A disk of that size of its own, in a mount namespace of this process.
+bool mountSmallDisk(const fs::path& folder, const char* size) {
+    fs::create_directories(folder);
+    return ::unshare(CLONE_NEWNS) == 0 &&
+           ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+           ::mount("tmpfs", folder.c_str(), "tmpfs", 0, size) == 0;
+}
+
+TEST_F(TroubledRecorder, OnAFullDiskTellsSoAndGoesOnOnceThereIsRoom) {
+    if (!mountSmallDisk(folder_, "size=64k")) {
+        GTEST_SKIP() << "A FULL DISK WAS NOT TESTED: to mount one needs root";
+    }
+    const auto recorder = make(options());
+    recordOne(*recorder, moveOf("m-1"), finished(at(1)));
+    const auto full = alarms_.await(0);
+    EXPECT_EQ(full.health, Health::failing);
+    EXPECT_THAT(full.text, ::testing::AnyOf(HasSubstr("full"), HasSubstr("I/O error")));
+    ASSERT_EQ(::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, "size=1m"), 0);
+    EXPECT_EQ(alarms_.await(1).health, Health::writing);
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(store()->find("m-1")->state, "Ready");
+    // Full again, now with a store in it.
+    std::string large(900'000, 'x');
+    auto execution = moveOf("m-2");
+    execution.parameters = large;
+    recordOne(*recorder, execution, finished(at(2)));
+    EXPECT_EQ(alarms_.await(2).health, Health::failing);
+    EXPECT_EQ(store()->find("m-1")->state, "Ready");
+    ASSERT_EQ(::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, "size=16m"), 0);
+    EXPECT_EQ(alarms_.await(3).health, Health::writing);
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(store()->find("m-2")->parameters, large);
+    EXPECT_EQ(store()->list({}, {})->executions.size(), 2U);
+    ::umount2(folder_.c_str(), MNT_DETACH);
+}
+
+TEST(RecorderOfPostgres, GoesOnOnceTheDatabaseIsBackWithNothingTwice) {
+    auto* postgres = TemporaryPostgres::instance();
+    if (postgres == nullptr) {
+        GTEST_SKIP() << "PostgreSQL is not installed";
+    }
+    Alarms alarms;
+    Recorder::Options options;
+    options.url = postgres->freshDatabase();
+    options.server = "urn:test:ur5";
+    options.on_health = alarms.listener();
+    const auto url = options.url;
+    const auto recorder = Recorder::create(std::move(options)).value();
+    const auto key = recorder->begin(moveOf("m-1"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    postgres->kill();
+    recorder->end(key, finished(at(1)));
+    recordOne(*recorder, moveOf("m-2"), halted(at(2), "axis 1"));
+    EXPECT_EQ(alarms.await(0).health, Health::failing);
+    EXPECT_EQ(Store::open(url).error().code, Errc::connection_lost);
+    postgres->start();
+    EXPECT_EQ(alarms.await(1).health, Health::writing);
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto all = Store::open(url).value()->list({}, {})->executions;
+    ASSERT_EQ(all.size(), 2U);
+    EXPECT_EQ(all[0].reason_text + all[1].reason_text, "axis 1");
+    EXPECT_TRUE(all[0].isOver() && all[1].isOver());
+}
+
+TEST(RecorderOfPostgres, DoesNotTellItsPassword) {
+    Alarms alarms;
+    Recorder::Options options;
+    options.url = "postgresql://anna:secret@127.0.0.1:1/records";
+    options.server = "urn:test:ur5";
+    options.on_health = alarms.listener();
+    const auto recorder = Recorder::create(std::move(options)).value();
+    EXPECT_THAT(alarms.await(0).text, ::testing::AllOf(HasSubstr("127.0.0.1:1/records"),
+                                                       ::testing::Not(HasSubstr("secret"))));
+}
+
+}  // namespace
+}  // namespace metier::records

@@ -1,0 +1,51 @@
+// A server that records executions one after another, for tests that kill it or run several.
+// Arguments: store, ApplicationUri, how many executions (0: until it is killed).
+// After each one that is told to the recorder, a line with its id and the time [us since 1970].
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "recorded.hpp"
+
+namespace {
+
+using namespace metier::records;
+using namespace std::chrono_literals;
+
+/// Between two executions of a server that goes on for ever, as of a fast skill.
+constexpr auto kPause = 5ms;
+
+int record(const std::string& url, const std::string& server, long count) {
+    const auto recorder = recorderOf(url, server);
+    auto next = std::chrono::steady_clock::now();
+    for (long i = 1; count == 0 || i <= count; ++i) {
+        const auto now = std::chrono::system_clock::now();
+        const auto id = fmt::format("{}-{}", server, i);
+        const auto key = recorder->begin(moveOf(id, now));
+        recorder->sample(key, sampleAt(0.001, static_cast<double>(i)));
+        if (i != count) {
+            recorder->end(key, finished(now + 1ms));  // the last one stays under way
+        }
+        fmt::print(
+            "{} {}\n", id,
+            std::chrono::duration_cast<std::chrono::microseconds>(now.time_since_epoch()).count());
+        std::fflush(stdout);
+        if (count == 0) {
+            next += kPause;
+            std::this_thread::sleep_until(next);
+        } else if (i % 500 == 0 && !recorder->flush(soon())) {
+            return EXIT_FAILURE;
+        }
+    }
+    return recorder->flush(soon()) ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return argc == 4 ? record(argv[1], argv[2], std::strtol(argv[3], nullptr, 10)) : EXIT_FAILURE;
+}

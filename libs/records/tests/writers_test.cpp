@@ -1,0 +1,122 @@
+// Servers as processes of their own: killed, and several with one store.
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <map>
+#include <set>
+
+#include "metier/process/child_process.hpp"
+#include "recorded.hpp"
+#include "temporary_postgres.hpp"
+
+namespace metier::records {
+namespace {
+
+using namespace std::chrono_literals;
+using process::ChildProcess;
+
+std::string postgresOrFile() {
+    auto* postgres = TemporaryPostgres::instance();
+    return postgres == nullptr ? std::string() : postgres->freshDatabase();
+}
+
+ChildProcess writer(const std::string& url, const std::string& server, int count) {
+    return ChildProcess::start({METIER_RECORDS_WRITER, url, server, std::to_string(count)}).value();
+}
+
+/// When it told of each of its executions, as far as it does until `lines` of them.
+std::map<std::string, UtcTime> told(ChildProcess& writer, int lines) {
+    std::map<std::string, UtcTime> times;
+    for (int i = 0; i < lines; ++i) {
+        const auto line = writer.readLine(soon() + 40s);
+        if (!line) {
+            break;
+        }
+        const auto space = line->find(' ');
+        times[line->substr(0, space)] =
+            UtcTime(std::chrono::microseconds(std::stoll(line->substr(space + 1))));
+    }
+    return times;
+}
+
+TEST(KilledServer, LosesAtMostTheLastSecondOfItsRecords) {
+    const auto file = (testFolder() / "records.db").string();
+    auto dying = writer(file, "dying", 0);
+    auto times = told(dying, 400);  // two seconds
+    dying.signal(SIGKILL);
+    const auto killed = std::chrono::system_clock::now();
+    ASSERT_EQ(dying.waitUntil(soon()), 128 + SIGKILL);
+    times.merge(told(dying, 1'000'000));  // what was still on its way here
+    const auto store = Store::open(file).value();
+    std::size_t kept = 0;
+    for (const auto& [id, time] : times) {
+        const auto found = store->find(id);
+        kept += found ? 1 : 0;
+        if (time < killed - 1s) {
+            ASSERT_TRUE(found) << id << " began "
+                               << std::chrono::duration<double>(killed - time).count()
+                               << " s before the kill";
+            EXPECT_EQ(found->state, "Ready");
+            EXPECT_EQ(store->path(found->number)->size(), 1U);
+        }
+    }
+    EXPECT_GT(kept, 100U);
+    RecordProperty("told", static_cast<int>(times.size()));
+    RecordProperty("kept", static_cast<int>(kept));
+}
+
+void expectNothingLostOfTwo(const std::string& url) {
+    constexpr int kEach = 2'000;
+    auto one = writer(url, "one", kEach);
+    auto two = writer(url, "two", kEach);
+    EXPECT_EQ(told(one, kEach).size(), kEach + 0U);
+    EXPECT_EQ(told(two, kEach).size(), kEach + 0U);
+    ASSERT_EQ(one.waitUntil(soon()), 0);
+    ASSERT_EQ(two.waitUntil(soon()), 0);
+    const auto store = Store::open(url).value();
+    for (const auto* server : {"one", "two"}) {
+        Filter filter;
+        filter.server = server;
+        const auto listed = store->list(filter, {.before = 0, .count = 10'000})->executions;
+        EXPECT_EQ(listed.size(), kEach + 0U);
+        std::set<std::string> ids;
+        for (const auto& execution : listed) {
+            ids.insert(execution.id);
+        }
+        EXPECT_EQ(ids.size(), kEach + 0U);
+        const auto path = store->path(store->find(std::string(server) + "-7")->number).value();
+        ASSERT_EQ(path.size(), 1U);
+        EXPECT_EQ(path[0].actual[0], 7.0);
+    }
+}
+
+TEST(TwoServers, WriteIntoOneFileAtTheSameTime) {
+    expectNothingLostOfTwo((testFolder() / "records.db").string());
+}
+
+TEST(TwoServers, WriteIntoOneDatabaseAtTheSameTime) {
+    const auto url = postgresOrFile();
+    if (url.empty()) {
+        GTEST_SKIP() << "PostgreSQL is not installed";
+    }
+    expectNothingLostOfTwo(url);
+}
+
+TEST(StartedAgain, ClosesOnlyItsOwnAsLost) {
+    const auto file = (testFolder() / "records.db").string();
+    for (const auto* server : {"one", "two"}) {
+        auto ended = writer(file, server, 3);
+        ASSERT_EQ(ended.waitUntil(soon()), 0);
+    }
+    const auto again = recorderOf(file, "one");
+    ASSERT_TRUE(again->flush(soon()));
+    const auto store = Store::open(file).value();
+    EXPECT_EQ(store->find("one-3")->state, kLost);
+    EXPECT_EQ(store->find("two-3")->state, "Running");
+    Filter lost;
+    lost.state = kLost;
+    EXPECT_EQ(store->list(lost, {})->executions.size(), 1U);
+}
+
+}  // namespace
+}  // namespace metier::records
