@@ -20,9 +20,9 @@ constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 // Nobody listens on the port of a service that sends nothing but time.
 constexpr const char* kNobody = "opc.tcp://127.0.0.1:37";
-const std::vector<std::string> kCommands{"demo",  "up",   "serve",      "list",  "run",
-                                         "watch", "halt", "square",     "fk",    "ik",
-                                         "check", "plot", "completion", "trust", "user"};
+const std::vector<std::string> kCommands{
+    "demo", "up",    "serve", "list",       "run",   "watch", "halt",    "square", "fk",
+    "ik",   "check", "plot",  "completion", "trust", "user",  "history", "replay", "trace"};
 
 /// A cell file of the test, removed at its end.
 class CellFile {

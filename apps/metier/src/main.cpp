@@ -36,6 +36,9 @@ void addCommands(CLI::App& app, metier::app::Exit& exit) {
     metier::app::addSkillCommands(app, exit);
     metier::app::addOwn(app, exit);
     metier::app::addAudit(app, exit);
+    metier::app::addHistory(app, exit);
+    metier::app::addReplay(app, exit);
+    metier::app::addTrace(app, exit);
     metier::app::addFind(app, exit);
     metier::app::addDiscovery(app, exit);
     metier::app::addSquare(app, exit);

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 
 #include "joint_text.hpp"
-#include "metier/path_evaluation/motion_drawing.hpp"
+#include "motion_picture.hpp"
 #include "planned_move.hpp"
 #include "robot_argument.hpp"
 
@@ -12,7 +11,6 @@ namespace metier::app {
 namespace {
 
 using motion::RobotModel;
-using path_evaluation::MotionSample;
 
 /// Enough for a curve of 560 px, whatever bends it has.
 constexpr std::size_t kSamples = 1501;
@@ -20,21 +18,11 @@ constexpr std::size_t kSamples = 1501;
 struct PlotOptions {
     MoveOptions move;
     std::string record;
+    std::string records;
+    std::string robot;  // of a recorded execution
     std::string title;
     std::string svg = "motion.svg";
 };
-
-/// What is drawn.
-struct Motion {
-    std::vector<MotionSample> samples;
-    std::vector<Eigen::Vector3d> tool_positions;
-    std::string note;
-    std::optional<double> asked_speed;
-};
-
-std::string nameOf(const RobotModel& model) {
-    return std::string(model.product().empty() ? model.name() : model.product());
-}
 
 /// The tool frame's speed that a linear move was asked for [m/s].
 std::optional<double> askedSpeed(const RobotModel& model, const MoveOptions& options) {
@@ -47,7 +35,7 @@ std::optional<double> askedSpeed(const RobotModel& model, const MoveOptions& opt
     return options.speed_override * (asked > 0 ? std::min(asked, own) : own);
 }
 
-Result<Motion> plannedMotion(const RobotModel& model, const MoveOptions& options) {
+Result<DrawnMotion> plannedMotion(const RobotModel& model, const MoveOptions& options) {
     const auto move = planMove(model, options);
     if (!move) {
         return fail(move.error());
@@ -55,7 +43,7 @@ Result<Motion> plannedMotion(const RobotModel& model, const MoveOptions& options
     if (!move->plan) {
         return fail(Errc::unreachable, move->plan.error().error.message);
     }
-    Motion motion;
+    DrawnMotion motion;
     motion.samples = path_evaluation::sampleMotion(*move->plan, kSamples);
     for (const auto& sample : motion.samples) {
         motion.tool_positions.push_back(move->plan->toolPose(sample.position).translation);
@@ -68,73 +56,40 @@ Result<Motion> plannedMotion(const RobotModel& model, const MoveOptions& options
     return motion;
 }
 
-Result<Motion> recordedMotion(const RobotModel& model, const PlotOptions& options) {
-    const auto record = path_evaluation::loadRecord(options.record);
-    if (!record) {
-        return fail(Errc::invalid_argument, record.error().message);
-    }
-    const auto tool = model.tool(options.move.tool);
-    if (!tool) {
-        return fail(Errc::invalid_argument, tool.error().message);
-    }
-    if (record->front().position.size() != model.axisCount()) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("{}: {} joint positions, {} has {} axes", options.record,
-                                record->front().position.size(), model.name(), model.axisCount()));
-    }
-    Motion motion;
-    motion.samples = path_evaluation::sampleMotion(*record);
-    for (const auto& [time, position] : *record) {
-        const auto pose = model.kinematics().forward(position) * tool->flange_from_tool;
-        motion.tool_positions.push_back(pose.translation);
-    }
-    motion.note = fmt::format("{}, {} positions, {:.3f} s", options.record, record->size(),
-                              motion.samples.back().time);
-    return motion;
-}
-
-Result<Motion> motionOf(const RobotModel& model, const PlotOptions& options) {
+Result<DrawnMotion> motionOf(const RobotModel& model, const PlotOptions& options) {
     if (options.record.empty()) {
         return plannedMotion(model, options.move);
     }
     if (hasTarget(options.move)) {
         return fail(Errc::invalid_argument, "--record and a target exclude each other");
     }
-    return recordedMotion(model, options);
+    const auto record = path_evaluation::loadRecord(options.record);
+    if (!record) {
+        return fail(Errc::invalid_argument, record.error().message);
+    }
+    return recordedMotion(model, *record, options.record, options.move.tool);
 }
 
-Result<void> write(const std::string& file, const std::string& svg) {
-    if (file == "-") {
-        fmt::print("{}", svg);
-        return {};
-    }
-    std::ofstream out(file);
-    out << svg;
-    out.close();
-    if (!out) {
-        return fail(Errc::invalid_argument, fmt::format("{}: cannot be written", file));
-    }
-    fmt::print(stderr, "drawn in {}\n", file);
-    return {};
+/// Whether the argument names an execution: it is no robot, and nothing says how one should move.
+bool namesExecution(const PlotOptions& options) {
+    return options.record.empty() && !hasTarget(options.move) && !isRobot(options.move.robot);
 }
 
 Exit runPlot(const PlotOptions& options) {
+    if (namesExecution(options)) {
+        return drawExecution({.records = options.records,
+                              .id = options.move.robot,
+                              .robot = options.robot,
+                              .tool = options.move.tool,
+                              .title = options.title,
+                              .svg = options.svg});
+    }
     const auto model = loadRobot(options.move.robot);
     if (!model) {
         return reportUsage(model.error());
     }
     const auto motion = motionOf(*model, options);
-    if (!motion) {
-        return report(motion.error());
-    }
-    const auto svg = path_evaluation::drawMotion(
-        *model, {options.title.empty() ? nameOf(*model) : options.title, motion->note,
-                 motion->samples, motion->tool_positions, motion->asked_speed});
-    if (!svg) {
-        return report(svg.error());
-    }
-    const auto written = write(options.svg, *svg);
-    return written ? Exit::success : reportUsage(written.error());
+    return motion ? drawInto(options.svg, *model, options.title, *motion) : report(motion.error());
 }
 
 }  // namespace
@@ -147,8 +102,16 @@ void addPlot(CLI::App& app, Exit& exit) {
     command->footer(
         "Joint position, velocity, acceleration and jerk, the speed of the tool frame and its "
         "path,\n"
-        "of the move that `metier check` plans from the same options, or of a record.");
-    addRobot(*command, options->move.robot);
+        "of the move that `metier check` plans from the same options, or of a record. In place of\n"
+        "a robot: the number or id of an execution that `metier history` shows.");
+    command
+        ->add_option("ROBOT_OR_ID", options->move.robot,
+                     "Which robot: ur5, ur5e, iiwa7, iiwa14, edo, or the file of a model; or which "
+                     "recorded execution")
+        ->required();
+    addRecords(*command, options->records);
+    command->add_option("--robot", options->robot,
+                        "The robot of that execution; without it the one of its device's name");
     addMoveOptions(*command, options->move);
     command->add_option("--record", options->record,
                         "Draw this recorded motion instead: CSV lines time,q1,...,qn [s, rad], or "

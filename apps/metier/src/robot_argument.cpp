@@ -23,6 +23,10 @@ fs::path modelsFolder() {
     return !error && fs::is_directory(installed, error) ? installed : fs::path(METIER_MODELS_DIR);
 }
 
+bool isFile(const std::string& robot) {
+    return robot.find('/') != std::string::npos || robot.ends_with(kExtension);
+}
+
 std::vector<std::string> namesIn(const fs::path& folder) {
     std::vector<std::string> names;
     std::error_code error;
@@ -44,8 +48,17 @@ void addRobot(CLI::App& command, std::string& robot) {
         ->required();
 }
 
+std::vector<std::string> robotNames() {
+    return namesIn(modelsFolder());
+}
+
+bool isRobot(const std::string& robot) {
+    const auto names = robotNames();
+    return isFile(robot) || std::find(names.begin(), names.end(), robot) != names.end();
+}
+
 Result<motion::RobotModel> loadRobot(const std::string& robot) {
-    if (robot.find('/') != std::string::npos || robot.ends_with(kExtension)) {
+    if (isFile(robot)) {
         return motion::RobotModel::load(robot);
     }
     const auto folder = modelsFolder();

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <vector>
+
 #include "commands.hpp"
 #include "metier/motion/robot_model.hpp"
 
@@ -17,5 +19,10 @@ void addRobot(CLI::App& command, std::string& robot);
 Result<motion::RobotModel> loadRobot(const std::string& robot);
 /// All models there, by name. Errors: as RobotModel::load().
 Result<std::vector<motion::RobotModel>> loadAllRobots();
+
+/// The names of the models there are, in the order of the alphabet.
+std::vector<std::string> robotNames();
+/// Whether it has one of these names, or is written as the file of a model.
+bool isRobot(const std::string& robot);
 
 }  // namespace metier::app

@@ -9,10 +9,8 @@
 #include "metier/skill_client/control_handle.hpp"
 #include "metier/skill_client/skill_handle.hpp"
 #include "metier/skill_json/values.hpp"
-#include "owner_options.hpp"
 #include "printable.hpp"
-#include "servers.hpp"
-#include "stop_signal.hpp"
+#include "skill_run.hpp"
 #include "value_text.hpp"
 
 namespace metier::app {
@@ -23,10 +21,8 @@ using skill_client::SkillHandle;
 struct RunOptions {
     SkillChoice choice;
     std::vector<std::string> settings;
-    double timeout = 60.0;
-    OwnerOptions owner;
+    SkillRun run;
     bool fields = false;
-    bool json = false;
 };
 
 void printField(const skill::Field& field) {
@@ -85,8 +81,8 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
     return values;
 }
 
-void printResult(const skill::ValueMap& result, const RunOptions& options) {
-    if (options.json) {
+void printResult(const skill::ValueMap& result, bool as_json) {
+    if (as_json) {
         fmt::print("{}\n",
                    skill_json::toJson(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
         return;
@@ -185,20 +181,26 @@ Exit runRun(const RunOptions& options) {
     if (!values) {
         return reportUsage(values.error());
     }
-    showTransitions(skill);
-    const HaltOnSignal halt_on_signal(signal, *open->client, skill.address());
-    const auto deadline =
-        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                               std::chrono::duration<double>(options.timeout));
-    const auto result = runOwned(skill, *open->client, {*values, deadline, options.owner});
-    if (!result) {
-        return reportOutcome(result.error());
-    }
-    printResult(*result, options);
-    return Exit::success;
+    return runSkill(signal, *open, *values, options.run);
 }
 
 }  // namespace
+
+Exit runSkill(const StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
+              const SkillRun& run) {
+    auto& skill = open.skill;
+    showTransitions(skill);
+    const HaltOnSignal halt_on_signal(signal, *open.client, skill.address());
+    const auto deadline =
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                               std::chrono::duration<double>(run.timeout));
+    const auto result = runOwned(skill, *open.client, {values, deadline, run.owner});
+    if (!result) {
+        return reportOutcome(result.error());
+    }
+    printResult(*result, run.json);
+    return Exit::success;
+}
 
 void addRun(CLI::App& app, Exit& exit) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
@@ -214,13 +216,13 @@ void addRun(CLI::App& app, Exit& exit) {
         ->allow_extra_args(false);
     command->add_flag("--fields", options->fields,
                       "Only show the skill's parameters and results with units and ranges");
-    command->add_option("--timeout", options->timeout, "Halt the skill after so long [s]")
+    command->add_option("--timeout", options->run.timeout, "Halt the skill after so long [s]")
         ->check(CLI::Range(0.1, 86'400.0))
         ->capture_default_str();
-    addOwnerOptions(*command, options->owner,
+    addOwnerOptions(*command, options->run.owner,
                     "Take control for the run; it is lost after so long without a heartbeat, such "
                     "as 300ms");
-    command->add_flag("--json", options->json, "Print the result as JSON");
+    command->add_flag("--json", options->run.json, "Print the result as JSON");
     command->callback([options, &exit] { exit = runRun(*options); });
 }
 

@@ -1,0 +1,339 @@
+// What servers have recorded: a list of executions, and all that is known of one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "metier/records/json.hpp"
+#include "metier/records/trace.hpp"
+#include "printable.hpp"
+#include "recorded.hpp"
+#include "stop_signal.hpp"
+#include "time_text.hpp"
+
+namespace metier::app {
+namespace {
+
+using records::Execution;
+using records::Store;
+
+constexpr auto kLook = std::chrono::milliseconds(250);
+constexpr auto kRetry = std::chrono::seconds(1);
+
+struct HistoryOptions {
+    std::string records;
+    records::Filter filter;
+    records::Page page{.before = 0, .count = 20};
+    std::string since;
+    std::string until;
+    std::string id;
+    bool follow = false;
+    bool json = false;
+};
+
+Result<std::optional<UtcTime>> timeOf(const std::string& text) {
+    if (text.empty()) {
+        return std::optional<UtcTime>();
+    }
+    const auto time = parseTime(text, std::chrono::system_clock::now());
+    return time ? Result<std::optional<UtcTime>>(*time) : fail(time.error());
+}
+
+Result<records::Filter> filterOf(const HistoryOptions& options) {
+    auto filter = options.filter;
+    const auto from = timeOf(options.since);
+    const auto until = timeOf(options.until);
+    if (!from || !until) {
+        return fail(from ? until.error() : from.error());
+    }
+    filter.from = *from;
+    filter.until = *until;
+    return filter;
+}
+
+std::string durationOf(const Execution& e) {
+    return e.isOver()
+               ? fmt::format("{:.3f} s", std::chrono::duration<double>(e.ended - e.started).count())
+               : "-";
+}
+
+/// "Halted (Error): axis 2: ..."
+std::string outcomeOf(const Execution& e) {
+    auto text = e.state;
+    if (!e.reason.empty()) {
+        text += fmt::format(" ({})", e.reason);
+    }
+    return e.reason_text.empty() ? text : text + ": " + e.reason_text;
+}
+
+std::string serverOf(const Execution& e) {
+    return e.server_name.empty() ? e.server : e.server_name;
+}
+
+/// A line of the list.
+void printLine(const Execution& e, const HistoryOptions& options) {
+    if (options.json) {
+        fmt::print("{}\n", printable(records::toJson(e)));
+        return;
+    }
+    const auto line = fmt::format("{:>8}  {}  {:>11}  {:<14} {:<26} {:<10} {}", e.number,
+                                  records::timeText(e.started), durationOf(e), serverOf(e), e.skill,
+                                  e.user.empty() ? "-" : e.user, outcomeOf(e));
+    fmt::print("{}\n", printable(line));
+}
+
+void printHeading(const HistoryOptions& options) {
+    if (!options.json) {
+        fmt::print("{:>8}  {:<24}  {:>11}  {:<14} {:<26} {:<10} {}\n", "number", "started (UTC)",
+                   "duration", "server", "skill", "user", "state");
+    }
+}
+
+Exit runList(const HistoryOptions& options) {
+    const auto filter = filterOf(options);
+    if (!filter) {
+        return reportUsage(filter.error());
+    }
+    const auto store = openRecords(options.records);
+    const auto listing = store ? (*store)->list(*filter, options.page)
+                               : Result<records::Listing>(fail(store.error()));
+    if (!listing) {
+        return report(listing.error());
+    }
+    printHeading(options);
+    for (const auto& execution : listing->executions) {
+        printLine(execution, options);
+    }
+    if (listing->more) {
+        fmt::print(stderr, "more: --before {}\n", listing->executions.back().number);
+    }
+    return Exit::success;
+}
+
+/// Prints what comes or changes, also after the store was away for a while.
+class Follower {
+public:
+    Follower(const HistoryOptions& options, records::Filter filter)
+        : options_(options), filter_(std::move(filter)) {}
+
+    /// One look.
+    Result<void> look() {
+        if (store_ == nullptr) {
+            if (auto opened = open(); !opened) {
+                return opened;
+            }
+        }
+        const auto changes = store_->changes(revision_);
+        if (!changes) {
+            store_.reset();
+            return fail(changes.error());
+        }
+        revision_ = changes->revision;
+        for (const auto& execution : changes->executions) {
+            if (records::fits(execution, filter_)) {
+                printLine(execution, options_);
+            }
+        }
+        std::fflush(stdout);
+        return {};
+    }
+
+private:
+    Result<void> open() {
+        auto store = openRecords(options_.records);
+        if (!store) {
+            return fail(store.error());
+        }
+        store_ = std::move(*store);
+        return revision_ < 0 ? printLast() : Result<void>();
+    }
+    /// The last ones, oldest first, to begin with.
+    Result<void> printLast() {
+        const auto revision = store_->latestRevision();
+        auto last = store_->list(filter_, options_.page);
+        if (!revision || !last) {
+            store_.reset();
+            return fail(revision ? last.error() : revision.error());
+        }
+        std::reverse(last->executions.begin(), last->executions.end());
+        for (const auto& execution : last->executions) {
+            printLine(execution, options_);
+        }
+        revision_ = *revision;
+        return {};
+    }
+
+    const HistoryOptions& options_;
+    const records::Filter filter_;
+    std::unique_ptr<Store> store_;
+    std::int64_t revision_ = -1;
+};
+
+Exit runFollow(const HistoryOptions& options) {
+    const StopSignal signal;
+    const auto filter = filterOf(options);
+    if (!filter) {
+        return reportUsage(filter.error());
+    }
+    printHeading(options);
+    Follower follower(options, *filter);
+    std::string told;
+    do {
+        const auto looked = follower.look();
+        const auto problem = looked ? std::string() : looked.error().message;
+        // A file that nobody has written to yet may come.
+        if (!looked && looked.error().code != Errc::not_found &&
+            looked.error().code != Errc::resource_unavailable &&
+            looked.error().code != Errc::connection_lost) {
+            return report(looked.error());
+        }
+        if (problem != std::exchange(told, problem) && !problem.empty()) {
+            fmt::print(stderr, "metier: {}; waiting\n", printable(problem));
+        }
+    } while (!signal.waitUntil(std::chrono::steady_clock::now() + (told.empty() ? kLook : kRetry)));
+    return Exit::success;
+}
+
+void printField(const char* name, const std::string& value) {
+    if (!value.empty()) {
+        fmt::print("  {:<14} {}\n", name, printable(value));
+    }
+}
+
+void printTransitions(const records::Details& details) {
+    for (const auto& t : details.transitions) {
+        const std::chrono::duration<double> time(t.time - details.execution.started);
+        auto line = fmt::format("{:>10.3f} s  {} to {}", time.count(), t.from, t.to);
+        for (const auto* more : {&t.sub_state, &t.step, &t.reason, &t.reason_text}) {
+            line += more->empty() ? "" : ", " + *more;
+        }
+        fmt::print("  {}\n", printable(line));
+    }
+}
+
+void printDetails(const records::Details& details) {
+    const auto& e = details.execution;
+    fmt::print("execution {} ({})\n", e.number, printable(e.id));
+    printField("skill", e.controller.empty() ? e.skill : e.controller + "/" + e.skill);
+    printField("server", fmt::format("{} ({})", serverOf(e), e.server));
+    printField("device", e.device);
+    printField("started", records::timeText(e.started));
+    printField("ended", e.isOver() ? records::timeText(e.ended) : "under way");
+    printField("duration", durationOf(e));
+    printField("state", outcomeOf(e));
+    printField("user", e.user);
+    printField("client", e.client_name);
+    printField("session", e.session);
+    printField("certificate", e.thumbprint);
+    printField("parent", e.parent);
+    printField("parent server", e.parent_server);
+    printField("parameters", e.parameters);
+    printField("check", e.check);
+    printField("result", e.result);
+    printField("missed cycles", std::to_string(e.missed_cycles));
+    printField("path", fmt::format("{} samples", details.path.size()));
+    printField("intermediate", fmt::format("{} results", details.intermediates.size()));
+    fmt::print("transitions, after the start:\n");
+    printTransitions(details);
+    fmt::print("{}", details.children.empty() ? "" : "started:\n");
+    for (const auto& child : details.children) {
+        printLine(child, {});
+    }
+}
+
+Exit runShow(const HistoryOptions& options) {
+    const auto store = openRecords(options.records);
+    const auto execution =
+        store ? (*store)->find(options.id) : Result<Execution>(fail(store.error()));
+    const auto details = execution ? records::detailsOf(**store, execution->number)
+                                   : Result<records::Details>(fail(execution.error()));
+    if (!details) {
+        return report(details.error());
+    }
+    if (options.json) {
+        fmt::print("{}\n", printable(records::toJson(*details)));
+    } else {
+        printDetails(*details);
+    }
+    return Exit::success;
+}
+
+void addFilter(CLI::App& command, HistoryOptions& options) {
+    auto& filter = options.filter;
+    command.add_option("--server", filter.server, "Of this server: name or ApplicationUri");
+    command.add_option("--skill", filter.skill, "Of this skill");
+    command.add_option("--state", filter.state, "In this state: Running, Ready, Halted, Lost");
+    command.add_option("--reason", filter.reason, "For this reason, as Finished or ByClient");
+    command.add_option("--user", filter.user, "Started by this user");
+    command.add_option("--parent", filter.parent, "Started by the execution of this id");
+    command.add_option("--text", filter.text, "With this text in its names or its reason");
+    command.add_option("--since", options.since,
+                       "Started since: 2026-11-22T09:30 (UTC), or 30m, 8h, 7d ago");
+    command.add_option("--until", options.until, "Started before, in the same form");
+    command.add_option("--before", options.page.before,
+                       "The next page: what comes after the execution of this number");
+    command.add_option("--count", options.page.count, "How many")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+}
+
+struct TraceOptions {
+    std::string records;
+    std::string id;
+};
+
+Exit runTrace(const TraceOptions& options) {
+    const auto store = openRecords(options.records);
+    const auto execution =
+        store ? (*store)->find(options.id) : Result<Execution>(fail(store.error()));
+    const auto trace = execution ? records::chromeTrace(**store, execution->number)
+                                 : Result<std::string>(fail(execution.error()));
+    if (!trace) {
+        return report(trace.error());
+    }
+    fmt::print("{}\n", printable(*trace));
+    return Exit::success;
+}
+
+}  // namespace
+
+void addHistory(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callbacks, which read it.
+    auto options = std::make_shared<HistoryOptions>();
+    auto* command =
+        app.add_subcommand("history", "Executions that servers have recorded, newest first");
+    addRecords(*command, options->records);
+    addFilter(*command, *options);
+    command->add_flag("--follow", options->follow,
+                      "Print the last ones, oldest first, then each that begins, changes its state "
+                      "or ends, until Ctrl-C");
+    command->add_flag("--json", options->json, "Print one JSON object per line");
+    auto* show = command->add_subcommand("show", "All that is known of one execution");
+    show->add_option("ID", options->id, "Its number or its id")->required();
+    command->callback([options, command, &exit] {
+        if (!command->get_subcommands().empty()) {
+            exit = runShow(*options);
+            return;
+        }
+        exit = options->follow ? runFollow(*options) : runList(*options);
+    });
+}
+
+void addTrace(CLI::App& app, Exit& exit) {
+    // Shared by CLI11, which fills it, and the callback, which reads it.
+    auto options = std::make_shared<TraceOptions>();
+    auto* command = app.add_subcommand(
+        "trace",
+        "Print a recorded execution and all that it started as Chrome trace JSON, for "
+        "chrome://tracing or ui.perfetto.dev");
+    command->add_option("ID", options->id, "Its number or its id")->required();
+    addRecords(*command, options->records);
+    command->callback([options, &exit] { exit = runTrace(*options); });
+}
+
+}  // namespace metier::app

@@ -1,0 +1,95 @@
+#include "recorded.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "folders.hpp"
+#include "robot_argument.hpp"
+
+namespace metier::app {
+namespace {
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+}  // namespace
+
+std::string defaultRecords() {
+    const auto folder = userStateFolder();
+    return folder.empty() ? std::string() : (folder / "records.db").string();
+}
+
+void addRecords(CLI::App& command, std::string& url) {
+    url = defaultRecords();
+    command
+        .add_option("--records", url,
+                    "Where the records are: a file, sqlite:FILE or "
+                    "postgresql://USER@HOST/DATABASE")
+        ->capture_default_str();
+}
+
+Result<std::unique_ptr<records::Store>> openRecords(const std::string& url) {
+    return records::Store::open(url);
+}
+
+Result<motion::RobotModel> robotOf(const records::Execution& execution, const std::string& named) {
+    if (!named.empty()) {
+        return loadRobot(named);
+    }
+    const auto names = lower(execution.device + " " + execution.server_name);
+    std::string best;
+    for (const auto& name : robotNames()) {
+        auto model = loadRobot(name);
+        if (model && !execution.device.empty() && model->product() == execution.device) {
+            return model;
+        }
+        const bool longer = name.size() > best.size();
+        best = longer && names.find(lower(name)) != std::string::npos ? name : best;
+    }
+    if (best.empty()) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("execution {}: no model is known for device '{}' of server '{}'; "
+                                "name one with --robot",
+                                execution.number, execution.device, execution.server_name));
+    }
+    return loadRobot(best);
+}
+
+Result<path_evaluation::MotionRecord> pathOf(records::Store& store,
+                                             const records::Execution& execution) {
+    const auto samples = store.path(execution.number);
+    if (!samples) {
+        return fail(samples.error());
+    }
+    path_evaluation::MotionRecord record;
+    for (const auto& sample : *samples) {
+        const auto values = sample.actual.values();
+        const auto position = motion::JointVector::from(values);
+        // Two samples of one instant say no more than one.
+        if (!position || (!record.empty() && sample.time <= record.back().time)) {
+            continue;
+        }
+        if (!record.empty() && position->size() != record.front().position.size()) {
+            return fail(
+                Errc::invalid_argument,
+                fmt::format("execution {}: {} axes at {:.3f} s, {} before", execution.number,
+                            position->size(), sample.time, record.front().position.size()));
+        }
+        record.push_back({sample.time, *position});
+    }
+    if (record.size() < path_evaluation::kFewestRecorded) {
+        return fail(Errc::not_found,
+                    fmt::format("execution {} ({}): {} joint positions were recorded; a drawing "
+                                "needs {}",
+                                execution.number, execution.skill, record.size(),
+                                path_evaluation::kFewestRecorded));
+    }
+    return record;
+}
+
+}  // namespace metier::app

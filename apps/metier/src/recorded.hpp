@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "metier/base/error.hpp"
+#include "metier/motion/robot_model.hpp"
+#include "metier/path_evaluation/motion_record.hpp"
+#include "metier/records/store.hpp"
+
+namespace metier::app {
+
+/// Where this user's servers record: `records.db` in the user's state folder.
+std::string defaultRecords();
+/// Adds --records to a command.
+void addRecords(CLI::App& command, std::string& url);
+/// Errors: as Store::open().
+Result<std::unique_ptr<records::Store>> openRecords(const std::string& url);
+
+/// The model of the robot that an execution moved: the product that its device is, or the model
+/// with the longest name that is in those of its device and server.
+/// \param named by the user, instead; may be empty
+/// Errors: invalid_argument, as loadRobot(), or if no model is named so.
+Result<motion::RobotModel> robotOf(const records::Execution& execution, const std::string& named);
+
+/// Where the axes were, as far as it was recorded; for the drawings.
+/// Errors: not_found (nothing was recorded), invalid_argument (too little, or other axes).
+Result<path_evaluation::MotionRecord> pathOf(records::Store& store,
+                                             const records::Execution& execution);
+
+}  // namespace metier::app

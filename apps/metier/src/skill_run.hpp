@@ -1,0 +1,23 @@
+#pragma once
+
+#include "commands.hpp"
+#include "metier/skill/value.hpp"
+#include "owner_options.hpp"
+#include "servers.hpp"
+#include "stop_signal.hpp"
+
+namespace metier::app {
+
+/// How a command runs a skill.
+struct SkillRun {
+    double timeout = 60.0;  ///< halted after that [s]
+    OwnerOptions owner{};
+    bool json = false;  ///< how the result is printed
+};
+
+/// Starts the skill, shows its transitions on standard error, waits for its end and prints its
+/// result. Ctrl-C halts it. \param signal made before all threads
+Exit runSkill(const StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
+              const SkillRun& run);
+
+}  // namespace metier::app
