@@ -13,7 +13,9 @@
 
 #include "commands.hpp"
 #include "discovered_servers.hpp"
+#include "folders.hpp"
 #include "metier/configuration/cell.hpp"
+#include "ready_line.hpp"
 #include "robot_argument.hpp"
 #include "security.hpp"
 #include "servers.hpp"
@@ -37,6 +39,7 @@ struct DashboardOptions {
     std::string host_name;
     std::string web;
     std::string meshes;
+    std::string records;
 };
 
 /// The page's files: of the installed program, else of the build.
@@ -90,6 +93,20 @@ Result<Cell> cellOf(const DashboardOptions& options) {
     return cell;
 }
 
+/// Where servers of this user record, if nobody says anything else; empty: nowhere.
+std::string recordsOf(const DashboardOptions& options) {
+    if (!options.records.empty()) {
+        return options.records == "off" ? "" : options.records;
+    }
+    const auto folder = userStateFolder();
+    return folder.empty() ? "" : (folder / "records.db").string();
+}
+
+std::string urlOf(const std::string& address, std::uint16_t port) {
+    const bool v6 = address.find(':') != std::string::npos;
+    return fmt::format("http://{}{}{}:{}", v6 ? "[" : "", address, v6 ? "]" : "", port);
+}
+
 /// Servers that discovery tells of are added as they come, until the signal.
 void watchDiscovery(Dashboard& page, const DashboardOptions& options, const StopSignal& stop) {
     constexpr std::chrono::seconds kBetween{10};
@@ -138,12 +155,13 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
          .host_name = options.host_name,
          .web = webFolder(options.web),
          .meshes = options.meshes,
+         .records = recordsOf(options),
          .models = std::move(*models)},
         clock);
     if (!page) {
         return fail(page.error());
     }
-    fmt::print("dashboard http://{}:{}/\n", options.address, (*page)->port());
+    fmt::print("{}\n", readyLine(urlOf(options.address, (*page)->port())));
     std::fflush(stdout);
     if (options.discovery.empty() && !options.mdns) {
         stop.wait();
@@ -191,6 +209,9 @@ void addDashboard(CLI::App& app, Exit& exit) {
     command->add_option("--discovery", options->discovery,
                         "Also show the servers that these discovery servers know");
     command->add_flag("--mdns", options->mdns, "Also show the servers that mDNS tells of");
+    command->add_option("--records", options->records,
+                        "Where servers record what they execute: a file, sqlite:FILE, "
+                        "postgresql://..., or off [records.db in ~/.local/state/metier]");
     addHttpOptions(*command, *options);
     command->callback([options, &exit] { exit = runDashboard(*options); });
 }

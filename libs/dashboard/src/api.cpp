@@ -36,6 +36,7 @@ Api::Api(const Parts& parts)
       watches_(parts.watches),
       people_(parts.people),
       tabs_(parts.tabs),
+      records_(parts.records),
       commands_(parts.watches, parts.tabs),
       streams_(parts.board, parts.options.limits) {}
 
@@ -222,6 +223,12 @@ void Api::bind(HttpServer& server) {
             auto cell = board_.cell();
             cell["lab"] = people_.isLab();
             return Reply{200, std::move(cell)};
+        });
+    get(server, "/api/records",
+        [this](const Request& request, const auto& /*person*/) { return records_.list(request); });
+    get(server, R"(/api/records/(\d{1,18}))",
+        [this](const Request& request, const auto& /*person*/) {
+            return records_.one(std::stoll(request.matches[1]));
         });
     server.Get("/api/stream", [this](const Request& request, Response& response) {
         beginStream(request, response);

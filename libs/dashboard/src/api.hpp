@@ -9,6 +9,7 @@
 #include "http_server.hpp"
 #include "metier/dashboard/dashboard.hpp"
 #include "people.hpp"
+#include "records_view.hpp"
 #include "reply.hpp"
 #include "stream.hpp"
 #include "watches.hpp"
@@ -26,6 +27,7 @@ public:
         Watches& watches;
         People& people;
         Tabs& tabs;
+        RecordsView& records;
     };
 
     /// What it is given must outlive this, and this the server's end.
@@ -54,6 +56,7 @@ private:
     Watches& watches_;
     People& people_;
     Tabs& tabs_;
+    RecordsView& records_;
     Commands commands_;
     Streams streams_;
 };

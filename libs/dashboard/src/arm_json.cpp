@@ -7,6 +7,7 @@
 
 #include "live_values.hpp"
 #include "metier/geometry/frame.hpp"
+#include "metier/motion/robot_model.hpp"
 
 namespace metier::dashboard {
 namespace {

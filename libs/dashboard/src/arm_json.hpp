@@ -7,8 +7,11 @@
 
 #include "metier/base/quantities.hpp"
 #include "metier/dashboard/cell.hpp"
-#include "metier/motion/robot_model.hpp"
 #include "metier/opcua_skill/kinematics_data.hpp"
+
+namespace metier::motion {
+class RobotModel;
+}
 
 namespace metier::dashboard {
 

@@ -274,6 +274,21 @@ json Board::serversJson() const {
     return servers;
 }
 
+std::string Board::armOf(const std::string& application_uri, const std::string& controller,
+                         const std::string& skill) const {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [key, server] : servers_) {
+        for (const auto& one :
+             server.application_uri == application_uri ? server.skills : json::array()) {
+            if (one.at("name") == skill && one.at("controller") == controller &&
+                one.at("arm").is_string()) {
+                return one.at("arm").get<std::string>();
+            }
+        }
+    }
+    return {};
+}
+
 json Board::cell() const {
     const std::lock_guard lock(mutex_);
     auto cell = cell_;

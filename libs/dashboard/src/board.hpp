@@ -107,6 +107,10 @@ public:
     void tick();
 
     nlohmann::json cell() const;
+    /// Key of the arm that a skill moves; empty: none, or not known.
+    /// \param application_uri of its server
+    std::string armOf(const std::string& application_uri, const std::string& controller,
+                      const std::string& skill) const;
 
 private:
     struct Tab {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "metier/base/clock.hpp"
-#include "metier/dashboard/dashboard.hpp"
+#include "metier/dashboard/http_limits.hpp"
 
 namespace metier::dashboard {
 

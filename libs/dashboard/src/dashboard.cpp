@@ -8,6 +8,7 @@
 #include "board.hpp"
 #include "http_server.hpp"
 #include "people.hpp"
+#include "records_view.hpp"
 #include "tabs.hpp"
 #include "ticker.hpp"
 #include "watches.hpp"
@@ -33,7 +34,8 @@ struct Dashboard::Impl {
           watches(board, options.connector, options.models),
           people(options.connector, watches, options.lab, clock),
           tabs(board, watches),
-          api({options, board, watches, people, tabs}),
+          records(options.records, board),
+          api({options, board, watches, people, tabs, records}),
           http(options.limits) {}
 
     const Options options;
@@ -41,6 +43,7 @@ struct Dashboard::Impl {
     Watches watches;
     People people;
     Tabs tabs;
+    RecordsView records;
     Api api;
     HttpServer http;
     std::uint16_t port = 0;
@@ -57,6 +60,7 @@ Result<std::unique_ptr<Dashboard>> Dashboard::start(Options options, const Clock
     own.board.onWatched([&own](bool watched) {
         own.watches.showLive(watched);
         own.ticker.run(watched);
+        own.records.show(watched);
         if (own.world) {
             own.world->show(watched);
         }

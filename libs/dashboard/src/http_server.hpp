@@ -11,7 +11,7 @@
 
 #include "connection.hpp"
 #include "metier/base/error.hpp"
-#include "metier/dashboard/dashboard.hpp"
+#include "metier/dashboard/http_limits.hpp"
 
 namespace metier::dashboard {
 

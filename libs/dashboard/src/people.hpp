@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "metier/base/clock.hpp"
-#include "metier/dashboard/dashboard.hpp"
+#include "metier/dashboard/connector.hpp"
 #include "metier/opcua/client.hpp"
 #include "skill_session.hpp"
 #include "watches.hpp"

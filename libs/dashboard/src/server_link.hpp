@@ -9,11 +9,14 @@
 
 #include "board.hpp"
 #include "metier/dashboard/cell.hpp"
-#include "metier/motion/robot_model.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill_client/async_skill.hpp"
 #include "metier/skill_client/kinematics_reader.hpp"
 #include "metier/skill_client/skill_finder.hpp"
+
+namespace metier::motion {
+class RobotModel;
+}
 
 namespace metier::dashboard {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "metier/dashboard/dashboard.hpp"
+#include "metier/dashboard/connector.hpp"
 #include "server_link.hpp"
 
 namespace metier::dashboard {

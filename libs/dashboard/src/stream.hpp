@@ -7,7 +7,7 @@
 #include <string>
 
 #include "board.hpp"
-#include "metier/dashboard/dashboard.hpp"
+#include "metier/dashboard/http_limits.hpp"
 
 namespace metier::dashboard {
 

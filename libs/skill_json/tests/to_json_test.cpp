@@ -35,38 +35,5 @@ TEST(ToJson, NamesTheValuesOfAMap) {
     EXPECT_TRUE(json.at("Part").is_null());
 }
 
-TEST(FromJson, ReadsWhatToJsonWrote) {
-    const std::vector<skill::Value> values{skill::Value{},
-                                           true,
-                                           std::int32_t{-3},
-                                           std::uint32_t{4},
-                                           std::uint64_t{1} << 60U,
-                                           0.25,
-                                           std::string("a\"b"),
-                                           skill::Frame{1, 2, 3, 4, 5, 6},
-                                           skill::Vector3{1, 2, 3},
-                                           std::vector<double>{1, 2.5},
-                                           std::vector<std::string>{"a", ""},
-                                           std::vector<skill::Range>{{-1, 1}},
-                                           std::vector<skill::Frame>{{}, {1, 2, 3, 4, 5, 6}}};
-    ASSERT_EQ(values.size(), std::variant_size_v<skill::Value>);
-    for (const auto& value : values) {
-        const auto read = fromJson(skill::typeOf(value), toJson(value));
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(*read, value) << skill::toString(value);
-    }
-}
-
-TEST(FromJson, RefusesAnotherType) {
-    using skill::ValueType;
-    const auto refused = fromJson(ValueType::frame, nlohmann::json::parse(R"({"x":1})"));
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, Errc::type_mismatch);
-    EXPECT_EQ(refused.error().message, R"({"x":1} is no frame)");
-    EXPECT_FALSE(fromJson(ValueType::numbers, "text"));
-    EXPECT_FALSE(fromJson(ValueType::text, 3));
-    EXPECT_FALSE(fromJson(ValueType::ranges, nlohmann::json::parse("[1]")));
-}
-
 }  // namespace
 }  // namespace metier::skill_json

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,31 +9,11 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/dashboard/cell.hpp"
+#include "metier/dashboard/connector.hpp"
+#include "metier/dashboard/http_limits.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "metier/opcua/client.hpp"
 
 namespace metier::dashboard {
-
-/// How this program connects to servers. Both functions from any thread.
-struct Connector {
-    /// As secure as that server wants it, as this program's own user.
-    /// Errors: told on the page.
-    std::function<Result<opcua::ClientOptions>(const std::string& url)> options;
-    /// What a person can do about a connection that was refused; begins with "; ", or is empty.
-    std::function<std::string(const opcua::Failure&)> advice;
-};
-
-/// What one peer may ask of the page's server.
-struct HttpLimits {
-    std::size_t connections = 256;                   ///< at the same time, streams among them
-    std::size_t tabs = 128;                          ///< streams at the same time
-    std::size_t head_bytes = 16'384;                 ///< request line and header fields
-    std::size_t body_bytes = 262'144;                ///< of one request
-    std::size_t waiting_bytes = 2'097'152;           ///< owed to one stream; then it is cut
-    std::chrono::milliseconds request_time{10'000};  ///< for one request to arrive
-    std::chrono::milliseconds idle_time{15'000};     ///< between two requests of a connection
-    std::chrono::milliseconds send_time{5'000};      ///< without progress; then it is cut
-};
 
 struct Options {
     Cell cell;
@@ -47,8 +24,10 @@ struct Options {
     std::uint16_t port = 0;  ///< 0: a free one
     /// Name by which people reach the page, besides addresses and localhost; empty: none.
     std::string host_name{};
-    std::filesystem::path web;                 ///< folder with the files of the page
-    std::filesystem::path meshes{};            ///< folder served below /meshes; empty: none
+    std::filesystem::path web;       ///< folder with the files of the page
+    std::filesystem::path meshes{};  ///< folder served below /meshes; empty: none
+    /// Of what servers record, as records::Store::open() takes it; empty: nothing is shown.
+    std::string records{};
     std::vector<motion::RobotModel> models{};  ///< whose shapes arms may have
     HttpLimits limits{};
 };
