@@ -18,7 +18,7 @@ function option(name: string): string | null {
 }
 
 const kTypes: Record<string, string> = {
-    '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.urdf': 'application/xml', '.stl': 'model/stl',
+    '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.txt': 'text/plain', '.urdf': 'application/xml', '.stl': 'model/stl',
 };
 const kTick = 1 / 30;
 
@@ -49,7 +49,7 @@ function file(response: ServerResponse, folder: string, path: string): void {
         const content = readFileSync(join(folder, inside));
         response.writeHead(200, {
             'Content-Type': kTypes[extname(inside)] ?? 'application/octet-stream',
-            'Content-Security-Policy': "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; frame-ancestors 'none'",
+            'Content-Security-Policy': "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; font-src 'self'; connect-src 'self'",
         }).end(content);
     } catch {
         throw new Refusal(404, 'not_found', path);
@@ -129,7 +129,7 @@ function post(request: IncomingMessage, response: ServerResponse, path: string, 
     }
     if (!isLoggedIn(request)) throw new Refusal(401, 'login_required', 'Log in first');
     const command = /^\/api\/skills\/(suspend|resume|reset|halt)$/.exec(path);
-    if (path === '/api/control') cell.take(tab, body.server ?? null, body.action ?? '');
+    if (path === '/api/control') cell.take(tab, body.server ?? '', body.action ?? '');
     else if (path === '/api/skills/check') return answer(response, 200, cell.check(key, parameters));
     else if (path === '/api/skills/start') return answer(response, 200, { execution: cell.start(tab, key, parameters) });
     else if (path === '/api/halt') return answer(response, 200, { halted: cell.haltWhat(body), failed: [] });

@@ -152,7 +152,7 @@ test('finds an execution, replays it, and compares two', () => withVisit(browser
 
 test('frees what a closed tab controlled', () => withVisit(browser, quiet.line, async (page) => {
     const other = await visit(browser, quiet.line);
-    await other.page.locator('.link[data-link=live]').waitFor();
+    await other.page.locator('.link-state[data-link=live]').waitFor();
     await takeControl(other.page);
     await page.locator('[data-server=iiwa] .owner', { hasText: 'demo client' }).waitFor();
     await other.close();

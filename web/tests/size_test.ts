@@ -10,9 +10,9 @@ import { kBuilt, kSource } from './fake/places.js';
 const kMost = 300_000;
 
 function sizes(): { name: string; size: number }[] {
-    const folder = join(kBuilt, 'page/assets');
+    const folder = join(kBuilt, 'dist/assets');
     const names = readdirSync(folder).filter((name) => /\.(js|css|svg)$/.test(name));
-    const files = [...names.map((name) => ({ name, path: join(folder, name) })), { name: 'index.html', path: join(kBuilt, 'page/index.html') }];
+    const files = [...names.map((name) => ({ name, path: join(folder, name) })), { name: 'index.html', path: join(kBuilt, 'dist/index.html') }];
     return files.map(({ name, path }) => ({ name, size: gzipSync(readFileSync(path)).length }));
 }
 
@@ -25,7 +25,7 @@ test('all files together are below 300 kB compressed', () => {
 });
 
 test('nothing is loaded from elsewhere', () => {
-    const html = readFileSync(join(kBuilt, 'page/index.html'), 'utf8');
+    const html = readFileSync(join(kBuilt, 'dist/index.html'), 'utf8');
     assert.equal(/(src|href)="(https?:)?\/\//.test(html), false);
     const css = readFileSync(join(kBuilt, 'page/assets/style.css'), 'utf8');
     assert.equal(/@import|url\((?!["']?data:)/.test(css), false);

@@ -71,6 +71,10 @@ export interface RecordFilter {
 
 export type SkillCommand = 'suspend' | 'resume' | 'reset' | 'halt';
 
+export interface ControlAnswer {
+    failed?: { server: string; message: string }[];
+}
+
 export interface HaltAnswer {
     halted: string[];
     failed: { server: string; message: string }[];
@@ -90,8 +94,8 @@ export const api = {
     logout: () => post<object>('/api/logout', {}),
     cell: () => get<Cell>('/api/cell'),
     meshes: () => get<{ files: string[] }>('/api/meshes'),
-    control: (tab: string, action: 'take' | 'release', server?: string) =>
-        post<object>('/api/control', server === undefined ? { tab, all: true, action } : { tab, server, action }),
+    /** \param server key, or "all" */
+    control: (tab: string, action: 'take' | 'release', server: string) => post<ControlAnswer>('/api/control', { tab, server, action }),
     check: (tab: string, key: string, parameters: object) => post<CheckResult>('/api/skills/check', { tab, key, parameters }),
     start: (tab: string, key: string, parameters: object) => post<{ execution: string }>('/api/skills/start', { tab, key, parameters }),
     skill: (tab: string, key: string, command: SkillCommand) => post<object>(`/api/skills/${command}`, { tab, key }),

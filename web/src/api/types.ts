@@ -96,7 +96,14 @@ export interface Server {
     skills: Skill[];
 }
 
+export interface Part {
+    name: string;
+    size: Vector3;
+    pose: Frame;
+}
+
 export interface World {
+    parts?: Part[];
     table?: { height: number } | null;
     walls?: { name: string; point: Vector3; normal: Vector3 }[];
 }
@@ -157,19 +164,12 @@ export interface ArmSample {
     width?: number;
 }
 
-/** In the world. */
-export interface Part {
-    pose: Frame;
-    size: Vector3;
-    held_by?: string | null;
-}
-
 export interface LiveEvent {
     t: number;
     arms?: Record<string, ArmSample>;
     grippers?: Record<string, { width?: number; held?: boolean }>;
-    /** null: the part is gone. */
-    parts?: Record<string, Part | null>;
+    /** In the world; null: the part is gone. */
+    parts?: Record<string, Frame | null>;
 }
 
 export interface Snapshot {

@@ -130,19 +130,19 @@ export class CellView {
     }
 
     private followParts(): void {
-        for (const [name, mesh] of this.parts) {
-            if (this.live.parts.has(name)) continue;
-            mesh.removeFromParent();
-            this.parts.delete(name);
+        for (const [name, pose] of this.live.parts) {
+            const mesh = this.parts.get(name);
+            if (mesh === undefined) continue;
+            mesh.visible = pose !== null;
+            if (pose !== null) placeFrame(mesh, pose);
         }
-        for (const [name, part] of this.live.parts) placeFrame(this.parts.get(name) ?? this.addPart(name, part), part.pose);
     }
 
-    private addPart(name: string, part: Part): Object3D {
+    private addPart(part: Part): void {
         const mesh = solid(part.size as [number, number, number], this.part_paint);
-        this.parts.set(name, mesh);
+        placeFrame(mesh, part.pose);
+        this.parts.set(part.name, mesh);
         this.root.add(mesh);
-        return mesh;
     }
 
     private setScale(scale: number): void {
@@ -153,6 +153,7 @@ export class CellView {
 
     private addWorld(world: World | null | undefined): void {
         if (world === null || world === undefined) return;
+        for (const part of world.parts ?? []) this.addPart(part);
         const height = world.table?.height ?? 0;
         if (Math.abs(height) > 1e-3) this.addTable(height);
     }

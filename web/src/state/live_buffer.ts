@@ -1,6 +1,6 @@
 // The last half minute of what the arms measured, and where they were between two samples.
 
-import type { ArmSample, LiveEvent, Part } from '../api/types.js';
+import type { ArmSample, Frame, LiveEvent } from '../api/types.js';
 
 export interface TimedSample extends ArmSample {
     t: number;
@@ -54,7 +54,8 @@ export class LiveBuffer {
     readonly arms = new Map<string, ArmBuffer>();
     readonly widths = new Map<string, number>();
     readonly held = new Map<string, boolean>();
-    readonly parts = new Map<string, Part>();
+    /** Where parts are in the world; null: gone. */
+    readonly parts = new Map<string, Frame | null>();
     /** Least of (this clock - server's clock) that was seen lately: the quickest way of a sample [s]. */
     private offset = Infinity;
     private version_ = 0;
@@ -76,10 +77,7 @@ export class LiveBuffer {
             if (gripper.width !== undefined) this.widths.set(key, gripper.width);
             if (gripper.held !== undefined) this.held.set(key, gripper.held);
         }
-        for (const [name, part] of Object.entries(event.parts ?? {})) {
-            if (part === null) this.parts.delete(name);
-            else this.parts.set(name, part);
-        }
+        for (const [name, pose] of Object.entries(event.parts ?? {})) this.parts.set(name, pose);
     }
 
     arm(key: string): ArmBuffer {

@@ -40,12 +40,19 @@ export class Actions {
         this.toasts.show('bad', `${what}: not done`, textOf(error));
     }
 
-    takeControl(server?: string): Promise<boolean> {
-        return this.attempt('Take control', () => this.api.control(this.tab, 'take', server));
+    takeControl(server = 'all'): Promise<boolean> {
+        return this.control('Take control', 'take', server);
     }
 
-    releaseControl(server?: string): Promise<boolean> {
-        return this.attempt('Release control', () => this.api.control(this.tab, 'release', server));
+    releaseControl(server = 'all'): Promise<boolean> {
+        return this.control('Release control', 'release', server);
+    }
+
+    private control(what: string, action: 'take' | 'release', server: string): Promise<boolean> {
+        return this.attempt(what, async () => {
+            const answer = await this.api.control(this.tab, action, server);
+            for (const failure of answer.failed ?? []) this.toasts.show('note', `${what} of ${failure.server}: not done`, failure.message);
+        });
     }
 
     command(skill: Skill, command: SkillCommand): Promise<boolean> {

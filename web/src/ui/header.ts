@@ -16,7 +16,7 @@ export interface HeaderActions {
 export class Header {
     readonly element: HTMLElement;
     private readonly cell = h('span', { class: 'cell-name' });
-    private readonly link = h('span', { class: 'link', role: 'status' });
+    private readonly link = h('span', { class: 'link-state', role: 'status' });
     private readonly lab = h('span', { class: 'badge warn', title: 'No encryption, no users: this machine only' }, 'Insecure lab');
     private readonly mode = h('span', { class: 'mode', role: 'status' });
     private readonly take: HTMLButtonElement;

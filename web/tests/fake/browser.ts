@@ -46,7 +46,7 @@ export async function startProgram(command: string, args: readonly string[], rea
 }
 
 export function startFake(...options: string[]): Promise<Program> {
-    return startProgram(process.execPath, [join(kBuilt, 'tests/fake_dashboard.mjs'), join(kBuilt, 'page'), join(kSource, 'models'), ...options], /^http:/);
+    return startProgram(process.execPath, [join(kBuilt, 'tests/fake_dashboard.mjs'), join(kBuilt, 'dist'), join(kSource, 'models'), ...options], /^http:/);
 }
 
 export function startBrowser(): Promise<Browser> {
@@ -78,7 +78,7 @@ export async function withVisit(browser: Browser, url: string, test: (page: Page
     const visitor = await visit(browser, url, look);
     try {
         await visitor.page.locator('.skill').first().waitFor({ state: 'attached' });
-        await visitor.page.locator('.link[data-link=live]').waitFor();
+        await visitor.page.locator('.link-state[data-link=live]').waitFor();
         await test(visitor.page);
         assert.deepEqual(visitor.faults, []);
     } finally {

@@ -59,6 +59,6 @@ export function describeCell(models: string): FakeDescription {
         server('edo', 48431, moveSkills('edo', edo), { arm: 'edo' }),
         server('wsg50', 48441, gripper, { gripper: { arm: 'iiwa', frame: [0, 0, 0.15, 0, 0, 0], stroke: 0.11, width: 0.05 } }),
     ];
-    const world = { table: { height: 0 }, walls: [] };
+    const world = { table: { height: 0 }, parts: [{ name: 'cube', size: [0.03, 0.03, 0.03] as const, pose: [0.5, 0.3, 0.015, 0, 0, 0] as const }], walls: [] };
     return { cell: { name: 'demo', lab: true, servers, arms: [iiwa, ur5, edo], world }, arms: new Map([iiwa, ur5, edo].map((arm) => [arm.key, arm])) };
 }

@@ -75,12 +75,12 @@ export class FakeCell {
         return { server, controller: 'Controller', owner: owner === '' ? '' : owner === tab ? 'operator' : kOther, mine: owner === tab && tab !== '', until, lease_ms: 1000 };
     }
 
-    take(tab: string, server: string | null, action: string): void {
+    take(tab: string, server: string, action: string): void {
         for (const { key } of this.description.cell.servers) {
-            if (server !== null && key !== server) continue;
+            if (server !== 'all' && key !== server) continue;
             const owner = this.owners.get(key) ?? '';
             if (owner !== '' && owner !== tab) {
-                if (server !== null) throw new Refusal(409, 'locked', `${kOther} has control of ${key}`);
+                if (server !== 'all') throw new Refusal(409, 'locked', `${kOther} has control of ${key}`);
                 continue;
             }
             this.owners.set(key, action === 'take' ? tab : '');
@@ -239,7 +239,7 @@ export class FakeCell {
             if (key === 'iiwa') arms[key].f = [0.4, -0.2, 3.1, 0.02, 0, 0];
         }
         const event: LiveEvent = { t: this.now, arms, grippers: { wsg50: { width: this.width, held: false } } };
-        if (all) event.parts = { cube: { pose: [0.5, 0.3, 0.015, 0, 0, 0], size: [0.03, 0.03, 0.03], held_by: null } };
+        if (all) event.parts = { cube: [0.5, 0.3, 0.015, 0, 0, 0] };
         return event;
     }
 }
