@@ -104,7 +104,8 @@ private:
         return options;
     }
     void record(const std::string& file) {
-        recorder_ = orThrow(records::Recorder::create({.url = file, .server = "urn:benchmark"}));
+        recorder_ = orThrow(records::Recorder::create(
+            {.url = file, .server = "urn:benchmark", .most_waiting = 100'000}));
         for (auto* program : skills_->programs()) {
             program_recorders_.push_back(std::make_unique<recording::ProgramRecorder>(
                 *program, *recorder_, nullptr,

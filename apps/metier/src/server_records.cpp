@@ -6,6 +6,9 @@
 namespace metier::app {
 namespace {
 
+// About 45 MB; ten thousands of executions in a burst, hours of what an arm does.
+constexpr std::size_t kMostWaiting = 100'000;
+
 records::Retention retentionOf(const configuration::Records& config) {
     constexpr double kHoursPerDay = 24.0;
     constexpr double kMegabyte = 1e6;
@@ -25,11 +28,13 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
         {.url = config.records.url,
          .server = server,
          .keep = retentionOf(config.records),
-         .on_health = [&alarm = made->alarm_](const records::HealthReport& report) {
-             alarm.tell(report.health == records::Health::failing ? ServerAlarm::Kind::begins
-                                                                  : ServerAlarm::Kind::over,
-                        report.text);
-         }});
+         .on_health =
+             [&alarm = made->alarm_](const records::HealthReport& report) {
+                 alarm.tell(report.health == records::Health::failing ? ServerAlarm::Kind::begins
+                                                                      : ServerAlarm::Kind::over,
+                            report.text);
+             },
+         .most_waiting = kMostWaiting});
     if (!recorder) {
         return fail(recorder.error());
     }

@@ -47,12 +47,18 @@ bool endsExecution(TransitionNumber transition) {
 
 }  // namespace
 
+/// What is the same in all records of a Program.
+struct ProgramRecorder::Names {
+    Place place;
+    std::string skill;
+};
+
 ProgramRecorder::ProgramRecorder(skill::Program& program, records::Recorder& recorder,
                                  PathSampler* sampler, Place place)
     : program_(program),
       recorder_(recorder),
       sampler_(sampler),
-      place_(std::move(place)),
+      names_(std::make_shared<const Names>(Names{std::move(place), program.description().name})),
       state_(program.state()) {
     program_.attach(*this);
 }
@@ -68,30 +74,34 @@ ProgramRecorder::~ProgramRecorder() {
 }
 
 void ProgramRecorder::onBegin(const skill::ExecutionRecord& execution) {
+    const auto* check = checkOf(execution);
     key_ = recorder_.begin({.id = execution.id,
-                            .server_name = place_.server_name,
-                            .skill = program_.description().name,
-                            .controller = place_.controller,
-                            .device = place_.device,
                             .parent = execution.parent.id,
                             .parent_server = execution.parent.server,
                             .session = execution.client.session_id,
                             .client_name = execution.client.client_name,
                             .user = execution.client.user_name,
                             .thumbprint = execution.client.thumbprint,
-                            .parameters = skill::jsonOf(*execution.parameters),
-                            .check = checkOf(execution),
+                            .check = check == nullptr ? std::string() : *check,
                             .started = execution.start_time,
-                            .state = nameOf(State::running)});
+                            .state = nameOf(State::running)},
+                           [names = names_, parameters = execution.parameters](auto& record) {
+                               record.server_name = names->place.server_name;
+                               record.skill = names->skill;
+                               record.controller = names->place.controller;
+                               record.device = names->place.device;
+                               record.parameters = skill::jsonOf(*parameters);
+                           });
     if (sampler_ != nullptr) {
         sampler_->begin(key_);
     }
 }
 
-/// What the same session was told of the same values. Defaults need not have been named.
-std::string ProgramRecorder::checkOf(const skill::ExecutionRecord& execution) const {
+/// What the same session was told of the same values; null: nothing. Defaults need not have been
+/// named.
+const std::string* ProgramRecorder::checkOf(const skill::ExecutionRecord& execution) const {
     if (checked_.report.empty() || checked_.session != execution.client.session_id) {
-        return {};
+        return nullptr;
     }
     const auto& started = *execution.parameters;
     const bool same = std::all_of(
@@ -99,7 +109,7 @@ std::string ProgramRecorder::checkOf(const skill::ExecutionRecord& execution) co
             const auto found = started.find(checked.first);
             return found != started.end() && found->second == checked.second;
         });
-    return same ? checked_.report : std::string();
+    return same ? &checked_.report : nullptr;
 }
 
 void ProgramRecorder::onCheck(const skill::Caller& caller, const skill::ValueMap& parameters,

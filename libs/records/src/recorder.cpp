@@ -19,8 +19,8 @@ Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recorder::~Recorder() = default;
 
-Recorder::Key Recorder::begin(Execution execution) {
-    return impl_->begin(std::move(execution));
+Recorder::Key Recorder::begin(Execution execution, Completion complete) {
+    return impl_->begin(std::make_unique<Begun>(Begun{std::move(execution), std::move(complete)}));
 }
 
 void Recorder::transition(Key key, Transition transition) {

@@ -1,6 +1,8 @@
 #include "recorder_threads.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
@@ -26,6 +28,13 @@ std::uint64_t sumOf(const Dropped& dropped) {
     return dropped.executions + dropped.events + dropped.samples;
 }
 
+/// Where every core is busy, robots come first: what is recorded then waits in the queue.
+void yieldToOthers() {
+    constexpr int kNice = 15;
+    // Of this thread alone. Should the system refuse it, the writer is one thread among others.
+    static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
+}
+
 std::string lossText(const Dropped& d) {
     return fmt::format("{} executions, {} transitions and results and {} samples of paths",
                        d.executions, d.events, d.samples);
@@ -46,9 +55,9 @@ Recorder::Impl::~Impl() {
     watcher_ = {};
 }
 
-Recorder::Key Recorder::Impl::begin(Execution&& execution) {
-    execution.server = options_.server;
-    execution.ended = {};
+Recorder::Key Recorder::Impl::begin(std::unique_ptr<Begun> begun) {
+    begun->execution.server = options_.server;
+    begun->execution.ended = {};
     Key key = 0;
     {
         const std::lock_guard lock(mutex_);
@@ -56,7 +65,7 @@ Recorder::Key Recorder::Impl::begin(Execution&& execution) {
             ++dropped_.executions;
         } else {
             key = ++newest_;
-            push({key, std::move(execution)});
+            push({key, std::move(begun)});
         }
     }
     return key;
@@ -134,6 +143,7 @@ Dropped Recorder::Impl::dropped() const {
 }
 
 void Recorder::Impl::write(const std::stop_token& stop) {
+    yieldToOthers();
     while (true) {
         const bool go_on = waitForWork(stop);
         std::uint64_t answered = 0;

@@ -27,7 +27,7 @@ public:
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    Key begin(Execution&& execution);
+    Key begin(std::unique_ptr<Begun> begun);
     void tell(Message&& message);
     void end(Message&& message);
     void sample(const KeyedSample& sample) noexcept;

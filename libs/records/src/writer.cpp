@@ -58,7 +58,11 @@ Dropped Writer::take(std::vector<Message> messages, const std::vector<KeyedSampl
     return dropped_;
 }
 
-void Writer::take(Recorder::Key key, Execution&& e) {
+void Writer::take(Recorder::Key key, std::unique_ptr<Begun> begun) {
+    auto& e = begun->execution;
+    if (begun->complete) {
+        begun->complete(e);
+    }
     cut(kLongestName, e.server, e.server_name, e.skill, e.controller, e.device, e.user, e.state,
         e.reason, e.session, e.client_name, e.thumbprint, e.parent_server);
     cut(kLongestKey, e.id, e.parent, e.reason_text);

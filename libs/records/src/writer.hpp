@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -16,10 +17,16 @@
 
 namespace metier::records {
 
+/// An execution, and what is still to be filled in.
+struct Begun {
+    Execution execution{};
+    Recorder::Completion complete{};
+};
+
 /// What is told to a recorder.
 struct Message {
     Recorder::Key key = 0;
-    std::variant<Execution, Transition, Intermediate, Outcome> content{};
+    std::variant<std::unique_ptr<Begun>, Transition, Intermediate, Outcome> content{};
 };
 
 struct KeyedSample {
@@ -56,7 +63,7 @@ private:
         bool row_changed = true;
         bool changed = false;
     };
-    void take(Recorder::Key key, Execution&& execution);
+    void take(Recorder::Key key, std::unique_ptr<Begun> begun);
     void take(Recorder::Key key, Transition&& transition);
     void take(Recorder::Key key, Intermediate&& intermediate);
     void take(Recorder::Key key, Outcome&& outcome);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -43,12 +44,13 @@ private:
                  const skill::CheckReport& report) override;
 
     void end(const skill::TransitionEvent& event);
-    std::string checkOf(const skill::ExecutionRecord& execution) const;
+    const std::string* checkOf(const skill::ExecutionRecord& execution) const;
 
     skill::Program& program_;
     records::Recorder& recorder_;
     PathSampler* sampler_;
-    const Place place_;
+    struct Names;
+    const std::shared_ptr<const Names> names_;  // shared with what is still to be written
 
     records::Recorder::Key key_ = 0;  ///< of the execution that is under way; 0: none
     skill::State state_;              ///< that was told last

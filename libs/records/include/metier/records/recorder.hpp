@@ -48,6 +48,7 @@ class Recorder {
 public:
     /// One execution of this recorder; 0: it was dropped, and all that is told of it is, too.
     using Key = std::uint64_t;
+    using Completion = std::function<void(Execution&)>;
 
     struct Options {
         std::string url{};     ///< as Store::open() takes it
@@ -81,7 +82,10 @@ public:
     /// An execution begins; its server is Options::server whatever it says. Its state changes with
     /// its transitions. Threads: any, but no cycle thread (allocates, locks for a moment); the same
     /// for all but sample().
-    Key begin(Execution execution);
+    /// \param complete fills in what takes time to tell, such as JSON: called once, on a thread of
+    /// the
+    ///                 recorder, before the execution is written; owns what it uses. May be empty
+    Key begin(Execution execution, Completion complete = {});
     /// Of one execution in the order of their times; the 100,000 first are kept.
     void transition(Key key, Transition transition);
     void intermediate(Key key, Intermediate intermediate);
