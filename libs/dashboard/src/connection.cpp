@@ -1,6 +1,8 @@
 #include "connection.hpp"
 
 #include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -31,7 +33,11 @@ void addressOf(const sockaddr_storage& address, std::string& ip, int& port) {
 
 }  // namespace
 
-Connection::Connection(int socket, const HttpLimits& limits) : socket_(socket), limits_(limits) {}
+Connection::Connection(int socket, const HttpLimits& limits) : socket_(socket), limits_(limits) {
+    // A peer that is cut off acknowledges nothing: the system then ends the connection.
+    const auto unacknowledged = static_cast<unsigned int>(limits.send_time.count());
+    setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &unacknowledged, sizeof unacknowledged);
+}
 
 short Connection::waitFor(short events, milliseconds longest) const {
     const auto deadline = std::chrono::steady_clock::now() + longest;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "board.hpp"
+#include "metier/base/error.hpp"
 #include "metier/dashboard/http_limits.hpp"
 
 namespace metier::dashboard {
