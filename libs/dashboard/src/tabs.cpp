@@ -32,8 +32,7 @@ void letGo(Board& board, const std::string& control) {
 }  // namespace
 
 TabSession::~TabSession() {
-    for (auto& [key, handle] : std::exchange(controls_, {})) {
-        handle.onLost({});
+    for (const auto& [key, handle] : std::exchange(controls_, {})) {
         letGo(board_, key);
     }
 }
