@@ -29,24 +29,6 @@ std::string serverOf(const std::string& key) {
     return key.substr(0, key.find('/'));
 }
 
-/// As somebody who needs no control.
-Result<Named> askedSkill(Watches& watches, const json& body, Person& person) {
-    const auto key = textIn(body, "key");
-    auto reached = key ? watches.skill(*key) : Result<ReachedSkill>(fail(key.error()));
-    if (!reached) {
-        return fail(reached.error());
-    }
-    auto session = person.session(serverOf(*key));
-    if (!session) {
-        return fail(session.error());
-    }
-    auto skill = (*session)->skill(*reached->skill);
-    if (!skill) {
-        return fail(skill.error());
-    }
-    return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
-}
-
 /// As the tab that has control.
 Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, const Person& person) {
     const auto key = textIn(body, "key");
@@ -67,6 +49,32 @@ Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, con
         return fail(skill.error());
     }
     return Named{std::move(*reached), std::move(*session), nullptr, std::move(*skill)};
+}
+
+/// As somebody who needs no control; as the tab, if it has control: a server tells others that the
+/// skill is not theirs.
+Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person& person) {
+    const auto key = textIn(body, "key");
+    const auto tab = key ? textOrNone(body, "tab") : Result<std::string>(fail(key.error()));
+    if (!tab) {
+        return fail(tab.error());
+    }
+    if (tabs.session(*tab, person, serverOf(*key))) {
+        return commandedSkill(watches, tabs, body, person);
+    }
+    auto reached = watches.skill(*key);
+    if (!reached) {
+        return fail(reached.error());
+    }
+    auto session = person.session(serverOf(*key));
+    if (!session) {
+        return fail(session.error());
+    }
+    auto skill = (*session)->skill(*reached->skill);
+    if (!skill) {
+        return fail(skill.error());
+    }
+    return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
 }
 
 std::size_t thinned(std::size_t index, std::size_t kept, std::size_t all) {
@@ -155,7 +163,7 @@ Reply Commands::control(const json& body, const std::shared_ptr<Person>& person)
 }
 
 Reply Commands::check(const json& body, const std::shared_ptr<Person>& person) {
-    auto named = askedSkill(watches_, body, *person);
+    auto named = askedSkill(watches_, tabs_, body, *person);
     if (!named) {
         return errorReply(named.error());
     }
