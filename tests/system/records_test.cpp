@@ -195,10 +195,10 @@ TEST_F(RecordedArm, LosesAtMostTheLastSecondToACrashAndIsClosedAtTheNextStart) {
     ASSERT_TRUE((*arm_)->startWith({.execution_id = "over", .parameters = move(0.1)}));
     arm_->awaitEvent(State::ready);
     ASSERT_TRUE((*arm_)->startWith({.execution_id = "killed", .parameters = move(1.0, 0.02)}));
-    file_.await({.skill = kMove}, [](const auto& one) { return one.id == "killed"; });
-    // By the server's own clock, how far its path is known when it is killed.
-    Queue<int> nothing(1);
-    static_cast<void>(nothing.popUntil(std::chrono::steady_clock::now() + std::chrono::seconds(3)));
+    file_.await({.skill = kMove}, [this](const auto& one) {
+        const auto path = file_.open()->path(one.number);
+        return one.id == "killed" && path && !path->empty() && path->back().time > 2.0;
+    });
     const auto killed_at = std::chrono::system_clock::now();
     server_->kill();
     arm_.reset();
@@ -349,12 +349,21 @@ TEST(RecordedMoveComponent, HasTheStreamOfItsRobotAsItsChild) {
     EXPECT_NEAR(path->back().actual[0], target.front(), 1e-2);
 }
 
-TEST(UnrecordedServer, IsOneOnAnyPortWithoutAStateFolder) {
+TEST(RecordsOfAServer, AreInItsStateFolderUnlessItIsToldOtherwise) {
     const auto folder = emptyFolder();
-    const ServerProcess server("iiwa", {"--port", "0", "--state", folder.string()});
-    EXPECT_TRUE(std::filesystem::exists(folder / "records.db"));
+    {
+        const ServerProcess server("iiwa", {"--port", "0", "--state", folder.string()});
+        Watched arm(server.url(), kMove);
+        ASSERT_TRUE(arm->startWith(
+            {.parameters = {{"TargetJointPosition", jointPosition(arm.client(), *arm)}}}));
+        EXPECT_EQ(RecordFile(folder).awaitEnd(kMove).server_name, "iiwa");
+    }
     const auto other = folder / "other";
-    const ServerProcess off("iiwa", {"--port", "0", "--state", other.string(), "--records", "off"});
+    {
+        const ServerProcess off("iiwa",
+                                {"--port", "0", "--state", other.string(), "--records", "off"});
+    }
+    EXPECT_TRUE(std::filesystem::exists(other)) << "the names of executions";
     EXPECT_FALSE(std::filesystem::exists(other / "records.db"));
     const auto wrong = runMetier({"serve", simulatedCell().string(), "--server", "iiwa", "--port",
                                   "0", "--records", "mysql://here"});
