@@ -81,6 +81,9 @@ json visualsJson(const RobotModel& model) {
                            {"from_radius", shape.from_radius},
                            {"to_radius", shape.to_radius},
                            {"color", shape.color}});
+        if (shape.edge >= 0.0) {
+            visuals.back()["edge"] = shape.edge;
+        }
     }
     return visuals;
 }

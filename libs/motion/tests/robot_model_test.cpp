@@ -99,6 +99,17 @@ TEST(RobotModel, RefusesAMisspeltKey) {
                 HasSubstr("color: unknown key"));
 }
 
+TEST(RobotModel, TellsTheRoundingOfAShapeAndWhetherItIsGiven) {
+    std::string text = fileText("ur5");
+    const auto model = RobotModel::parse(text, "ur5");
+    ASSERT_TRUE(model) << model.error().message;
+    EXPECT_EQ(model->visual().front().edge, 0.004);
+    const std::string given = "edge = 0.004\n";
+    text.erase(text.find(given), given.size());
+    EXPECT_LT(RobotModel::parse(text, "ur5")->visual().front().edge, 0.0);
+    EXPECT_THAT(errorAfter(given, "edge = -1\n").message, HasSubstr("visual[0].edge"));
+}
+
 TEST(RobotModel, RefusesLimitsThatAreTheWrongWayRound) {
     EXPECT_THAT(errorAfter("position_deg = [-360, 360]", "position_deg = [10, -10]").message,
                 HasSubstr("axis 1 (base): position limits"));

@@ -15,6 +15,8 @@ import { triad } from './triad.js';
 const kApart = 0.02;
 /** Of a gripper that does not tell its largest width [m]. */
 const kStroke = 0.11;
+/** A part that is held is so near to the jaws [m]. */
+const kWithin = 0.06;
 
 export interface Show {
     trace: boolean;
@@ -111,6 +113,18 @@ export class ArmActor {
         const was = this.commanded.visible;
         this.commanded.show(apart ? commanded : null);
         return apart || was;
+    }
+
+    /** Whose gripper tells that it holds a part but not how wide it is: the width is that of the nearest part [m]. */
+    holdNearest(parts: Iterable<{ object: Object3D; width: number }>): void {
+        if (this.jaws === null || this.live.widths.has(this.jaws.key)) return;
+        const jaws = this.jaws.view.root.getWorldPosition(new Vector3());
+        let nearest = { distance: kWithin, width: this.jaws.view.stroke / 2 };
+        for (const { object, width } of this.live.held.get(this.jaws.key) === true ? parts : []) {
+            const away = object.position.distanceTo(jaws);
+            if (away < nearest.distance) nearest = { distance: away, width };
+        }
+        this.jaws.view.setWidth(nearest.width);
     }
 
     private updateJaws(): boolean {

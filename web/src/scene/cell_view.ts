@@ -57,7 +57,7 @@ export class CellView {
     /** End of the colour scale of the traces [m/s]. */
     speed_scale = 0.25;
     private readonly root = new Group();
-    private readonly parts = new Map<string, Object3D>();
+    private readonly parts = new Map<string, { object: Object3D; width: number }>();
     private readonly paint = new Paint();
     private readonly table_paint = new MeshStandardMaterial({ color: new Color('#8d959e'), roughness: 0.75 });
     private readonly part_paint = new MeshStandardMaterial({ color: new Color('#d99a4e'), roughness: 0.6 });
@@ -131,17 +131,18 @@ export class CellView {
 
     private followParts(): void {
         for (const [name, pose] of this.live.parts) {
-            const mesh = this.parts.get(name);
-            if (mesh === undefined) continue;
-            mesh.visible = pose !== null;
-            if (pose !== null) placeFrame(mesh, pose);
+            const object = this.parts.get(name)?.object;
+            if (object === undefined) continue;
+            object.visible = pose !== null;
+            if (pose !== null) placeFrame(object, pose);
         }
+        for (const actor of this.actors.values()) actor.holdNearest(this.parts.values());
     }
 
     private addPart(part: Part): void {
         const mesh = solid(part.size as [number, number, number], this.part_paint);
         placeFrame(mesh, part.pose);
-        this.parts.set(part.name, mesh);
+        this.parts.set(part.name, { object: mesh, width: part.size[0] });
         this.root.add(mesh);
     }
 

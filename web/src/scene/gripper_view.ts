@@ -40,10 +40,13 @@ function jaw(length: number): Group {
 
 export class GripperView {
     readonly root = new Group();
+    /** Largest width [m]. */
+    readonly stroke: number;
     private readonly left: Group;
     private readonly right: Group;
 
     constructor(shape: GripperShape) {
+        this.stroke = shape.stroke;
         placeFrame(this.root, shape.frame);
         const finger = Math.max(0.03, Math.min(0.085, shape.depth * 0.55));
         const body_length = Math.max(0.02, shape.depth - finger + 0.004);

@@ -1,7 +1,7 @@
 // A line chart of time by uPlot, in the colours of the page.
 
 import uPlot from 'uplot';
-import { h } from './dom.js';
+import { fill, h } from './dom.js';
 
 export const kSeriesColors = ['#4f8fe8', '#e0873a', '#45a86b', '#b06fd8', '#d6555f', '#2aa5b3', '#b59a2c'];
 
@@ -26,13 +26,19 @@ function axis(size: number): uPlot.Axis {
 export class Chart {
     readonly element: HTMLElement;
     private readonly box = h('div', { class: 'chart-box' });
+    private readonly caption = h('figcaption', {});
     private plot: uPlot | null = null;
     private data: uPlot.AlignedData = [[]];
     private signature = '';
 
     constructor(title: string, unit: string, private readonly sync: string, private readonly least_span = 0, private readonly window = 0) {
-        this.element = h('figure', { class: 'chart' }, h('figcaption', {}, title, h('small', {}, ` ${unit}`)), this.box);
+        this.element = h('figure', { class: 'chart' }, this.caption, this.box);
+        this.setTitle(title, unit);
         new ResizeObserver(() => this.resize()).observe(this.box);
+    }
+
+    setTitle(title: string, unit: string): void {
+        if (this.caption.textContent !== `${title} ${unit}`) fill(this.caption, title, h('small', {}, ` ${unit}`));
     }
 
     setData(series: readonly ChartSeries[], data: uPlot.AlignedData): void {

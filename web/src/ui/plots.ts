@@ -77,8 +77,10 @@ export class Plots {
         this.position.setData(series, columnsOf(samples, now, joints.map((_, i) => (sample) => sample.q?.[i])));
         this.velocity.setData(series, columnsOf(samples, now, joints.map((_, i) => (sample) => sample.v?.[i])));
         this.force.setData(kForceNames.map((label) => ({ label })), columnsOf(samples, now, kForceNames.map((_, i) => (sample) => sample.f?.[i])));
-        this.jitter.setData([{ label: 'jitter' }], columnsOf(samples, now, [(sample) => (sample.jitter === undefined ? null : sample.jitter * 1000)]));
+        const told = samples.some((sample) => sample.jitter !== undefined);
+        this.jitter.setTitle(told ? 'Cycle jitter' : 'Missed cycles', told ? 'ms' : '');
+        this.jitter.setData([{ label: 'cycle' }], columnsOf(samples, now, [(sample) => (told ? (sample.jitter ?? 0) * 1000 : sample.missed)]));
         this.force.element.classList.toggle('none', !samples.some((sample) => sample.f !== undefined));
-        this.jitter.element.classList.toggle('none', !samples.some((sample) => sample.jitter !== undefined));
+        this.jitter.element.classList.toggle('none', !told && !samples.some((sample) => sample.missed !== undefined));
     }
 }

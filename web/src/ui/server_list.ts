@@ -3,7 +3,8 @@
 import type { Arm, Cell, Server } from '../api/types.js';
 import type { CellState } from '../state/cell_state.js';
 import type { Context } from './context.js';
-import { fill, h, icon, kIcons } from './dom.js';
+import { fill, h, icon, kIcons, setText } from './dom.js';
+import { words } from './format.js';
 import { ServerCard } from './server_card.js';
 
 export interface Group {
@@ -39,13 +40,14 @@ export function groupsOf(cell: Cell): Group[] {
 export class ServerList {
     readonly element = h('nav', { class: 'panel servers', id: 'skills', tabindex: '-1', 'aria-label': 'Servers and skills' });
     private cards: ServerCard[] = [];
+    private safety: { arm: string; badge: HTMLElement }[] = [];
     private drawn: Cell | null = null;
 
     constructor(private readonly context: Context) {
         context.state.subscribe((state) => this.render(state));
         context.choice.subscribe(() => this.render(context.state.get()));
         // Leases count down between the events.
-        setInterval(() => this.cards.forEach((card) => card.renderLease(context.state.get())), 200);
+        setInterval(() => this.renderLive(), 200);
     }
 
     private render(state: CellState): void {
@@ -53,9 +55,20 @@ export class ServerList {
         for (const card of this.cards) card.render(state, this.context.choice.get());
     }
 
+    private renderLive(): void {
+        for (const card of this.cards) card.renderLease(this.context.state.get());
+        for (const { arm, badge } of this.safety) {
+            const safety = this.context.live.arm(arm).latest?.safety ?? '';
+            const usual = safety === '' || /^(normal|unknown)$/i.test(safety);
+            badge.hidden = usual;
+            if (!usual) setText(badge, words(safety));
+        }
+    }
+
     private build(cell: Cell | null): void {
         this.drawn = cell;
         this.cards = [];
+        this.safety = [];
         if (cell === null) {
             fill(this.element, h('p', { class: 'empty' }, 'Waiting for the cell\u2026'));
             return;
@@ -66,9 +79,11 @@ export class ServerList {
     private group(group: Group): HTMLElement {
         const cards = group.servers.map((server) => new ServerCard(this.context, server, group.servers.length > 1 || group.arm !== null));
         this.cards.push(...cards);
+        const badge = h('span', { class: 'badge warn', hidden: true, role: 'status' });
+        if (group.arm !== null) this.safety.push({ arm: group.arm.key, badge });
         return h('section', { class: 'group', 'aria-label': group.name },
             h('div', { class: 'group-head' },
-                h('div', {}, h('h2', {}, group.name), h('small', {}, group.detail)),
+                h('div', {}, h('h2', {}, group.name), h('small', {}, group.detail), badge),
                 this.haltButton(group)),
             ...cards.map((card) => card.element));
     }
