@@ -99,6 +99,13 @@ class App {
     private lost(): void {
         this.live.forgetClock();
         this.state.update(afterLoss);
+        // A log-in that is over ends the stream, too.
+        api.me().then((me) => {
+            if (!me.login_required || me.user !== '') return;
+            this.stream?.close();
+            this.state.update((state) => ({ ...state, me }));
+            this.log_in.open();
+        }, () => undefined);
     }
 
     private async logOut(): Promise<void> {
@@ -120,7 +127,7 @@ class App {
         listenToKeys({
             haltAll: () => void this.actions.halt({}, 'all'),
             haltArm: () => this.haltArm(),
-            toggleControl: () => void (controlSummary(this.state.get()) === 'none' ? this.actions.takeControl() : this.actions.releaseControl()),
+            takeControl: () => void (controlSummary(this.state.get()) === 'none' && this.actions.takeControl()),
             tab,
             search: () => {
                 tab(1);

@@ -41,7 +41,7 @@ export class LogIn {
 }
 
 const kKeys: [string, string][] = [
-    ['Shift H', 'Halt all (not an emergency stop)'], ['H', 'Halt the chosen arm'], ['C', 'Take or release control'],
+    ['Shift H', 'Halt all (not an emergency stop)'], ['H', 'Halt the chosen arm'], ['C', 'Take control'],
     ['Enter', 'in a form: Check'], ['Ctrl Enter', 'in a form: Check, then Start'],
     ['\u2191 \u2193', 'in a number: step; with Shift \u00d710, with Alt \u00f710'], ['1 2 3', 'Plots, timeline, alarms'], ['/', 'Search executions'],
     ['F', 'Whole cell in view'], ['T', 'Light or dark'], ['?', 'These keys'],

@@ -3,7 +3,7 @@
 export interface Shortcuts {
     haltAll: () => void;
     haltArm: () => void;
-    toggleControl: () => void;
+    takeControl: () => void;
     tab: (index: number) => void;
     search: () => void;
     fit: () => void;
@@ -27,7 +27,7 @@ function formKey(event: KeyboardEvent, on: Shortcuts): boolean {
 
 export function listenToKeys(on: Shortcuts): void {
     const plain: Record<string, () => void> = {
-        'H': on.haltAll, 'h': on.haltArm, 'c': on.toggleControl, '1': () => on.tab(0), '2': () => on.tab(1), '3': () => on.tab(2),
+        'H': on.haltAll, 'h': on.haltArm, 'c': on.takeControl, '1': () => on.tab(0), '2': () => on.tab(1), '3': () => on.tab(2),
         '/': on.search, 'f': on.fit, 't': on.theme, '?': on.help,
     };
     document.addEventListener('keydown', (event) => {
