@@ -21,6 +21,10 @@ constexpr std::string_view kNames =
     "server || ' ' || server_name || ' ' || controller || ' ' || skill || ' ' || device || ' ' || "
     "user_name || ' ' || state || ' ' || reason";
 
+/// The notes with a text, which is the parameter of the number that is to be filled in.
+constexpr std::string_view kNotes =
+    "SELECT note FROM notes WHERE note <> 0 AND lower(reason_text) LIKE lower(${}) ESCAPE '\\'";
+
 /// For LIKE ... ESCAPE '\': any text with `part` in it.
 std::string containing(std::string_view part) {
     std::string pattern = "%";
@@ -146,10 +150,10 @@ Result<std::vector<std::int64_t>> Search::kinds(bool with_text) {
     return numbers(database_.query(sql, cells));
 }
 
+/// Those with the text, up to one more than are asked for at once.
 Result<std::vector<std::int64_t>> Search::notes() {
     return numbers(database_.query(
-        "SELECT note FROM notes WHERE note <> 0 AND lower(reason_text) LIKE lower($1) ESCAPE '\\' "
-        "ORDER BY note DESC",
+        fmt::format(fmt::runtime(kNotes), 1) + fmt::format(" LIMIT {}", kAtOnce + 1),
         std::array<Cell, 1>{storable(containing(filter_.text))}));
 }
 
@@ -193,10 +197,22 @@ Result<void> Search::takeText() {
     }
     const auto named = kinds(true);
     auto done = named ? takeOfEach("kind", *named, "TRUE") : Result<void>(fail(named.error()));
-    const auto noted = done ? notes() : Result<std::vector<std::int64_t>>(fail(done.error()));
-    done = noted ? takeOfEach("note", *noted, "note <> 0 AND " + of_kinds)
-                 : Result<void>(fail(noted.error()));
+    done = done ? takeNotes(of_kinds) : done;
     return done ? take(newest("id = $5 AND " + of_kinds), {storable(filter_.text)}) : done;
+}
+
+Result<void> Search::takeNotes(const std::string& of_kinds) {
+    const auto fitting = notes();
+    if (!fitting) {
+        return fail(fitting.error());
+    }
+    if (fitting->size() <= kAtOnce) {
+        return takeOfEach("note", *fitting, "note <> 0 AND " + of_kinds);
+    }
+    // Where many fit, the newest executions that have a note soon show enough.
+    const auto all = fmt::format(fmt::runtime(kNotes), 5);
+    return take(newest(fmt::format("note <> 0 AND +note IN ({}) AND {}", all, of_kinds)),
+                {storable(containing(filter_.text))});
 }
 
 /// Of one parent there are few.

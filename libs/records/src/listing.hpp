@@ -40,6 +40,7 @@ private:
     Result<void> takeChildren(const std::string& of_kinds);
     Result<void> takeKinds();
     Result<void> takeText();
+    Result<void> takeNotes(const std::string& of_kinds);
     Result<void> takeOfEach(const std::string& column, const std::vector<std::int64_t>& values,
                             const std::string& condition);
     Result<void> take(const std::string& sql, std::vector<Cell> more = {});

@@ -11,8 +11,9 @@ constexpr std::string_view kMarker = "metier_records";
 //
 // What many executions have in common is a row of `kinds`, what a reason said a row of `notes`:
 // a filter looks for those that fit, which are few, and then takes the newest of each from an
-// index. `parts` holds what came while an execution was under way, in the order it was written:
-// its key is number * 1048576 + count.
+// index; where many notes fit, it goes through executions that have one, newest first. `parts`
+// holds what came while an execution was under way, in the order it was written: its key is number
+// * 1048576 + count.
 constexpr std::string_view kTables = R"(
 CREATE TABLE metier_records (name TEXT PRIMARY KEY, value BIGINT NOT NULL);
 INSERT INTO metier_records VALUES ('schema_version', {version}), ('revision', 0);
@@ -31,6 +32,7 @@ CREATE TABLE executions (number {number_key},
 CREATE INDEX executions_by_start ON executions (started, number);
 CREATE INDEX executions_by_kind ON executions (kind, started, number);
 CREATE INDEX executions_by_note ON executions (note, started, number) WHERE note <> 0;
+CREATE INDEX executions_noted ON executions (started, number, note, kind) WHERE note <> 0;
 CREATE INDEX executions_by_id ON executions (id);
 CREATE INDEX executions_by_parent ON executions (parent) WHERE parent <> '';
 CREATE INDEX executions_by_revision ON executions (revision);

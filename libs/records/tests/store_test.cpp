@@ -180,6 +180,26 @@ TEST_P(EitherStore, FindsTextInNamesReasonsAndIds) {
     EXPECT_THAT(withText("' OR 1=1 --"), IsEmpty());
 }
 
+TEST_P(EitherStore, FindsTextThatManyDifferentReasonsHave) {
+    constexpr int kReasons = 250;
+    const auto recorder = recorderOf(url_);
+    for (int i = 0; i < kReasons; ++i) {
+        auto execution = moveOf("m-" + std::to_string(i), at(i));
+        execution.user = i % 2 == 0 ? "anna" : "ben";
+        recordOne(*recorder, execution, halted(at(i + 1), "axis " + std::to_string(i) + " Late"));
+    }
+    recordOne(*recorder, moveOf("other", at(kReasons)), halted(at(kReasons), "too early"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    Filter filter;
+    filter.text = " late";
+    EXPECT_THAT(ids(filter, {.before = 0, .count = 3}), ElementsAre("m-249", "m-248", "m-247"));
+    const auto before = store()->find("m-100")->number;
+    EXPECT_THAT(ids(filter, {.before = before, .count = 2}), ElementsAre("m-99", "m-98"));
+    EXPECT_EQ(ids(filter, {.before = 0, .count = 1'000}).size(), kReasons + 0U);
+    filter.user = "ben";
+    EXPECT_THAT(ids(filter, {.before = before, .count = 2}), ElementsAre("m-99", "m-97"));
+}
+
 TEST_P(EitherStore, FindsChildrenOnAnyServer) {
     const auto pick = recorderOf(url_, "urn:test:pick");
     const auto ur5 = recorderOf(url_);
