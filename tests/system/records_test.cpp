@@ -250,7 +250,7 @@ TEST_F(RecordedArmOnASmallDisk, MovesOnAndHaltsWhileTheDiskIsFullAndSaysSo) {
     ASSERT_TRUE((*arm_)->halt());
     arm_->awaitEvent(State::halted);
     disk_->makeRoom();
-    EXPECT_THAT(alarms.next("records work again"), Not(""));
+    EXPECT_THAT(alarms.next("recorded again"), Not(""));
     const auto record = file_.awaitEnd(kMove);
     EXPECT_EQ(record.id, "halted");
     EXPECT_EQ(record.state, "Halted");

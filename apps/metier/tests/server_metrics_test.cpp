@@ -100,7 +100,12 @@ TEST_F(WatchedServer, IsNotWellWhileItsThreadHangsAndTellsItsFiguresAllTheSame) 
     ASSERT_TRUE(server_->start());
     EXPECT_EQ(awaitHealth(200), "ok\n");
     std::promise<void> go_on;
-    server_->post([wait = go_on.get_future().share()] { wait.wait(); });
+    std::promise<void> begun;
+    server_->post([&begun, wait = go_on.get_future().share()] {
+        begun.set_value();
+        wait.wait();
+    });
+    begun.get_future().wait();
     server_->post([] {});
     EXPECT_THAT(awaitHealth(503), HasSubstr("ur5: the server's thread has not worked for"));
     const auto page = get("/metrics");
