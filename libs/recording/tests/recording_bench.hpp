@@ -95,7 +95,10 @@ private:
 
     const std::string file_ = freshFile();
     std::unique_ptr<records::Recorder> recorder_ =
-        std::move(*records::Recorder::create({.url = file_, .server = "urn:test"}));
+        std::move(*records::Recorder::create({.url = file_,
+                                              .server = "urn:test",
+                                              // The Programs live in 1970.
+                                              .keep = {.age = {}, .bytes = 0}}));
 };
 
 }  // namespace metier::recording::testing
