@@ -88,6 +88,7 @@ bool Connection::fill() {
 
 ssize_t Connection::read(char* bytes, size_t size) {
     if (budget_ == 0 || (begin_ == end_ && !fill())) {
+        spent_ = true;
         return -1;
     }
     const auto count = std::min({size, end_ - begin_, budget_});

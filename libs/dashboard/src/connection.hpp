@@ -27,6 +27,8 @@ public:
     void beginRequest();
     /// Its head is complete; now its body counts.
     void beginBody();
+    /// Whether a read failed: what comes next is no beginning of a request.
+    bool isSpent() const noexcept { return spent_; }
 
     // As httplib wants it. A read beyond a limit fails, as if the peer had gone.
     bool is_readable() const override;
@@ -50,6 +52,7 @@ private:
     std::size_t end_ = 0;
     std::size_t budget_ = 0;  // [bytes] that may still be read
     SteadyTime deadline_{};   // of the request
+    bool spent_ = false;
 };
 
 }  // namespace metier::dashboard

@@ -98,7 +98,7 @@ void HttpServer::converse(Connection& connection) {
     bool closed = false;
     while (!ending_ && !closed && connection.awaitRequest()) {
         connection.beginRequest();
-        if (!serveOne(*this, connection, closed)) {
+        if (!serveOne(*this, connection, closed) || connection.isSpent()) {
             return;
         }
     }
