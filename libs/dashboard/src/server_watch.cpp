@@ -100,8 +100,8 @@ void ServerWatch::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         if (auto link = connect()) {
             pause = kShortestPause;
+            present(link);  // before anybody hears of it
             context_.board.setOffer(context_.server.name, link->offer());
-            present(link);
             keep(*link, stop);
             present(nullptr);
         }

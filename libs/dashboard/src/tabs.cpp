@@ -163,7 +163,7 @@ Result<std::shared_ptr<TabSession>> Tabs::session(const std::string& tab, const 
     }
     const auto& sessions = tabs_.at(tab).sessions;
     const auto found = sessions.find(server);
-    return found == sessions.end()
+    return found == sessions.end() || !found->second->session().isConnected()
                ? fail(Errc::locked, fmt::format("take control of {} first", server))
                : Result<std::shared_ptr<TabSession>>(found->second);
 }

@@ -56,6 +56,14 @@ protected:
         }
         return {};
     }
+    static json fieldOf(const json& skill, const std::string& name) {
+        for (const auto& field : skill.at("parameters")) {
+            if (field.at("name") == name) {
+                return field;
+            }
+        }
+        return {};
+    }
     std::string key() const { return keyOf(arm_->url()); }
     std::string move() const { return skill("JointPtpMoveSkill").at("key"); }
     /// A move that takes about `seconds` for its 1 rad.
@@ -81,8 +89,11 @@ TEST_F(DashboardTest, ShowsWhatAServerOffers) {
     const auto move = skill("JointPtpMoveSkill");
     EXPECT_EQ(move.at("arm"), arm.at("key"));
     EXPECT_EQ(move.at("can").at("check"), true);
-    const auto& target = move.at("parameters").at(0);
-    EXPECT_EQ(skill("CartesianPtpMoveSkill").at("parameters").at(0).at("role"), "pose") << target;
+    const auto target = fieldOf(move, "TargetJointPosition");
+    EXPECT_EQ(target.at("role"), "joints");
+    EXPECT_EQ(target.at("rank"), 7);
+    EXPECT_EQ(target.at("unit"), "rad");
+    EXPECT_EQ(fieldOf(skill("CartesianPtpMoveSkill"), "TargetPosition").at("role"), "pose");
 }
 
 TEST_F(DashboardTest, DrivesASkillThroughAllItsStates) {
@@ -199,7 +210,8 @@ class ClosedDashboard : public ::testing::Test {
 protected:
     ClosedDashboard() {
         EXPECT_EQ(here_.run({"user", "add", "anna"}, "correct horse").status, 0);
-        EXPECT_EQ(here_.run({"user", "add", "otto", "--role", "Observer"}, "battery").status, 0);
+        EXPECT_EQ(here_.run({"user", "add", "otto", "--role", "Observer"}, "battery staple").status,
+                  0);
         server_.emplace(here_.serve("iiwa"));
         page_.emplace(
             here_.command({"dashboard", server_->url(), "--port", "0", "--records", "off"}));
@@ -238,7 +250,7 @@ TEST_F(ClosedDashboard, LetsPeopleInAsTheServersDo) {
 }
 
 TEST_F(ClosedDashboard, LetsAnObserverLookAlone) {
-    const auto otto = logIn("otto", "battery");
+    const auto otto = logIn("otto", "battery staple");
     ASSERT_EQ(otto.status, 200) << otto.error();
     EXPECT_EQ(otto.body.at("role"), "observer");
     Tab tab(page_->url(), otto.cookie);
@@ -255,7 +267,7 @@ TEST_F(ClosedDashboard, MakesWhoeverGuessesWait) {
     EXPECT_EQ(answer.status, 429) << answer.body;
     EXPECT_THAT(answer.error(), AllOf(HasSubstr("wait"), HasSubstr(" s")));
     EXPECT_EQ(logIn("anna", "correct horse").status, 429);
-    EXPECT_EQ(logIn("otto", "battery").status, 200) << "others are not held up";
+    EXPECT_EQ(logIn("otto", "battery staple").status, 200) << "others are not held up";
 }
 
 }  // namespace
