@@ -38,7 +38,7 @@ std::optional<double> ago(std::string_view text) {
     double number = 0;
     const auto* end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, number);
-    if (read.ec != std::errc() || read.ptr + 1 != end || number < 0 || number > 1e6) {
+    if (read.ec != std::errc() || read.ptr + 1 != end || !(number >= 0 && number <= 1e6)) {
         return std::nullopt;
     }
     for (const auto& [unit, seconds] : kUnits) {
