@@ -27,7 +27,7 @@ test('all files together are below 300 kB compressed', () => {
 test('nothing is loaded from elsewhere', () => {
     const html = readFileSync(join(kBuilt, 'dist/index.html'), 'utf8');
     assert.equal(/(src|href)="(https?:)?\/\//.test(html), false);
-    const css = readFileSync(join(kBuilt, 'page/assets/style.css'), 'utf8');
+    const css = readFileSync(join(kBuilt, 'dist/assets/style.css'), 'utf8');
     assert.equal(/@import|url\((?!["']?data:)/.test(css), false);
 });
 
