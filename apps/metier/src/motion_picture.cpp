@@ -74,10 +74,8 @@ Exit drawInto(const std::string& file, const motion::RobotModel& model, const st
 
 Exit drawExecution(const ExecutionDrawing& drawing) {
     const auto store = openRecords(drawing.records);
-    if (!store) {
-        return report(store.error());
-    }
-    const auto execution = (*store)->find(drawing.id);
+    const auto execution =
+        store ? (*store)->find(drawing.id) : Result<records::Execution>(fail(store.error()));
     if (!execution) {
         return report(execution.error());
     }

@@ -70,9 +70,17 @@ Result<DrawnMotion> motionOf(const RobotModel& model, const PlotOptions& options
     return recordedMotion(model, *record, options.record, options.move.tool);
 }
 
+bool isNumber(const std::string& text) {
+    return text.find_first_not_of("0123456789") == std::string::npos;
+}
+
 /// Whether the argument names an execution: it is no robot, and nothing says how one should move.
 bool namesExecution(const PlotOptions& options) {
-    return options.record.empty() && !hasTarget(options.move) && !isRobot(options.move.robot);
+    if (!options.record.empty() || hasTarget(options.move) || isRobot(options.move.robot)) {
+        return false;
+    }
+    const auto store = openRecords(options.records);
+    return store ? (*store)->find(options.move.robot).has_value() : isNumber(options.move.robot);
 }
 
 Exit runPlot(const PlotOptions& options) {

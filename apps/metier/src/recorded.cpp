@@ -1,6 +1,7 @@
 #include "recorded.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -53,9 +54,10 @@ Result<motion::RobotModel> robotOf(const records::Execution& execution, const st
     }
     if (best.empty()) {
         return fail(Errc::invalid_argument,
-                    fmt::format("execution {}: no model is known for device '{}' of server '{}'; "
-                                "name one with --robot",
-                                execution.number, execution.device, execution.server_name));
+                    fmt::format("execution {}: which robot is device '{}' of server '{}'? Say so "
+                                "with --robot: {}",
+                                execution.number, execution.device, execution.server_name,
+                                fmt::join(robotNames(), ", ")));
     }
     return loadRobot(best);
 }

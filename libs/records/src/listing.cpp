@@ -75,15 +75,15 @@ Result<std::vector<std::int64_t>> Search::run() {
         return fail(done.error());
     }
     std::vector<std::int64_t> result;
-    for (const auto& one : found_) {
-        result.push_back(one.number);
+    for (const auto& [started, number] : found_) {
+        result.push_back(number);
     }
     return result;
 }
 
 /// False: nothing is between them.
 Result<bool> Search::findBounds() {
-    constexpr auto kMost = std::numeric_limits<std::int64_t>::max();
+    constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
     upper_ = {filter_.until ? toMicroseconds(*filter_.until) : kMost, 0};
     lower_ =
         filter_.from ? toMicroseconds(*filter_.from) : std::numeric_limits<std::int64_t>::min();
@@ -96,13 +96,13 @@ Result<bool> Search::findBounds() {
         return fail(rows.error());
     }
     if (!rows->empty()) {
-        upper_ = std::min(upper_, {rows->front().integer(0), before_});
+        upper_ = std::min(upper_, Found{rows->front().integer(0), before_});
     }
     return !rows->empty();
 }
 
 /// Executions within the bounds that meet `condition`.
-std::string Search::newest(const std::string& condition) const {
+std::string Search::newest(const std::string& condition) {
     return fmt::format(
         "SELECT started, number FROM executions WHERE {} AND started >= $1 AND "
         "(started, number) < ($2, $3) ORDER BY started DESC, number DESC LIMIT $4",
@@ -110,8 +110,7 @@ std::string Search::newest(const std::string& condition) const {
 }
 
 Result<void> Search::take(const std::string& sql, std::vector<Cell> more) {
-    std::vector<Cell> cells{lower_, upper_.started, upper_.number,
-                            static_cast<std::int64_t>(count_)};
+    std::vector<Cell> cells{lower_, upper_.first, upper_.second, static_cast<std::int64_t>(count_)};
     cells.insert(cells.end(), more.begin(), more.end());
     const auto rows = database_.query(sql, cells);
     if (!rows) {
@@ -124,7 +123,7 @@ Result<void> Search::take(const std::string& sql, std::vector<Cell> more) {
         found_.erase(std::prev(found_.end()));
     }
     if (found_.size() == count_) {
-        lower_ = std::max(lower_, found_.rbegin()->started);
+        lower_ = std::max(lower_, found_.rbegin()->first);
     }
     return {};
 }

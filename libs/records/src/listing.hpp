@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "database.hpp"
@@ -26,12 +27,7 @@ public:
     Result<std::vector<std::int64_t>> run();
 
 private:
-    struct Found {
-        std::int64_t started = 0;
-        std::int64_t number = 0;
-
-        friend auto operator<=>(const Found&, const Found&) = default;
-    };
+    using Found = std::pair<std::int64_t, std::int64_t>;  // started, number
 
     Result<bool> findBounds();
     Result<std::vector<std::int64_t>> kinds(bool with_text);
@@ -44,7 +40,7 @@ private:
     Result<void> takeOfEach(const std::string& column, const std::vector<std::int64_t>& values,
                             const std::string& condition);
     Result<void> take(const std::string& sql, std::vector<Cell> more = {});
-    std::string newest(const std::string& condition) const;
+    static std::string newest(const std::string& condition);
     bool namesKinds() const;
 
     Database& database_;

@@ -1,9 +1,16 @@
 // Servers as processes of their own: killed, and several with one store.
 #include <gmock/gmock.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <condition_variable>
 #include <csignal>
 #include <map>
+#include <mutex>
 #include <set>
+#include <thread>
 
 #include "metier/process/child_process.hpp"
 #include "recorded.hpp"
@@ -39,20 +46,48 @@ std::map<std::string, UtcTime> told(ChildProcess& writer, int lines) {
     return times;
 }
 
+/// How late a thread of the writer's priority wakes up on this machine now: nothing that it does
+/// can be more punctual.
+class Lateness {
+public:
+    /// The latest so far.
+    std::chrono::nanoseconds worst() const { return worst_; }
+
+private:
+    void measure(const std::stop_token& stop) {
+        static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15));
+        std::mutex mutex;
+        std::condition_variable_any nobody;
+        std::unique_lock lock(mutex);
+        while (!stop.stop_requested()) {
+            const auto due = std::chrono::steady_clock::now() + 5ms;
+            nobody.wait_until(lock, stop, due, [] { return false; });
+            const std::chrono::nanoseconds late = std::chrono::steady_clock::now() - due;
+            worst_ = std::max(worst_.load(), late);
+        }
+    }
+
+    std::atomic<std::chrono::nanoseconds> worst_{};
+    std::jthread thread_{[this](const std::stop_token& stop) { measure(stop); }};  // last
+};
+
+// It wakes up to gather, to write and to sync: on a machine that is busy, each may be late.
 TEST(KilledServer, LosesAtMostTheLastSecondOfItsRecords) {
     const auto file = (testFolder() / "records.db").string();
+    const Lateness lateness;
     auto dying = writer(file, "dying", 0);
     auto times = told(dying, 400);  // two seconds
     dying.signal(SIGKILL);
     const auto killed = std::chrono::system_clock::now();
     ASSERT_EQ(dying.waitUntil(soon()), 128 + SIGKILL);
     times.merge(told(dying, 1'000'000));  // what was still on its way here
+    const auto bound = 1s + 3 * lateness.worst();
     const auto store = Store::open(file).value();
     std::size_t kept = 0;
     for (const auto& [id, time] : times) {
         const auto found = store->find(id);
         kept += found ? 1 : 0;
-        if (time < killed - 1s) {
+        if (time < killed - bound) {
             ASSERT_TRUE(found) << id << " began "
                                << std::chrono::duration<double>(killed - time).count()
                                << " s before the kill";
@@ -60,7 +95,7 @@ TEST(KilledServer, LosesAtMostTheLastSecondOfItsRecords) {
             EXPECT_EQ(store->path(found->number)->size(), 1U);
         }
     }
-    EXPECT_GT(kept, 100U);
+    EXPECT_GT(kept, 100U) << "of " << times.size();
     RecordProperty("told", static_cast<int>(times.size()));
     RecordProperty("kept", static_cast<int>(kept));
 }
