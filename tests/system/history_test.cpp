@@ -239,7 +239,8 @@ TEST_F(History, ExportsATraceWithChildrenOfOtherServers) {
     const auto trace = run({"trace", "p-1"}, Errors::left_out);
     ASSERT_EQ(trace.status, kSuccess) << trace.output;
     std::vector<std::string> slices;
-    for (const auto& event : json::parse(trace.output).at("traceEvents")) {
+    const auto read = json::parse(trace.output);
+    for (const auto& event : read.at("traceEvents")) {
         if (event.at("ph") == "X") {
             slices.push_back(fmt::format("{} {} {}", event.at("pid").get<int>(),
                                          event.at("name").get<std::string>(),
