@@ -2,7 +2,7 @@
 """What the page's data stream costs: the processor time of `metier dashboard` while the three arms of
 the demo cell move, without a tab and with one and more.
 
-  benchmarks/dashboard_cost.py build/release/apps/metier/metier [--tabs 0,1,3] [--laps 3]
+  benchmarks/dashboard_cost.py build/release/apps/metier/metier [--tabs 0,1,3] [--laps 3] [--cell FILE]
 """
 import argparse
 import http.client
@@ -66,15 +66,14 @@ def await_servers(port):
         time.sleep(0.2)
 
 
-def measure(metier, page, port, urls, options, tabs):
+def measure(page, port, urls, options, tabs):
     open_tabs = [Tab(port) for _ in range(tabs)]
     processor = cpu_seconds(page.pid)
     begun = time.monotonic()
-    laps = [subprocess.Popen([metier, "--insecure-lab", "square", url, "--laps", str(options.laps)],
-                             stdout=subprocess.DEVNULL) for url in urls]
-    for one in laps:
-        if one.wait() != 0:
-            raise SystemExit("dashboard_cost: a square was not driven")
+    laps = subprocess.run([options.metier, "--insecure-lab", "square", *urls, "--laps", str(options.laps)], text=True,
+                          cwd=options.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    if laps.returncode != 0:
+        raise SystemExit(f"dashboard_cost: the arms were not driven:\n{laps.stdout}")
     seconds = time.monotonic() - begun
     used = cpu_seconds(page.pid) - processor
     for tab in open_tabs:
@@ -90,8 +89,12 @@ def main():
     parser.add_argument("metier", help="the program")
     parser.add_argument("--tabs", default="0,1,3", help="runs with so many tabs")
     parser.add_argument("--laps", type=int, default=3, help="of each arm around its square")
+    parser.add_argument("--cell", default=CELL, help="with the servers ur5-move, iiwa and edo-move")
     options = parser.parse_args()
+    options.metier = os.path.abspath(options.metier)
+    options.cell = os.path.abspath(options.cell)
     with tempfile.TemporaryDirectory() as folder:
+        options.folder = folder
         endpoints = os.path.join(folder, "endpoints.json")
         started = []
 
@@ -101,15 +104,15 @@ def main():
             return started[-1]
 
         try:
-            ready_line(start("up", CELL, "--free-ports", "--endpoints", endpoints), "the cell is up")
+            ready_line(start("up", options.cell, "--free-ports", "--endpoints", endpoints), "the cell is up")
             with open(endpoints, encoding="utf-8") as file:
                 urls = {one["name"]: one["url"] for one in json.load(file)["servers"]}
-            page = start("dashboard", "--cell", CELL, "--endpoints", endpoints, "--port", "0", "--records", "off")
+            page = start("dashboard", "--cell", options.cell, "--endpoints", endpoints, "--port", "0", "--records", "off")
             port = int(ready_line(page, "ready http://").rsplit(":", 1)[1])
             await_servers(port)
             print(" tabs    time/s     cpu/s  % of core    live/s      kB/s  (of the page's process; per tab)")
             for tabs in map(int, options.tabs.split(",")):
-                measure(options.metier, page, port, [urls["ur5-move"], urls["iiwa"], urls["edo-move"]], options, tabs)
+                measure(page, port, [urls["ur5-move"], urls["iiwa"], urls["edo-move"]], options, tabs)
         finally:
             for process in reversed(started):
                 process.terminate()
