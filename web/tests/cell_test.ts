@@ -23,6 +23,9 @@ const folder = mkdtempSync(join(tmpdir(), 'metier-page-'));
 const endpoints_file = join(folder, 'endpoints.json');
 const cell_file = join(kSource, 'cells/demo.toml');
 
+/** Fewer pixels to draw without a graphics card. */
+const kSmall = { width: 1180, height: 720 };
+
 let browser: Browser;
 let cell: Program;
 let dashboard: Program;
@@ -81,7 +84,7 @@ test('watches the square of another client', { timeout: 240_000 }, () => withVis
     await picture(page, 'cell_square_dark');
     assert.equal(await done, 0);
     await waitForState(page, key, 'ready');
-}, { dark: true }));
+}, { ...kSmall, dark: true }));
 
 test('runs a move from the form', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
     await takeControl(page);
@@ -100,7 +103,7 @@ test('runs a move from the form', { timeout: 240_000 }, () => withVisit(browser,
         document.querySelector<HTMLButtonElement>('.fill button')?.click();
         return Math.abs(Number(document.querySelector<HTMLInputElement>(selector as string)?.value) - Number(wanted)) < 0.01;
     }, ['[data-field=TargetJointPosition] .joint input[type=text]', target] as const);
-}));
+}, kSmall));
 
 test('is refused a pose out of reach and sees why', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
     await takeControl(page);
@@ -111,11 +114,11 @@ test('is refused a pose out of reach and sees why', { timeout: 240_000 }, () => 
     assert.match(await page.locator('.verdict').innerText(), /reach|limit|unreachable/i);
     await waitForState(page, key, 'ready');
     await picture(page, 'cell_refused_light');
-}));
+}, kSmall));
 
 test('halts a move on its way', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
-    await takeControl(page);
     const key = await choose(page, 'edo-move', 'JointPtpMoveSkill');
+    await takeControl(page);
     await page.click('text=From current position');
     await firstJoint(page).fill(Number(await firstJoint(page).inputValue()) > 0 ? '-2' : '2');
     await press(page, 'start');
@@ -125,7 +128,7 @@ test('halts a move on its way', { timeout: 240_000 }, () => withVisit(browser, u
     await picture(page, 'cell_halted_light');
     await press(page, 'reset');
     await waitForState(page, key, 'ready');
-}));
+}, kSmall));
 
 test('frees what a closed tab controlled', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
     const other = await visit(browser, url);
@@ -134,4 +137,4 @@ test('frees what a closed tab controlled', { timeout: 240_000 }, () => withVisit
     await page.locator('[data-server=iiwa] .owner:not(:text-is("free"))').waitFor();
     await other.close();
     await page.locator('[data-server=iiwa] .owner', { hasText: 'free' }).waitFor();
-}));
+}, kSmall));

@@ -15,6 +15,7 @@ import { triad } from './triad.js';
 const kApart = 0.02;
 /** Of a gripper that does not tell its largest width [m]. */
 const kStroke = 0.11;
+const kLargestStroke = 0.3;
 /** A part that is held is so near to the jaws [m]. */
 const kWithin = 0.06;
 
@@ -26,6 +27,11 @@ export interface Show {
 
 function largestDifference(a: readonly number[], b: readonly number[]): number {
     return a.reduce((most, value, i) => Math.max(most, Math.abs(value - (b[i] ?? value))), 0);
+}
+
+/** A server that knows no stroke gives none, or bounds far beyond any gripper. */
+function strokeOf(told: number): number {
+    return told > 0 && told <= kLargestStroke ? told : kStroke;
 }
 
 /** The frame of the first tool besides the flange; null if there is none. */
@@ -66,7 +72,7 @@ export class ArmActor {
         this.tool_triad = triad(0.09);
         if (frame !== null) placeFrame(this.tool_triad, frame);
         this.view.frames.flange.add(this.tool_triad);
-        if (gripper?.gripper !== undefined && gripper.gripper !== null) this.mount(gripper.key, gripper.gripper.frame, gripper.gripper.stroke || kStroke);
+        if (gripper?.gripper !== undefined && gripper.gripper !== null) this.mount(gripper.key, gripper.gripper.frame, strokeOf(gripper.gripper.stroke));
         this.root.add(this.view.frames.root, this.commanded.frames.root, this.trace.object);
         this.view.frames.setJoints(arm.joints.map(() => 0));
     }

@@ -171,7 +171,7 @@ export class RunPanel {
 
     private showVerdict(result: CheckResult): void {
         const facts = [
-            result.duration === undefined ? '' : durationText(result.duration),
+            result.duration === undefined || !result.possible ? '' : durationText(result.duration),
             result.length === undefined ? '' : `${result.length.toFixed(3)} m`,
         ].filter((text) => text !== '').join(' \u00b7 ');
         const title = result.possible ? 'Possible' : `Not possible: ${words(result.code ?? 'refused').replace(/_/g, ' ')}`;
