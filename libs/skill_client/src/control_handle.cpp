@@ -101,7 +101,9 @@ public:
                 return;
             }
         }
-        callback(*told_);  // written once
+        if (callback) {
+            callback(*told_);  // written once
+        }
     }
 
 private:
