@@ -28,9 +28,10 @@ std::uint64_t sumOf(const Dropped& dropped) {
     return dropped.executions + dropped.events + dropped.samples;
 }
 
+constexpr int kNice = 15;
+
 /// Where every core is busy, robots come first: what is recorded then waits in the queue.
 void yieldToOthers() {
-    constexpr int kNice = 15;
     // Of this thread alone. Should the system refuse it, the writer is one thread among others.
     static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
 }
