@@ -21,6 +21,9 @@ constexpr auto kPause = 5ms;
 
 int record(const std::string& url, const std::string& server, long count) {
     const auto recorder = recorderOf(url, server);
+    if (!recorder->flush(soon())) {  // the store is made
+        return EXIT_FAILURE;
+    }
     auto next = std::chrono::steady_clock::now();
     for (long i = 1; count == 0 || i <= count; ++i) {
         const auto now = std::chrono::system_clock::now();
