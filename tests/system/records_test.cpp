@@ -251,12 +251,12 @@ TEST_F(RecordedArmOnASmallDisk, MovesOnAndHaltsWhileTheDiskIsFullAndSaysSo) {
     arm_->awaitEvent(State::halted);
     disk_->makeRoom();
     EXPECT_THAT(alarms.next("recorded again"), Not(""));
-    const auto record = file_.awaitEnd(kMove);
-    EXPECT_EQ(record.id, "halted");
-    EXPECT_EQ(record.state, "Halted");
-    const auto full = file_.open()->find("full");
-    ASSERT_TRUE(full) << full.error().message;
-    EXPECT_EQ(full->reason, "Finished");
+    const auto ended = [this](const std::string& id) {
+        return file_.await({.skill = kMove},
+                           [&](const auto& one) { return one.id == id && one.isOver(); });
+    };
+    EXPECT_EQ(ended("halted").state, "Halted");
+    EXPECT_EQ(ended("full").reason, "Finished");
 }
 
 std::filesystem::path composedCell() {
