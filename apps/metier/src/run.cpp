@@ -83,8 +83,8 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
 
 void printResult(const skill::ValueMap& result, bool as_json) {
     if (as_json) {
-        fmt::print("{}\n",
-                   skill_json::toJson(result).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", skill_json::toJson(result).dump(
+                               2, ' ', false, nlohmann::json::error_handler_t::replace));
         return;
     }
     fmt::print("done\n");

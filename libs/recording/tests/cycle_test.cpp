@@ -19,9 +19,8 @@ TEST(RecordedCycle, DoesNotAllocateFromTheFirstToTheLast) {
     PathSampler sampler(bench.arm(), nullptr, file.recorder());
     ProgramRecorder recorder(bench.program(robot_skills::kCartesianLinear), file.recorder(),
                              &sampler, {});
-    ASSERT_TRUE(bench.start(
-        robot_skills::kCartesianLinear,
-        {{"TargetPosition", Frame{0, 0, -0.1}}, {"Relative", std::int32_t{1}}}));
+    ASSERT_TRUE(bench.start(robot_skills::kCartesianLinear, {{"TargetPosition", Frame{0, 0, -0.1}},
+                                                             {"Relative", std::int32_t{1}}}));
     auto& arm = bench.arm();
     const auto before = allocationCount();
     for (int i = 0; i < 3000; ++i) {
