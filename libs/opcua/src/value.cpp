@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -146,14 +147,18 @@ std::string inQuotes(std::string_view text) {
     return result + '"';
 }
 
-/// For people, unless the stack can write only the reversible form: it has no names of namespaces.
+/// For people, unless the stack can write only the reversible form: it has no names of namespaces,
+/// and leaves them out where a Variant holds a NodeId, so that what it writes is no JSON.
 std::string encoded(const void* data, const UA_DataType& type) {
     for (const bool reversible : {false, true}) {
         UA_EncodeJsonOptions options{};
         options.useReversible = reversible;
         Owned<UA_ByteString> json(UA_TYPES[UA_TYPES_BYTESTRING]);
-        if (UA_encodeJson(data, &type, json.get(), &options) == UA_STATUSCODE_GOOD) {
-            return sanitise(textFrom(*json));
+        if (UA_encodeJson(data, &type, json.get(), &options) != UA_STATUSCODE_GOOD) {
+            continue;
+        }
+        if (auto text = sanitise(textFrom(*json)); nlohmann::json::accept(text)) {
+            return text;
         }
     }
     return inQuotes(fmt::format("unprintable {}", type.typeName));

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "convert.hpp"
@@ -163,6 +164,19 @@ TEST(Value, PrintsTextThatIsNotUtf8WellFormed) {
     const std::string json = Value::of(LocalizedText{"", "a\xFF"}).toJson();
     EXPECT_EQ(json.find('\xFF'), std::string::npos);
     EXPECT_TRUE(json.starts_with('"'));
+}
+
+// The stack writes {"Value":{"Body":{"Id":7,"Namespace":}}} for it.
+TEST(Value, PrintsANodeIdWithinAVariantAsJson) {
+    UA_NodeId node = UA_NODEID_NUMERIC(5, 7);
+    UA_DataValue within{};
+    UA_Variant_setScalar(&within.value, &node, &UA_TYPES[UA_TYPES_NODEID]);
+    within.hasValue = true;
+    UA_Variant variant;
+    UA_Variant_setArray(&variant, &within, 1, &UA_TYPES[UA_TYPES_DATAVALUE]);
+    const auto json = ValueAccess::copyOf(variant).toJson();
+    EXPECT_TRUE(nlohmann::json::accept(json)) << json;
+    EXPECT_THAT(json, HasSubstr("7"));
 }
 
 TEST(Value, PrintsNumbersThatAreNotFinite) {
