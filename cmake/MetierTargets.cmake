@@ -33,20 +33,20 @@ function(metier_add_library name)
     add_library(metier::${name} ALIAS ${target})
 endfunction()
 
-# metier_add_test(<name> SOURCES ... LIBRARIES ... [LABELS ...] [TIMEOUT seconds])
-# A GoogleTest program; each of its tests is a ctest of its own.
+# metier_add_test(<name> SOURCES ... LIBRARIES ... [LABELS ...] [TIMEOUT seconds] [ALONE])
+# A GoogleTest program; each of its tests is a ctest of its own. ALONE: no other test runs beside one of them.
 function(metier_add_test name)
     if(NOT METIER_TESTS)
         return()
     endif()
-    cmake_parse_arguments(arg "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+    cmake_parse_arguments(arg "ALONE" "TIMEOUT" "SOURCES;LIBRARIES;LABELS" ${ARGN})
     if(NOT arg_TIMEOUT)
         set(arg_TIMEOUT 60)
     endif()
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gmock_main metier::warnings)
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
-        PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}")
+        PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS "${arg_LABELS}" RUN_SERIAL ${arg_ALONE})
 endfunction()
 
 # metier_add_benchmark(<name> SOURCES ... LIBRARIES ...): a program of the target `benchmarks`.

@@ -117,7 +117,7 @@ test('is refused a pose out of reach and sees why', { timeout: 240_000 }, () => 
 }, kSmall));
 
 test('halts a move on its way', { timeout: 240_000 }, () => withVisit(browser, url, async (page) => {
-    const key = await choose(page, 'edo-move', 'JointPtpMoveSkill');
+    const key = await choose(page, 'iiwa', 'JointPtpMoveSkill');
     await takeControl(page);
     await page.click('text=From current position');
     await firstJoint(page).fill(Number(await firstJoint(page).inputValue()) > 0 ? '-2' : '2');
