@@ -6,6 +6,7 @@
 
 #include "metier/skill/lambda_skill.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
+#include "metier/skill/testing/manual_work.hpp"
 
 namespace metier::metrics {
 namespace {
@@ -24,16 +25,6 @@ struct MeteredProgram : testing::Test {
         description.type = "WeldSkillType";
         return description;
     }
-    skill::SkillFunctions functions() {
-        return {.start = [this](const skill::ValueMap& /*parameters*/,
-                                const skill::Execution& started) { execution = started; },
-                .suspend =
-                    [](const skill::Execution& stopped) {
-                        stopped.atRest();
-                        return Result<void>();
-                    },
-                .resume = [](const skill::Execution& /*resumed*/) { return Result<void>(); }};
-    }
     std::uint64_t durations() const {
         const auto counts = meter.durations().read().counts;
         return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
@@ -42,10 +33,11 @@ struct MeteredProgram : testing::Test {
     std::shared_ptr<skill::testing::ManualExecutor> executor =
         std::make_shared<skill::testing::ManualExecutor>();
     skill::Execution execution;
-    skill::Program program{{},
-                           std::make_unique<skill::LambdaSkill>(description(), functions()),
-                           executor,
-                           executor->clock()};
+    skill::Program program{
+        {},
+        std::make_unique<skill::LambdaSkill>(description(), skill::testing::manualWork(execution)),
+        executor,
+        executor->clock()};
     ProgramMeter meter{program};
 };
 

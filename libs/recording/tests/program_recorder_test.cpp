@@ -4,6 +4,7 @@
 
 #include "metier/skill/lambda_skill.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
+#include "metier/skill/testing/manual_work.hpp"
 #include "recording_bench.hpp"
 
 namespace metier::recording {
@@ -27,16 +28,6 @@ struct RecordedProgram : ::testing::Test {
             {.name = "Speed", .type = skill::ValueType::number, .default_value = 0.5}};
         description.results = {{.name = "Length", .type = skill::ValueType::number}};
         return description;
-    }
-    skill::SkillFunctions functions() {
-        return {.start = [this](const skill::ValueMap& /*parameters*/,
-                                const skill::Execution& started) { execution = started; },
-                .suspend =
-                    [](const skill::Execution& stopped) {
-                        stopped.atRest();
-                        return Result<void>();
-                    },
-                .resume = [](const skill::Execution& /*resumed*/) { return Result<void>(); }};
     }
     records::Execution only() {
         const auto listed = file.store()->list({}, {});
@@ -62,7 +53,8 @@ struct RecordedProgram : ::testing::Test {
         std::make_shared<skill::testing::ManualExecutor>();
     skill::Execution execution;
     std::unique_ptr<skill::Program> program = std::make_unique<skill::Program>(
-        skill::ProgramOptions{}, std::make_unique<skill::LambdaSkill>(description(), functions()),
+        skill::ProgramOptions{},
+        std::make_unique<skill::LambdaSkill>(description(), skill::testing::manualWork(execution)),
         executor, executor->clock());
     std::unique_ptr<ProgramRecorder> recorder = std::make_unique<ProgramRecorder>(
         *program, file.recorder(), &sampler, ProgramRecorder::Place{"ur5", "Controller", "UR5"});
