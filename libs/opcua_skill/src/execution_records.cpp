@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "found_or_added.hpp"
 #include "metier/opcua/status_code.hpp"
 #include "metier/opcua/value.hpp"
 #include "metier/skill/json.hpp"
@@ -57,15 +58,12 @@ const std::array<Item, 13>& items() {
 }
 
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t metier) {
-    if (auto found = nodes.find(skill, {metier, kFolder})) {
-        return found;
-    }
     opcua::ObjectSpec spec;
     spec.node.parent = skill;
     spec.node.browse_name = {metier, kFolder};
     spec.node.description = {"en", "The last executions, the latest first."};
     spec.type = opcua::ids::kFolderType;
-    return nodes.addObject(spec);
+    return foundOrAdded(nodes, spec);
 }
 
 /// Of the execution that came `back` before the latest.

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "found_or_added.hpp"
 #include "model_ids.hpp"
 
 namespace metier::opcua_skill {
@@ -16,14 +17,11 @@ const NodeId kNonHierarchicalReferences{0, 32U};
 constexpr const char* kFolder = "UsedSkills";
 
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& user, std::uint16_t metier) {
-    if (auto found = nodes.find(user, {metier, kFolder})) {
-        return found;
-    }
     opcua::ObjectSpec spec;
     spec.node.parent = user;
     spec.node.browse_name = {metier, kFolder};
     spec.node.description = {"en", "The skills of other servers that it runs."};
-    return nodes.addObject(spec);
+    return foundOrAdded(nodes, spec);
 }
 
 Result<void> setProperties(AddressSpace& nodes, const NodeId& object, std::uint16_t metier,
