@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace metier::fuzz {
 
@@ -16,6 +17,18 @@ public:
         }
         --left_;
         return *data_++;
+    }
+    /// What comes before the next line feed, or the end.
+    std::string line() {
+        std::string text;
+        while (!isEmpty()) {
+            const char character = static_cast<char>(next());
+            if (character == '\n') {
+                break;
+            }
+            text += character;
+        }
+        return text;
     }
     /// From -bound to bound.
     double number(double bound) { return (next() / 127.5 - 1.0) * bound; }

@@ -5,10 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "input.hpp"
 #include "metier/virtual_edo/robot.hpp"
 
 using namespace metier;
 using namespace metier::virtual_edo;
+using fuzz::Input;
 
 namespace {
 
@@ -60,35 +62,6 @@ constexpr std::array<std::string_view, 15> kRequests{
     R"({"op":"publish","topic":"/external_control","msg":{"position":[%,%,%,0,0,0,%]}})",
     R"({"op":"publish","topic":"/algo_jnt_ctrl","msg":{"joints":[{"position":%},{},{}]}})",
     R"({"op":"subscribe","topic":"/usb_jnt_state","throttle_rate":%,"fragment_size":%})",
-};
-
-/// Takes bytes off the front of the input; 0 when there are none left.
-class Input {
-public:
-    Input(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
-    bool isEmpty() const { return left_ == 0; }
-    std::uint8_t next() {
-        if (left_ == 0) {
-            return 0;
-        }
-        --left_;
-        return *data_++;
-    }
-    std::string line() {
-        std::string text;
-        while (!isEmpty()) {
-            const char character = static_cast<char>(next());
-            if (character == '\n') {
-                break;
-            }
-            text += character;
-        }
-        return text;
-    }
-
-private:
-    const std::uint8_t* data_;
-    std::size_t left_;
 };
 
 std::string requestFrom(Input& input) {
