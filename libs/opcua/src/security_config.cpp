@@ -72,7 +72,7 @@ Result<> addSecurity(const Credentials& credentials, PeerCheck& peers, UA_Server
 Result<> replaceIdentity(const trust::Identity& identity, UA_ServerConfig& config) {
     const auto certificate = bytesView(identity.certificate.der());
     const auto key = bytesView(identity.private_key);
-    auto code = UA_STATUSCODE_GOOD;
+    UA_StatusCode code = UA_STATUSCODE_GOOD;
     for (std::size_t i = 0; i < config.securityPoliciesSize; ++i) {
         auto& policy = config.securityPolicies[i];
         const auto replaced = policy.updateCertificateAndPrivateKey(&policy, certificate, key);
