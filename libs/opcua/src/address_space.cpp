@@ -82,6 +82,30 @@ std::vector<UA_Argument> viewsOf(const std::vector<Argument>& arguments,
     return views;
 }
 
+/// Adds the Property of a Method that describes its arguments; none, if there are none.
+/// The stack's own way loses the memory of both NodeIds.
+UA_StatusCode addArguments(UA_Server* server, const NodeId& method, const std::string& name,
+                           const std::vector<Argument>& arguments) {
+    if (arguments.empty()) {
+        return UA_STATUSCODE_GOOD;
+    }
+    const NodeSpec spec{{}, method, ids::kHasProperty, {0, name}, {}, {}};
+    const NewNode node(spec);
+    std::vector<std::vector<UA_UInt32>> dimensions;
+    auto views = viewsOf(arguments, dimensions);
+    auto attributes = node.describe(UA_VariableAttributes_default);
+    auto size = static_cast<UA_UInt32>(views.size());
+    UA_Variant_setArray(&attributes.value, views.data(), views.size(),
+                        &UA_TYPES[UA_TYPES_ARGUMENT]);
+    attributes.dataType = UA_TYPES[UA_TYPES_ARGUMENT].typeId;
+    attributes.valueRank = UA_VALUERANK_ONE_DIMENSION;
+    attributes.arrayDimensions = &size;
+    attributes.arrayDimensionsSize = 1;
+    return UA_Server_addVariableNode(server, viewOf(node.id), node.parent, node.reference,
+                                     node.browse_name, viewOf(ids::kPropertyType), attributes,
+                                     nullptr, nullptr);
+}
+
 std::string textOf(std::span<const QualifiedName> path) {
     std::string text;
     for (const auto& name : path) {
@@ -220,15 +244,15 @@ Result<NodeId> AddressSpace::addMethod(const MethodSpec& spec) {
     const NewNode node(spec.node);
     auto attributes = node.describe(UA_MethodAttributes_default);
     attributes.executable = true;
-    std::vector<std::vector<UA_UInt32>> dimensions;
-    const auto inputs = viewsOf(spec.inputs, dimensions);
-    const auto outputs = viewsOf(spec.outputs, dimensions);
-    const NodeId input_id = childId(node.id, {0, "InputArguments"});
-    const NodeId output_id = childId(node.id, {0, "OutputArguments"});
-    const auto code = UA_Server_addMethodNodeEx(
-        core_.native(), viewOf(node.id), node.parent, node.reference, node.browse_name, attributes,
-        nullptr, inputs.size(), inputs.data(), viewOf(input_id), nullptr, outputs.size(),
-        outputs.data(), viewOf(output_id), nullptr, nullptr, nullptr);
+    auto code = UA_Server_addMethodNode(core_.native(), viewOf(node.id), node.parent,
+                                        node.reference, node.browse_name, attributes, nullptr, 0,
+                                        nullptr, 0, nullptr, nullptr, nullptr);
+    if (code == UA_STATUSCODE_GOOD) {
+        code = addArguments(core_.native(), node.id, "InputArguments", spec.inputs);
+    }
+    if (code == UA_STATUSCODE_GOOD) {
+        code = addArguments(core_.native(), node.id, "OutputArguments", spec.outputs);
+    }
     if (auto added = outcome(code, "add Method", node.id); !added) {
         return fail(added.error());
     }
