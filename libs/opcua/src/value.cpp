@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "convert.hpp"
+#include "dimensions.hpp"
 #include "metier/opcua/text.hpp"
 #include "native.hpp"
 
@@ -147,6 +148,10 @@ std::string inQuotes(std::string_view text) {
     return result + '"';
 }
 
+std::string unprintable(const UA_DataType& type) {
+    return inQuotes(fmt::format("unprintable {}", type.typeName));
+}
+
 /// For people, unless the stack can write only the reversible form: it has no names of namespaces,
 /// and leaves them out where a Variant holds a NodeId, so that what it writes is no JSON.
 std::string encoded(const void* data, const UA_DataType& type) {
@@ -161,7 +166,7 @@ std::string encoded(const void* data, const UA_DataType& type) {
             return text;
         }
     }
-    return inQuotes(fmt::format("unprintable {}", type.typeName));
+    return unprintable(type);
 }
 
 std::string jsonOf(const void* data, const UA_DataType& type) {
@@ -171,7 +176,7 @@ std::string jsonOf(const void* data, const UA_DataType& type) {
     if (type.typeKind == UA_DATATYPEKIND_NODEID) {
         return inQuotes(fromNative(*static_cast<const UA_NodeId*>(data)).toString());
     }
-    return encoded(data, type);
+    return dimensionsFit(data, type) ? encoded(data, type) : unprintable(type);
 }
 
 }  // namespace

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <open62541/types_generated.h>
 
+#include <array>
 #include <chrono>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
+#include <vector>
 
 #include "convert.hpp"
 
@@ -177,6 +179,42 @@ TEST(Value, PrintsANodeIdWithinAVariantAsJson) {
     const auto json = ValueAccess::copyOf(variant).toJson();
     EXPECT_TRUE(nlohmann::json::accept(json)) << json;
     EXPECT_THAT(json, HasSubstr("7"));
+}
+
+/// Text of a list that holds one Variant, of no numbers with these dimensions.
+std::string jsonOfNothing(std::vector<UA_UInt32> dimensions) {
+    UA_Variant within;
+    UA_Variant_setArray(&within, UA_EMPTY_ARRAY_SENTINEL, 0, &UA_TYPES[UA_TYPES_INT16]);
+    within.arrayDimensions = dimensions.data();
+    within.arrayDimensionsSize = dimensions.size();
+    UA_DataValue nested{};
+    nested.value = within;
+    nested.hasValue = true;
+    UA_Variant variant;
+    UA_Variant_setArray(&variant, &nested, 1, &UA_TYPES[UA_TYPES_DATAVALUE]);
+    return ValueAccess::copyOf(variant).toJson();
+}
+
+// Decoded as they are: their product is 0 in 64 bits. The stack would read numbers there.
+TEST(Value, DoesNotFollowDimensionsThatOverflow) {
+    EXPECT_EQ(jsonOfNothing({0x10000, 0x10000, 0x10000, 0x10000}), R"(["unprintable DataValue"])");
+    EXPECT_EQ(jsonOfNothing({0xFFFFFFFF, 0xFFFFFFFF, 0}), R"(["unprintable DataValue"])");
+    EXPECT_THAT(jsonOfNothing({0, 3}), HasSubstr("[]"));
+}
+
+TEST(Value, FindsDimensionsThatDoNotFitInStructures) {
+    std::array<UA_UInt32, 4> dimensions{0x10000, 0x10000, 0x10000, 0x10000};
+    UA_ProgramDiagnostic2DataType diagnostic{};
+    UA_Variant input;
+    UA_Variant_setArray(&input, UA_EMPTY_ARRAY_SENTINEL, 0, &UA_TYPES[UA_TYPES_INT16]);
+    diagnostic.lastMethodInputValues = &input;
+    diagnostic.lastMethodInputValuesSize = 1;
+    UA_Variant variant;
+    UA_Variant_setScalar(&variant, &diagnostic, &UA_TYPES[UA_TYPES_PROGRAMDIAGNOSTIC2DATATYPE]);
+    EXPECT_THAT(ValueAccess::copyOf(variant).toJson(), HasSubstr("LastMethodInputValues"));
+    input.arrayDimensions = dimensions.data();
+    input.arrayDimensionsSize = dimensions.size();
+    EXPECT_EQ(ValueAccess::copyOf(variant).toJson(), "\"unprintable ProgramDiagnostic2DataType\"");
 }
 
 TEST(Value, PrintsNumbersThatAreNotFinite) {
