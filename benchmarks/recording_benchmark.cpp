@@ -66,26 +66,48 @@ Round measure(Watching watching, bool recording_first, const std::string& file) 
     return round;
 }
 
-void compare(const char* name, Watching watching, std::size_t rounds, const std::string& file) {
-    std::vector<double> with;
-    std::vector<double> without;
-    std::vector<double> ratios;
-    std::vector<double> recorded;
-    std::vector<double> cpu;
-    for (std::size_t i = 0; i <= rounds; ++i) {
-        const auto round = measure(watching, i % 2 == 0, file);
-        if (i == 0) {
-            continue;  // warms up
-        }
-        with.push_back(round.with.per_second);
-        without.push_back(round.without.per_second);
-        ratios.push_back(round.with.per_second / round.without.per_second);
-        recorded.push_back(round.recorded);
-        cpu.push_back(round.with.server_cpu / round.without.server_cpu);
+/// Of all rounds, each beside the other.
+class Comparison {
+public:
+    void add(const Round& round) {
+        ratio_.push_back(round.with.per_second / round.without.per_second);
+        recorded_.push_back(round.recorded);
+        with_.push_back(round.with);
+        without_.push_back(round.without);
     }
-    fmt::print("{:<30} {:>9.0f} {:>9.0f} {:>8.4f} {:>9.2f} {:>10.3f}\n", name, median(with),
-               median(without), median(ratios), median(cpu), median(recorded));
-    static_cast<void>(std::fflush(stdout));
+    void print(const char* name) const {
+        const auto of = [](const std::vector<Throughput>& side, double Throughput::*what) {
+            std::vector<double> values;
+            for (const auto& one : side) {
+                values.push_back(one.*what);
+            }
+            return median(values);
+        };
+        fmt::print("{:<30}", name);
+        for (const auto what :
+             {&Throughput::per_second, &Throughput::server_thread, &Throughput::server_threads}) {
+            fmt::print(" {:>8.{}f} {:>8.{}f}", of(with_, what),
+                       what == &Throughput::per_second ? 0 : 2, of(without_, what),
+                       what == &Throughput::per_second ? 0 : 2);
+        }
+        fmt::print(" {:>8.4f} {:>8.3f}\n", median(ratio_), median(recorded_));
+        static_cast<void>(std::fflush(stdout));
+    }
+
+private:
+    std::vector<Throughput> with_;
+    std::vector<Throughput> without_;
+    std::vector<double> ratio_;
+    std::vector<double> recorded_;
+};
+
+void compare(const char* name, Watching watching, std::size_t rounds, const std::string& file) {
+    Comparison comparison;
+    measure(watching, true, file);  // warms up
+    for (std::size_t i = 0; i < rounds; ++i) {
+        comparison.add(measure(watching, i % 2 == 0, file));
+    }
+    comparison.print(name);
 }
 
 }  // namespace
@@ -98,8 +120,10 @@ int main(int argc, char** argv) {
         const auto file =
             (std::filesystem::temp_directory_path() / fmt::format("recording_benchmark.db"))
                 .string();
-        fmt::print("{:<30} {:>9} {:>9} {:>8} {:>9} {:>10}   goal: ratio > 0.98\n", "executions/s",
-                   "recorded", "not", "ratio", "CPU ratio", "in the file");
+        fmt::print("{:<30} {:^17} {:^17} {:^17}   goal: ratio > 0.98\n", "", "executions/s",
+                   "server thread [us]", "all threads [us]");
+        fmt::print("{:<30} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "", "recorded",
+                   "not", "recorded", "not", "recorded", "not", "ratio", "in file");
         compare("8 clients, nobody subscribed", Watching::unseen, rounds, file);
         compare("8 clients, each told of all", Watching::seen, rounds, file);
     } catch (const std::exception& error) {

@@ -4,11 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -108,6 +110,18 @@ std::chrono::nanoseconds ServerProcess::cpuTime() const {
         throw std::runtime_error("the CPU time of the server's process cannot be read");
     }
     return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+std::chrono::nanoseconds ServerProcess::busiestThreadTime() const {
+    std::int64_t most = 0;
+    for (const auto& task :
+         std::filesystem::directory_iterator(fmt::format("/proc/{}/task", pid_))) {
+        std::ifstream file(task.path() / "schedstat");
+        std::int64_t nanoseconds = 0;
+        file >> nanoseconds;
+        most = std::max(most, nanoseconds);
+    }
+    return std::chrono::nanoseconds(most);
 }
 
 }  // namespace metier::benchmarks

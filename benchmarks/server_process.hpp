@@ -36,6 +36,8 @@ public:
     double memory() const noexcept { return memory_; }
     /// CPU time of all its threads since it began.
     std::chrono::nanoseconds cpuTime() const;
+    /// CPU time of the thread that used most: of a server that is busy, the one that owns it.
+    std::chrono::nanoseconds busiestThreadTime() const;
 
 private:
     pid_t pid_ = -1;

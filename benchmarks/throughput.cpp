@@ -25,6 +25,7 @@ Throughput throughput(const Side& side, Watching watching, std::chrono::millisec
         }
     }
     const auto cpu_before = server.cpuTime();
+    const auto thread_before = server.busiestThreadTime();
     const auto begin = steady_clock::now();
     {
         std::vector<std::jthread> threads;
@@ -39,7 +40,11 @@ Throughput throughput(const Side& side, Watching watching, std::chrono::millisec
     }
     const std::chrono::duration<double> passed = steady_clock::now() - begin;
     const std::chrono::duration<double> used = server.cpuTime() - cpu_before;
-    return {static_cast<double>(count) / passed.count(), used.count() / passed.count()};
+    const std::chrono::duration<double, std::micro> thread =
+        server.busiestThreadTime() - thread_before;
+    const auto executions = static_cast<double>(count);
+    return {executions / passed.count(), used.count() / passed.count(), thread.count() / executions,
+            1e6 * used.count() / executions};
 }
 
 }  // namespace metier::benchmarks

@@ -43,6 +43,14 @@ Bytes Row::bytes(std::size_t column) const {
     return value == nullptr ? Bytes() : *value;
 }
 
+Result<Rows> Database::query(std::string_view sql, std::span<const Cell> parameters) {
+    std::vector<Argument> arguments;
+    for (const auto& cell : parameters) {
+        std::visit([&](const auto& value) { arguments.emplace_back(value); }, cell);
+    }
+    return execute(sql, arguments);
+}
+
 Result<void> checkUrl(const std::string& url) {
     if (isPostgres(url)) {
         return {};

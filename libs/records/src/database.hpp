@@ -18,6 +18,8 @@ namespace metier::records {
 using Bytes = std::vector<std::uint8_t>;
 /// What a column holds. The schema knows no NULL.
 using Cell = std::variant<std::int64_t, std::string, Bytes>;
+/// A parameter of a statement; refers to what outlives its execution.
+using Argument = std::variant<std::int64_t, std::string_view, std::span<const std::uint8_t>>;
 
 /// A row of an answer. Columns are read as what the query made them.
 class Row {
@@ -47,7 +49,12 @@ public:
     virtual ~Database() = default;
     virtual const Dialect& dialect() const noexcept = 0;
     /// Errors: those of Store.
-    virtual Result<Rows> query(std::string_view sql, std::span<const Cell> parameters) = 0;
+    virtual Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) = 0;
+    Result<Rows> query(std::string_view sql, std::span<const Cell> parameters);
+    /// An INSERT of one row into a table with a key that counts by itself, of the name `key`.
+    /// \return the key
+    virtual Result<std::int64_t> insert(std::string_view sql, std::string_view key,
+                                        std::span<const Argument> parameters) = 0;
     /// Several statements without parameters.
     virtual Result<void> script(const std::string& sql) = 0;
     /// A transaction that writes; others that write wait until its end.

@@ -1,8 +1,13 @@
 #include "parts.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
+#include <initializer_list>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -14,13 +19,35 @@ using nlohmann::json;
 constexpr std::size_t kTransitionFields = 8;
 constexpr std::size_t kIntermediateFields = 3;
 
-json toJson(const Transition& t) {
-    return {"t",      toMicroseconds(t.time), t.from, t.to, t.sub_state, t.step,
-            t.reason, t.reason_text};
+/// With quotes. Most texts are names, which are written as they are.
+void putText(std::string_view text, std::string& out) {
+    const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
+        return c >= ' ' && c <= '~' && c != '"' && c != '\\';
+    });
+    if (plain) {
+        out.append(1, '"').append(text).append(1, '"');
+    } else {
+        out += json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+    }
 }
 
-json toJson(const Intermediate& i) {
-    return {"i", toMicroseconds(i.time), i.value};
+/// An array of the kind, the time and the texts.
+void putEvent(char kind, UtcTime time, std::initializer_list<std::string_view> texts,
+              std::string& out) {
+    fmt::format_to(std::back_inserter(out), "[\"{}\",{}", kind, toMicroseconds(time));
+    for (const auto text : texts) {
+        out += ',';
+        putText(text, out);
+    }
+    out += ']';
+}
+
+void put(const Transition& t, std::string& out) {
+    putEvent('t', t.time, {t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text}, out);
+}
+
+void put(const Intermediate& i, std::string& out) {
+    putEvent('i', i.time, {i.value}, out);
 }
 
 /// Whether it has that many fields: the kind, a time, and texts.
@@ -70,11 +97,13 @@ std::string encodeEvents(const std::vector<Event>& events) {
     if (events.empty()) {
         return {};
     }
-    auto list = json::array();
+    std::string text;
+    char before = '[';
     for (const auto& event : events) {
-        list.push_back(std::visit([](const auto& one) { return toJson(one); }, event));
+        text += std::exchange(before, ',');
+        std::visit([&](const auto& one) { put(one, text); }, event);
     }
-    return list.dump(-1, ' ', false, json::error_handler_t::replace);
+    return text + ']';
 }
 
 void decodeEvents(std::string_view text, std::vector<Event>& events) {

@@ -41,7 +41,7 @@ std::string nameOf(std::string_view url) {
     return fmt::format("postgresql://{}", rest);
 }
 
-std::string toHex(const Bytes& bytes) {
+std::string toHex(std::span<const std::uint8_t> bytes) {
     std::string text = "\\x";
     text.reserve(2 + 2 * bytes.size());
     for (const auto byte : bytes) {
@@ -50,12 +50,13 @@ std::string toHex(const Bytes& bytes) {
     return text;
 }
 
-std::string toParameter(const Cell& cell) {
-    if (const auto* number = std::get_if<std::int64_t>(&cell)) {
+std::string toParameter(const Argument& argument) {
+    if (const auto* number = std::get_if<std::int64_t>(&argument)) {
         return std::to_string(*number);
     }
-    const auto* text = std::get_if<std::string>(&cell);
-    return text != nullptr ? *text : toHex(std::get<Bytes>(cell));
+    const auto* text = std::get_if<std::string_view>(&argument);
+    return text != nullptr ? std::string(*text)
+                           : toHex(std::get<std::span<const std::uint8_t>>(argument));
 }
 
 Bytes fromHex(std::string_view text) {
@@ -159,7 +160,7 @@ const std::string& PostgresDatabase::prepared(std::string_view sql) {
     return statements_.emplace(std::string(sql), name).first->second;
 }
 
-Result<Rows> PostgresDatabase::query(std::string_view sql, std::span<const Cell> parameters) {
+Result<Rows> PostgresDatabase::execute(std::string_view sql, std::span<const Argument> parameters) {
     std::vector<std::string> texts;
     std::transform(parameters.begin(), parameters.end(), std::back_inserter(texts), toParameter);
     const auto values = pqxx::prepare::make_dynamic_params(texts);
@@ -171,6 +172,13 @@ Result<Rows> PostgresDatabase::query(std::string_view sql, std::span<const Cell>
         pqxx::nontransaction alone(connection_);
         return toRows(alone.exec_prepared(name, values));
     });
+}
+
+Result<std::int64_t> PostgresDatabase::insert(std::string_view sql, std::string_view key,
+                                              std::span<const Argument> parameters) {
+    const auto rows = execute(fmt::format("{} RETURNING {}", sql, key), parameters);
+    return rows ? Result<std::int64_t>(rows->front().integer(0))
+                : Result<std::int64_t>(fail(rows.error()));
 }
 
 Result<void> PostgresDatabase::script(const std::string& sql) {

@@ -18,7 +18,9 @@ public:
     static Result<std::unique_ptr<Database>> open(const std::string& url, Store::Access access);
 
     const Dialect& dialect() const noexcept override;
-    Result<Rows> query(std::string_view sql, std::span<const Cell> parameters) override;
+    Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) override;
+    Result<std::int64_t> insert(std::string_view sql, std::string_view key,
+                                std::span<const Argument> parameters) override;
     Result<void> script(const std::string& sql) override;
     Result<void> begin() override;
     Result<void> commit() override;

@@ -47,9 +47,9 @@ Result<void> RowWriter::takeRevisions(std::int64_t count) {
 }
 
 Result<std::int64_t> RowWriter::insertOrFind(std::string_view insert, std::string_view find,
-                                             std::span<const Cell> values) {
+                                             std::span<const Argument> values) {
     for (const auto sql : {find, insert, find}) {
-        const auto rows = database_.query(sql, values);
+        const auto rows = database_.execute(sql, values);
         if (!rows) {
             return fail(rows.error());
         }
@@ -65,13 +65,15 @@ Result<std::int64_t> RowWriter::kindOf(const Execution& e) {
                                                   &e.skill,  &e.device,      &e.user,
                                                   &e.state,  &e.reason};
     std::string key;
-    std::vector<Cell> values;
     for (const auto* text : texts) {
         key.append(*text).push_back('\0');  // no stored text has one
-        values.emplace_back(*text);
     }
     if (const auto known = kinds_.find(key); known != kinds_.end()) {
         return known->second;
+    }
+    std::vector<Argument> values;
+    for (const auto* text : texts) {
+        values.emplace_back(std::string_view(*text));
     }
     const auto kind = insertOrFind(
         "INSERT INTO kinds (server, server_name, controller, skill, device, user_name, state, "
@@ -92,7 +94,7 @@ Result<std::int64_t> RowWriter::noteOf(const std::string& text) {
     }
     return insertOrFind(
         "INSERT INTO notes (reason_text) VALUES ($1) ON CONFLICT DO NOTHING RETURNING note",
-        "SELECT note FROM notes WHERE reason_text = $1", std::array<Cell, 1>{text});
+        "SELECT note FROM notes WHERE reason_text = $1", std::array<Argument, 1>{text});
 }
 
 Result<void> RowWriter::save(Execution& execution) {
@@ -110,42 +112,42 @@ Result<void> RowWriter::save(Execution& execution) {
 }
 
 Result<void> RowWriter::insert(Execution& e, std::int64_t kind, std::int64_t note) {
-    const std::array<Cell, 15> values{kind,
-                                      note,
-                                      toMicroseconds(e.started),
-                                      toMicroseconds(e.ended),
-                                      revision_,
-                                      e.id,
-                                      e.parent,
-                                      e.parent_server,
-                                      e.session,
-                                      e.client_name,
-                                      e.thumbprint,
-                                      static_cast<std::int64_t>(e.missed_cycles),
-                                      e.parameters,
-                                      e.result,
-                                      e.check};
-    const auto rows = database_.query(
+    const std::array<Argument, 15> values{kind,
+                                          note,
+                                          toMicroseconds(e.started),
+                                          toMicroseconds(e.ended),
+                                          revision_,
+                                          e.id,
+                                          e.parent,
+                                          e.parent_server,
+                                          e.session,
+                                          e.client_name,
+                                          e.thumbprint,
+                                          static_cast<std::int64_t>(e.missed_cycles),
+                                          e.parameters,
+                                          e.result,
+                                          e.check};
+    const auto number = database_.insert(
         "INSERT INTO executions (kind, note, started, ended, revision, id, parent, parent_server, "
         "session, client_name, thumbprint, missed_cycles, parameters, result, check_report) VALUES "
-        "($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15) RETURNING number",
-        values);
-    if (!rows) {
-        return fail(rows.error());
+        "($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15)",
+        "number", values);
+    if (!number) {
+        return fail(number.error());
     }
-    e.number = rows->front().integer(0);
+    e.number = *number;
     return {};
 }
 
 Result<void> RowWriter::update(const Execution& e, std::int64_t kind, std::int64_t note) {
-    const std::array<Cell, 7> values{kind,
-                                     note,
-                                     toMicroseconds(e.ended),
-                                     revision_,
-                                     static_cast<std::int64_t>(e.missed_cycles),
-                                     e.result,
-                                     e.number};
-    const auto rows = database_.query(
+    const std::array<Argument, 7> values{kind,
+                                         note,
+                                         toMicroseconds(e.ended),
+                                         revision_,
+                                         static_cast<std::int64_t>(e.missed_cycles),
+                                         e.result,
+                                         e.number};
+    const auto rows = database_.execute(
         "UPDATE executions SET kind = $1, note = $2, ended = $3, revision = $4, "
         "missed_cycles = $5, result = $6 WHERE number = $7",
         values);
@@ -165,9 +167,9 @@ Result<std::int64_t> RowWriter::numberOf(const Execution& e) {
 
 Result<void> RowWriter::addPart(std::int64_t part, const std::string& events,
                                 const Bytes& samples) {
-    const auto rows = database_.query(
+    const auto rows = database_.execute(
         "INSERT INTO parts (part, events, samples) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-        std::array<Cell, 3>{part, events, samples});
+        std::array<Argument, 3>{part, events, samples});
     return rows ? Result<void>() : Result<void>(fail(rows.error()));
 }
 

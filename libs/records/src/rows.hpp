@@ -37,7 +37,7 @@ private:
     Result<std::int64_t> kindOf(const Execution& execution);
     Result<std::int64_t> noteOf(const std::string& text);
     Result<std::int64_t> insertOrFind(std::string_view insert, std::string_view find,
-                                      std::span<const Cell> values);
+                                      std::span<const Argument> values);
     Result<void> insert(Execution& execution, std::int64_t kind, std::int64_t note);
     Result<void> update(const Execution& execution, std::int64_t kind, std::int64_t note);
 

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <system_error>
 
 namespace metier::records {
@@ -61,19 +62,30 @@ Errc codeOf(int status) {
     }
 }
 
-int bind(sqlite3_stmt* statement, int index, const Cell& cell) {
-    if (const auto* number = std::get_if<std::int64_t>(&cell)) {
+int bind(sqlite3_stmt* statement, int index, const Argument& argument) {
+    if (const auto* number = std::get_if<std::int64_t>(&argument)) {
         return sqlite3_bind_int64(statement, index, *number);
     }
-    // The parameters outlive the execution of the statement.
-    if (const auto* text = std::get_if<std::string>(&cell)) {
-        return sqlite3_bind_text64(statement, index, text->data(), text->size(), SQLITE_STATIC,
-                                   SQLITE_UTF8);
+    if (const auto* text = std::get_if<std::string_view>(&argument)) {
+        return sqlite3_bind_text64(statement, index, text->empty() ? "" : text->data(),
+                                   text->size(), SQLITE_STATIC, SQLITE_UTF8);
     }
-    const auto& bytes = std::get<Bytes>(cell);
+    const auto& bytes = std::get<std::span<const std::uint8_t>>(argument);
     return sqlite3_bind_blob64(statement, index,
                                bytes.empty() ? "" : static_cast<const void*>(bytes.data()),
                                bytes.size(), SQLITE_STATIC);
+}
+
+/// Of $n the n, in the order in which SQLite counts them.
+std::vector<std::size_t> parametersOf(sqlite3_stmt* statement) {
+    std::vector<std::size_t> numbers;
+    for (int i = 1; i <= sqlite3_bind_parameter_count(statement); ++i) {
+        const std::string_view name(sqlite3_bind_parameter_name(statement, i));
+        std::size_t number = 0;
+        std::from_chars(name.data() + 1, name.data() + name.size(), number);
+        numbers.push_back(number);
+    }
+    return numbers;
 }
 
 Cell column(sqlite3_stmt* statement, int index) {
@@ -185,9 +197,9 @@ tl::unexpected<Error> SqliteDatabase::failed() const {
                                                         : fmt::format("{}: {}", name_, why));
 }
 
-Result<sqlite3_stmt*> SqliteDatabase::prepared(std::string_view sql) {
+Result<const SqliteDatabase::Statement*> SqliteDatabase::prepared(std::string_view sql) {
     if (const auto known = statements_.find(sql); known != statements_.end()) {
-        return known->second.get();
+        return &known->second;
     }
     if (statements_.size() >= kMostStatements) {
         statements_.clear();
@@ -197,30 +209,42 @@ Result<sqlite3_stmt*> SqliteDatabase::prepared(std::string_view sql) {
                            nullptr) != SQLITE_OK) {
         return failed();
     }
-    return statements_.emplace(std::string(sql), Statement(made)).first->second.get();
+    auto& statement = statements_[std::string(sql)];
+    statement.prepared.reset(made);
+    statement.parameters = parametersOf(made);
+    return &statement;
 }
 
-Result<Rows> SqliteDatabase::query(std::string_view sql, std::span<const Cell> parameters) {
-    const auto statement = prepared(sql);
-    if (!statement) {
-        return fail(statement.error());
+Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argument> parameters) {
+    const auto found = prepared(sql);
+    if (!found) {
+        return fail(found.error());
     }
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-        const auto parameter = fmt::format("${}", i + 1);
-        const int index = sqlite3_bind_parameter_index(*statement, parameter.c_str());
-        if (index > 0 && bind(*statement, index, parameters[i]) != SQLITE_OK) {
+    auto* const statement = (*found)->prepared.get();
+    const auto& numbers = (*found)->parameters;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const bool given = numbers[i] >= 1 && numbers[i] <= parameters.size();
+        if (given &&
+            bind(statement, static_cast<int>(i) + 1, parameters[numbers[i] - 1]) != SQLITE_OK) {
             return failed();
         }
     }
     Rows rows;
-    int status = sqlite3_step(*statement);
-    for (; status == SQLITE_ROW; status = sqlite3_step(*statement)) {
-        rows.push_back(rowOf(*statement));
+    int status = sqlite3_step(statement);
+    for (; status == SQLITE_ROW; status = sqlite3_step(statement)) {
+        rows.push_back(rowOf(statement));
     }
     auto result = status == SQLITE_DONE ? Result<Rows>(std::move(rows)) : Result<Rows>(failed());
-    sqlite3_reset(*statement);
-    sqlite3_clear_bindings(*statement);
+    sqlite3_reset(statement);
+    sqlite3_clear_bindings(statement);
     return result;
+}
+
+Result<std::int64_t> SqliteDatabase::insert(std::string_view sql, std::string_view /*key*/,
+                                            std::span<const Argument> parameters) {
+    const auto done = execute(sql, parameters);
+    return done ? Result<std::int64_t>(sqlite3_last_insert_rowid(connection_.get()))
+                : Result<std::int64_t>(fail(done.error()));
 }
 
 Result<void> SqliteDatabase::script(const std::string& sql) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "database.hpp"
 
@@ -23,7 +24,9 @@ public:
     SqliteDatabase& operator=(const SqliteDatabase&) = delete;
 
     const Dialect& dialect() const noexcept override;
-    Result<Rows> query(std::string_view sql, std::span<const Cell> parameters) override;
+    Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) override;
+    Result<std::int64_t> insert(std::string_view sql, std::string_view key,
+                                std::span<const Argument> parameters) override;
     Result<void> script(const std::string& sql) override;
     Result<void> begin() override { return script("BEGIN IMMEDIATE"); }
     Result<void> commit() override { return script("COMMIT"); }
@@ -39,12 +42,15 @@ private:
         void operator()(sqlite3* connection) const noexcept;
         void operator()(sqlite3_stmt* statement) const noexcept;
     };
-    using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+    struct Statement {
+        std::unique_ptr<sqlite3_stmt, Close> prepared;
+        std::vector<std::size_t> parameters;  // the number n of each $n, in SQLite's order
+    };
 
     explicit SqliteDatabase(std::string name) : name_(std::move(name)) {}
     Result<void> connect(Store::Access access);
     Result<void> setUp(Store::Access access);
-    Result<sqlite3_stmt*> prepared(std::string_view sql);
+    Result<const Statement*> prepared(std::string_view sql);
     Result<std::int64_t> number(std::string_view sql);
     tl::unexpected<Error> failed() const;
 

@@ -59,6 +59,18 @@ std::size_t sequenceAt(std::string_view text) {
 
 }  // namespace
 
+bool isStorable(std::string_view text, std::size_t longest) {
+    while (!text.empty() && text.size() <= longest) {
+        const auto length = sequenceAt(text);
+        if (length == 0) {
+            return false;
+        }
+        text.remove_prefix(length);
+        longest -= length;
+    }
+    return text.empty();
+}
+
 std::string storable(std::string_view text, std::size_t longest) {
     std::string result;
     result.reserve(text.size());

@@ -16,5 +16,7 @@ inline constexpr std::size_t kLongestKey = 2'000;
 /// Well-formed UTF-8 without NUL, as both databases take it: what does not fit becomes U+FFFD, and
 /// what is beyond `longest` is cut off.
 std::string storable(std::string_view text, std::size_t longest = kLongestText);
+/// Whether it is that already.
+bool isStorable(std::string_view text, std::size_t longest = kLongestText);
 
 }  // namespace metier::records

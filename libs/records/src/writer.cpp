@@ -14,7 +14,12 @@ constexpr std::string_view kLostText = "the server ended while this was under wa
 
 template <typename... Texts>
 void cut(std::size_t longest, Texts&... texts) {
-    ((texts = storable(texts, longest)), ...);
+    const auto cut_one = [longest](auto& text) {
+        if (!isStorable(text, longest)) {
+            text = storable(text, longest);
+        }
+    };
+    (cut_one(texts), ...);
 }
 
 /// The latest time that is known of an execution under way.
