@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "metier/skill/json.hpp"
+#include "packed_values.hpp"
 
 namespace metier::recording {
 
@@ -15,14 +16,14 @@ using skill::TransitionNumber;
 
 namespace {
 
-std::string nameOf(State state) {
-    return std::string(toString(state));
+std::string_view nameOf(State state) {
+    return toString(state);
 }
-std::string nameOf(skill::SubState sub_state) {
-    return sub_state == skill::SubState::none ? std::string() : std::string(toString(sub_state));
+std::string_view nameOf(skill::SubState sub_state) {
+    return sub_state == skill::SubState::none ? std::string_view() : toString(sub_state);
 }
-std::string nameOf(skill::Reason reason) {
-    return reason == skill::Reason::none ? std::string() : std::string(toString(reason));
+std::string_view nameOf(skill::Reason reason) {
+    return reason == skill::Reason::none ? std::string_view() : toString(reason);
 }
 
 std::string jsonOf(const skill::CheckReport& report) {
@@ -47,19 +48,14 @@ bool endsExecution(TransitionNumber transition) {
 
 }  // namespace
 
-/// What is the same in all records of a Program.
-struct ProgramRecorder::Names {
-    Place place;
-    std::string skill;
-};
-
 ProgramRecorder::ProgramRecorder(skill::Program& program, records::Recorder& recorder,
                                  PathSampler* sampler, Place place)
-    : program_(program),
-      recorder_(recorder),
-      sampler_(sampler),
-      names_(std::make_shared<const Names>(Names{std::move(place), program.description().name})),
-      state_(program.state()) {
+    : program_(program), recorder_(recorder), sampler_(sampler), state_(program.state()) {
+    begun_.server_name = std::move(place.server_name);
+    begun_.controller = std::move(place.controller);
+    begun_.device = std::move(place.device);
+    begun_.skill = program.description().name;
+    begun_.state = nameOf(State::running);
     program_.attach(*this);
 }
 
@@ -75,23 +71,17 @@ ProgramRecorder::~ProgramRecorder() {
 
 void ProgramRecorder::onBegin(const skill::ExecutionRecord& execution) {
     const auto* check = checkOf(execution);
-    key_ = recorder_.begin({.id = execution.id,
-                            .parent = execution.parent.id,
-                            .parent_server = execution.parent.server,
-                            .session = execution.client.session_id,
-                            .client_name = execution.client.client_name,
-                            .user = execution.client.user_name,
-                            .thumbprint = execution.client.thumbprint,
-                            .check = check == nullptr ? std::string() : *check,
-                            .started = execution.start_time,
-                            .state = nameOf(State::running)},
-                           [names = names_, parameters = execution.parameters](auto& record) {
-                               record.server_name = names->place.server_name;
-                               record.skill = names->skill;
-                               record.controller = names->place.controller;
-                               record.device = names->place.device;
-                               record.parameters = skill::jsonOf(*parameters);
-                           });
+    begun_.id = execution.id;
+    begun_.parent = execution.parent.id;
+    begun_.parent_server = execution.parent.server;
+    begun_.session = execution.client.session_id;
+    begun_.client_name = execution.client.client_name;
+    begun_.user = execution.client.user_name;
+    begun_.thumbprint = execution.client.thumbprint;
+    begun_.check = check == nullptr ? std::string_view() : std::string_view(*check);
+    begun_.started = execution.start_time;
+    pack(*execution.parameters, begun_.parameters);
+    key_ = recorder_.begin(begun_, packedJson);
     if (sampler_ != nullptr) {
         sampler_->begin(key_);
     }
@@ -123,29 +113,36 @@ void ProgramRecorder::onSubState(skill::SubState sub_state, std::string_view ste
     step_ = step;
     // Of a change of the state the transition tells.
     if (key_ != 0 && changed && program_.state() == state_) {
-        recorder_.transition(key_, {.time = std::chrono::system_clock::now(),
-                                    .from = nameOf(state_),
-                                    .to = nameOf(state_),
-                                    .sub_state = nameOf(sub_state_),
-                                    .step = step_});
+        tell({.from = state_, .to = state_, .time = std::chrono::system_clock::now()});
     }
 }
 
 void ProgramRecorder::onProgress(const skill::Value& intermediate) {
     if (key_ != 0) {
         recorder_.intermediate(
-            key_, {.time = std::chrono::system_clock::now(), .value = skill::jsonOf(intermediate)});
+            key_, {.time = std::chrono::system_clock::now(), .value = packed(intermediate)});
     }
 }
 
 void ProgramRecorder::onStarted(const skill::StartedExecution& child) {
     if (key_ != 0) {
-        recorder_.intermediate(
-            key_, {.time = std::chrono::system_clock::now(),
-                   .value = fmt::format(R"({{"started":{{"id":{},"skill":{},"server_url":{}}}}})",
-                                        skill::jsonText(child.id), skill::jsonText(child.skill),
-                                        skill::jsonText(child.server_url))});
+        recorder_.intermediate(key_, {.time = std::chrono::system_clock::now(),
+                                      .value = packedText(fmt::format(
+                                          R"({{"started":{{"id":{},"skill":{},"server_url":{}}}}})",
+                                          skill::jsonText(child.id), skill::jsonText(child.skill),
+                                          skill::jsonText(child.server_url)))});
     }
+}
+
+void ProgramRecorder::tell(const skill::TransitionEvent& event) {
+    transition_.time = event.time;
+    transition_.from = nameOf(event.from);
+    transition_.to = nameOf(event.to);
+    transition_.sub_state = nameOf(sub_state_);
+    transition_.step = step_;
+    transition_.reason = nameOf(event.reason);
+    transition_.reason_text = event.reason_text;
+    recorder_.transition(key_, transition_);
 }
 
 void ProgramRecorder::onTransition(const skill::TransitionEvent& event) {
@@ -153,13 +150,7 @@ void ProgramRecorder::onTransition(const skill::TransitionEvent& event) {
     if (key_ == 0) {
         return;
     }
-    recorder_.transition(key_, {.time = event.time,
-                                .from = nameOf(event.from),
-                                .to = nameOf(event.to),
-                                .sub_state = nameOf(sub_state_),
-                                .step = step_,
-                                .reason = nameOf(event.reason),
-                                .reason_text = event.reason_text});
+    tell(event);
     if (endsExecution(event.number)) {
         end(event);
     }
@@ -168,13 +159,16 @@ void ProgramRecorder::onTransition(const skill::TransitionEvent& event) {
 void ProgramRecorder::end(const skill::TransitionEvent& event) {
     const auto key = std::exchange(key_, 0);
     const auto missed = sampler_ == nullptr ? 0 : sampler_->end(key);
-    const bool finished = event.reason == skill::Reason::finished;
-    recorder_.end(key, {.time = event.time,
-                        .state = nameOf(event.to),
-                        .reason = nameOf(event.reason),
-                        .reason_text = event.reason_text,
-                        .result = finished ? skill::jsonOf(program_.finalResult()) : std::string(),
-                        .missed_cycles = missed});
+    outcome_.time = event.time;
+    outcome_.state = nameOf(event.to);
+    outcome_.reason = nameOf(event.reason);
+    outcome_.reason_text = event.reason_text;
+    outcome_.missed_cycles = missed;
+    outcome_.result.clear();
+    if (event.reason == skill::Reason::finished) {
+        pack(program_.finalResult(), outcome_.result);
+    }
+    recorder_.end(key, outcome_);
 }
 
 }  // namespace metier::recording

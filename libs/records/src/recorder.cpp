@@ -19,24 +19,24 @@ Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recorder::~Recorder() = default;
 
-Recorder::Key Recorder::begin(Execution execution, Completion complete) {
-    return impl_->begin(std::make_unique<Begun>(Begun{std::move(execution), std::move(complete)}));
+Recorder::Key Recorder::begin(const Execution& execution, ToJson to_json) {
+    return impl_->begin(execution, to_json);
 }
 
-void Recorder::transition(Key key, Transition transition) {
-    impl_->tell({key, std::move(transition)});
+void Recorder::transition(Key key, const Transition& transition) {
+    impl_->tell(key, transition);
 }
 
-void Recorder::intermediate(Key key, Intermediate intermediate) {
-    impl_->tell({key, std::move(intermediate)});
+void Recorder::intermediate(Key key, const Intermediate& intermediate) {
+    impl_->tell(key, intermediate);
 }
 
 void Recorder::sample(Key key, const PathSample& sample) noexcept {
     impl_->sample({key, sample});
 }
 
-void Recorder::end(Key key, Outcome outcome) {
-    impl_->end({key, std::move(outcome)});
+void Recorder::end(Key key, const Outcome& outcome) {
+    impl_->end(key, outcome);
 }
 
 bool Recorder::flush(SteadyTime deadline) {

@@ -44,7 +44,9 @@ std::string lossText(const Dropped& d) {
 }  // namespace
 
 Recorder::Impl::Impl(Options options)
-    : options_(std::move(options)), samples_(options_.most_waiting_samples) {
+    : options_(std::move(options)),
+      samples_(options_.most_waiting_samples),
+      writer_(options_.server) {
     watcher_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
     thread_ = std::jthread([this](const std::stop_token& stop) { write(stop); });
 }
@@ -56,50 +58,48 @@ Recorder::Impl::~Impl() {
     watcher_ = {};
 }
 
-Recorder::Key Recorder::Impl::begin(std::unique_ptr<Begun> begun) {
-    begun->execution.server = options_.server;
-    begun->execution.ended = {};
-    Key key = 0;
-    {
-        const std::lock_guard lock(mutex_);
-        if (waiting_.size() >= options_.most_waiting) {
-            ++dropped_.executions;
-        } else {
-            key = ++newest_;
-            push({key, std::move(begun)});
-        }
+Recorder::Key Recorder::Impl::begin(const Execution& execution, ToJson to_json) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.count() >= options_.most_waiting) {
+        ++dropped_.executions;
+        return 0;
     }
-    return key;
+    waiting_.put(++newest_, execution, to_json);
+    wakeWriter();
+    return newest_;
 }
 
-void Recorder::Impl::tell(Message&& message) {
-    if (message.key == 0) {
-        return;
-    }
-    {
-        const std::lock_guard lock(mutex_);
-        if (waiting_.size() >= options_.most_waiting) {
-            ++dropped_.events;
-        } else {
-            push(std::move(message));
-        }
-    }
-}
-
-/// An execution ends once, so that beyond the queue's size there are never more than began.
-void Recorder::Impl::end(Message&& message) {
-    if (message.key == 0) {
+template <typename Message>
+void Recorder::Impl::tell(Key key, const Message& message) {
+    if (key == 0) {
         return;
     }
     const std::lock_guard lock(mutex_);
-    push(std::move(message));
+    if (waiting_.count() >= options_.most_waiting) {
+        ++dropped_.events;
+    } else {
+        waiting_.put(key, message);
+        wakeWriter();
+    }
 }
 
-/// With the lock. The writer is woken when it has something to wait for no longer, since waking a
-/// thread costs more than all else here.
-void Recorder::Impl::push(Message&& message) {
-    waiting_.push_back(std::move(message));
-    if (waiting_.size() == 1 || waiting_.size() == options_.most_waiting / 2 + 1) {
+template void Recorder::Impl::tell(Key key, const Transition& message);
+template void Recorder::Impl::tell(Key key, const Intermediate& message);
+
+/// An execution ends once, so that beyond the queue's size there are never more than began.
+void Recorder::Impl::end(Key key, const Outcome& outcome) {
+    if (key == 0) {
+        return;
+    }
+    const std::lock_guard lock(mutex_);
+    waiting_.put(key, outcome);
+    wakeWriter();
+}
+
+/// With the lock, after each message. Only when the writer has something to wait for no longer,
+/// since waking a thread costs more than all else here.
+void Recorder::Impl::wakeWriter() {
+    if (waiting_.count() == 1 || waiting_.count() == options_.most_waiting / 2 + 1) {
         changed_.notify_all();
     }
 }
@@ -130,7 +130,7 @@ bool Recorder::Impl::flush(SteadyTime deadline) {
 Recorder::Status Recorder::Impl::status() const {
     const std::lock_guard lock(mutex_);
     return {.health = told_,
-            .waiting = waiting_.size(),
+            .waiting = waiting_.count(),
             .waiting_samples = samples_.size(),
             .written = written_,
             .dropped = dropped()};
@@ -165,11 +165,11 @@ bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     const auto asked = [this] { return asked_ > answered_; };
     if (!writer_busy_ && !trimming_ && database_ != nullptr) {
-        changed_.wait_for(lock, stop, kTrimEvery, [&] { return !waiting_.empty() || asked(); });
+        changed_.wait_for(lock, stop, kTrimEvery, [&] { return waiting_.count() > 0 || asked(); });
     }
     if (database_ != nullptr && !trimming_) {
         changed_.wait_for(lock, stop, kGather,
-                          [&] { return asked() || waiting_.size() > options_.most_waiting / 2; });
+                          [&] { return asked() || waiting_.count() > options_.most_waiting / 2; });
     }
     round_began_ = now();
     return !stop.stop_requested();
@@ -181,14 +181,14 @@ std::uint64_t Recorder::Impl::giveToWriter() {
     if (writer_.hasChanges()) {
         return 0;
     }
-    std::vector<Message> messages;
     std::uint64_t asked = 0;
     {
         const std::lock_guard lock(mutex_);
-        messages = std::exchange(waiting_, {});
+        std::swap(waiting_, taken_);
         asked = asked_;
     }
-    const auto lost = writer_.take(std::move(messages), takeSamples());
+    const auto lost = writer_.take(taken_, takeSamples());
+    taken_.clear();
     const std::lock_guard lock(mutex_);
     dropped_.events += lost.events;
     dropped_.samples += lost.samples;
@@ -226,7 +226,7 @@ Result<void> Recorder::Impl::writeRound(std::uint64_t& answered) {
 
 bool Recorder::Impl::somethingWaits() const {
     const std::lock_guard lock(mutex_);
-    return !waiting_.empty();
+    return waiting_.count() > 0;
 }
 
 Result<void> Recorder::Impl::openStore() {

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "message_log.hpp"
 #include "metier/records/recorder.hpp"
 #include "retention.hpp"
 #include "sample_ring.hpp"
@@ -27,15 +28,16 @@ public:
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    Key begin(std::unique_ptr<Begun> begun);
-    void tell(Message&& message);
-    void end(Message&& message);
+    Key begin(const Execution& execution, ToJson to_json);
+    template <typename Message>
+    void tell(Key key, const Message& message);
+    void end(Key key, const Outcome& outcome);
     void sample(const KeyedSample& sample) noexcept;
     bool flush(SteadyTime deadline);
     Status status() const;
 
 private:
-    void push(Message&& message);
+    void wakeWriter();
     void write(const std::stop_token& stop);
     bool somethingWaits() const;
     bool waitForWork(const std::stop_token& stop);
@@ -57,7 +59,7 @@ private:
 
     mutable std::mutex mutex_;  // what follows, until the line
     std::condition_variable_any changed_;
-    std::vector<Message> waiting_;
+    MessageLog waiting_;
     Key newest_ = 0;
     Dropped dropped_;             // its samples: those that the writer found too much
     std::uint64_t asked_ = 0;     // flushes
@@ -70,6 +72,7 @@ private:
     std::uint64_t told_dropped_ = 0;
     // ---- of the writer's thread alone
     std::unique_ptr<Database> database_;
+    MessageLog taken_;  // changes places with what is waiting
     bool closed_lost_ = false;
     Writer writer_;
     std::optional<RetentionRun> trimming_;

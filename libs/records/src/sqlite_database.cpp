@@ -48,6 +48,12 @@ std::string encoded(std::string_view path) {
     return text;
 }
 
+/// SQLite counts what it allocates under a lock, which nobody asks for; before its first use.
+void withoutMemoryCounts() {
+    static const int kDone = sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+    static_cast<void>(kDone);
+}
+
 Errc codeOf(int status) {
     switch (status) {
         case SQLITE_CORRUPT:
@@ -154,6 +160,7 @@ Result<std::unique_ptr<Database>> SqliteDatabase::open(const fs::path& file, Sto
 }
 
 Result<void> SqliteDatabase::connect(Store::Access access) {
+    withoutMemoryCounts();
     std::error_code none;
     auto uri = "file:" + encoded(fs::absolute(name_, none).string());
     const bool read_only_folder =

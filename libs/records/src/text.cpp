@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 namespace metier::records {
 namespace {
@@ -57,18 +58,36 @@ std::size_t sequenceAt(std::string_view text) {
     return fits(first, static_cast<unsigned char>(text[1])) ? length : 0;
 }
 
+/// How many characters at the beginning are ASCII and not NUL, in steps of eight.
+std::size_t lengthOfPlain(std::string_view text) {
+    constexpr std::uint64_t kHighBits = 0x8080808080808080U;
+    constexpr std::uint64_t kOnes = 0x0101010101010101U;
+    std::size_t length = 0;
+    for (std::uint64_t eight = 0; length + sizeof eight <= text.size(); length += sizeof eight) {
+        std::memcpy(&eight, text.data() + length, sizeof eight);
+        // A byte of 0 borrows from its high bit.
+        if ((((eight - kOnes) | eight) & kHighBits) != 0) {
+            break;
+        }
+    }
+    return length;
+}
+
 }  // namespace
 
 bool isStorable(std::string_view text, std::size_t longest) {
-    while (!text.empty() && text.size() <= longest) {
+    if (text.size() > longest) {
+        return false;
+    }
+    text.remove_prefix(lengthOfPlain(text));
+    while (!text.empty()) {
         const auto length = sequenceAt(text);
         if (length == 0) {
             return false;
         }
         text.remove_prefix(length);
-        longest -= length;
     }
-    return text.empty();
+    return true;
 }
 
 std::string storable(std::string_view text, std::size_t longest) {

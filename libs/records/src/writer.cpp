@@ -22,6 +22,12 @@ void cut(std::size_t longest, Texts&... texts) {
     (cut_one(texts), ...);
 }
 
+void makeJson(Recorder::ToJson to_json, std::string& value) {
+    if (to_json != nullptr && !value.empty()) {
+        value = to_json(value);
+    }
+}
+
 /// The latest time that is known of an execution under way.
 Result<UtcTime> lastHeardOf(Database& database, const Execution& execution) {
     const auto rows = database.query(
@@ -52,30 +58,30 @@ Result<UtcTime> lastHeardOf(Database& database, const Execution& execution) {
 
 }  // namespace
 
-Dropped Writer::take(std::vector<Message> messages, const std::vector<KeyedSample>& samples) {
+Dropped Writer::take(const MessageLog& messages, const std::vector<KeyedSample>& samples) {
     dropped_ = {};
-    for (auto& message : messages) {
-        std::visit([&](auto& content) { take(message.key, std::move(content)); }, message.content);
-    }
+    messages.giveTo(*this);
     const auto early = std::exchange(early_, {});
     takeSamples(early);
     takeSamples(samples);
     return dropped_;
 }
 
-void Writer::take(Recorder::Key key, std::unique_ptr<Begun> begun) {
-    auto& e = begun->execution;
-    if (begun->complete) {
-        begun->complete(e);
+void Writer::take(Recorder::Key key, Execution&& e, Recorder::ToJson to_json) {
+    if (to_json != parameters_.by || e.parameters != parameters_.from) {
+        parameters_ = {.by = to_json, .from = e.parameters, .json = e.parameters};
+        makeJson(to_json, parameters_.json);
     }
+    e.parameters = parameters_.json;
+    e.server = server_;
     cut(kLongestName, e.server, e.server_name, e.skill, e.controller, e.device, e.user, e.state,
         e.reason, e.session, e.client_name, e.thumbprint, e.parent_server);
     cut(kLongestKey, e.id, e.parent, e.reason_text);
     cut(kLongestText, e.parameters, e.check, e.result);
-    e.number = 0;
     newest_ = std::max(newest_, key);
     auto& active = active_[key];
     active.execution = std::move(e);
+    active.to_json = to_json;
     note(key, active);
 }
 
@@ -99,6 +105,7 @@ void Writer::take(Recorder::Key key, Transition&& t) {
 
 void Writer::take(Recorder::Key key, Intermediate&& intermediate) {
     if (auto* active = findForEvent(key)) {
+        makeJson(active->to_json, intermediate.value);
         cut(kLongestText, intermediate.value);
         active->events.emplace_back(std::move(intermediate));
         note(key, *active);
@@ -110,6 +117,7 @@ void Writer::take(Recorder::Key key, Outcome&& o) {
     if (active == nullptr) {
         return;
     }
+    makeJson(active->to_json, o.result);
     cut(kLongestName, o.state, o.reason);
     cut(kLongestKey, o.reason_text);
     cut(kLongestText, o.result);

@@ -1,15 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <string>
 #include <unordered_map>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "database.hpp"
+#include "message_log.hpp"
 #include "metier/records/execution.hpp"
 #include "metier/records/recorder.hpp"
 #include "parts.hpp"
@@ -17,29 +15,20 @@
 
 namespace metier::records {
 
-/// An execution, and what is still to be filled in.
-struct Begun {
-    Execution execution{};
-    Recorder::Completion complete{};
-};
-
-/// What is told to a recorder.
-struct Message {
-    Recorder::Key key = 0;
-    std::variant<std::unique_ptr<Begun>, Transition, Intermediate, Outcome> content{};
-};
-
 struct KeyedSample {
     Recorder::Key key = 0;
     PathSample sample{};
 };
 
 /// Turns what a recorder was told into rows. Threading: one thread.
-class Writer {
+class Writer final : private MessageTaker {
 public:
+    /// \param server ApplicationUri of all that it is told of
+    explicit Writer(std::string server) : server_(std::move(server)) {}
+
     /// Takes the messages in their order, then the samples; nothing is written yet.
     /// \return how much was too much for its execution
-    Dropped take(std::vector<Message> messages, const std::vector<KeyedSample>& samples);
+    Dropped take(const MessageLog& messages, const std::vector<KeyedSample>& samples);
     /// Writes what was taken, all of it or nothing; may be called again after an error, also with
     /// another connection to the same store.
     Result<void> write(Database& database);
@@ -56,6 +45,7 @@ private:
     /// An execution that is under way, or over and not written yet.
     struct Active {
         Execution execution{};
+        Recorder::ToJson to_json = nullptr;
         std::int64_t parts = 0;
         std::size_t events_kept = 0;
         std::vector<Event> events{};  // that are not written yet
@@ -63,10 +53,10 @@ private:
         bool row_changed = true;
         bool changed = false;
     };
-    void take(Recorder::Key key, std::unique_ptr<Begun> begun);
-    void take(Recorder::Key key, Transition&& transition);
-    void take(Recorder::Key key, Intermediate&& intermediate);
-    void take(Recorder::Key key, Outcome&& outcome);
+    void take(Recorder::Key key, Execution&& begun, Recorder::ToJson to_json) override;
+    void take(Recorder::Key key, Transition&& transition) override;
+    void take(Recorder::Key key, Intermediate&& intermediate) override;
+    void take(Recorder::Key key, Outcome&& outcome) override;
     void takeSamples(const std::vector<KeyedSample>& samples);
     bool takeSample(const KeyedSample& sample);
     Active* find(Recorder::Key key);
@@ -77,6 +67,15 @@ private:
     void kept();
     void undone();
 
+    /// A value that was made JSON; the next one is often the same.
+    struct Made {
+        Recorder::ToJson by = nullptr;
+        std::string from{};
+        std::string json{};
+    };
+
+    const std::string server_;
+    Made parameters_;
     std::unordered_map<Recorder::Key, Active> active_;
     std::vector<Recorder::Key> changed_;
     std::vector<KeyedSample> early_;  // of executions that were not taken yet

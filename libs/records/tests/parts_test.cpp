@@ -103,5 +103,38 @@ TEST(Storable, IsCutBetweenCharacters) {
     EXPECT_EQ(storable("\xFF\xFF", 5), "\xEF\xBF\xBD");
 }
 
+TEST(Storable, IsWhatStaysAsItIs) {
+    std::mt19937 random(11);  // NOLINT(*-msc51-cpp): the same each time
+    std::uniform_int_distribution<int> kind(0, 40);
+    std::uniform_int_distribution<std::size_t> size(0, 30);
+    for (int i = 0; i < 20'000; ++i) {
+        std::string text;
+        for (auto n = size(random); n > 0; --n) {
+            const auto k = kind(random);
+            text += k == 0 ? "\xC3\xA9" : k == 1 ? "\xFF" : std::string(1, k == 2 ? '\0' : 'a');
+        }
+        for (const std::size_t longest : {10U, 100U}) {
+            EXPECT_EQ(isStorable(text, longest), storable(text, longest) == text) << text;
+        }
+    }
+}
+
+TEST(Events, ComeBackWithWhateverTheirTextsHold) {
+    const std::string text = "\"quoted\" \\ \n \x01 \xC3\xA9";
+    std::vector<Event> events{Transition{at(1), "Running", "Halted", "", text, "Error", text},
+                              Intermediate{at(2), R"({"Width":"\"0.02\""})"}};
+    std::vector<Event> read;
+    decodeEvents(encodeEvents(events), read);
+    ASSERT_EQ(read.size(), 2U);
+    const auto& transition = std::get<Transition>(read[0]);
+    EXPECT_EQ(transition.time, at(1));
+    EXPECT_EQ(transition.from, "Running");
+    EXPECT_EQ(transition.to, "Halted");
+    EXPECT_EQ(transition.sub_state, "");
+    EXPECT_EQ(transition.step, text);
+    EXPECT_EQ(transition.reason_text, text);
+    EXPECT_EQ(std::get<Intermediate>(read[1]).value, R"({"Width":"\"0.02\""})");
+}
+
 }  // namespace
 }  // namespace metier::records

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 
 #include "metier/recording/path_sampler.hpp"
+#include "metier/records/execution.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/skill/program.hpp"
 
@@ -43,14 +43,17 @@ private:
     void onCheck(const skill::Caller& caller, const skill::ValueMap& parameters,
                  const skill::CheckReport& report) override;
 
+    void tell(const skill::TransitionEvent& event);
     void end(const skill::TransitionEvent& event);
     const std::string* checkOf(const skill::ExecutionRecord& execution) const;
 
     skill::Program& program_;
     records::Recorder& recorder_;
     PathSampler* sampler_;
-    struct Names;
-    const std::shared_ptr<const Names> names_;  // shared with what is still to be written
+    // Each is told again and again, so that its texts have their memory already.
+    records::Execution begun_;
+    records::Transition transition_;
+    records::Outcome outcome_;
 
     records::Recorder::Key key_ = 0;  ///< of the execution that is under way; 0: none
     skill::State state_;              ///< that was told last

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
@@ -48,7 +49,8 @@ class Recorder {
 public:
     /// One execution of this recorder; 0: it was dropped, and all that is told of it is, too.
     using Key = std::uint64_t;
-    using Completion = std::function<void(Execution&)>;
+    /// Makes JSON of a value in the form that its teller has given it.
+    using ToJson = std::string (*)(std::string_view);
 
     struct Options {
         std::string url{};     ///< as Store::open() takes it
@@ -82,17 +84,16 @@ public:
     /// An execution begins; its server is Options::server whatever it says. Its state changes with
     /// its transitions. Threads: any, but no cycle thread (allocates, locks for a moment); the same
     /// for all but sample().
-    /// \param complete fills in what takes time to tell, such as JSON: called once, on a thread of
-    /// the
-    ///                 recorder, before the execution is written; owns what it uses. May be empty
-    Key begin(Execution execution, Completion complete = {});
+    /// \param to_json called on a thread of the recorder with the execution's parameters,
+    ///                intermediate values and result, unless empty; null: they are JSON
+    Key begin(const Execution& execution, ToJson to_json = nullptr);
     /// Of one execution in the order of their times; the 100,000 first are kept.
-    void transition(Key key, Transition transition);
-    void intermediate(Key key, Intermediate intermediate);
+    void transition(Key key, const Transition& transition);
+    void intermediate(Key key, const Intermediate& intermediate);
     /// Threads: any, cycle threads as well; neither locks nor allocates. One at a time for a key.
     void sample(Key key, const PathSample& sample) noexcept;
     /// Nothing may be told of it any more.
-    void end(Key key, Outcome outcome);
+    void end(Key key, const Outcome& outcome);
 
     /// Waits until all that was told before is in the store; false at the deadline. For tests and
     /// tools, not for servers.

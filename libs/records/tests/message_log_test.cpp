@@ -1,0 +1,115 @@
+// What a recorder was told, until it is written.
+#include "message_log.hpp"
+
+#include "metier/base/testing/allocation_count.hpp"
+#include "recorded.hpp"
+
+namespace metier::records {
+namespace {
+
+std::string shouted(std::string_view text) {
+    return std::string(text) + "!";
+}
+
+/// Keeps what it takes.
+struct Taken final : MessageTaker {
+    void take(Recorder::Key key, Execution&& e, Recorder::ToJson make) override {
+        order.push_back("begin " + std::to_string(key));
+        begun = std::move(e);
+        to_json = make;
+    }
+    void take(Recorder::Key key, Transition&& t) override {
+        order.push_back("transition " + std::to_string(key));
+        transition = std::move(t);
+    }
+    void take(Recorder::Key key, Intermediate&& i) override {
+        order.push_back("intermediate " + std::to_string(key));
+        intermediate = std::move(i);
+    }
+    void take(Recorder::Key key, Outcome&& o) override {
+        order.push_back("end " + std::to_string(key));
+        outcome = std::move(o);
+    }
+
+    std::vector<std::string> order;
+    Execution begun;
+    Recorder::ToJson to_json = nullptr;
+    Transition transition;
+    Intermediate intermediate;
+    Outcome outcome;
+};
+
+Transition stopping() {
+    return {.time = at(5),
+            .from = "Running",
+            .to = "Running",
+            .sub_state = "Stopping",
+            .step = "approach",
+            .reason = "ByClient",
+            .reason_text = std::string("a\0b", 3)};
+}
+
+TEST(MessageLog, GivesEachMessageAsItWasPutAndInItsOrder) {
+    MessageLog log;
+    const auto move = moveOf("m-1", at(3));
+    log.put(7, move, shouted);
+    log.put(8, stopping());
+    log.put(7, Intermediate{.time = at(6), .value = "0.5"});
+    log.put(7, halted(at(9), "axis 2"));
+    EXPECT_EQ(log.count(), 4U);
+    Taken taken;
+    log.giveTo(taken);
+    EXPECT_THAT(taken.order,
+                ::testing::ElementsAre("begin 7", "transition 8", "intermediate 7", "end 7"));
+    EXPECT_EQ(taken.begun.id, "m-1");
+    EXPECT_EQ(taken.begun.thumbprint, move.thumbprint);
+    EXPECT_EQ(taken.begun.parameters, move.parameters);
+    EXPECT_EQ(taken.begun.check, move.check);
+    EXPECT_EQ(taken.begun.started, at(3));
+    EXPECT_EQ(taken.to_json("a"), "a!");
+    EXPECT_EQ(taken.transition.step, "approach");
+    EXPECT_EQ(taken.transition.reason_text, std::string("a\0b", 3));
+    EXPECT_EQ(taken.intermediate.value, "0.5");
+    EXPECT_EQ(taken.outcome.time, at(9));
+    EXPECT_EQ(taken.outcome.reason_text, "axis 2");
+}
+
+TEST(MessageLog, HoldsMessagesOfAnySizeAndNothingOnceItIsCleared) {
+    MessageLog log;
+    auto large = moveOf("m-2");
+    large.parameters.assign(3'000'000, 'x');
+    log.put(1, moveOf("m-1"), nullptr);
+    log.put(2, large, nullptr);
+    log.put(3, moveOf("m-3"), nullptr);
+    Taken all;
+    log.giveTo(all);
+    EXPECT_THAT(all.order, ::testing::ElementsAre("begin 1", "begin 2", "begin 3"));
+    log.clear();
+    EXPECT_EQ(log.count(), 0U);
+    log.put(4, large, nullptr);
+    Taken last;
+    log.giveTo(last);
+    EXPECT_THAT(last.order, ::testing::ElementsAre("begin 4"));
+    EXPECT_EQ(last.begun.parameters, large.parameters);
+}
+
+TEST(MessageLog, AllocatesNothingOnceItHasHeldAsMuch) {
+    MessageLog log;
+    const auto move = moveOf("m-1");
+    const auto transition = stopping();
+    const auto fill = [&] {
+        for (Recorder::Key key = 1; key <= 2'000; ++key) {
+            log.put(key, move, nullptr);
+            log.put(key, transition);
+        }
+    };
+    fill();
+    log.clear();
+    const auto before = allocationCount();
+    fill();
+    EXPECT_EQ(allocationCount() - before, 0U);
+    EXPECT_EQ(log.count(), 4'000U);
+}
+
+}  // namespace
+}  // namespace metier::records
