@@ -129,8 +129,8 @@ function post(request: IncomingMessage, response: ServerResponse, path: string, 
     }
     if (!isLoggedIn(request)) throw new Refusal(401, 'login_required', 'Log in first');
     const command = /^\/api\/skills\/(suspend|resume|reset|halt)$/.exec(path);
-    if (path === '/api/control') cell.take(tab, body.server ?? '', body.action ?? '');
-    else if (path === '/api/skills/check') return answer(response, 200, cell.check(key, parameters));
+    if (path === '/api/control') return answer(response, 200, cell.take(tab, body.server ?? '', body.action ?? ''));
+    if (path === '/api/skills/check') return answer(response, 200, cell.check(key, parameters));
     else if (path === '/api/skills/start') return answer(response, 200, { execution: cell.start(tab, key, parameters) });
     else if (path === '/api/halt') return answer(response, 200, { halted: cell.haltWhat(body), failed: [] });
     else if (command !== null) cell.command(tab, key, command[1] as string);

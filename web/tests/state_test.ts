@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { Cell, Server, Skill, SkillEvent, Snapshot } from '../src/api/types.js';
 import { recordsQuery } from '../src/api/client.js';
-import { afterEvent, afterLoss, commandsOf, controlSummary, kNothing, leaseLeft, type CellState } from '../src/state/cell_state.js';
+import { afterEvent, afterLoss, commandsOf, controlSummary, kNothing, leaseLeft, usersOf, type CellState } from '../src/state/cell_state.js';
 import { ArmBuffer, LiveBuffer } from '../src/state/live_buffer.js';
 import { Store } from '../src/state/store.js';
 
@@ -74,6 +74,17 @@ test('after a loss nobody here has control, and nothing can be commanded', () =>
     assert.equal(state.tab, '');
     assert.equal(controlSummary(state), 'none');
     assert.deepEqual(commandsOf(state, kSkill), { start: false, suspend: false, resume: false, reset: false, halt: false, why_not: 'No connection to the dashboard' });
+});
+
+test('all is controlled when what is left belongs to those that use it', () => {
+    const component = { key: 'move', connected: true, skills: [], uses: ['iiwa'] } as unknown as Server;
+    const controls = (mine: boolean) => ({ server: 'move', controller: 'Controller', owner: 'operator', mine });
+    const both = afterEvent({ ...live('Ready', '', false), cell: { ...kCell, servers: [...kCell.servers, component] } }, 'control', controls(true), 0);
+    assert.deepEqual(usersOf(both, 'iiwa'), ['move']);
+    assert.deepEqual(usersOf(both, 'move'), []);
+    assert.equal(controlSummary(both), 'all');
+    assert.equal(controlSummary({ ...both, cell: kCell }), 'some', 'nobody uses it');
+    assert.equal(controlSummary(afterEvent(both, 'control', controls(false), 0)), 'none');
 });
 
 test('a server that is away takes no command', () => {

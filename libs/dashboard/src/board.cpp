@@ -122,7 +122,7 @@ void Board::setOffer(const std::string& key, ServerShown offer) {
     const std::lock_guard lock(mutex_);
     auto& server = servers_.at(key);
     const bool same = server.skills == offer.skills && server.arms == offer.arms &&
-                      server.gripper == offer.gripper &&
+                      server.gripper == offer.gripper && server.uses == offer.uses &&
                       server.application_uri == offer.application_uri;
     offer.name = server.name;
     offer.url = server.url;
@@ -269,6 +269,7 @@ json Board::serversJson() const {
                            {"error", server.connected ? json() : json(server.error)},
                            {"arm", server.arm},
                            {"gripper", server.gripper},
+                           {"uses", server.uses},
                            {"skills", server.skills}});
     }
     return servers;

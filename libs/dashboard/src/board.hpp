@@ -8,6 +8,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ struct ServerShown {
     nlohmann::json arms = nlohmann::json::array();    ///< its own, as served
     nlohmann::json arm{};                             ///< key of the first of them, or null
     nlohmann::json gripper{};                         ///< null: none
+    std::set<std::string> uses{};  ///< names of other servers whose skills its own use
 };
 
 struct Alarm {

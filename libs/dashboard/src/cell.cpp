@@ -67,6 +67,23 @@ std::string addressOf(const std::map<std::string, std::string>& given, const std
     return found == given.end() ? std::move(configured) : found->second;
 }
 
+/// Names of the servers of the cell whose skills those of `server` use.
+std::vector<std::string> usedBy(const CellConfig& config, const ServerConfig& server) {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+        if (config.find(name) != nullptr) {
+            names.push_back(name);
+        }
+    };
+    if (server.kind == ServerKind::move) {
+        add(server.move.robot);
+    }
+    for (const auto& used : server.usedServers()) {
+        add(used.name);
+    }
+    return names;
+}
+
 json wallsOf(const Settings& settings) {
     auto walls = json::array();
     for (const auto& name : settings.namesUnder("wall")) {
@@ -124,6 +141,7 @@ Cell cellFrom(const CellConfig& config, const Endpoints& endpoints) {
         if (server.kind == ServerKind::move && config.find(server.move.robot) != nullptr) {
             shown.arm_of = server.move.robot;
         }
+        shown.uses = usedBy(config, server);
         placeInWorld(config, server, shown);
         cell.servers.push_back(std::move(shown));
     }

@@ -128,40 +128,6 @@ json checkJson(const skill::CheckReport& report) {
             {"preview", std::move(preview)}};
 }
 
-Reply Commands::control(const json& body, const std::shared_ptr<Person>& person) {
-    const auto tab = textIn(body, "tab");
-    const auto action = tab ? textIn(body, "action") : Result<std::string>(fail(tab.error()));
-    const auto server =
-        action ? textOrNone(body, "server") : Result<std::string>(fail(action.error()));
-    if (!server) {
-        return errorReply(server.error());
-    }
-    if (*action != "take" && *action != "release") {
-        return errorReply({Errc::invalid_argument, "action: take or release expected"});
-    }
-    const auto servers =
-        server->empty() || *server == "all" ? watches_.servers() : std::vector{*server};
-    auto done = json::array();
-    auto failed = json::array();
-    std::optional<Error> first;
-    for (const auto& one : servers) {
-        const auto changed =
-            *action == "take" ? tabs_.take(*tab, person, one) : tabs_.release(*tab, *person, one);
-        if (changed) {
-            done.push_back(one);
-        } else {
-            failed.push_back({{"server", one},
-                              {"code", toString(changed.error().code)},
-                              {"message", changed.error().message}});
-            first = first ? first : changed.error();
-        }
-    }
-    if (first && done.empty()) {
-        return errorReply(*first);
-    }
-    return {200, {{*action == "take" ? "taken" : "released", done}, {"failed", failed}}};
-}
-
 Reply Commands::check(const json& body, const std::shared_ptr<Person>& person) {
     auto named = askedSkill(watches_, tabs_, body, *person);
     if (!named) {

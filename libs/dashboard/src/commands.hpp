@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,7 +23,8 @@ public:
     /// What it is given must outlive this.
     Commands(Watches& watches, Tabs& tabs) : watches_(watches), tabs_(tabs) {}
 
-    /// {tab, server or all, action: take or release}
+    /// {tab, server or all, action: take or release}. Taking all leaves out servers that others
+    /// use: who has control of an arm's server keeps the component that moves it from streaming.
     Reply control(const nlohmann::json& body, const std::shared_ptr<Person>& person);
     /// {tab, key, parameters}; needs no control, as nothing moves.
     Reply check(const nlohmann::json& body, const std::shared_ptr<Person>& person);

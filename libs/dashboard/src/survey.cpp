@@ -20,6 +20,7 @@ using skill_client::KinematicsNodes;
 using skill_client::SkillAddress;
 
 const NodeId kServerArray{0, 2254U};
+constexpr const char* kMetier = "urn:metier:skills";
 
 std::string applicationUri(opcua::Client& client) {
     const auto value = client.read(kServerArray);
@@ -45,6 +46,7 @@ Answer<> Survey::run() {
         return tl::unexpected(skills.error());
     }
     link_.offer_.application_uri = applicationUri(client);
+    link_.offer_.uses.insert(context_.server.uses.begin(), context_.server.uses.end());
     for (const auto& address : *skills) {
         if (auto added = add(address); !added) {
             return added;
@@ -57,10 +59,24 @@ Answer<> Survey::run() {
         link_.offer_.gripper = {
             {"arm", gripper->on.empty() ? nlohmann::json() : nlohmann::json(gripper->on)},
             {"frame", frameJson(gripper->flange_from_jaws)},
-            {"stroke", strokeIn(link_.offer_.skills)}};
+            {"stroke", stroke()}};
     }
     subscribeAlarms();
     return {};
+}
+
+double Survey::stroke() {
+    auto& client = link_.client();
+    const auto metier = client.namespaceIndex(kMetier);
+    for (const auto& controller : metier ? link_.controllers_ : std::vector<LinkedController>()) {
+        const auto node = client.translate(controller.node, {{*metier, "GripperStroke"}});
+        const auto value = node ? client.read(*node) : Answer<opcua::Value>();
+        if (const auto metres = value ? value->as<double>() : Result<double>(0.0);
+            metres && *metres > 0.0) {
+            return rounded(*metres);
+        }
+    }
+    return strokeIn(link_.offer_.skills);
 }
 
 std::string Survey::uniqueKey(const SkillAddress& address) const {
@@ -74,7 +90,7 @@ std::string Survey::uniqueKey(const SkillAddress& address) const {
 }
 
 Answer<> Survey::add(const SkillAddress& address) {
-    auto arm = armOf(address);
+    auto arm = armOf(address, noteUses(address));
     if (!arm) {
         return tl::unexpected(arm.error());
     }
@@ -115,7 +131,7 @@ std::string Survey::addController(const SkillAddress& address) {
     return key;
 }
 
-Answer<MovedArm> Survey::armOf(const SkillAddress& address) {
+Answer<MovedArm> Survey::armOf(const SkillAddress& address, const std::string& used) {
     const auto* controller = address.controller();
     const auto node = controller == nullptr ? address.node : controller->node;
     if (const auto known = arms_by_controller_.find(node); known != arms_by_controller_.end()) {
@@ -125,33 +141,30 @@ Answer<MovedArm> Survey::armOf(const SkillAddress& address) {
     if (!kinematics && kinematics.error().code != Errc::not_found) {
         return tl::unexpected(kinematics.error());
     }
-    auto arm = kinematics ? addArm(*kinematics, address) : Answer<MovedArm>(MovedArm{});
+    auto arm = kinematics ? addArm(*kinematics, used) : Answer<MovedArm>(MovedArm{});
     if (arm) {
         arms_by_controller_[node] = *arm;
     }
     return arm;
 }
 
-std::string Survey::ownerOfArm(const SkillAddress& address) {
-    if (!context_.server.arm_of.empty()) {
-        return context_.server.arm_of;
-    }
+std::string Survey::noteUses(const SkillAddress& address) {
     auto reader = skill_client::ReferenceReader::create(link_.client());
     const auto references =
         reader ? reader->read(address.node) : Answer<skill_client::SkillReferences>();
-    if (!references) {
-        return {};
-    }
-    for (const auto& use : references->uses) {
-        auto used = use.endpoint_url.empty() ? "" : context_.server_at(use.endpoint_url);
-        if (!used.empty()) {
-            return used;
+    std::string first;
+    for (const auto& use : references ? references->uses : std::vector<skill_client::UsedSkill>()) {
+        const auto used = use.endpoint_url.empty() ? "" : context_.server_at(use.endpoint_url);
+        if (used.empty() || used == context_.server.name) {
+            continue;
         }
+        first = first.empty() ? used : first;
+        link_.offer_.uses.insert(used);
     }
-    return {};
+    return first;
 }
 
-Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const SkillAddress& address) {
+Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const std::string& used) {
     if (const auto known = arms_by_object_.find(nodes.object); known != arms_by_object_.end()) {
         return known->second;
     }
@@ -160,9 +173,10 @@ Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const SkillAddress
         return tl::unexpected(data.error());
     }
     const auto& name = context_.server.name;
-    const auto owner = ownerOfArm(address);
+    const auto& configured = context_.server.arm_of;
+    const auto& owner = configured.empty() ? used : configured;
     MovedArm arm{owner, data->axisCount(), data->tool_frames};
-    if (owner.empty() || owner == name) {
+    if (owner.empty()) {
         arm.key = link_.arms_.empty() ? name : fmt::format("{}/{}", name, nodes.device_name);
         link_.offer_.arms.push_back(
             armJson({arm.key, name, nodes.device_name, context_.server.world_from_base}, *data,

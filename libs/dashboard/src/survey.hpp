@@ -24,11 +24,15 @@ private:
     opcua::Answer<> add(const skill_client::SkillAddress& address);
     std::string uniqueKey(const skill_client::SkillAddress& address) const;
     std::string addController(const skill_client::SkillAddress& address);
-    opcua::Answer<MovedArm> armOf(const skill_client::SkillAddress& address);
+    /// \param used server that the skill uses; empty: none
+    opcua::Answer<MovedArm> armOf(const skill_client::SkillAddress& address,
+                                  const std::string& used);
     opcua::Answer<MovedArm> addArm(const skill_client::KinematicsNodes& nodes,
-                                   const skill_client::SkillAddress& address);
-    /// The server whose arm it is, if it is that of another one.
-    std::string ownerOfArm(const skill_client::SkillAddress& address);
+                                   const std::string& used);
+    /// Notes the other servers of the cell whose skills this one uses, and names the first.
+    std::string noteUses(const skill_client::SkillAddress& address);
+    /// Largest width of the gripper [m]: as the server tells, else as its parameters may be.
+    double stroke();
     void readState(const LinkedSkill& linked);
     void subscribeAlarms();
 

@@ -90,6 +90,23 @@ Result<ReachedSkill> Watches::skill(const std::string& key) const {
                                     : Result<ReachedSkill>(std::move(reached));
 }
 
+std::map<std::string, std::string> Watches::usedServers() const {
+    const std::lock_guard lock(mutex_);
+    std::map<std::string, std::string> used;
+    for (const auto& watch : watches_) {
+        const auto& user = watch->server();
+        // What the cell file says holds before the server was reached, too.
+        for (const auto& name : user.uses) {
+            used.emplace(name, user.name);
+        }
+        const auto link = watch->link();
+        for (const auto& name : link ? link->offer().uses : std::set<std::string>()) {
+            used.emplace(name, user.name);
+        }
+    }
+    return used;
+}
+
 bool Watches::wantLogin() const {
     const std::lock_guard lock(mutex_);
     bool reached = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -39,6 +40,8 @@ public:
     Result<std::string> url(const std::string& server) const;
     /// Errors: not_found; connection_lost, if its server is not connected.
     Result<ReachedSkill> skill(const std::string& key) const;
+    /// Servers whose skills those of another one use, each with the name of one that does.
+    std::map<std::string, std::string> usedServers() const;
     /// Whether people are to log in: a server that was reached asks for it, or none was yet.
     bool wantLogin() const;
 

@@ -20,7 +20,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const UtcTime kNoon{std::chrono::seconds(1'800'000'000)};
 
@@ -207,6 +209,23 @@ TEST(Fields, OfAToolFrameHaveItsNamesToChooseFrom) {
     field.type = skill::ValueType::text;
     EXPECT_EQ(fieldJson(field, {"ur5", 6, {"flange", "gripper"}}).at("choices"),
               json::array({"flange", "gripper"}));
+}
+
+TEST(CellFrom, TellsWhichServersOthersUse) {
+    using configuration::ServerKind;
+    configuration::CellConfig config;
+    config.servers.resize(3);
+    config.servers[0].name = "ur5";
+    config.servers[1].name = "ur5-move";
+    config.servers[1].kind = ServerKind::move;
+    config.servers[1].move.robot = "ur5";
+    config.servers[2].name = "both";
+    config.servers[2].kind = ServerKind::composition;
+    config.servers[2].composition.servers = {{"ur5-move", ""}, {"opc.tcp://elsewhere:4840", ""}};
+    const auto cell = cellFrom(config);
+    EXPECT_THAT(cell.servers.at(0).uses, IsEmpty());
+    EXPECT_THAT(cell.servers.at(1).uses, ElementsAre("ur5"));
+    EXPECT_THAT(cell.servers.at(2).uses, ElementsAre("ur5-move")) << "and one of no cell";
 }
 
 opcua_skill::KinematicsData twoJoints(double length) {

@@ -73,6 +73,8 @@ export type SkillCommand = 'suspend' | 'resume' | 'reset' | 'halt';
 
 export interface ControlAnswer {
     failed?: { server: string; message: string }[];
+    /** Of all: servers that others use. */
+    left_out?: { server: string; used_by: string }[];
 }
 
 export interface HaltAnswer {

@@ -93,6 +93,8 @@ export interface Server {
     error: string | null;
     arm?: string | null;
     gripper?: GripperPlace | null;
+    /** Keys of other servers whose skills its own use. */
+    uses?: string[];
     skills: Skill[];
 }
 

@@ -107,12 +107,16 @@ export function stateOf(state: CellState, skill_key: string): StateName {
     return state.skills[skill_key]?.state ?? '';
 }
 
-/** Whether this tab may command anything, or all of it. */
+/** Keys of the servers whose skills that one's are used by; taking control of all leaves it to them. */
+export function usersOf(state: CellState, server_key: string): string[] {
+    return (state.cell?.servers ?? []).filter((server) => server.uses?.includes(server_key)).map((server) => server.key);
+}
+
+/** Whether this tab may command anything, or all that is not left to other servers. */
 export function controlSummary(state: CellState): 'none' | 'some' | 'all' {
     const controls = Object.values(state.controls);
-    const mine = controls.filter((control) => control.mine).length;
-    if (mine === 0) return 'none';
-    return mine === controls.length ? 'all' : 'some';
+    if (!controls.some((control) => control.mine)) return 'none';
+    return controls.every((control) => control.mine || usersOf(state, control.server).length > 0) ? 'all' : 'some';
 }
 
 /** Seconds until a lease runs out, by the server's clock; null where there is none. */

@@ -52,6 +52,11 @@ export class Actions {
         return this.attempt(what, async () => {
             const answer = await this.api.control(this.tab, action, server);
             for (const failure of answer.failed ?? []) this.toasts.show('note', `${what} of ${failure.server}: not done`, failure.message);
+            const left_out = answer.left_out ?? [];
+            if (left_out.length > 0) {
+                this.toasts.show('note', `Left out: ${left_out.map((one) => one.server).join(', ')}`,
+                    `Used by ${[...new Set(left_out.map((one) => one.used_by))].join(', ')}, which could not move them otherwise. Take one by itself if you want it.`);
+            }
         });
     }
 

@@ -1,7 +1,7 @@
 // One server in the list: its connection, who controls it, and a row for each skill.
 
 import type { ControlEvent, Server, Skill, SkillEvent } from '../api/types.js';
-import { isConnected, leaseLeft, serverError, type CellState } from '../state/cell_state.js';
+import { isConnected, leaseLeft, serverError, usersOf, type CellState } from '../state/cell_state.js';
 import { wallTime, type Choice, type Context } from './context.js';
 import { h, setAttribute, setText } from './dom.js';
 import { subStateWords, words } from './format.js';
@@ -47,6 +47,7 @@ export class ServerCard {
     readonly element: HTMLElement;
     private readonly dot = h('i', { class: 'dot' });
     private readonly problem = h('p', { class: 'error' });
+    private readonly users = h('p', { class: 'users', title: 'Taking control of all leaves it to these: who has control of it keeps them from working' });
     private readonly owner = h('span', { class: 'owner' });
     private readonly lease = h('span', { class: 'lease' });
     private readonly control = h('button', { class: 'small' });
@@ -58,7 +59,7 @@ export class ServerCard {
         this.element = h('div', { class: 'server', 'data-server': server.key },
             h('div', { class: 'server-head' }, this.dot, h('span', { class: 'server-name', title: server.url }, named ? server.name : server.url),
                 this.owner, this.lease, this.control),
-            this.problem, ...this.rows.map((entry) => entry.row.element));
+            this.problem, this.users, ...this.rows.map((entry) => entry.row.element));
     }
 
     render(state: CellState, choice: Choice): void {
@@ -66,6 +67,8 @@ export class ServerCard {
         this.dot.className = `dot ${connected ? 'on' : 'off'}`;
         this.dot.title = connected ? 'Connected' : 'Not connected';
         setText(this.problem, connected ? '' : serverError(state, this.server.key) || 'Not connected');
+        const users = usersOf(state, this.server.key);
+        setText(this.users, users.length === 0 ? '' : `used by ${users.join(', ')}`);
         const old = !connected || state.link !== 'live';
         for (const { skill, row } of this.rows) row.render(state.skills[skill.key], choice.skill === skill.key, old);
         const control = this.controlEvent(state);

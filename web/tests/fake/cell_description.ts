@@ -55,7 +55,7 @@ export function describeCell(models: string): FakeDescription {
     const servers = [
         server('iiwa', 48421, moveSkills('iiwa', iiwa), { arm: 'iiwa' }),
         server('ur5', 48411, [skill('ur5', 'PositionStreamSkill', 'ur5', [field('TargetJointPosition', 'numbers', { rank: 6, unit: 'rad', role: 'joints' })])], { arm: 'ur5' }),
-        server('ur5-move', 48412, moveSkills('ur5-move', ur5)),
+        server('ur5-move', 48412, moveSkills('ur5-move', ur5), { uses: ['ur5'] }),
         server('edo', 48431, moveSkills('edo', edo), { arm: 'edo' }),
         server('wsg50', 48441, gripper, { gripper: { arm: 'iiwa', frame: [0, 0, 0.15, 0, 0, 0], stroke: 0.11, width: 0.05 } }),
     ];

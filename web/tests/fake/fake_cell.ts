@@ -75,9 +75,15 @@ export class FakeCell {
         return { server, controller: 'Controller', owner: owner === '' ? '' : owner === tab ? 'operator' : kOther, mine: owner === tab && tab !== '', until, lease_ms: 1000 };
     }
 
-    take(tab: string, server: string, action: string): void {
+    take(tab: string, server: string, action: string): object {
+        const left_out: object[] = [];
         for (const { key } of this.description.cell.servers) {
             if (server !== 'all' && key !== server) continue;
+            const user = this.description.cell.servers.find((one) => one.uses?.includes(key));
+            if (server === 'all' && action === 'take' && user !== undefined) {
+                left_out.push({ server: key, used_by: user.key });
+                continue;
+            }
             const owner = this.owners.get(key) ?? '';
             if (owner !== '' && owner !== tab) {
                 if (server !== 'all') throw new Refusal(409, 'locked', `${kOther} has control of ${key}`);
@@ -86,6 +92,7 @@ export class FakeCell {
             this.owners.set(key, action === 'take' ? tab : '');
         }
         this.tell('controls', null);
+        return { failed: [], left_out };
     }
 
     /** A tab is gone: what it owned is free, and its moves halt. */

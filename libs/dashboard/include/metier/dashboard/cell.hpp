@@ -24,6 +24,8 @@ struct CellServer {
     std::string url;   ///< "opc.tcp://host:port"
     /// Name of the server whose arm this one's skills move; empty: its own, or as it tells.
     std::string arm_of{};
+    /// Names of the servers of the cell whose skills its own use, as far as the cell file says.
+    std::vector<std::string> uses{};
     std::optional<Frame> world_from_base{};  ///< of its arm; none: nobody says
     std::optional<GripperMount> gripper{};
 };
