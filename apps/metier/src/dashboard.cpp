@@ -13,9 +13,9 @@
 
 #include "commands.hpp"
 #include "discovered_servers.hpp"
-#include "folders.hpp"
 #include "metier/configuration/cell.hpp"
 #include "ready_line.hpp"
+#include "recorded.hpp"
 #include "robot_argument.hpp"
 #include "security.hpp"
 #include "servers.hpp"
@@ -93,13 +93,11 @@ Result<Cell> cellOf(const DashboardOptions& options) {
     return cell;
 }
 
-/// Where servers of this user record, if nobody says anything else; empty: nowhere.
-std::string recordsOf(const DashboardOptions& options) {
-    if (!options.records.empty()) {
-        return options.records == "off" ? "" : options.records;
-    }
-    const auto folder = userStateFolder();
-    return folder.empty() ? "" : (folder / "records.db").string();
+/// Where the servers record: as the command line says, the cell's file, or where those of this user
+/// do; empty: nowhere.
+std::string recordsOf(const DashboardOptions& options, const Cell& cell) {
+    const auto& said = options.records.empty() ? cell.records : options.records;
+    return said.empty() ? defaultRecords() : said == "off" ? "" : said;
 }
 
 std::string urlOf(const std::string& address, std::uint16_t port) {
@@ -134,6 +132,7 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
                                         "loopback address",
                                         options.address)});
     }
+    auto records = recordsOf(options, *cell);
     auto models = loadAllRobots();
     if (!models) {
         return fail(models.error());
@@ -155,7 +154,7 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
          .host_name = options.host_name,
          .web = webFolder(options.web),
          .meshes = options.meshes,
-         .records = recordsOf(options),
+         .records = std::move(records),
          .models = std::move(*models)},
         clock);
     if (!page) {
@@ -211,7 +210,8 @@ void addDashboard(CLI::App& app, Exit& exit) {
     command->add_flag("--mdns", options->mdns, "Also show the servers that mDNS tells of");
     command->add_option("--records", options->records,
                         "Where servers record what they execute: a file, sqlite:FILE, "
-                        "postgresql://..., or off [records.db in ~/.local/state/metier]");
+                        "postgresql://..., or off [as the cell's file says, else records.db in "
+                        "~/.local/state/metier]");
     addHttpOptions(*command, *options);
     command->callback([options, &exit] { exit = runDashboard(*options); });
 }

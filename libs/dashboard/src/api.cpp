@@ -121,7 +121,11 @@ void Api::beginStream(const Request& request, Response& response) {
     }
     const auto tab = randomName();
     tabs_.open(tab, person);
-    if (const auto begun = streams_.begin(tab, response, [this, tab] { tabs_.close(tab); });
+    const auto may_listen = [this, token = cookie(request, kCookie), person] {
+        return people_.find(token) == person;
+    };
+    if (const auto begun =
+            streams_.begin(tab, response, {may_listen, [this, tab] { tabs_.close(tab); }});
         !begun) {
         tabs_.close(tab);
         write(errorReply(503, toString(begun.error().code), begun.error().message), response);
@@ -197,11 +201,12 @@ void Api::bind(HttpServer& server) {
     server.set_default_headers(protectiveHeaders());
     server.set_pre_routing_handler([this](const Request& request, Response& response) {
         const auto own = checkOrigin(request, options_.host_name);
-        if (!own) {
-            write(errorReply(own.error()), response);
+        const bool open = !request.path.starts_with("/meshes/") || personOf(request) != nullptr;
+        if (!own || !open) {
+            write(own ? notLoggedIn() : errorReply(own.error()), response);
         }
-        return own ? httplib::Server::HandlerResponse::Unhandled
-                   : httplib::Server::HandlerResponse::Handled;
+        return own && open ? httplib::Server::HandlerResponse::Unhandled
+                           : httplib::Server::HandlerResponse::Handled;
     });
     server.set_exception_handler(
         [](const Request& /*request*/, Response& response, std::exception_ptr /*thrown*/) {

@@ -144,6 +144,7 @@ Cell cellFrom(const CellConfig& config, const Endpoints& endpoints) {
         shown.uses = usedBy(config, server);
         placeInWorld(config, server, shown);
         cell.servers.push_back(std::move(shown));
+        cell.records = server.records.url;  // the same for all
     }
     if (const auto* world = config.world()) {
         cell.world = worldOf(*world, endpoints);

@@ -77,10 +77,6 @@ Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person&
     return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
 }
 
-std::size_t thinned(std::size_t index, std::size_t kept, std::size_t all) {
-    return kept < 2 ? 0 : index * (all - 1) / (kept - 1);
-}
-
 }  // namespace
 
 Result<skill::ValueMap> parametersIn(const json& body, const skill::SkillDescription& skill) {

@@ -19,6 +19,14 @@ constexpr std::string_view kFull =
     "Content-Length: 85\r\n\r\n"
     R"({"error":{"code":"resource_unavailable","message":"too many connections; try later"}})";
 
+/// httplib would unpack a body to a thousand times its size, and answer many ranges of a file with
+/// as many copies of it.
+void forgetExtras(httplib::Request& request) {
+    request.headers.erase("Content-Encoding");
+    request.headers.erase("Range");
+    request.ranges.clear();
+}
+
 /// A port that is taken is refused; what is sent waits here, not in the system.
 void setOptions(int socket) {
     const int yes = 1;
@@ -77,9 +85,11 @@ void HttpServer::refuse(int socket) {
 
 template <typename Self>
 bool HttpServer::serveOne(Self& self, Connection& connection, bool& closed) {
-    const std::function<void(httplib::Request&)> on_head = [&connection](httplib::Request&) {
-        connection.beginBody();
-    };
+    const std::function<void(httplib::Request&)> on_head =
+        [&connection](httplib::Request& request) {
+            connection.beginBody();
+            forgetExtras(request);
+        };
     if constexpr (requires { self.process_request(connection, false, closed, on_head); }) {
         return self.process_request(connection, self.ending_, closed, on_head);
     } else {

@@ -93,4 +93,8 @@ json LiveValues::changes(UtcTime now) {
     return changed;
 }
 
+std::size_t thinned(std::size_t index, std::size_t kept, std::size_t all) {
+    return kept < 2 ? 0 : index * (all - 1) / (kept - 1);
+}
+
 }  // namespace metier::dashboard

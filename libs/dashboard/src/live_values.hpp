@@ -49,4 +49,8 @@ private:
 double rounded(double value);
 nlohmann::json rounded(const std::vector<double>& values);
 
+/// Which of `all` is the one of that index, where `kept` of them are kept, the first and the last
+/// among them.
+std::size_t thinned(std::size_t index, std::size_t kept, std::size_t all);
+
 }  // namespace metier::dashboard

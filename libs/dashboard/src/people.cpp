@@ -17,6 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kMostLogins = 200;
+constexpr std::size_t kMostLoginsOfUser = 20;
 constexpr std::size_t kMostFailures = 1'000;
 constexpr auto kLongestLogin = 12h;
 constexpr auto kLongestRest = 1h;
@@ -123,7 +124,7 @@ bool People::isLab() const {
     return lab_ || !watches_.wantLogin();
 }
 
-Result<void> People::checkBar(const std::string& user, const std::string& peer) {
+Result<void> People::beginAttempt(const std::string& user, const std::string& peer) {
     const std::lock_guard lock(mutex_);
     for (const auto& who : {"user " + user, "peer " + peer}) {
         const auto found = failures_.find(who);
@@ -135,13 +136,15 @@ Result<void> People::checkBar(const std::string& user, const std::string& peer) 
                                     std::chrono::ceil<std::chrono::seconds>(left).count()));
         }
     }
+    count("user " + user, kFreeOfUser);
+    count("peer " + peer, kFreeOfPeer);
     return {};
 }
 
-void People::noteFailure(const std::string& who, int free_attempts) {
+/// With the lock.
+void People::count(const std::string& who, int free_attempts) {
     constexpr int kMostDoublings = 6;
     constexpr std::chrono::seconds kLongest{60};
-    const std::lock_guard lock(mutex_);
     if (failures_.size() >= kMostFailures && !failures_.contains(who)) {
         failures_.erase(std::min_element(
             failures_.begin(), failures_.end(), [](const auto& left, const auto& right) {
@@ -154,6 +157,16 @@ void People::noteFailure(const std::string& who, int free_attempts) {
         const int doublings = std::min(failures.count - free_attempts, kMostDoublings);
         failures.barred_until =
             clock_.now() + std::min(std::chrono::seconds(1LL << doublings), kLongest);
+    }
+}
+
+void People::takeBack(const std::string& user, const std::string& peer) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& who : {"user " + user, "peer " + peer}) {
+        if (const auto found = failures_.find(who); found != failures_.end()) {
+            --found->second.count;
+            found->second.barred_until = {};  // nobody is let try while it is in the future
+        }
     }
 }
 
@@ -184,29 +197,49 @@ Result<std::string> People::login(const std::string& user, const std::string& pa
     if (user.empty() || password.empty()) {
         return fail(Errc::access_denied, "a name and a password are needed");
     }
-    if (auto free = checkBar(user, peer); !free) {
+    if (auto free = beginAttempt(user, peer); !free) {
         return fail(free.error());
     }
     auto person = ask(user, password);
     if (!person && person.error().code == Errc::access_denied) {
-        noteFailure("user " + user, kFreeOfUser);
-        noteFailure("peer " + peer, kFreeOfPeer);
         return fail(Errc::access_denied, "wrong name or password");
     }
-    if (!person) {
-        return fail(person.error());
-    }
+    takeBack(user, peer);
+    return person ? keep(std::move(*person)) : fail(person.error());
+}
+
+Result<std::string> People::keep(std::shared_ptr<Person> person) {
     auto token = randomName();
     const auto now = clock_.now();
+    std::vector<std::shared_ptr<Person>> gone;  // destroyed after the lock is
     const std::lock_guard lock(mutex_);
-    forgetOld(now);
+    gone = forgetOld(now);
+    failures_.erase("user " + person->user());
+    if (auto surplus = surplusOf(person->user()); surplus != logins_.end()) {
+        gone.push_back(std::move(surplus->second.person));
+        logins_.erase(surplus);
+    }
     if (logins_.size() >= kMostLogins) {
         return fail(Errc::resource_unavailable,
                     fmt::format("{} people are logged in, and no more can be", kMostLogins));
     }
-    failures_.erase("user " + user);
-    logins_[token] = {std::move(*person), now, now};
+    logins_[token] = {std::move(person), now, now};
     return token;
+}
+
+/// With the lock. The log-in of that user that was used longest ago, if there are as many as one
+/// may have.
+People::Logins::iterator People::surplusOf(const std::string& user) {
+    auto oldest = logins_.end();
+    std::size_t count = 0;
+    for (auto one = logins_.begin(); one != logins_.end(); ++one) {
+        if (one->second.person->user() == user) {
+            ++count;
+            oldest =
+                oldest == logins_.end() || one->second.used < oldest->second.used ? one : oldest;
+        }
+    }
+    return count < kMostLoginsOfUser ? logins_.end() : oldest;
 }
 
 void People::logout(const std::string& token) {
@@ -218,10 +251,17 @@ void People::logout(const std::string& token) {
     }
 }
 
-void People::forgetOld(SteadyTime now) {
-    std::erase_if(logins_, [now](const auto& one) {
-        return now - one.second.begun > kLongestLogin || now - one.second.used > kLongestRest;
+std::vector<std::shared_ptr<Person>> People::forgetOld(SteadyTime now) {
+    std::vector<std::shared_ptr<Person>> gone;
+    std::erase_if(logins_, [&](auto& one) {
+        const bool old =
+            now - one.second.begun > kLongestLogin || now - one.second.used > kLongestRest;
+        if (old) {
+            gone.push_back(std::move(one.second.person));
+        }
+        return old;
     });
+    return gone;
 }
 
 std::shared_ptr<Person> People::find(const std::string& token) {
@@ -229,8 +269,9 @@ std::shared_ptr<Person> People::find(const std::string& token) {
         return anybody_;
     }
     const auto now = clock_.now();
+    std::vector<std::shared_ptr<Person>> gone;  // destroyed after the lock is
     const std::lock_guard lock(mutex_);
-    forgetOld(now);
+    gone = forgetOld(now);
     const auto found = logins_.find(token);
     if (found == logins_.end()) {
         return nullptr;

@@ -76,7 +76,8 @@ public:
     Result<std::string> login(const std::string& user, const std::string& password,
                               const std::string& peer);
     void logout(const std::string& token);
-    /// nullptr: nobody. Nobody needs a token in a lab.
+    /// Whose token it is, which counts as a request of theirs; nullptr: nobody's. Nobody needs a
+    /// token in a lab.
     std::shared_ptr<Person> find(const std::string& token);
 
 private:
@@ -85,15 +86,22 @@ private:
         SteadyTime begun{};
         SteadyTime used{};
     };
+    using Logins = std::map<std::string, Login>;
     struct Failures {
         int count = 0;
         SteadyTime barred_until{};
     };
 
-    Result<void> checkBar(const std::string& user, const std::string& peer);
-    void noteFailure(const std::string& who, int free_attempts);
+    /// Counts an attempt as wrong before it is made: many at a time are not free.
+    Result<void> beginAttempt(const std::string& user, const std::string& peer);
+    /// It was not wrong.
+    void takeBack(const std::string& user, const std::string& peer);
+    void count(const std::string& who, int free_attempts);
+    Logins::iterator surplusOf(const std::string& user);
+    Result<std::string> keep(std::shared_ptr<Person> person);
     Result<std::shared_ptr<Person>> ask(const std::string& user, const std::string& password);
-    void forgetOld(SteadyTime now);
+    /// \return who was forgotten, to be destroyed without the lock: that waits for servers
+    std::vector<std::shared_ptr<Person>> forgetOld(SteadyTime now);
 
     const Connector& connector_;
     Watches& watches_;
@@ -101,7 +109,7 @@ private:
     const Clock& clock_;
     const std::shared_ptr<Person> anybody_;  // of the lab
     std::mutex mutex_;
-    std::map<std::string, Login> logins_;
+    Logins logins_;
     std::map<std::string, Failures> failures_;
 };
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "live_values.hpp"
 #include "skill_shown.hpp"
 
 namespace metier::dashboard {
@@ -48,6 +49,17 @@ json jsonOf(const records::PathSample& sample) {
         shown["f"] = valuesOf(sample.force);
     }
     return shown;
+}
+
+/// Of a long path as many samples as a page can draw, the first and the last among them.
+json pathJson(const std::vector<records::PathSample>& path) {
+    constexpr std::size_t kMost = 20'000;
+    const auto kept = std::min(path.size(), kMost);
+    auto list = json::array();
+    for (std::size_t i = 0; i < kept; ++i) {
+        list.push_back(jsonOf(path[thinned(i, kept, path.size())]));
+    }
+    return list;
 }
 
 template <typename T>
@@ -200,7 +212,7 @@ Reply RecordsView::one(std::int64_t number) const {
     }
     auto shown = recordJson(*execution);
     shown["transitions"] = listOf(*transitions);
-    shown["path"] = listOf(*path);
+    shown["path"] = pathJson(*path);
     shown["children"] = json::array();
     for (const auto& child : *children) {
         shown["children"].push_back(recordJson(child));

@@ -10,6 +10,8 @@ namespace metier::dashboard {
 namespace {
 
 constexpr std::size_t kLongestText = 1'000;
+/// Whoever copies or prints JSON goes one call deeper for each level.
+constexpr int kDeepest = 32;
 
 int statusOf(Errc code) {
     switch (code) {
@@ -57,7 +59,17 @@ void write(const Reply& reply, httplib::Response& response) {
 }
 
 Result<nlohmann::json> parseBody(std::string_view body) {
-    auto parsed = nlohmann::json::parse(body, nullptr, false);
+    bool too_deep = false;
+    const auto note = [&too_deep](int depth, nlohmann::json::parse_event_t /*event*/,
+                                  nlohmann::json& /*value*/) {
+        too_deep = too_deep || depth > kDeepest;
+        return !too_deep;
+    };
+    auto parsed = nlohmann::json::parse(body, note, false);
+    if (too_deep) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("the body is more than {} levels deep", kDeepest));
+    }
     if (!parsed.is_object()) {
         return fail(Errc::invalid_argument, "the body is to be a JSON object");
     }

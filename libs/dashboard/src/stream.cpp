@@ -30,7 +30,7 @@ bool sendWaiting(Outbox& outbox, httplib::DataSink& sink) {
 }  // namespace
 
 Result<void> Streams::begin(const std::string& tab, httplib::Response& response,
-                            std::function<void()> on_end) {
+                            Listener listener) {
     if (++open_ > limits_.tabs) {
         --open_;
         return fail(Errc::resource_unavailable,
@@ -41,10 +41,11 @@ Result<void> Streams::begin(const std::string& tab, httplib::Response& response,
     response.set_header("X-Accel-Buffering", "no");  // a proxy is not to hold it back
     response.set_chunked_content_provider(
         "text/event-stream",
-        [outbox](std::size_t /*offset*/, httplib::DataSink& sink) {
-            return sendWaiting(*outbox, sink);
+        [outbox, may_listen = std::move(listener.may_listen)](std::size_t /*offset*/,
+                                                              httplib::DataSink& sink) {
+            return may_listen() && sendWaiting(*outbox, sink);
         },
-        [this, tab, on_end = std::move(on_end)](bool /*success*/) {
+        [this, tab, on_end = std::move(listener.on_end)](bool /*success*/) {
             board_.closeTab(tab);
             on_end();
             --open_;

@@ -20,11 +20,15 @@ public:
     /// What it is given must outlive this.
     Streams(Board& board, const HttpLimits& limits) : board_(board), limits_(limits) {}
 
+    /// Whose stream it is. Called on the connection's thread.
+    struct Listener {
+        std::function<bool()> may_listen;  ///< asked several times a second: else the stream ends
+        std::function<void()> on_end;      ///< once, when the tab is gone
+    };
+
     /// Has the response be the stream of a new tab, of that name.
-    /// \param on_end once, when the tab is gone, on the connection's thread
     /// Errors: resource_unavailable, if there are too many.
-    Result<void> begin(const std::string& tab, httplib::Response& response,
-                       std::function<void()> on_end);
+    Result<void> begin(const std::string& tab, httplib::Response& response, Listener listener);
 
 private:
     Board& board_;

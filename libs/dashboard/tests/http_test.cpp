@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <unistd.h>
+
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -21,6 +23,19 @@ using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
+
+/// {"user":"aaa..."} with 100,000 letters, by gzip.
+constexpr std::array<unsigned char, 147> kPacked{
+    0x1f, 0x8b, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00, 0x02, 0x03, 0xed, 0xc1, 0x31, 0x11, 0x00,
+    0x20, 0x0c, 0x04, 0x30, 0x2f, 0x2f, 0x03, 0x37, 0x0c, 0x35, 0x00, 0xc7, 0xc4, 0xe1, 0xbd,
+    0x36, 0x18, 0x92, 0xdc, 0x9c, 0x5d, 0x2b, 0x23, 0x13, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+    0xf8, 0x56, 0x5e, 0x03, 0xfd, 0x57, 0x43, 0x7e, 0xab, 0x86, 0x01, 0x00};
 
 const httplib::Headers kIntent{{"X-Metier", "1"}};
 
@@ -172,7 +187,27 @@ TEST_F(Page, SurvivesDeepJson) {
     EXPECT_EQ(
         post("/api/halt", R"({"a":)" + std::string(4'000, '[') + std::string(4'000, ']') + "}")
             ->status,
-        200);
+        400);
+    EXPECT_EQ(post("/api/halt", R"({"a":[[[[[{"b":[]}]]]]]})")->status, 200);
+}
+
+TEST_F(Page, UnpacksNothing) {
+    const std::string packed(kPacked.begin(), kPacked.end());
+    auto headers = kIntent;
+    headers.emplace("Content-Encoding", "gzip");
+    const auto answer = post("/api/login", packed, headers);
+    EXPECT_EQ(answer->status, 400);
+    EXPECT_THAT(answer->body, HasSubstr("JSON object"));
+}
+
+TEST_F(Page, AnswersManyRangesOfAFileWithTheFile) {
+    std::string ranges = "bytes=0-";
+    for (int i = 0; i < 500; ++i) {
+        ranges += ",0-";
+    }
+    const auto answer = client_->Get("/", {{"Range", ranges}});
+    EXPECT_EQ(answer->status, 200);
+    EXPECT_EQ(answer->body, "<p>the page</p>");
 }
 
 TEST_F(Page, RefusesALongBody) {
@@ -228,9 +263,11 @@ TEST_F(Page, IsNotReachedWithoutLogInWhereServersWantIt) {
                          },
                          [](const opcua::Failure&) { return std::string(); }};
     options.web = folder_ / "web";
+    options.meshes = folder_ / "meshes";
     const auto closed = Dashboard::start(std::move(options), clock_).value();
     httplib::Client stranger("127.0.0.1", closed->port());
-    for (const std::string path : {"/api/cell", "/api/stream", "/api/records", "/api/records/1"}) {
+    for (const std::string path : {"/api/cell", "/api/stream", "/api/records", "/api/records/1",
+                                   "/api/meshes", "/meshes/ur5/ur5.urdf"}) {
         const auto answer = stranger.Get(path);
         ASSERT_TRUE(answer);
         EXPECT_EQ(answer->status, 401) << path;

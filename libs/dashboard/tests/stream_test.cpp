@@ -36,10 +36,12 @@ protected:
     void serve() {
         server_.Get("/stream", [this](const httplib::Request&, httplib::Response& response) {
             const auto tab = std::to_string(++tabs_);
-            const auto begun = streams_.begin(tab, response, [this, tab] {
-                const std::lock_guard lock(mutex_);
-                ended_[tab].set_value();
-            });
+            const auto begun = streams_.begin(tab, response,
+                                              {[this] { return may_listen_.load(); },
+                                               [this, tab] {
+                                                   const std::lock_guard lock(mutex_);
+                                                   ended_[tab].set_value();
+                                               }});
             if (!begun) {
                 response.status = 503;
             }
@@ -59,6 +61,7 @@ protected:
     HttpServer server_{limits_};
     std::uint16_t port_ = 0;
     std::atomic<int> tabs_ = 0;
+    std::atomic<bool> may_listen_ = true;
     std::mutex mutex_;
     std::map<std::string, std::promise<void>> ended_;
 };
@@ -96,6 +99,17 @@ TEST_F(StreamTest, TellsSoonThatATabIsClosed) {
     }
     ASSERT_EQ(ended.wait_for(kAtMost), std::future_status::ready);
     EXPECT_FALSE(board_.hasTab("1"));
+}
+
+TEST_F(StreamTest, EndsOnceItsPersonMayListenNoLonger) {
+    auto ended = endOf("1");
+    RawBrowser browser(port_);
+    browser.send(kRequest);
+    browser.receive("snapshot");
+    may_listen_ = false;
+    EXPECT_EQ(ended.wait_for(kAtMost), std::future_status::ready);
+    EXPECT_FALSE(board_.hasTab("1"));
+    browser.receive();  // returns: the connection was ended
 }
 
 class SlowReader : public StreamTest {

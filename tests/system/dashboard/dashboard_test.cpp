@@ -1,11 +1,15 @@
 // `metier dashboard` of real servers, as a browser sees it.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "../installation.hpp"
 #include "../metier_program.hpp"
+#include "metier/records/recorder.hpp"
 #include "tab.hpp"
 
 namespace metier::system_tests {
@@ -249,6 +253,35 @@ TEST_F(ClosedDashboard, LetsPeopleInAsTheServersDo) {
     EXPECT_EQ(askPage(page_->url(), "/api/cell", anna.cookie).status, 401);
 }
 
+TEST_F(ClosedDashboard, EndsTheTabsOfWhoeverLogsOut) {
+    const auto anna = logIn("anna", "correct horse");
+    ASSERT_EQ(anna.status, 200) << anna.error();
+    Tab tab(page_->url(), anna.cookie);
+    ASSERT_EQ(tab.tell("/api/control", {{"server", "all"}, {"action", "take"}}).status, 200);
+    tab.await("control", [](const json& c) { return c.at("mine") == true; });
+    const auto again = logIn("anna", "correct horse");
+    Tab other(page_->url(), again.cookie);
+
+    EXPECT_EQ(tellPage(page_->url(), "/api/logout", json::object(), anna.cookie).status, 200);
+    other.await("control", [](const json& c) { return c.at("owner") == ""; });
+    EXPECT_TRUE(tab.awaitEnd());
+}
+
+TEST_F(ClosedDashboard, TriesNoMorePasswordsAtATimeThanOneAfterAnother) {
+    ASSERT_EQ(logIn("otto", "battery staple").status, 200);  // the servers are reached
+    std::vector<std::future<int>> guesses;
+    for (int guess = 0; guess < 20; ++guess) {
+        guesses.push_back(std::async(std::launch::async, [this, guess] {
+            return logIn("anna", "wrong " + std::to_string(guess)).status;
+        }));
+    }
+    int tried = 0;
+    for (auto& guess : guesses) {
+        tried += guess.get() == 401 ? 1 : 0;
+    }
+    EXPECT_LE(tried, 4);
+}
+
 TEST_F(ClosedDashboard, LetsAnObserverLookAlone) {
     const auto otto = logIn("otto", "battery staple");
     ASSERT_EQ(otto.status, 200) << otto.error();
@@ -268,6 +301,44 @@ TEST_F(ClosedDashboard, MakesWhoeverGuessesWait) {
     EXPECT_THAT(answer.error(), AllOf(HasSubstr("wait"), HasSubstr(" s")));
     EXPECT_EQ(logIn("anna", "correct horse").status, 429);
     EXPECT_EQ(logIn("otto", "battery staple").status, 200) << "others are not held up";
+}
+
+/// A cell whose file says where its one server, which is away, has recorded a move.
+std::filesystem::path recordedCell() {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "dashboard_records";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "cell.toml") << R"(
+        name = "recorded"
+        [records]
+        url = "cell.db"
+        [[server]]
+        name = "iiwa"
+        kind = "gripper"
+        port = 1
+        driver = { type = "wsg50", controller = "127.0.0.1" }
+        nodeset = "wsg50"
+        skills = ["GraspGripperSkill"]
+    )";
+    records::Recorder::Options options;
+    options.url = (folder / "cell.db").string();
+    options.server = "urn:test:iiwa";
+    const auto recorder = records::Recorder::create(std::move(options)).value();
+    records::Execution execution;
+    execution.id = "move-of-this-cell";
+    recorder->begin(std::move(execution));
+    return folder / "cell.toml";
+}
+
+TEST(DashboardOfACell, ShowsTheRecordsOfItsFile) {
+    const auto cell = recordedCell().string();
+    const ServerProcess page(metierCommand({"dashboard", "--cell", cell, "--port", "0"}));
+    const auto shown = askPage(page.url(), "/api/records").body.at("records");
+    ASSERT_EQ(shown.size(), 1U) << shown;
+    EXPECT_EQ(shown.at(0).at("id"), "move-of-this-cell");
+    const ServerProcess other(
+        metierCommand({"dashboard", "--cell", cell, "--port", "0", "--records", "off"}));
+    EXPECT_EQ(askPage(other.url(), "/api/records").body.at("records"), json::array());
 }
 
 }  // namespace

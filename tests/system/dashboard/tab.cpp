@@ -122,6 +122,11 @@ json Tab::awaitState(const std::string& key, const std::string& state) {
     });
 }
 
+bool Tab::awaitEnd() {
+    std::unique_lock lock(mutex_);
+    return came_.wait_until(lock, inAMinute(), [this] { return ended_; });
+}
+
 std::size_t Tab::bytes() const {
     const std::lock_guard lock(mutex_);
     return bytes_;

@@ -61,6 +61,8 @@ public:
                          const std::function<bool(const nlohmann::json&)>& wanted);
     /// Waits until the skill is in that state, as far as this tab was told. \return its last event
     nlohmann::json awaitState(const std::string& key, const std::string& state);
+    /// Waits until the page has ended the stream; false after a minute.
+    bool awaitEnd();
     /// How many bytes the stream has brought.
     std::size_t bytes() const;
     std::size_t count(const std::string& name) const;

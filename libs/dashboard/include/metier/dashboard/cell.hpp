@@ -42,6 +42,7 @@ struct Cell {
     std::string name;
     std::vector<CellServer> servers;
     std::optional<CellWorld> world{};
+    std::string records{};  ///< as configuration::Records::url
 };
 
 /// Addresses that `metier up --endpoints` wrote, by name, instead of those of the cell file.
