@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <utility>
+
+#include "metier/base/stable_hash.hpp"
 
 namespace metier::process {
 
@@ -30,20 +31,11 @@ struct Address {
     }
 };
 
-/// FNV-1a, since std::hash may differ from one build to the next.
-std::uint64_t hashOf(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    for (const unsigned char byte : text) {
-        hash = (hash ^ byte) * 0x100000001b3U;
-    }
-    return hash;
-}
-
 Address addressOf(const std::string& name) {
     const auto text =
         name.size() <= kReadable
             ? "metier:" + name
-            : fmt::format("metier:{}~{:016x}", name.substr(0, kReadable), hashOf(name));
+            : fmt::format("metier:{}~{:016x}", name.substr(0, kReadable), stableHash(name));
     Address address;
     address.socket.sun_family = AF_UNIX;
     std::copy(text.begin(), text.end(), &address.socket.sun_path[1]);  // [0] is 0: abstract

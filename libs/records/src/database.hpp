@@ -62,6 +62,10 @@ public:
     virtual Result<void> commit() = 0;
     /// Also after an error; does nothing without a transaction.
     virtual void rollBack() noexcept = 0;
+    /// Tells others, until the connection ends, that this process records for that server.
+    virtual Result<void> attend(const std::string& server) = 0;
+    /// Whether another connection does.
+    virtual Result<bool> isAttendedByOthers(const std::string& server) = 0;
     /// Whether that table is there.
     virtual Result<bool> hasTable(std::string_view name) = 0;
     /// Whether there is any table at all.

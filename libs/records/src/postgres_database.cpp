@@ -7,13 +7,22 @@
 #include <pqxx/nontransaction>
 #include <pqxx/pqxx>
 
+#include "metier/base/stable_hash.hpp"
+
 namespace metier::records {
 namespace {
 
 constexpr Dialect kDialect{.number_key = "BIGSERIAL PRIMARY KEY", .blob = "BYTEA"};
 constexpr std::size_t kMostStatements = 64;
+/// For one statement. A database that hangs does not keep its own deadline, so that the connection
+/// is cut a little later.
+constexpr std::chrono::seconds kLongestWrite{30};
+constexpr std::chrono::seconds kLongestRead{10};
+constexpr std::chrono::seconds kGrace{5};
 /// Any number that others do not use: who writes records holds this lock.
 constexpr std::string_view kLock = "SELECT pg_advisory_xact_lock(5641903277)";
+/// As well; the second number is a server's.
+constexpr int kServerLocks = 564190;
 /// Of a column, as pg_type has them.
 enum TypeOid : unsigned { kBytea = 17, kInt8 = 20, kInt2 = 21, kInt4 = 23 };
 
@@ -106,6 +115,7 @@ std::string firstLine(const std::exception& error) {
 /// What libpqxx throws, as an error.
 template <typename Work>
 auto PostgresDatabase::guarded(Work work) -> decltype(work()) {
+    const auto armed = deadline_.arm(connection_.sock(), longest_call_ + kGrace);
     try {
         return work();
     } catch (const pqxx::broken_connection& error) {
@@ -128,9 +138,11 @@ Result<std::unique_ptr<Database>> PostgresDatabase::open(const std::string& url,
     } catch (const std::exception& error) {
         return fail(Errc::connection_lost, fmt::format("{}: {}", nameOf(url), firstLine(error)));
     }
-    auto done = database->script(
+    database->longest_call_ = access == Store::Access::write ? kLongestWrite : kLongestRead;
+    auto done = database->script(fmt::format(
         "SET client_min_messages = warning; SET client_encoding = 'UTF8'; SET search_path TO "
-        "metier; SET lock_timeout = '5s'; SET statement_timeout = '30s'");
+        "metier; SET lock_timeout = '5s'; SET statement_timeout = '{}s'",
+        database->longest_call_.count()));
     if (done && access == Store::Access::write) {
         auto& made = *database;
         done = inTransaction(made,
@@ -210,6 +222,23 @@ Result<void> PostgresDatabase::commit() {
 
 void PostgresDatabase::rollBack() noexcept {
     transaction_.reset();  // aborts; logs nothing and throws nothing
+}
+
+Result<void> PostgresDatabase::attend(const std::string& server) {
+    const auto held = query(fmt::format("SELECT pg_advisory_lock_shared({}, {})", kServerLocks,
+                                        static_cast<std::int32_t>(stableHash(server))),
+                            {});
+    return held ? Result<void>() : fail(held.error());
+}
+
+Result<bool> PostgresDatabase::isAttendedByOthers(const std::string& server) {
+    const auto hash = static_cast<std::int32_t>(stableHash(server));
+    // A lock that excludes all others is had by whoever is alone, and given back at once.
+    const auto alone = query(fmt::format("SELECT CASE WHEN pg_try_advisory_lock({0}, {1}) THEN "
+                                         "pg_advisory_unlock({0}, {1}) ELSE false END::int",
+                                         kServerLocks, hash),
+                             {});
+    return alone ? Result<bool>(alone->front().integer(0) == 0) : Result<bool>(fail(alone.error()));
 }
 
 Result<bool> PostgresDatabase::hasTable(std::string_view name) {

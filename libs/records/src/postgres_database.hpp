@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <pqxx/connection>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "database.hpp"
+#include "socket_deadline.hpp"
 
 namespace metier::records {
 
@@ -25,6 +27,8 @@ public:
     Result<void> begin() override;
     Result<void> commit() override;
     void rollBack() noexcept override;
+    Result<void> attend(const std::string& server) override;
+    Result<bool> isAttendedByOthers(const std::string& server) override;
     Result<bool> hasTable(std::string_view name) override;
     Result<bool> isEmpty() override;
     Result<std::uint64_t> bytes() override;
@@ -38,6 +42,8 @@ private:
     const std::string& prepared(std::string_view sql);
 
     std::string name_;
+    std::chrono::seconds longest_call_{0};
+    SocketDeadline deadline_;
     pqxx::connection connection_;
     std::unique_ptr<pqxx::work> transaction_;                     // ends before the connection
     std::map<std::string, std::string, std::less<>> statements_;  // names by their SQL

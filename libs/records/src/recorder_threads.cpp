@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "presence.hpp"
+
 namespace metier::records {
 namespace {
 
@@ -234,12 +236,11 @@ Result<void> Recorder::Impl::openStore() {
     if (!opened) {
         return fail(opened.error());
     }
-    if (!closed_lost_) {
-        if (auto closed = Writer::closeLost(**opened, options_.server); !closed) {
-            return closed;
-        }
-        closed_lost_ = true;
+    const auto opening = opened_ ? Opening::again : Opening::first;
+    if (auto there = attend(**opened, options_.server, opening); !there) {
+        return there;
     }
+    opened_ = true;
     database_ = std::move(*opened);
     return {};
 }
@@ -247,6 +248,9 @@ Result<void> Recorder::Impl::openStore() {
 /// A part of it: what is told meanwhile is written in between.
 Result<void> Recorder::Impl::trim() {
     if (!trimming_ && (!trimmed_ || now() - *trimmed_ >= kTrimEvery)) {
+        if (auto closed = closeLostOfOthers(*database_, options_.server); !closed) {
+            return closed;
+        }
         trimmed_ = now();
         trimming_.emplace(options_.keep, std::chrono::system_clock::now());
     }

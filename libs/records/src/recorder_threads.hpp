@@ -72,8 +72,8 @@ private:
     std::uint64_t told_dropped_ = 0;
     // ---- of the writer's thread alone
     std::unique_ptr<Database> database_;
-    MessageLog taken_;  // changes places with what is waiting
-    bool closed_lost_ = false;
+    MessageLog taken_;     // changes places with what is waiting
+    bool opened_ = false;  // once
     Writer writer_;
     std::optional<RetentionRun> trimming_;
     std::optional<SteadyTime> trimmed_;

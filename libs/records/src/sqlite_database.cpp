@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <system_error>
 
@@ -26,7 +27,12 @@ Result<void> makeFile(const fs::path& file) {
     if (file.has_parent_path() && fs::create_directories(file.parent_path(), error)) {
         fs::permissions(file.parent_path(), fs::perms::owner_all, error);
     }
-    const int made = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerOnly);
+    // Only if there is none: to close a file frees all locks that the process has on it, those of
+    // other connections as well.
+    const int made = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
+    if (made < 0 && errno == EEXIST) {
+        return {};
+    }
     if (made < 0) {
         return fail(Errc::resource_unavailable,
                     fmt::format("{}: {}", file.string(), std::generic_category().message(errno)));
@@ -272,6 +278,28 @@ Result<std::int64_t> SqliteDatabase::number(std::string_view sql) {
         return fail(rows.error());
     }
     return rows->empty() ? 0 : rows->front().integer(0);
+}
+
+Result<void> SqliteDatabase::openLocks() {
+    if (locks_) {
+        return {};
+    }
+    auto locks = ServerLocks::open(name_ + "-servers");
+    if (!locks) {
+        return fail(locks.error());
+    }
+    locks_ = std::move(*locks);
+    return {};
+}
+
+Result<void> SqliteDatabase::attend(const std::string& server) {
+    auto opened = openLocks();
+    return opened ? locks_->hold(server) : opened;
+}
+
+Result<bool> SqliteDatabase::isAttendedByOthers(const std::string& server) {
+    const auto opened = openLocks();
+    return opened ? locks_->isHeldByOthers(server) : Result<bool>(fail(opened.error()));
 }
 
 Result<bool> SqliteDatabase::hasTable(std::string_view name) {

@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "database.hpp"
+#include "server_locks.hpp"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -31,6 +33,8 @@ public:
     Result<void> begin() override { return script("BEGIN IMMEDIATE"); }
     Result<void> commit() override { return script("COMMIT"); }
     void rollBack() noexcept override;
+    Result<void> attend(const std::string& server) override;
+    Result<bool> isAttendedByOthers(const std::string& server) override;
     Result<bool> hasTable(std::string_view name) override;
     Result<bool> isEmpty() override;
     Result<std::uint64_t> bytes() override;
@@ -52,9 +56,11 @@ private:
     Result<void> setUp(Store::Access access);
     Result<const Statement*> prepared(std::string_view sql);
     Result<std::int64_t> number(std::string_view sql);
+    Result<void> openLocks();
     tl::unexpected<Error> failed() const;
 
     std::string name_;
+    std::optional<ServerLocks> locks_;
     std::unique_ptr<sqlite3, Close> connection_;
     std::map<std::string, Statement, std::less<>> statements_;  // end before the connection
 };

@@ -252,31 +252,29 @@ void Writer::undone() {
 }
 
 Result<void> Writer::closeLost(Database& database, const std::string& server) {
-    return inTransaction(database, [&]() -> Result<void> {
-        const auto rows =
-            database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
-                               " FROM history WHERE ended = 0 AND server = $1 ORDER BY number",
-                           std::array<Cell, 1>{storable(server, kLongestName)});
-        if (!rows) {
-            return fail(rows.error());
+    const auto rows =
+        database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
+                           " FROM history WHERE ended = 0 AND server = $1 ORDER BY number",
+                       std::array<Cell, 1>{server});
+    if (!rows) {
+        return fail(rows.error());
+    }
+    KindCache kinds;
+    RowWriter writer(database, kinds);
+    auto done = writer.takeRevisions(static_cast<std::int64_t>(rows->size()));
+    for (std::size_t i = 0; done && i < rows->size(); ++i) {
+        auto execution = toExecution((*rows)[i]);
+        const auto ended = lastHeardOf(database, execution);
+        if (!ended) {
+            return fail(ended.error());
         }
-        KindCache kinds;
-        RowWriter writer(database, kinds);
-        auto done = writer.takeRevisions(static_cast<std::int64_t>(rows->size()));
-        for (std::size_t i = 0; done && i < rows->size(); ++i) {
-            auto execution = toExecution((*rows)[i]);
-            const auto ended = lastHeardOf(database, execution);
-            if (!ended) {
-                return fail(ended.error());
-            }
-            execution.ended = *ended;
-            execution.state = kLost;
-            execution.reason = kServerLost;
-            execution.reason_text = kLostText;
-            done = writer.save(execution);
-        }
-        return done;
-    });
+        execution.ended = *ended;
+        execution.state = kLost;
+        execution.reason = kServerLost;
+        execution.reason_text = kLostText;
+        done = writer.save(execution);
+    }
+    return done;
 }
 
 }  // namespace metier::records

@@ -32,7 +32,7 @@ public:
     /// Writes what was taken, all of it or nothing; may be called again after an error, also with
     /// another connection to the same store.
     Result<void> write(Database& database);
-    /// Closes what the server left under way when it died; before the first write().
+    /// Closes what the server left under way when it died. Within a transaction.
     static Result<void> closeLost(Database& database, const std::string& server);
 
     bool hasChanges() const noexcept { return !changed_.empty(); }

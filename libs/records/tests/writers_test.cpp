@@ -1,9 +1,12 @@
 // Servers as processes of their own: killed, and several with one store.
 #include <gmock/gmock.h>
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <csignal>
@@ -14,6 +17,7 @@
 
 #include "metier/process/child_process.hpp"
 #include "recorded.hpp"
+#include "socket_deadline.hpp"
 #include "temporary_postgres.hpp"
 
 namespace metier::records {
@@ -137,20 +141,102 @@ TEST(TwoServers, WriteIntoOneDatabaseAtTheSameTime) {
     expectNothingLostOfTwo(url);
 }
 
-TEST(StartedAgain, ClosesOnlyItsOwnAsLost) {
-    const auto file = (testFolder() / "records.db").string();
+std::string stateOf(const std::string& url, const std::string& id) {
+    return Store::open(url).value()->find(id).value().state;
+}
+
+/// Servers that died and servers that live, in a store of either kind.
+void expectTheDeadClosedAlone(const std::string& url) {
     for (const auto* server : {"one", "two"}) {
-        auto ended = writer(file, server, 3);
-        ASSERT_EQ(ended.waitUntil(soon()), 0);
+        auto dead = writer(url, server, 3);
+        ASSERT_EQ(dead.waitUntil(soon()), 0);
     }
-    const auto again = recorderOf(file, "one");
+    const auto living = recorderOf(url, "three");
+    living->begin(moveOf("three-1"));
+    ASSERT_TRUE(living->flush(soon()));
+    const auto again = recorderOf(url, "one");
     ASSERT_TRUE(again->flush(soon()));
-    const auto store = Store::open(file).value();
-    EXPECT_EQ(store->find("one-3")->state, kLost);
-    EXPECT_EQ(store->find("two-3")->state, "Running");
+    EXPECT_EQ(stateOf(url, "one-3"), kLost);
+    EXPECT_EQ(stateOf(url, "two-3"), kLost) << "it may never be started again";
+    EXPECT_EQ(stateOf(url, "three-1"), "Running");
     Filter lost;
     lost.state = kLost;
-    EXPECT_EQ(store->list(lost, {})->executions.size(), 1U);
+    EXPECT_EQ(Store::open(url).value()->list(lost, {})->executions.size(), 2U);
+}
+
+TEST(StartedAgain, ClosesWhatAllDeadServersLeft) {
+    expectTheDeadClosedAlone((testFolder() / "records.db").string());
+}
+
+TEST(StartedAgain, ClosesWhatAllDeadServersLeftInOneDatabase) {
+    const auto url = postgresOrFile();
+    if (url.empty()) {
+        GTEST_SKIP() << "PostgreSQL is not installed";
+    }
+    expectTheDeadClosedAlone(url);
+}
+
+void expectTheLivingLeftAlone(const std::string& url) {
+    const auto first = recorderOf(url, "one");
+    const auto key = first->begin(moveOf("one-1"));
+    ASSERT_TRUE(first->flush(soon()));
+    {
+        const auto second = recorderOf(url, "one");
+        second->begin(moveOf("one-2"));
+        ASSERT_TRUE(second->flush(soon()));
+        EXPECT_EQ(stateOf(url, "one-1"), "Running");
+    }
+    first->end(key, finished(at(1)));
+    ASSERT_TRUE(first->flush(soon()));
+    EXPECT_EQ(stateOf(url, "one-1"), "Ready");
+}
+
+TEST(TwoServersOfOneName, LeaveEachOthersAlone) {
+    expectTheLivingLeftAlone((testFolder() / "records.db").string());
+}
+
+TEST(TwoServersOfOneName, LeaveEachOthersAloneInOneDatabase) {
+    const auto url = postgresOrFile();
+    if (url.empty()) {
+        GTEST_SKIP() << "PostgreSQL is not installed";
+    }
+    expectTheLivingLeftAlone(url);
+}
+
+/// Whether anybody has a lock on the file, which would be there as long as it is open.
+bool isLocked(int file) {
+    struct flock all {};
+    all.l_type = F_WRLCK;
+    return ::fcntl(file, F_OFD_GETLK, &all) == 0 && all.l_type != F_UNLCK;
+}
+
+// Without its lock another process that closes the file takes it for the last and removes the log.
+TEST(TwoServersOfOneProcess, KeepTheLocksOfTheirFile) {
+    const auto file = (testFolder() / "records.db").string();
+    const auto first = recorderOf(file, "one");
+    ASSERT_TRUE(first->flush(soon()));
+    const int looking = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_TRUE(isLocked(looking));
+    const auto second = recorderOf(file, "two");
+    ASSERT_TRUE(second->flush(soon()));
+    EXPECT_TRUE(isLocked(looking));
+    ::close(looking);
+}
+
+TEST(SocketDeadlineTest, EndsACallThatWouldWaitForEver) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+    SocketDeadline deadline;
+    char byte = 0;
+    {
+        const auto armed = deadline.arm(ends[0], 30s);
+        ASSERT_EQ(::write(ends[1], "x", 1), 1);
+        EXPECT_EQ(::read(ends[0], &byte, 1), 1);
+    }
+    const auto armed = deadline.arm(ends[0], 10ms);
+    EXPECT_EQ(::read(ends[0], &byte, 1), 0);  // returns
+    ::close(ends[0]);
+    ::close(ends[1]);
 }
 
 }  // namespace

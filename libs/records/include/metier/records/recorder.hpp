@@ -43,8 +43,9 @@ struct HealthReport {
 /// A writer thread of its own writes at least every 500 ms: a crash of the server loses at most the
 /// last second. While the store cannot be written or opened, events wait in a queue of a fixed
 /// size; beyond it new executions and events are dropped, of samples the oldest. An end is never
-/// dropped if its begin was not. What the server left under way when it died before is closed as
-/// kLost. The store is trimmed to its retention at the beginning and then every hour.
+/// dropped if its begin was not. What servers that died left under way is closed as kLost
+/// when it opens the store, and every hour. The store is trimmed to its retention at the beginning
+/// and then every hour.
 class Recorder {
 public:
     /// One execution of this recorder; 0: it was dropped, and all that is told of it is, too.

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "metier/base/error.hpp"
+
+namespace metier::records {
+
+/// Which servers record into a SQLite file: each holds a lock on the byte of its name in a file
+/// beside it. The kernel frees it with its process, also after kill -9.
+///
+/// Threading: one thread at a time.
+class ServerLocks {
+public:
+    /// The file is made, for its owner alone. Errors: resource_unavailable.
+    static Result<ServerLocks> open(const std::filesystem::path& file);
+    ServerLocks(ServerLocks&& other) noexcept;
+    ServerLocks& operator=(ServerLocks&& other) noexcept;
+    /// Frees what it holds.
+    ~ServerLocks();
+
+    /// Several may hold the same name. Errors: resource_unavailable.
+    Result<void> hold(const std::string& server) const;
+    /// Whether another one than this holds it. Errors: resource_unavailable.
+    Result<bool> isHeldByOthers(const std::string& server) const;
+
+private:
+    ServerLocks(int descriptor, std::string name)
+        : descriptor_(descriptor), name_(std::move(name)) {}
+    tl::unexpected<Error> failed() const;
+
+    int descriptor_;
+    std::string name_;  // for messages
+};
+
+}  // namespace metier::records
