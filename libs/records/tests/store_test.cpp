@@ -272,12 +272,12 @@ TEST_P(EitherStore, TakesAnyBytesAsNames) {
 }
 
 TEST_P(EitherStore, ClosesWhatADeadServerLeftUnderWayAsLost) {
+    const auto other = recorderOf(url_, "urn:test:edo");
+    other->begin(moveOf("e-1"));
     {
         const auto died = recorderOf(url_);
         const auto key = died->begin(moveOf("m-1"));
         died->sample(key, sampleAt(2.5, 0.1));
-        const auto other = recorderOf(url_, "urn:test:edo");
-        other->begin(moveOf("e-1"));
         ASSERT_TRUE(died->flush(soon()) && other->flush(soon()));
     }
     ASSERT_FALSE(store()->find("m-1")->isOver());
