@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -14,22 +15,20 @@ constexpr std::size_t kPiece = 256 * 1024;
 /// Pieces that are kept: what a lively second takes.
 constexpr std::size_t kMostKept = 64;
 
-/// Of a text [byte].
-using Length = std::uint32_t;
+/// How long a text is, in one byte, unless it is one of these.
+constexpr std::uint8_t kLong = 254;       // four bytes tell
+constexpr std::uint8_t kAsBefore = 255;   // as in the message before of that kind
+constexpr std::size_t kMostOfLength = 5;  // [byte]
 
-struct Begun {
-    Execution execution{};
-    Recorder::ToJson to_json = nullptr;
-};
-/// One that refers to what its caller has.
-struct BegunAt {
+/// A beginning that its teller has.
+struct Beginning {
     const Execution& execution;
     Recorder::ToJson to_json;
 };
 
 enum class Kind : std::uint8_t { begun, transition, intermediate, outcome };
 
-Kind kindOf(const BegunAt& /*message*/) {
+Kind kindOf(const Beginning& /*message*/) {
     return Kind::begun;
 }
 Kind kindOf(const Transition& /*message*/) {
@@ -42,74 +41,85 @@ Kind kindOf(const Outcome& /*message*/) {
     return Kind::outcome;
 }
 
-// What is kept of a message: the same list when it is put and when it is got.
+// What is kept of a message, in its order.
 
-template <typename Io, typename Message>
+template <typename Message>
 requires requires(Message& m) {
     m.to_json;
 }
-void fields(Io& io, Message& m) {
+auto fieldsOf(Message& m) {
     auto& e = m.execution;
-    io(m.to_json, e.id, e.server_name, e.skill, e.controller, e.device, e.parent, e.parent_server,
-       e.session, e.client_name, e.user, e.thumbprint, e.parameters, e.check, e.started, e.state,
-       e.reason, e.reason_text, e.result, e.missed_cycles);
+    return std::tie(m.to_json, e.id, e.server_name, e.skill, e.controller, e.device, e.parent,
+                    e.parent_server, e.session, e.client_name, e.user, e.thumbprint, e.parameters,
+                    e.check, e.started, e.state, e.reason, e.reason_text, e.result,
+                    e.missed_cycles);
 }
-template <typename Io, typename Message>
-requires std::is_same_v<std::remove_const_t<Message>, Transition>
-void fields(Io& io, Message& t) {
-    io(t.time, t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
+template <typename Message>
+requires requires(Message& m) {
+    m.sub_state;
 }
-template <typename Io, typename Message>
-requires std::is_same_v<std::remove_const_t<Message>, Intermediate>
-void fields(Io& io, Message& i) {
-    io(i.time, i.value);
+auto fieldsOf(Message& t) {
+    return std::tie(t.time, t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
 }
-template <typename Io, typename Message>
-requires std::is_same_v<std::remove_const_t<Message>, Outcome>
-void fields(Io& io, Message& o) {
-    io(o.time, o.state, o.reason, o.reason_text, o.result, o.missed_cycles);
+auto fieldsOf(const Intermediate& i) {
+    return std::tie(i.time, i.value);
+}
+auto fieldsOf(Intermediate& i) {
+    return std::tie(i.time, i.value);
+}
+template <typename Message>
+requires requires(Message& m) {
+    m.result, m.time;
+}
+auto fieldsOf(Message& o) {
+    return std::tie(o.time, o.state, o.reason, o.reason_text, o.result, o.missed_cycles);
 }
 
-/// How many bytes it takes.
-class Size {
-public:
-    template <typename... Fields>
-    void operator()(const Fields&... each) {
-        (add(each), ...);
-    }
-    std::size_t bytes() const { return bytes_; }
-
-private:
-    void add(const std::string& text) { bytes_ += sizeof(Length) + text.size(); }
+/// How many bytes they take at most.
+struct Size {
+    std::size_t of(const std::string& text) const { return kMostOfLength + text.size(); }
     template <typename T>
-    void add(const T& value) {
-        bytes_ += sizeof value;
+    std::size_t of(const T& value) const {
+        return sizeof value;
     }
-
-    std::size_t bytes_ = 0;
+    template <typename... Fields>
+    std::size_t operator()(const Fields&... each) const {
+        return (of(each) + ...);
+    }
 };
 
 /// Into memory that has room for it.
 class Put {
 public:
     explicit Put(char* to) : to_(to) {}
+    const char* position() const { return to_; }
 
-    template <typename... Fields>
-    void operator()(const Fields&... each) {
-        (add(each), ...);
+    template <typename T>
+    requires std::is_trivially_copyable_v<T>
+    void value(const T& put) { bytes(&put, sizeof put); }
+    void field(const std::string& text, std::string& before) {
+        if (text == before) {
+            value(kAsBefore);
+            return;
+        }
+        before = text;
+        if (text.size() < kLong) {
+            value(static_cast<std::uint8_t>(text.size()));
+        } else {
+            value(kLong);
+            value(static_cast<std::uint32_t>(text.size()));
+        }
+        bytes(text.data(), text.size());
+    }
+    template <typename T>
+    void field(const T& field, T& /*before*/) {
+        value(field);
     }
 
 private:
-    void add(const std::string& text) {
-        add(static_cast<Length>(text.size()));
-        std::memcpy(to_, text.data(), text.size());
-        to_ += text.size();
-    }
-    template <typename T>
-    requires std::is_trivially_copyable_v<T>
-    void add(const T& value) {
-        std::memcpy(to_, &value, sizeof value);
-        to_ += sizeof value;
+    void bytes(const void* from, std::size_t size) {
+        std::memcpy(to_, from, size);
+        to_ += size;
     }
 
     char* to_;
@@ -118,34 +128,48 @@ private:
 class Get {
 public:
     explicit Get(const char* from) : from_(from) {}
-
-    template <typename... Fields>
-    void operator()(Fields&... each) {
-        (get(each), ...);
-    }
     const char* position() const { return from_; }
 
-private:
-    void get(std::string& text) {
-        Length size = 0;
-        get(size);
-        text.assign(from_, size);
-        from_ += size;
+    template <typename T>
+    requires std::is_trivially_copyable_v<T> T value() {
+        T got{};
+        std::memcpy(&got, from_, sizeof got);
+        from_ += sizeof got;
+        return got;
+    }
+    void field(std::string& text, std::string& before) {
+        const auto length = value<std::uint8_t>();
+        if (length != kAsBefore) {
+            const std::size_t size = length == kLong ? value<std::uint32_t>() : length;
+            before.assign(from_, size);
+            from_ += size;
+        }
+        text = before;
     }
     template <typename T>
-    requires std::is_trivially_copyable_v<T>
-    void get(T& value) {
-        std::memcpy(&value, from_, sizeof value);
-        from_ += sizeof value;
+    void field(T& field, T& /*before*/) {
+        field = value<T>();
     }
 
+private:
     const char* from_;
 };
 
+/// Puts or gets each field, beside that of the message before of its kind.
+template <typename Io, typename Message, typename Before>
+void exchange(Io& io, Message& message, Before& before) {
+    const auto fields = fieldsOf(message);
+    const auto befores = fieldsOf(before);
+    [&]<std::size_t... I>(std::index_sequence<I...> /*all*/) {
+        (io.field(std::get<I>(fields), std::get<I>(befores)), ...);
+    }
+    (std::make_index_sequence<std::tuple_size_v<decltype(befores)>>{});
+}
+
 template <typename Message>
-void giveOne(Get& get, Recorder::Key key, MessageTaker& taker) {
+void giveOne(Get& get, Recorder::Key key, Message& before, MessageTaker& taker) {
     Message message;
-    fields(get, message);
+    exchange(get, message, before);
     if constexpr (std::is_same_v<Message, Begun>) {
         taker.take(key, std::move(message.execution), message.to_json);
     } else {
@@ -153,73 +177,84 @@ void giveOne(Get& get, Recorder::Key key, MessageTaker& taker) {
     }
 }
 
-void giveNext(Get& get, MessageTaker& taker) {
-    Kind kind{};
-    Recorder::Key key = 0;
-    get(kind, key);
+void giveNext(Get& get, LatestMessages& before, MessageTaker& taker) {
+    const auto kind = get.value<Kind>();
+    const auto key = get.value<Recorder::Key>();
     switch (kind) {
         case Kind::begun:
-            return giveOne<Begun>(get, key, taker);
+            return giveOne(get, key, before.begun, taker);
         case Kind::transition:
-            return giveOne<Transition>(get, key, taker);
+            return giveOne(get, key, before.transition, taker);
         case Kind::intermediate:
-            return giveOne<Intermediate>(get, key, taker);
+            return giveOne(get, key, before.intermediate, taker);
         case Kind::outcome:
-            return giveOne<Outcome>(get, key, taker);
+            return giveOne(get, key, before.outcome, taker);
     }
+}
+
+/// They keep their memory.
+template <typename Message>
+void clearTexts(Message& message) {
+    const auto clear = [](auto& field) {
+        if constexpr (std::is_same_v<decltype(field), std::string&>) {
+            field.clear();
+        }
+    };
+    std::apply([&](auto&... each) { (clear(each), ...); }, fieldsOf(message));
 }
 
 }  // namespace
 
-char* MessageLog::room(std::size_t bytes) {
-    if (used_ == 0 || pieces_[used_ - 1].bytes.size() - pieces_[used_ - 1].used < bytes) {
+/// With room for so many bytes.
+MessageLog::Piece& MessageLog::pieceFor(std::size_t most) {
+    if (used_ == 0 || pieces_[used_ - 1].bytes.size() - pieces_[used_ - 1].used < most) {
         if (used_ == pieces_.size()) {
             pieces_.emplace_back();
         }
         auto& next = pieces_[used_++];
-        next.bytes.resize(std::max({bytes, kPiece, next.bytes.size()}));
+        next.bytes.resize(std::max({most, kPiece, next.bytes.size()}));
         next.used = 0;
     }
-    auto& piece = pieces_[used_ - 1];
-    auto* const begin = piece.bytes.data() + piece.used;
-    piece.used += bytes;
-    return begin;
+    return pieces_[used_ - 1];
 }
 
-template <typename Message>
-void MessageLog::append(Key key, const Message& message) {
+template <typename Message, typename Before>
+void MessageLog::append(Key key, const Message& message, Before& before) {
     const auto kind = kindOf(message);
-    Size size;
-    size(kind, key);
-    fields(size, message);
-    Put put(room(size.bytes()));
-    put(kind, key);
-    fields(put, message);
+    const auto most = sizeof kind + sizeof key + std::apply(Size{}, fieldsOf(message));
+    auto& piece = pieceFor(most);
+    auto* const begin = piece.bytes.data() + piece.used;
+    Put put(begin);
+    put.value(kind);
+    put.value(key);
+    exchange(put, message, before);
+    piece.used += static_cast<std::size_t>(put.position() - begin);
     ++count_;
 }
 
 void MessageLog::put(Key key, const Execution& begun, Recorder::ToJson to_json) {
-    append(key, BegunAt{begun, to_json});
+    append(key, Beginning{begun, to_json}, latest_.begun);
 }
 
 void MessageLog::put(Key key, const Transition& transition) {
-    append(key, transition);
+    append(key, transition, latest_.transition);
 }
 
 void MessageLog::put(Key key, const Intermediate& intermediate) {
-    append(key, intermediate);
+    append(key, intermediate, latest_.intermediate);
 }
 
 void MessageLog::put(Key key, const Outcome& outcome) {
-    append(key, outcome);
+    append(key, outcome, latest_.outcome);
 }
 
 void MessageLog::giveTo(MessageTaker& taker) const {
+    LatestMessages before;
     for (std::size_t i = 0; i < used_; ++i) {
         Get get(pieces_[i].bytes.data());
         const auto* const end = pieces_[i].bytes.data() + pieces_[i].used;
         while (get.position() != end) {
-            giveNext(get, taker);
+            giveNext(get, before, taker);
         }
     }
 }
@@ -227,6 +262,11 @@ void MessageLog::giveTo(MessageTaker& taker) const {
 void MessageLog::clear() {
     count_ = 0;
     used_ = 0;
+    // Whoever reads the next message begins without any before it.
+    clearTexts(latest_.begun);
+    clearTexts(latest_.transition);
+    clearTexts(latest_.intermediate);
+    clearTexts(latest_.outcome);
     pieces_.resize(std::min(pieces_.size(), kMostKept));
     std::erase_if(pieces_, [](const Piece& piece) { return piece.bytes.size() > kPiece; });
 }

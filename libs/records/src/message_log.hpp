@@ -19,8 +19,23 @@ public:
     virtual void take(Recorder::Key key, Outcome&& outcome) = 0;
 };
 
+/// The beginning of an execution.
+struct Begun {
+    Execution execution{};
+    Recorder::ToJson to_json = nullptr;
+};
+
+/// One of each kind.
+struct LatestMessages {
+    Begun begun{};
+    Transition transition{};
+    Intermediate intermediate{};
+    Outcome outcome{};
+};
+
 /// Messages to a recorder, one after the other in pieces of memory that are used again and again:
-/// putting one is copying its texts, and leaves nothing that another thread has to free.
+/// putting one is copying those of its texts that are not as before, and leaves nothing that
+/// another thread has to free.
 ///
 /// Threading: one thread at a time.
 class MessageLog {
@@ -40,19 +55,20 @@ public:
     void clear();
 
 private:
-    template <typename Message>
-    void append(Key key, const Message& message);
+    template <typename Message, typename Before>
+    void append(Key key, const Message& message, Before& before);
 
     /// Holds whole messages.
     struct Piece {
         std::vector<char> bytes;
         std::size_t used = 0;
     };
-    char* room(std::size_t bytes);
+    Piece& pieceFor(std::size_t most);
 
     std::vector<Piece> pieces_;
     std::size_t used_ = 0;  // pieces with messages; the others wait to be used again
     std::size_t count_ = 0;
+    LatestMessages latest_;  // of each kind that was put
 };
 
 }  // namespace metier::records

@@ -74,6 +74,32 @@ TEST(MessageLog, GivesEachMessageAsItWasPutAndInItsOrder) {
     EXPECT_EQ(taken.outcome.reason_text, "axis 2");
 }
 
+TEST(MessageLog, TellsApartWhatIsAsBeforeAndWhatIsNot) {
+    MessageLog log;
+    auto move = moveOf("m-1");
+    move.session.assign(300, 's');
+    auto other = move;
+    other.user.clear();
+    other.session.assign(254, 't');
+    for (int round = 0; round < 2; ++round) {
+        std::vector<Execution> told;
+        for (const auto& one : {move, move, other, other, move}) {
+            log.put(1, one, nullptr);
+            Taken taken;
+            log.giveTo(taken);
+            told.push_back(taken.begun);
+        }
+        const std::vector expected{move, move, other, other, move};
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_EQ(told[i].id, expected[i].id);
+            EXPECT_EQ(told[i].user, expected[i].user);
+            EXPECT_EQ(told[i].session, expected[i].session);
+            EXPECT_EQ(told[i].parameters, expected[i].parameters);
+        }
+        log.clear();
+    }
+}
+
 TEST(MessageLog, HoldsMessagesOfAnySizeAndNothingOnceItIsCleared) {
     MessageLog log;
     auto large = moveOf("m-2");
