@@ -6,7 +6,7 @@
 namespace metier::app {
 namespace {
 
-// About 45 MB; ten thousands of executions in a burst, hours of what an arm does.
+// Up to about 25 MB; ten thousands of executions in a burst, hours of what an arm does.
 constexpr std::size_t kMostWaiting = 100'000;
 
 records::Retention retentionOf(const configuration::Records& config) {

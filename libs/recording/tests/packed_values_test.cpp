@@ -21,7 +21,7 @@ ValueMap everything() {
             {"uint64", std::numeric_limits<std::uint64_t>::max()},
             {"number", 0.1},
             {"no number", std::numeric_limits<double>::quiet_NaN()},
-            {"text", std::string("a \"quote\" and \0 in it", 22)},
+            {"text", std::string("a \"quote\" and \0 in it", 21)},
             {"frame", Frame{1, 2, 3, 4, 5, 6}},
             {"vector", Vector3{1, 2, 3}},
             {"numbers", std::vector{0.1, -0.2}},

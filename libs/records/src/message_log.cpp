@@ -11,7 +11,7 @@ namespace metier::records {
 namespace {
 
 /// Of a piece; one message may need more [byte].
-constexpr std::size_t kPiece = 256 * 1024;
+constexpr std::size_t kPiece = 262'144;
 /// Pieces that are kept: what a lively second takes.
 constexpr std::size_t kMostKept = 64;
 
@@ -77,9 +77,9 @@ auto fieldsOf(Message& o) {
 
 /// How many bytes they take at most.
 struct Size {
-    std::size_t of(const std::string& text) const { return kMostOfLength + text.size(); }
+    static std::size_t of(const std::string& text) { return kMostOfLength + text.size(); }
     template <typename T>
-    std::size_t of(const T& value) const {
+    static std::size_t of(const T& value) {
         return sizeof value;
     }
     template <typename... Fields>

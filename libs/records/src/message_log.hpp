@@ -13,7 +13,7 @@ namespace metier::records {
 class MessageTaker {
 public:
     virtual ~MessageTaker() = default;
-    virtual void take(Recorder::Key key, Execution&& begun, Recorder::ToJson to_json) = 0;
+    virtual void take(Recorder::Key key, Execution&& execution, Recorder::ToJson to_json) = 0;
     virtual void take(Recorder::Key key, Transition&& transition) = 0;
     virtual void take(Recorder::Key key, Intermediate&& intermediate) = 0;
     virtual void take(Recorder::Key key, Outcome&& outcome) = 0;

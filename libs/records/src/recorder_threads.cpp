@@ -1,6 +1,7 @@
 #include "recorder_threads.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -35,6 +36,8 @@ constexpr int kNice = 15;
 /// Where every core is busy, robots come first: what is recorded then waits in the queue.
 void yieldToOthers() {
     // Of this thread alone. Should the system refuse it, the writer is one thread among others.
+    const sched_param no_priority{};
+    static_cast<void>(sched_setscheduler(0, SCHED_BATCH, &no_priority));
     static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
 }
 

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <mutex>
 #include <system_error>
 
 namespace metier::records {
@@ -56,8 +57,8 @@ std::string encoded(std::string_view path) {
 
 /// SQLite counts what it allocates under a lock, which nobody asks for; before its first use.
 void withoutMemoryCounts() {
-    static const int kDone = sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
-    static_cast<void>(kDone);
+    static std::once_flag once;
+    std::call_once(once, [] { sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0); });
 }
 
 Errc codeOf(int status) {

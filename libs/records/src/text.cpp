@@ -8,6 +8,9 @@ namespace metier::records {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+// Of each of eight bytes.
+constexpr std::uint64_t kHighBits = 0x8080808080808080U;
+constexpr std::uint64_t kOnes = 0x0101010101010101U;
 
 bool isContinuation(char c) {
     return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
@@ -60,8 +63,6 @@ std::size_t sequenceAt(std::string_view text) {
 
 /// How many characters at the beginning are ASCII and not NUL, in steps of eight.
 std::size_t lengthOfPlain(std::string_view text) {
-    constexpr std::uint64_t kHighBits = 0x8080808080808080U;
-    constexpr std::uint64_t kOnes = 0x0101010101010101U;
     std::size_t length = 0;
     for (std::uint64_t eight = 0; length + sizeof eight <= text.size(); length += sizeof eight) {
         std::memcpy(&eight, text.data() + length, sizeof eight);

@@ -53,7 +53,7 @@ private:
         bool row_changed = true;
         bool changed = false;
     };
-    void take(Recorder::Key key, Execution&& begun, Recorder::ToJson to_json) override;
+    void take(Recorder::Key key, Execution&& execution, Recorder::ToJson to_json) override;
     void take(Recorder::Key key, Transition&& transition) override;
     void take(Recorder::Key key, Intermediate&& intermediate) override;
     void take(Recorder::Key key, Outcome&& outcome) override;
