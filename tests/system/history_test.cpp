@@ -186,6 +186,19 @@ TEST_F(History, FollowsWhatComesFromBeforeTheFirstRecord) {
     EXPECT_EQ(following.waitUntil(inAMinute()), kSuccess);
 }
 
+TEST_F(History, FollowsNobodyAnyLongerOnceItsReaderHasGone) {
+    recordThree();
+    auto following =
+        process::ChildProcess::start(
+            {"/bin/sh", "-c",
+             fmt::format("{{ {} history --follow --records {}; echo ended >&2; }} | head -n 1",
+                         fmt::join(metierCommand({}), " "), file_)},
+            process::ErrorOutput::with_output)
+            .value();
+    EXPECT_THAT(following.readLine(inAMinute()).value(), HasSubstr("number"));
+    EXPECT_EQ(following.readLine(inAMinute()).value(), "ended");
+}
+
 TEST_F(History, NamesAStoreThatIsNotThereOrIsNone) {
     const auto missing = run({"history"});
     EXPECT_EQ(missing.status, kFailed);
@@ -195,6 +208,9 @@ TEST_F(History, NamesAStoreThatIsNotThereOrIsNone) {
     EXPECT_THAT(run({"history"}).output, HasSubstr("is no SQLite file"));
     const auto url = runMetier({"history", "--records", "http://x/y"});
     EXPECT_EQ(url.status, kUsage) << url.output;
+    const auto folder = runMetier({"history", "--records", folder_.string()});
+    EXPECT_THAT(folder.output, HasSubstr("is a folder"));
+    EXPECT_EQ(run({"history", "--before", "-1"}).status, kUsage);
 }
 
 TEST_F(History, DrawsTheRecordedPathOfTheRobotThatTheRecordNames) {

@@ -1,5 +1,7 @@
 // What servers have recorded: a list of executions, and all that is known of one.
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -174,6 +176,12 @@ private:
     std::int64_t revision_ = -1;
 };
 
+/// Whether whoever read the output has gone: without output nothing else would tell.
+bool isOutputClosed() {
+    pollfd output{STDOUT_FILENO, 0, 0};
+    return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
 Exit runFollow(const HistoryOptions& options) {
     const StopSignal signal;
     const auto filter = filterOf(options);
@@ -195,7 +203,8 @@ Exit runFollow(const HistoryOptions& options) {
         if (problem != std::exchange(told, problem) && !problem.empty()) {
             fmt::print(stderr, "metier: {}; waiting\n", printable(problem));
         }
-    } while (!signal.waitUntil(std::chrono::steady_clock::now() + (told.empty() ? kLook : kRetry)));
+    } while (!isOutputClosed() &&
+             !signal.waitUntil(std::chrono::steady_clock::now() + (told.empty() ? kLook : kRetry)));
     return Exit::success;
 }
 
@@ -275,8 +284,10 @@ void addFilter(CLI::App& command, HistoryOptions& options) {
     command.add_option("--since", options.since,
                        "Started since: 2026-11-22T09:30 (UTC), or 30m, 8h, 7d ago");
     command.add_option("--until", options.until, "Started before, in the same form");
-    command.add_option("--before", options.page.before,
-                       "The next page: what comes after the execution of this number");
+    command
+        .add_option("--before", options.page.before,
+                    "The next page: what comes after the execution of this number")
+        ->check(CLI::NonNegativeNumber);
     command.add_option("--count", options.page.count, "How many")
         ->check(CLI::Range(1, 10'000))
         ->capture_default_str();

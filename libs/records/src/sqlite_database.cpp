@@ -151,6 +151,10 @@ Result<std::unique_ptr<Database>> SqliteDatabase::open(const fs::path& file, Sto
     if (access == Store::Access::read && !fs::exists(file, none)) {
         return fail(Errc::not_found, fmt::format("{}: there are no records", file.string()));
     }
+    if (fs::is_directory(file, none)) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} is a folder, no file of records", file.string()));
+    }
     if (access == Store::Access::write) {
         if (auto made = makeFile(file); !made) {
             return fail(made.error());

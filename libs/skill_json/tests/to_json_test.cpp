@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "metier/skill/json.hpp"
+
 namespace metier::skill_json {
 namespace {
 
@@ -27,6 +34,25 @@ TEST(ToJson, WritesRangesAndFramesAsLists) {
     ASSERT_EQ(ranges.size(), 1U);
     EXPECT_EQ(ranges[0].at("low"), -1);
     EXPECT_EQ(toJson(skill::Value(std::vector<skill::Frame>{{}, {}})).size(), 2U);
+}
+
+TEST(ToJson, SaysWhatTheTextOfARecordSays) {
+    const skill::ValueMap values{{"Nothing", skill::Value{}},
+                                 {"Flag", true},
+                                 {"Int", std::int32_t{-7}},
+                                 {"Unsigned", std::uint32_t{7}},
+                                 {"Long", std::uint64_t{18'446'744'073'709'551'615U}},
+                                 {"Number", 0.1},
+                                 {"Infinite", std::numeric_limits<double>::infinity()},
+                                 {"Text", std::string("a\"b\\\n\x01 \xc3\xa4")},
+                                 {"Frame", skill::Frame{1, 2, 3, 4, 5, 6}},
+                                 {"Vector", skill::Vector3{1, 2, 3}},
+                                 {"Numbers", std::vector<double>{1, 2.5}},
+                                 {"Texts", std::vector<std::string>{"a", ""}},
+                                 {"Ranges", std::vector<skill::Range>{{-1, 1}}},
+                                 {"Frames", std::vector<skill::Frame>{{}, {1, 2, 3, 4, 5, 6}}}};
+    EXPECT_EQ(nlohmann::json::parse(skill::jsonOf(values)),
+              nlohmann::json::parse(toJson(values).dump()));
 }
 
 TEST(ToJson, NamesTheValuesOfAMap) {
