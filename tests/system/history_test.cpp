@@ -1,5 +1,6 @@
 // Records from the command line: listed, shown, followed, drawn, exported and run again.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
