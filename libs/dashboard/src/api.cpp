@@ -44,7 +44,7 @@ std::shared_ptr<Person> Api::personOf(const Request& request) const {
     return people_.find(cookie(request, kCookie));
 }
 
-void Api::get(HttpServer& server, const std::string& path, Get handler) {
+void Api::get(http::HttpServer& server, const std::string& path, Get handler) {
     server.Get(path,
                [this, handler = std::move(handler)](const Request& request, Response& response) {
                    const auto person = personOf(request);
@@ -52,7 +52,7 @@ void Api::get(HttpServer& server, const std::string& path, Get handler) {
                });
 }
 
-void Api::post(HttpServer& server, const std::string& path, Post handler) {
+void Api::post(http::HttpServer& server, const std::string& path, Post handler) {
     server.Post(path,
                 [this, handler = std::move(handler)](const Request& request, Response& response) {
                     if (const auto meant = checkIntent(request); !meant) {
@@ -76,7 +76,7 @@ Reply Api::me(const std::shared_ptr<Person>& person) const {
              {"login_required", !lab}}};
 }
 
-void Api::bindLogin(HttpServer& server) {
+void Api::bindLogin(http::HttpServer& server) {
     server.Get("/api/me", [this](const Request& request, Response& response) {
         write(me(personOf(request)), response);
     });
@@ -132,7 +132,7 @@ void Api::beginStream(const Request& request, Response& response) {
     }
 }
 
-void Api::bindCommands(HttpServer& server) {
+void Api::bindCommands(http::HttpServer& server) {
     using Command = Reply (Commands::*)(const json&, const std::shared_ptr<Person>&);
     for (const auto& [path, command] :
          {std::pair<const char*, Command>{"/api/control", &Commands::control},
@@ -154,7 +154,7 @@ void Api::bindCommands(HttpServer& server) {
 }
 
 /// The URDF files of the folder of meshes, as paths in it.
-void Api::bindMeshes(HttpServer& server) {
+void Api::bindMeshes(http::HttpServer& server) {
     if (options_.meshes.empty()) {
         return;
     }
@@ -175,7 +175,7 @@ void Api::bindMeshes(HttpServer& server) {
     });
 }
 
-void Api::bindFiles(HttpServer& server) {
+void Api::bindFiles(http::HttpServer& server) {
     for (const auto& [extension, type] : {std::pair{"stl", "model/stl"},
                                           {"dae", "model/vnd.collada+xml"},
                                           {"obj", "model/obj"},
@@ -197,7 +197,7 @@ void Api::bindFiles(HttpServer& server) {
     }
 }
 
-void Api::bind(HttpServer& server) {
+void Api::bind(http::HttpServer& server) {
     server.set_default_headers(protectiveHeaders());
     server.set_pre_routing_handler([this](const Request& request, Response& response) {
         const auto own = checkOrigin(request, options_.host_name);

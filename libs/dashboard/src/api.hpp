@@ -6,8 +6,8 @@
 
 #include "board.hpp"
 #include "commands.hpp"
-#include "http_server.hpp"
 #include "metier/dashboard/dashboard.hpp"
+#include "metier/http/http_server.hpp"
 #include "people.hpp"
 #include "records_view.hpp"
 #include "reply.hpp"
@@ -34,7 +34,7 @@ public:
     explicit Api(const Parts& parts);
 
     /// Tells the server every path.
-    void bind(HttpServer& server);
+    void bind(http::HttpServer& server);
 
 private:
     using Get = std::function<Reply(const httplib::Request&, const std::shared_ptr<Person>&)>;
@@ -42,12 +42,12 @@ private:
 
     /// Who asks; nullptr: nobody that is known.
     std::shared_ptr<Person> personOf(const httplib::Request& request) const;
-    void get(HttpServer& server, const std::string& path, Get handler);
-    void post(HttpServer& server, const std::string& path, Post handler);
-    void bindFiles(HttpServer& server);
-    void bindLogin(HttpServer& server);
-    void bindCommands(HttpServer& server);
-    void bindMeshes(HttpServer& server);
+    void get(http::HttpServer& server, const std::string& path, Get handler);
+    void post(http::HttpServer& server, const std::string& path, Post handler);
+    void bindFiles(http::HttpServer& server);
+    void bindLogin(http::HttpServer& server);
+    void bindCommands(http::HttpServer& server);
+    void bindMeshes(http::HttpServer& server);
     void beginStream(const httplib::Request& request, httplib::Response& response);
     Reply me(const std::shared_ptr<Person>& person) const;
 

@@ -6,7 +6,7 @@
 
 #include "api.hpp"
 #include "board.hpp"
-#include "http_server.hpp"
+#include "metier/http/http_server.hpp"
 #include "people.hpp"
 #include "records_view.hpp"
 #include "tabs.hpp"
@@ -45,7 +45,7 @@ struct Dashboard::Impl {
     Tabs tabs;
     RecordsView records;
     Api api;
-    HttpServer http;
+    http::HttpServer http;
     std::uint16_t port = 0;
     std::unique_ptr<WorldWatch> world;
     Ticker ticker{board};

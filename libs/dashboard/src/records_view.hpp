@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "board.hpp"
-#include "http.hpp"
+#include "metier/http/httplib.hpp"
 #include "metier/records/execution.hpp"
 #include "metier/records/store.hpp"
 #include "reply.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "http.hpp"
+#include "metier/http/httplib.hpp"
 
 #include <nlohmann/json.hpp>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "http.hpp"
+#include "metier/http/httplib.hpp"
 
 #include <atomic>
 #include <functional>
@@ -8,7 +8,7 @@
 
 #include "board.hpp"
 #include "metier/base/error.hpp"
-#include "metier/dashboard/http_limits.hpp"
+#include "metier/http/http_limits.hpp"
 
 namespace metier::dashboard {
 
@@ -18,7 +18,7 @@ namespace metier::dashboard {
 class Streams {
 public:
     /// What it is given must outlive this.
-    Streams(Board& board, const HttpLimits& limits) : board_(board), limits_(limits) {}
+    Streams(Board& board, const http::HttpLimits& limits) : board_(board), limits_(limits) {}
 
     /// Whose stream it is. Called on the connection's thread.
     struct Listener {
@@ -32,7 +32,7 @@ public:
 
 private:
     Board& board_;
-    const HttpLimits& limits_;
+    const http::HttpLimits& limits_;
     std::atomic<std::size_t> open_ = 0;
 };
 

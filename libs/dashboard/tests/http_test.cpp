@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "http.hpp"
 #include "metier/dashboard/dashboard.hpp"
+#include "metier/http/httplib.hpp"
 #include "raw_browser.hpp"
 
 namespace metier::dashboard {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "http_server.hpp"
 #include "metier/base/clock.hpp"
+#include "metier/http/http_server.hpp"
 #include "raw_browser.hpp"
 
 namespace metier::dashboard {
@@ -27,7 +27,7 @@ constexpr const char* kRequest = "GET /stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\
 
 class StreamTest : public ::testing::Test {
 protected:
-    explicit StreamTest(HttpLimits limits = {}) : limits_(limits) { serve(); }
+    explicit StreamTest(http::HttpLimits limits = {}) : limits_(limits) { serve(); }
     ~StreamTest() override {
         board_.closeAll();
         server_.end();
@@ -55,10 +55,10 @@ protected:
     }
 
     SystemClock clock_;
-    HttpLimits limits_;
+    http::HttpLimits limits_;
     Board board_{{{"name", "test"}}, clock_};
     Streams streams_{board_, limits_};
-    HttpServer server_{limits_};
+    http::HttpServer server_{limits_};
     std::uint16_t port_ = 0;
     std::atomic<int> tabs_ = 0;
     std::atomic<bool> may_listen_ = true;

@@ -1,14 +1,21 @@
 #include "metier/metrics/endpoint.hpp"
 
 #include <gmock/gmock.h>
-#include <httplib.h>
 
+#include <array>
 #include <atomic>
+#include <chrono>
+#include <future>
+#include <span>
 #include <string>
+
+#include "metier/http/httplib.hpp"
+#include "metier/link/tcp_link.hpp"
 
 namespace metier::metrics {
 namespace {
 
+using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 class ServedFigures : public testing::Test {
@@ -60,6 +67,32 @@ TEST_F(ServedFigures, HaveAPortThatNobodyShares) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
     EXPECT_THAT(refused.error().message, HasSubstr(std::to_string(endpoint_->port())));
+}
+
+TEST_F(ServedFigures, EndWhileSomebodyAsksWithoutEnd) {
+    const auto deadline = std::chrono::steady_clock::now() + 30s;
+    auto slow = link::TcpLink::connect("127.0.0.1", endpoint_->port(), deadline).value();
+    std::promise<void> begun;
+    // A line of the head for ever, until the connection is cut.
+    const auto talking = std::async(std::launch::async, [&] {
+        const std::string first = "GET /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\n";
+        auto sent = slow.send(std::as_bytes(std::span(first)), deadline);
+        begun.set_value();
+        std::array<std::byte, 1> byte{};
+        while (sent && std::chrono::steady_clock::now() < deadline) {
+            const std::string line = "X-More: 1\r\n";
+            sent = slow.send(std::as_bytes(std::span(line)), deadline);
+            const auto soon = std::chrono::steady_clock::now() + 100ms;
+            const auto told = slow.receive(byte, soon);
+            if (!told && told.error().code != Errc::timeout) {
+                break;
+            }
+        }
+        return std::chrono::steady_clock::now() < deadline;
+    });
+    begun.get_future().wait();
+    endpoint_.reset();
+    EXPECT_LT(std::chrono::steady_clock::now(), deadline);
 }
 
 TEST_F(ServedFigures, EndWithTheirEndpoint) {

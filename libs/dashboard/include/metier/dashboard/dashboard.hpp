@@ -10,7 +10,7 @@
 #include "metier/base/error.hpp"
 #include "metier/dashboard/cell.hpp"
 #include "metier/dashboard/connector.hpp"
-#include "metier/dashboard/http_limits.hpp"
+#include "metier/http/http_limits.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::dashboard {
@@ -29,7 +29,7 @@ struct Options {
     /// Of what servers record, as records::Store::open() takes it; empty: nothing is shown.
     std::string records{};
     std::vector<motion::RobotModel> models{};  ///< whose shapes arms may have
-    HttpLimits limits{};
+    http::HttpLimits limits{};
 };
 
 /// The page of a cell: an OPC UA client of its servers, and the HTTP server that people look at.

@@ -17,9 +17,9 @@ struct Health {
 
 /// An HTTP server of its own threads with `/metrics` and `/healthz`.
 ///
-/// It has no log-in and no encryption: whoever reaches the address reads the figures. A client gets
-/// one answer per connection and two seconds to ask; two are answered at the same time.
-/// Threading: one thread makes and ends it, and waits for answers that are under way.
+/// It has no log-in and no encryption: whoever reaches the address reads the figures. A client has
+/// two seconds to ask; eight are connected at the same time.
+/// Threading: one thread makes and ends it, and waits for nobody's request.
 class Endpoint {
 public:
     struct Options {

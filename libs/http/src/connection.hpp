@@ -1,6 +1,6 @@
 #pragma once
 
-#include "http.hpp"
+#include "metier/http/httplib.hpp"
 
 #include <array>
 #include <chrono>
@@ -8,9 +8,9 @@
 #include <string>
 
 #include "metier/base/clock.hpp"
-#include "metier/dashboard/http_limits.hpp"
+#include "metier/http/http_limits.hpp"
 
-namespace metier::dashboard {
+namespace metier::http {
 
 /// The socket of one browser, on which every wait has a deadline and every request an end.
 ///
@@ -55,4 +55,4 @@ private:
     bool spent_ = false;
 };
 
-}  // namespace metier::dashboard
+}  // namespace metier::http

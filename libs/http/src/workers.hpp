@@ -1,6 +1,6 @@
 #pragma once
 
-#include "http.hpp"
+#include "metier/http/httplib.hpp"
 
 #include <condition_variable>
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace metier::dashboard {
+namespace metier::http {
 
 /// A thread for each connection, as many as there are at the same time, up to a limit; beyond it
 /// the work is done at once by whoever brings it.
@@ -87,4 +87,4 @@ private:
     std::vector<std::jthread> threads_;
 };
 
-}  // namespace metier::dashboard
+}  // namespace metier::http

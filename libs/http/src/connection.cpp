@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace metier::dashboard {
+namespace metier::http {
 namespace {
 
 using std::chrono::milliseconds;
@@ -124,4 +124,4 @@ void Connection::get_local_ip_and_port(std::string& ip, int& port) const {
     addressOf(address, ip, port);
 }
 
-}  // namespace metier::dashboard
+}  // namespace metier::http

@@ -3,9 +3,9 @@
 #include <chrono>
 #include <cstddef>
 
-namespace metier::dashboard {
+namespace metier::http {
 
-/// What one peer may ask of the page's server.
+/// What peers may ask of a server.
 struct HttpLimits {
     std::size_t connections = 256;                   ///< at the same time, streams among them
     std::size_t tabs = 128;                          ///< streams at the same time
@@ -17,4 +17,4 @@ struct HttpLimits {
     std::chrono::milliseconds send_time{5'000};      ///< without progress; then it is cut
 };
 
-}  // namespace metier::dashboard
+}  // namespace metier::http

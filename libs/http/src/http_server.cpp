@@ -1,4 +1,4 @@
-#include "http_server.hpp"
+#include "metier/http/http_server.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -9,9 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "connection.hpp"
 #include "workers.hpp"
 
-namespace metier::dashboard {
+namespace metier::http {
 namespace {
 
 constexpr std::string_view kFull =
@@ -132,4 +133,4 @@ bool HttpServer::process_and_close_socket(int socket) {
     return true;
 }
 
-}  // namespace metier::dashboard
+}  // namespace metier::http

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "http.hpp"
-
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -9,11 +7,13 @@
 #include <string>
 #include <thread>
 
-#include "connection.hpp"
 #include "metier/base/error.hpp"
-#include "metier/dashboard/http_limits.hpp"
+#include "metier/http/http_limits.hpp"
+#include "metier/http/httplib.hpp"
 
-namespace metier::dashboard {
+namespace metier::http {
+
+class Connection;
 
 /// httplib's server with limits: how many connections, how long a request may be and take, and how
 /// long a peer may not read. One thread for each connection that is open.
@@ -47,4 +47,4 @@ private:
     std::jthread accepting_;
 };
 
-}  // namespace metier::dashboard
+}  // namespace metier::http
