@@ -137,8 +137,10 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
             return shown;
         }
     }
-    return host_->publishArm(*system, {*device_.arm, model_, config.arm.payload,
-                                       sensor_ ? sensor_->force_torque_sensor : nullptr});
+    // A controller that measures the wrench itself needs no sensor in the cell file.
+    return host_->publishArm(
+        *system, {*device_.arm, model_, config.arm.payload,
+                  sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor});
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,

@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "kinematics_conversion.hpp"
+#include "metier/base/recent_mean.hpp"
 #include "metier/geometry/frame.hpp"
-#include "metier/opcua_skill/gripper_node.hpp"
+#include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
 #include "server_limits.hpp"
 
@@ -44,6 +45,34 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::Robot
     result.safety_state = safetyKind(state.safety);
     result.missed_cycles = state.missed_cycles;
     return result;
+}
+
+opcua_skill::ArmFigures figuresOf(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
+                                  const Clock& clock) {
+    opcua_skill::ArmFigures figures;
+    figures.commanded_joint_position = [&arm]() -> std::optional<std::vector<double>> {
+        const auto state = arm.state();
+        if (state.safety == device::SafetyState::disconnected) {
+            return std::nullopt;
+        }
+        return std::vector(state.commanded_position.begin(), state.commanded_position.end());
+    };
+    if (const auto* jitter = arm.cycleJitter()) {
+        // Shared by the copies of the function.
+        const auto mean =
+            std::make_shared<RecentMean>(*jitter, clock, std::chrono::milliseconds(100));
+        figures.cycle_jitter = [mean] { return mean->read(); };
+    }
+    if (sensor != nullptr) {
+        figures.flange_wrench = [sensor]() -> std::optional<opcua_skill::FlangeWrench> {
+            const auto sample = sensor->sample();
+            if (sample.health != device::SafetyState::normal) {
+                return std::nullopt;
+            }
+            return opcua_skill::FlangeWrench{sample.force, sample.torque};
+        };
+    }
+    return figures;
 }
 
 /// Skill objects of the NodeSet that nobody wants would stay without a skill.
@@ -250,9 +279,12 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
     moved_ = {&shown.arm, shown.sensor, shown.arm.info().name};
     auto data = toKinematicsData(shown.model);
     data.payload = shown.payload;
-    return opcua_skill::publishKinematics(
+    auto published = opcua_skill::publishKinematics(
         server_->nodes(), system, data,
         [&arm = shown.arm, &model = shown.model] { return stateOf(arm, model); });
+    return published ? opcua_skill::publishArmFigures(server_->nodes(), system.kinematics,
+                                                      figuresOf(shown.arm, shown.sensor, clock_))
+                     : published;
 }
 
 Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,
@@ -261,13 +293,16 @@ Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,
     if (moved_.name.empty()) {
         moved_.name = gripper.info().name;
     }
-    return opcua_skill::publishPartHeld(server_->nodes(), parent,
-                                        [&gripper]() -> std::optional<bool> {
-                                            const auto state = gripper.state();
-                                            return state.safety == device::SafetyState::disconnected
-                                                       ? std::nullopt
-                                                       : std::optional(state.part_held);
-                                        });
+    const auto& kind = gripper.info();
+    return opcua_skill::publishGripperFigures(
+        server_->nodes(), parent, {kind.stroke, kind.max_force > 0.0},
+        [&gripper]() -> std::optional<opcua_skill::GripperFigures> {
+            const auto state = gripper.state();
+            if (state.safety == device::SafetyState::disconnected) {
+                return std::nullopt;
+            }
+            return opcua_skill::GripperFigures{state.width, state.force, state.part_held};
+        });
 }
 
 Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {

@@ -64,11 +64,12 @@ public:
         const device::Arm& arm;
         const motion::RobotModel& model;
         double payload = 0;                                 ///< [kg]; 0: unknown
-        const device::ForceTorqueSensor* sensor = nullptr;  ///< of its flange; must outlive this
+        const device::ForceTorqueSensor* sensor = nullptr;  ///< at its flange; must outlive this
     };
     /// Shows what is known of the arm, and its live state.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const ShownArm& shown);
-    /// Shows at `parent` whether the gripper holds a part. `gripper` must outlive this.
+    /// Shows at `parent` how wide the gripper is open and whether it holds a part. `gripper` must
+    /// outlive this.
     Result<void> publishGripper(const opcua::NodeId& parent, const device::Gripper& gripper);
     /// Lets clients take control of the skills below `controller`, by lease or lock.
     Result<void> offerControl(const opcua::NodeId& controller);

@@ -1,5 +1,6 @@
 #include "live_values.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -47,6 +48,24 @@ void LiveValues::setJoints(const std::string& arm, const std::vector<double>& jo
     before = {joints, time};
     set(values_, "arms", arm, "q", rounded(joints));
     set(values_, "arms", arm, "v", rounded(velocity));
+}
+
+void LiveValues::setForce(const std::string& arm, const std::vector<double>& force) {
+    setWrench(arm, 0, force);
+}
+
+void LiveValues::setTorque(const std::string& arm, const std::vector<double>& torque) {
+    setWrench(arm, 3, torque);
+}
+
+void LiveValues::setWrench(const std::string& arm, std::size_t begin,
+                           const std::vector<double>& values) {
+    auto& wrench = wrenches_[arm];
+    if (values.size() != wrench.size() / 2) {
+        return;  // no wrench
+    }
+    std::copy(values.begin(), values.end(), wrench.begin() + static_cast<std::ptrdiff_t>(begin));
+    set(values_, "arms", arm, "f", rounded({wrench.begin(), wrench.end()}));
 }
 
 void LiveValues::setOfArm(const std::string& arm, const std::string& name, json value) {

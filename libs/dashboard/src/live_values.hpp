@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,14 +12,17 @@
 
 namespace metier::dashboard {
 
-/// What changes all the time: joint positions, safety, missed cycles, grippers, parts.
+/// What changes all the time: joint positions, forces, safety, cycles, grippers, parts.
 ///
 /// Threading: one thread at a time.
 class LiveValues {
 public:
     /// Measured joint positions [rad] of an arm, true at `time`; the velocity follows from them.
     void setJoints(const std::string& arm, const std::vector<double>& joints, UtcTime time);
-    /// Any other value of an arm by its name in the stream: "safety", "missed".
+    /// Half of a wrench: force [N] or torque [N m] along or about x, y, z.
+    void setForce(const std::string& arm, const std::vector<double>& force);
+    void setTorque(const std::string& arm, const std::vector<double>& torque);
+    /// Any other value of an arm by its name in the stream: "c", "jitter", "safety", "missed".
     void setOfArm(const std::string& arm, const std::string& name, nlohmann::json value);
     void setOfGripper(const std::string& gripper, const std::string& name, nlohmann::json value);
     void setPart(const std::string& part, nlohmann::json value);
@@ -36,10 +41,12 @@ private:
         std::vector<double> position;
         UtcTime time{};
     };
+    void setWrench(const std::string& arm, std::size_t begin, const std::vector<double>& values);
     void set(nlohmann::json& values, const std::string& group, const std::string& key,
              const std::string& name, nlohmann::json value);
 
     std::map<std::string, Joints> joints_;
+    std::map<std::string, std::array<double, 6>> wrenches_;
     nlohmann::json values_ = nlohmann::json::object();  // arms, grippers, parts
     nlohmann::json changed_ = nlohmann::json::object();
     bool moving_ = false;

@@ -72,6 +72,9 @@ void ServerLink::showLive(bool shown) {
 /// What a server does not have, or does not let be read, is not shown.
 void ServerLink::subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
                            std::function<void(const DataValue&)> callback) {
+    if (node.isNull()) {
+        return;
+    }
     auto subscribed =
         client_->subscribeData(node, {.sampling_interval = interval}, std::move(callback));
     if (subscribed) {
@@ -79,27 +82,52 @@ void ServerLink::subscribe(const opcua::NodeId& node, std::chrono::milliseconds 
     }
 }
 
+template <typename T>
+void ServerLink::subscribeLive(const opcua::NodeId& node, std::chrono::milliseconds interval,
+                               std::function<void(LiveValues&, const T&, UtcTime)> change) {
+    subscribe(node, interval, [&board = *board_, change = std::move(change)](const DataValue& now) {
+        if (const auto value = now.value.as<T>()) {
+            board.changeLive([&](LiveValues& live) { change(live, *value, now.source_time); });
+        }
+    });
+}
+
 void ServerLink::showArm(const Arm& arm) {
-    auto& board = *board_;
-    subscribe(
-        arm.nodes.actual_joint_position, kJoints, [&board, key = arm.key](const DataValue& notice) {
-            if (const auto joints = notice.value.as<std::vector<double>>();
-                joints && !joints->empty()) {
-                board.changeLive(
-                    [&](LiveValues& live) { live.setJoints(key, *joints, notice.source_time); });
-            }
-        });
-    subscribe(arm.nodes.safety_state, kStates, [&board, key = arm.key](const DataValue& notice) {
-        if (const auto kind = notice.value.as<std::int32_t>()) {
-            board.changeLive(
-                [&](LiveValues& live) { live.setOfArm(key, "safety", safetyName(*kind)); });
-        }
-    });
-    subscribe(arm.nodes.missed_cycles, kSlow, [&board, key = arm.key](const DataValue& notice) {
-        if (const auto missed = notice.value.as<std::uint64_t>()) {
-            board.changeLive([&](LiveValues& live) { live.setOfArm(key, "missed", *missed); });
-        }
-    });
+    using Numbers = std::vector<double>;
+    const auto& key = arm.key;
+    subscribeLive<Numbers>(arm.nodes.actual_joint_position, kJoints,
+                           [key](LiveValues& live, const Numbers& joints, UtcTime time) {
+                               if (!joints.empty()) {
+                                   live.setJoints(key, joints, time);
+                               }
+                           });
+    subscribeLive<Numbers>(arm.nodes.commanded_joint_position, kJoints,
+                           [key](LiveValues& live, const Numbers& joints, UtcTime /*time*/) {
+                               live.setOfArm(key, "c", rounded(joints));
+                           });
+    subscribeLive<Numbers>(
+        arm.nodes.flange_force, kJoints,
+        [key](LiveValues& live, const Numbers& force, UtcTime) { live.setForce(key, force); });
+    subscribeLive<Numbers>(
+        arm.nodes.flange_torque, kJoints,
+        [key](LiveValues& live, const Numbers& torque, UtcTime) { live.setTorque(key, torque); });
+    showCycles(arm);
+}
+
+void ServerLink::showCycles(const Arm& arm) {
+    const auto& key = arm.key;
+    subscribeLive<std::int32_t>(arm.nodes.safety_state, kStates,
+                                [key](LiveValues& live, std::int32_t kind, UtcTime /*time*/) {
+                                    live.setOfArm(key, "safety", safetyName(kind));
+                                });
+    subscribeLive<double>(arm.nodes.cycle_jitter, kStates,
+                          [key](LiveValues& live, double seconds, UtcTime /*time*/) {
+                              live.setOfArm(key, "jitter", rounded(seconds));
+                          });
+    subscribeLive<std::uint64_t>(arm.nodes.missed_cycles, kSlow,
+                                 [key](LiveValues& live, std::uint64_t missed, UtcTime /*time*/) {
+                                     live.setOfArm(key, "missed", missed);
+                                 });
 }
 
 void ServerLink::showController(const LinkedController& controller) {
@@ -127,13 +155,25 @@ void ServerLink::showController(const LinkedController& controller) {
             }
         });
     }
-    if (const auto held = client_->translate(controller.node, {{*metier, "PartHeld"}})) {
-        subscribe(*held, kStates, [&board, key = server_](const DataValue& notice) {
-            if (const auto part = notice.value.as<bool>()) {
-                board.changeLive([&](LiveValues& live) { live.setOfGripper(key, "held", *part); });
-            }
-        });
-    }
+    showGripper(controller.node, *metier);
+}
+
+void ServerLink::showGripper(const opcua::NodeId& object, std::uint16_t metier) {
+    const auto nodeOf = [&](const char* name) {
+        return client_->translate(object, {{metier, name}}).value_or(opcua::NodeId());
+    };
+    subscribeLive<bool>(nodeOf("PartHeld"), kStates,
+                        [key = server_](LiveValues& live, bool held, UtcTime /*time*/) {
+                            live.setOfGripper(key, "held", held);
+                        });
+    subscribeLive<double>(nodeOf("GripperWidth"), kJoints,
+                          [key = server_](LiveValues& live, double width, UtcTime /*time*/) {
+                              live.setOfGripper(key, "width", rounded(width));
+                          });
+    subscribeLive<double>(nodeOf("GripperForce"), kStates,
+                          [key = server_](LiveValues& live, double force, UtcTime /*time*/) {
+                              live.setOfGripper(key, "force", rounded(force));
+                          });
 }
 
 void ServerLink::showSkill(const LinkedSkill& skill) {

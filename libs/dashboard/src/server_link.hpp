@@ -80,10 +80,17 @@ private:
         skill_client::KinematicsNodes nodes;
     };
     void showArm(const Arm& arm);
+    void showCycles(const Arm& arm);
+    /// \param object that a gripper's skills belong to, maybe
+    void showGripper(const opcua::NodeId& object, std::uint16_t metier);
     void showController(const LinkedController& controller);
     void showSkill(const LinkedSkill& skill);
     void subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
                    std::function<void(const opcua::DataValue&)> callback);
+    /// \param change is told values of that type alone, with the time at which they were true
+    template <typename T>
+    void subscribeLive(const opcua::NodeId& node, std::chrono::milliseconds interval,
+                       std::function<void(LiveValues&, const T&, UtcTime)> change);
 
     std::unique_ptr<opcua::Client> client_;  // first: all below use it
     Board* board_ = nullptr;

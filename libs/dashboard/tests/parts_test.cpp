@@ -51,6 +51,16 @@ TEST(LiveValues, TellTheVelocityBetweenTwoSamples) {
         << "samples of different motions";
 }
 
+TEST(LiveValues, TellAWrenchWhoseHalvesComeOneByOne) {
+    LiveValues live;
+    live.setForce("ur5", {1, 2, 3});
+    EXPECT_EQ(live.changes(kNoon).at("arms").at("ur5").at("f"), json::array({1, 2, 3, 0, 0, 0}));
+    live.setTorque("ur5", {4, 5, 6});
+    EXPECT_EQ(live.changes(kNoon).at("arms").at("ur5").at("f"), json::array({1, 2, 3, 4, 5, 6}));
+    live.setForce("ur5", {9, 9});
+    EXPECT_TRUE(live.changes(kNoon).is_null()) << "what a server tells may be anything";
+}
+
 TEST(LiveValues, TellThatAPartIsGone) {
     LiveValues live;
     live.setPart("cube", {1, 2, 3, 0, 0, 0});

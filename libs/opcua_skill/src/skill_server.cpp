@@ -8,6 +8,7 @@
 #include "control_node.hpp"
 #include "metier/opcua_skill/execution_records.hpp"
 #include "metier/opcua_skill/server_executor.hpp"
+#include "model_ids.hpp"
 #include "skill_factory.hpp"
 #include "skill_node.hpp"
 #include "wiring.hpp"
@@ -105,10 +106,33 @@ private:
         skills_.push_back(std::make_unique<SkillNode>(instance.id, std::move(program), context_));
         auto& node = *skills_.back();
         bound_.insert(instance.id);
-        if (auto bound = node.bind(server_.nodes(), instance.nodes); !bound) {
+        auto bound = node.bind(server_.nodes(), instance.nodes);
+        if (bound && !node.program().description().suspendable) {
+            bound = tellNotSuspendable(instance.id);
+        }
+        if (!bound) {
             return fail(std::move(bound.error()));
         }
         return &node.program();
+    }
+
+    /// Its Suspend is there all the same, since every Program has one, and refuses.
+    Result<void> tellNotSuspendable(const opcua::NodeId& skill) {
+        auto& nodes = server_.nodes();
+        const auto metier = nodes.namespaceIndex(kMetierUri);
+        if (!metier) {
+            return fail(metier.error());
+        }
+        opcua::VariableSpec spec;
+        spec.node.parent = skill;
+        spec.node.reference = opcua::ids::kHasProperty;
+        spec.node.browse_name = {*metier, "Suspendable"};
+        spec.node.description = {"en", "False: Suspend is refused, whatever the skill is doing."};
+        spec.type = opcua::ids::kPropertyType;
+        spec.data_type = opcua::ids::kBoolean;
+        spec.value = opcua::Value::of(false);
+        const auto added = nodes.addVariable(spec);
+        return added ? Result<void>() : fail(added.error());
     }
 
     void sessionClosed(const opcua::Session& session) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "metier/opcua_skill/gripper_node.hpp"
+#include "metier/opcua_skill/live_figures.hpp"
+#include "metier/opcua_skill/values.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "served_skills.hpp"
@@ -175,11 +176,12 @@ TEST_F(Publishing, KinematicsAreReadBack) {
               opcua::Value::of(std::vector<std::string>{"", "gripper"}));
 }
 
-TEST_F(Publishing, APartHeldIsLiveAndBadWhileNobodyKnows) {
+TEST_F(Publishing, AGrippersFiguresAreLiveAndBadWhileNobodyKnows) {
     std::atomic<int> held{1};
-    ASSERT_TRUE(
-        publishPartHeld(server().nodes(), system().controller, [&]() -> std::optional<bool> {
-            return held < 0 ? std::nullopt : std::optional(held == 1);
+    ASSERT_TRUE(publishGripperFigures(
+        server().nodes(), system().controller, {0.11, true},
+        [&]() -> std::optional<GripperFigures> {
+            return held < 0 ? std::nullopt : std::optional(GripperFigures{0.05, 12.0, held == 1});
         }));
     serve();
     const auto client = connect();
@@ -193,11 +195,66 @@ TEST_F(Publishing, APartHeldIsLiveAndBadWhileNobodyKnows) {
     const auto next = [&] {
         return seen.popUntil(clock_.now() + std::chrono::seconds(10)).value();
     };
+    const auto value = [&](const char* name) {
+        return client->read(client->translate(system().controller, {{metier, name}}).value());
+    };
     EXPECT_EQ(next().value, opcua::Value::of(true));
+    EXPECT_EQ(value("GripperStroke").value(), opcua::Value::of(0.11));
+    EXPECT_EQ(value("GripperWidth").value(), opcua::Value::of(0.05));
+    EXPECT_EQ(value("GripperForce").value(), opcua::Value::of(12.0));
     held = 0;
     EXPECT_EQ(next().value, opcua::Value::of(false));
     held = -1;
     EXPECT_EQ(next().status.name(), "BadNoCommunication");
+    EXPECT_EQ(value("GripperWidth").error().status.name(), "BadNoCommunication");
+    EXPECT_EQ(value("GripperStroke").value(), opcua::Value::of(0.11)) << "that is known still";
+}
+
+TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
+    std::atomic<bool> connected{true};
+    const auto known = [&](auto value) { return connected ? std::optional(value) : std::nullopt; };
+    ASSERT_TRUE(publishArmFigures(server().nodes(), system().kinematics,
+                                  {[=] {
+                                       return known(std::vector{0.5, -0.5});
+                                   },
+                                   [=] { return known(25e-6); },
+                                   [=] {
+                                       return known(FlangeWrench{{1, 2, 3}, {4, 5, 6}});
+                                   }}));
+    serve();
+    const auto client = connect();
+    const auto metier = client->namespaceIndex("urn:metier:skills").value();
+    const auto value = [&](std::vector<opcua::QualifiedName> path) {
+        return client->read(client->translate(system().kinematics, std::move(path)).value());
+    };
+    const auto unit = [&](const char* name) {
+        return symbolOf(value({{metier, name}, {0, "EngineeringUnits"}})
+                            .value()
+                            .as<opcua::EuInformation>()
+                            .value());
+    };
+    EXPECT_EQ(value({{metier, "CommandedJointPosition"}}).value(),
+              opcua::Value::of(std::vector{0.5, -0.5}));
+    EXPECT_EQ(value({{metier, "CycleJitter"}}).value(), opcua::Value::of(25e-6));
+    EXPECT_EQ(value({{metier, "FlangeForce"}}).value(), opcua::Value::of(std::vector{1., 2., 3.}));
+    EXPECT_EQ(value({{metier, "FlangeTorque"}}).value(), opcua::Value::of(std::vector{4., 5., 6.}));
+    EXPECT_EQ(unit("CommandedJointPosition"), "rad");
+    EXPECT_EQ(unit("CycleJitter"), "s");
+    EXPECT_EQ(unit("FlangeForce"), "N");
+    EXPECT_EQ(unit("FlangeTorque"), "N m");
+    connected = false;
+    EXPECT_EQ(value({{metier, "FlangeForce"}}).error().status.name(), "BadNoCommunication");
+}
+
+TEST_F(Publishing, AnArmWithoutASensorHasNoVariablesOfOne) {
+    ASSERT_TRUE(publishArmFigures(server().nodes(), system().kinematics,
+                                  {[] { return std::optional(std::vector{0.5}); }, {}, {}}));
+    serve();
+    const auto client = connect();
+    const auto metier = client->namespaceIndex("urn:metier:skills").value();
+    EXPECT_TRUE(client->translate(system().kinematics, {{metier, "CommandedJointPosition"}}));
+    EXPECT_FALSE(client->translate(system().kinematics, {{metier, "FlangeForce"}}));
+    EXPECT_FALSE(client->translate(system().kinematics, {{metier, "CycleJitter"}}));
 }
 
 TEST_F(Publishing, KinematicsOfDifferentLengthsAreRefused) {

@@ -67,7 +67,8 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
     impl->description = {.name = impl->address.name,
                          .type = impl->address.type_name,
                          .parameters = fieldsOf(impl->nodes.parameters),
-                         .results = fieldsOf(impl->nodes.results)};
+                         .results = fieldsOf(impl->nodes.results),
+                         .suspendable = impl->nodes.suspendable};
     impl->log->onTransition(std::move(on_transition));
     auto subscription = client.subscribeEvents(
         impl->address.node, transitionFilter(client.namespaceIndex(kDeviceNamespace).value_or(1)),

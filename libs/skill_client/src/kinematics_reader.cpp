@@ -102,7 +102,10 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
     if (!children) {
         return tl::unexpected(children.error());
     }
-    KinematicsNodes nodes{device.first, device.second, object, {}, {}, {}};
+    KinematicsNodes nodes;
+    nodes.device_name = device.first;
+    nodes.device = device.second;
+    nodes.object = object;
     const std::array<std::pair<std::string_view, NodeId*>, 3> wanted{
         {{"ActualJointPosition", &nodes.actual_joint_position},
          {"SafetyState", &nodes.safety_state},
@@ -113,6 +116,15 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
             return failure(Errc::not_found, fmt::format("Kinematics has no {}", name));
         }
         *node = found->second;
+    }
+    const std::array<std::pair<std::string_view, NodeId*>, 4> optional{
+        {{"CommandedJointPosition", &nodes.commanded_joint_position},
+         {"CycleJitter", &nodes.cycle_jitter},
+         {"FlangeForce", &nodes.flange_force},
+         {"FlangeTorque", &nodes.flange_torque}}};
+    for (const auto& [name, node] : optional) {
+        const auto found = children->find(name);
+        *node = found == children->end() ? NodeId() : found->second;
     }
     return nodes;
 }

@@ -196,6 +196,10 @@ Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     if (auto found = findProgramNodes(client, address, *children, nodes); !found) {
         return tl::unexpected(found.error());
     }
+    if (const auto* suspendable = findNamed(*children, "Suspendable")) {
+        const auto value = questions.read(suspendable->target);
+        nodes.suspendable = (value ? value->as<bool>() : Result<bool>(true)).value_or(true);
+    }
     struct Folder {
         std::string_view name;
         Place place;

@@ -29,6 +29,7 @@ struct SkillNodes {
     opcua::NodeId execution_id;
     /// Null if the server keeps no records for clients; then it takes no parent of a start, either.
     opcua::NodeId records;
+    bool suspendable = true;
     std::vector<FieldNode> parameters;
     std::vector<FieldNode> results;
 };

@@ -9,6 +9,7 @@
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
+#include "metier/skill_client/async_skill.hpp"
 #include "metier/skill_client/kinematics_reader.hpp"
 #include "metier/skill_client/skill_finder.hpp"
 #include "metier/skill_client/skill_handle.hpp"
@@ -53,7 +54,8 @@ struct Behaviour {
 /// A server with one arm system and one skill, and a client, on loopback.
 class SkillClient : public ::testing::Test {
 protected:
-    SkillClient() {
+    enum class Suspend { possible, refused };
+    explicit SkillClient(Suspend suspend = Suspend::possible) : suspend_(suspend) {
         opcua::ServerOptions options;
         options.port = 0;
         options.nodesets = {"device", "robotics", "metier"};
@@ -94,6 +96,9 @@ protected:
                 execution.finish({{"Duration", 0.25}});
             }
         };
+        if (suspend_ == Suspend::refused) {
+            return std::make_unique<skill::LambdaSkill>(jointMove(), functions);
+        }
         functions.suspend = [](const skill::Execution& execution) -> Result<void> {
             execution.atRest();
             return {};
@@ -135,6 +140,7 @@ protected:
         return std::move(SkillHandle::open(*client_, std::move(address)).value());
     }
 
+    const Suspend suspend_;
     SystemClock clock_;
     // With the skill, which lives on the server's thread.
     std::shared_ptr<Behaviour> behaviour_ = std::make_shared<Behaviour>();
@@ -158,6 +164,25 @@ TEST_F(SkillClient, NamesTheSkillsThereAreWhenOneIsNotFound) {
     ASSERT_FALSE(skill);
     EXPECT_EQ(skill.error().code, Errc::not_found);
     EXPECT_THAT(skill.error().message, HasSubstr("there are: JointPtpMoveSkill"));
+}
+
+class SkillThatCannotBeSuspended : public SkillClient {
+protected:
+    SkillThatCannotBeSuspended() : SkillClient(Suspend::refused) {}
+};
+
+bool isSuspendable(opcua::Client& client) {
+    auto address = findSkill(client, "JointPtpMoveSkill").value();
+    const auto skill = AsyncSkill::open(client, std::move(address), [](const auto&) {});
+    return skill.value().description().suspendable;
+}
+
+TEST_F(SkillClient, KnowsThatASkillCanBeSuspended) {
+    EXPECT_TRUE(isSuspendable(*client_));
+}
+
+TEST_F(SkillThatCannotBeSuspended, TellsSo) {
+    EXPECT_FALSE(isSuspendable(*client_));
 }
 
 TEST_F(SkillClient, ReadsWhatTheParametersAreLike) {

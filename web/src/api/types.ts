@@ -169,7 +169,7 @@ export interface ArmSample {
 export interface LiveEvent {
     t: number;
     arms?: Record<string, ArmSample>;
-    grippers?: Record<string, { width?: number; held?: boolean }>;
+    grippers?: Record<string, { width?: number; force?: number; held?: boolean }>;
     /** In the world; null: the part is gone. */
     parts?: Record<string, Frame | null>;
 }

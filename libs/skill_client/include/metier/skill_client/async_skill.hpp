@@ -37,8 +37,8 @@ public:
     ~AsyncSkill();
 
     const SkillAddress& address() const noexcept;
-    /// Which parameters must be given, and whether it can be suspended, a server does not tell:
-    /// none, and yes.
+    /// Which parameters must be given a server does not tell: none. It can be suspended unless the
+    /// server says that it cannot.
     const skill::SkillDescription& description() const noexcept;
 
     /// Whether executions can be named and asked for: startWith() and execution().

@@ -19,6 +19,10 @@ struct KinematicsNodes {
     opcua::NodeId actual_joint_position;
     opcua::NodeId safety_state;
     opcua::NodeId missed_cycles;
+    opcua::NodeId commanded_joint_position;  ///< null if the server does not tell, as the next
+    opcua::NodeId cycle_jitter;
+    opcua::NodeId flange_force;
+    opcua::NodeId flange_torque;
 };
 
 /// Finds it: the motion device of the system that the skill's controller belongs to.

@@ -1,0 +1,163 @@
+#include "metier/opcua_skill/live_figures.hpp"
+
+#include <utility>
+
+#include "metier/opcua/status_code.hpp"
+#include "metier/opcua_skill/values.hpp"
+#include "model_ids.hpp"
+
+namespace metier::opcua_skill {
+namespace {
+
+using opcua::DataValue;
+using opcua::NodeId;
+using opcua::Value;
+
+const NodeId kAnalogUnitType{0, 17497U};
+
+/// Adds Variables to one object, until one fails.
+class FigureMaker {
+public:
+    FigureMaker(opcua::AddressSpace& nodes, const NodeId& parent)
+        : nodes_(nodes), parent_(parent), index_(nodes.namespaceIndex(kMetierUri)) {
+        if (!index_) {
+            outcome_ = fail(index_.error());
+        }
+    }
+
+    /// One whose value stays as it is.
+    FigureMaker& constant(const char* name, const char* description, const skill::Unit& unit,
+                          const Value& value) {
+        auto spec = specOf(name, description, skill::ValueType::number);
+        spec.value = value;
+        add(spec, &unit);
+        return *this;
+    }
+    /// \param unit nullptr: of no quantity
+    /// \param read an empty Value: nothing is known now
+    FigureMaker& live(const char* name, const char* description, const skill::Unit* unit,
+                      skill::ValueType type, std::function<Value()> read) {
+        const auto node = add(specOf(name, description, type), unit);
+        if (outcome_) {
+            outcome_ = nodes_.setDataSource(node, {sourceOf(std::move(read)), nullptr});
+        }
+        return *this;
+    }
+    const Result<void>& outcome() const noexcept { return outcome_; }
+
+private:
+    static std::function<DataValue(const opcua::Session&)> sourceOf(std::function<Value()> read) {
+        return [read = std::move(read)](const opcua::Session& /*reader*/) {
+            auto value = read();
+            return value.isEmpty() ? DataValue{{}, opcua::status::kBadNoCommunication, {}, {}}
+                                   : DataValue{std::move(value), {}, {}, {}};
+        };
+    }
+    opcua::VariableSpec specOf(const char* name, const char* description, skill::ValueType type) {
+        opcua::VariableSpec spec;
+        spec.node.parent = parent_;
+        spec.node.browse_name = {index_.value_or(0), name};
+        spec.node.description = {"en", description};
+        const auto shape = shapeOf(type);
+        spec.data_type = shape.data_type;
+        spec.value_rank = shape.value_rank;
+        if (shape.value_rank == 1) {
+            spec.array_dimensions = {0};
+        }
+        return spec;
+    }
+    NodeId add(opcua::VariableSpec spec, const skill::Unit* unit) {
+        if (!outcome_) {
+            return {};
+        }
+        if (unit != nullptr) {
+            spec.type = kAnalogUnitType;
+        }
+        const auto node = nodes_.addVariable(spec);
+        outcome_ = node ? setUnit(*node, unit) : Result<void>(fail(node.error()));
+        return node.value_or(NodeId());
+    }
+    Result<void> setUnit(const NodeId& variable, const skill::Unit* unit) {
+        if (unit == nullptr) {
+            return {};
+        }
+        const auto node = nodes_.find(variable, {0, "EngineeringUnits"});
+        return node ? nodes_.write(*node, Value::of(toOpcua(*unit)))
+                    : Result<void>(fail(node.error()));
+    }
+
+    opcua::AddressSpace& nodes_;
+    const NodeId parent_;
+    const Result<std::uint16_t> index_;
+    Result<void> outcome_;
+};
+
+template <typename T>
+Value valueOf(const std::optional<T>& value) {
+    return value ? Value::of(*value) : Value();
+}
+
+std::vector<double> listOf(const std::array<double, 3>& vector) {
+    return {vector.begin(), vector.end()};
+}
+
+}  // namespace
+
+Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinematics,
+                               const ArmFigures& figures) {
+    using skill::ValueType;
+    FigureMaker maker(nodes, kinematics);
+    if (figures.commanded_joint_position) {
+        maker.live(
+            "CommandedJointPosition",
+            "Joint positions that the controller was last told to go to, axis 1 first [rad].",
+            &skill::kRadian, ValueType::numbers,
+            [read = figures.commanded_joint_position] { return valueOf(read()); });
+    }
+    if (figures.cycle_jitter) {
+        maker.live("CycleJitter",
+                   "How far the time between two control cycles was off the period in the last "
+                   "100 ms, in the mean [s].",
+                   &skill::kSecond, ValueType::number,
+                   [read = figures.cycle_jitter] { return valueOf(read()); });
+    }
+    if (figures.flange_wrench) {
+        const auto part = [read = figures.flange_wrench](auto FlangeWrench::*of) {
+            return [read, of] {
+                const auto wrench = read();
+                return wrench ? Value::of(listOf((*wrench).*of)) : Value();
+            };
+        };
+        maker.live("FlangeForce", "Force on the flange along x, y, z of its sensor [N].",
+                   &skill::kNewton, ValueType::numbers, part(&FlangeWrench::force));
+        maker.live("FlangeTorque", "Torque on the flange about x, y, z of its sensor [N m].",
+                   &skill::kNewtonMetre, ValueType::numbers, part(&FlangeWrench::torque));
+    }
+    return maker.outcome();
+}
+
+Result<void> publishGripperFigures(opcua::AddressSpace& nodes, const NodeId& parent,
+                                   const GripperKind& kind,
+                                   std::function<std::optional<GripperFigures>()> figures) {
+    using skill::ValueType;
+    const auto part = [read = std::move(figures)](auto GripperFigures::*of) {
+        return [read, of] {
+            const auto now = read();
+            return now ? Value::of((*now).*of) : Value();
+        };
+    };
+    FigureMaker maker(nodes, parent);
+    maker.constant("GripperStroke", "Largest distance between the jaws [m].", skill::kMetre,
+                   Value::of(kind.stroke));
+    maker.live("GripperWidth", "Distance between the jaws [m].", &skill::kMetre, ValueType::number,
+               part(&GripperFigures::width));
+    if (kind.measures_force) {
+        maker.live("GripperForce", "Force on the part between the jaws [N].", &skill::kNewton,
+                   ValueType::number, part(&GripperFigures::force));
+    }
+    maker.live("PartHeld", "True while the gripper holds a part.", nullptr, ValueType::boolean,
+               part(&GripperFigures::part_held));
+    return maker.outcome();
+}
+
+}  // namespace metier::opcua_skill
