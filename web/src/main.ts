@@ -85,7 +85,7 @@ class App {
         document.title = `${cell.name} \u2013 metier`;
         this.stage.setCell(cell);
         const view = this.stage.view;
-        if (view !== null) void import('./scene/user_meshes.js').then((meshes) => meshes.useUserMeshes(view, (arm) => this.stage.usesMeshes(arm)));
+        if (view !== null && cell.meshes === true) void import('./scene/user_meshes.js').then((meshes) => meshes.useUserMeshes(view, (arm) => this.stage.usesMeshes(arm)));
     }
 
     private receive(name: string, data: unknown): void {

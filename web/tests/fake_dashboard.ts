@@ -93,7 +93,7 @@ function get(request: IncomingMessage, response: ServerResponse, url: URL): void
     if (path.startsWith('/assets/')) return file(response, page, path.slice(1));
     if (path === '/api/me') return answer(response, 200, me(request));
     if (!isLoggedIn(request)) throw new Refusal(401, 'login_required', 'Log in first');
-    if (path === '/api/cell') return answer(response, 200, cell.description.cell);
+    if (path === '/api/cell') return answer(response, 200, { ...cell.description.cell, meshes: meshes !== null });
     if (path === '/api/stream') return openStream(response);
     if (path === '/api/records') return answer(response, 200, records(url.searchParams));
     if (path === '/api/meshes' && meshes !== null) {

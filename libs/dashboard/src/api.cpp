@@ -227,6 +227,7 @@ void Api::bind(http::HttpServer& server) {
         [this](const Request& /*request*/, const std::shared_ptr<Person>& /*person*/) {
             auto cell = board_.cell();
             cell["lab"] = people_.isLab();
+            cell["meshes"] = !options_.meshes.empty();
             return Reply{200, std::move(cell)};
         });
     get(server, "/api/records",

@@ -110,6 +110,7 @@ TEST_F(Page, NamesTheCellAndWhoLooks) {
     EXPECT_EQ(cell.at("name"), "test");
     EXPECT_EQ(cell.at("lab"), true);
     EXPECT_EQ(cell.at("servers"), json::array());
+    EXPECT_EQ(cell.at("meshes"), true);
     const auto me = json::parse(client_->Get("/api/me")->body);
     EXPECT_EQ(me.at("login_required"), false);
     EXPECT_EQ(me.at("role"), "operator");

@@ -113,6 +113,8 @@ export interface World {
 export interface Cell {
     name: string;
     lab: boolean;
+    /** Whether there are meshes of the user's own to ask for. */
+    meshes?: boolean;
     servers: Server[];
     arms: Arm[];
     world?: World | null;
