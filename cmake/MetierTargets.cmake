@@ -12,6 +12,9 @@ if(METIER_SANITIZE)
     target_compile_options(metier_warnings INTERFACE
         -fsanitize=${METIER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(metier_warnings INTERFACE -fsanitize=${METIER_SANITIZE})
+    # g++ 12 takes a moved std::variant for uninitialised where its address is checked.
+    target_compile_options(metier_warnings INTERFACE
+        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>)
 endif()
 
 # metier_add_library(<name> SOURCES ... [PUBLIC libs] [PRIVATE libs])

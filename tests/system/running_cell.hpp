@@ -24,6 +24,8 @@ public:
     const std::string& virtualAddress(const std::string& controller) const {
         return virtual_addresses_.at(controller);
     }
+    /// What `--endpoints` of other commands takes.
+    const std::filesystem::path& endpoints() const { return endpoints_; }
     /// How many processes there are below `metier up`.
     std::size_t size() const { return urls_.size() + virtual_addresses_.size(); }
     process::ChildProcess& process() { return process_; }

@@ -59,7 +59,7 @@ export function startBrowser(): Promise<Browser> {
 
 export interface Visit {
     page: Page;
-    /** What went wrong in the page's scripts. */
+    /** What went wrong in the page's scripts, and what they asked for that is not there. */
     faults: string[];
     close(): Promise<void>;
 }
@@ -72,11 +72,14 @@ export async function visit(browser: Browser, url: string, look: { width?: numbe
     const page = await context.newPage();
     const faults: string[] = [];
     page.on('pageerror', (error) => faults.push(error.message));
+    page.on('response', (response) => {
+        if (response.request().method() === 'GET' && response.status() >= 400) faults.push(`${response.url()}: ${String(response.status())}`);
+    });
     await page.goto(url);
     return { page, faults, close: () => context.close() };
 }
 
-/** Runs a test with a visitor, who must see no fault in the page's scripts. */
+/** Runs a test with a visitor, who must see no fault of the page. */
 export async function withVisit(browser: Browser, url: string, test: (page: Page) => Promise<void>, look: { width?: number; height?: number; dark?: boolean } = {}): Promise<void> {
     const visitor = await visit(browser, url, look);
     try {
