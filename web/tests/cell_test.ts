@@ -156,7 +156,7 @@ test('finds executions, looks at one, replays it, and compares two', { timeout: 
     await page.click('[aria-label="End the replay"]');
     for (const row of [0, 1]) await rows.nth(row).locator('input[type=checkbox]').check();
     await page.locator('.record h3', { hasText: 'Comparison' }).waitFor();
-    assert.equal(await page.locator('.record .facts-row dl').count(), 2);
+    assert.equal(await page.locator('.record .facts .run-mark').count(), 2);
     await picture(page, 'cell_compare_light');
 }));
 

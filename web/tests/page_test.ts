@@ -146,7 +146,7 @@ test('finds an execution, replays it, and compares two', () => withVisit(browser
     await page.locator('tr[data-record] input[type=checkbox]').nth(0).check();
     await page.locator('tr[data-record] input[type=checkbox]').nth(1).check();
     await page.locator('.record h3', { hasText: 'Comparison' }).waitFor();
-    assert.equal(await page.locator('.record .facts-row dl').count(), 2);
+    assert.equal(await page.locator('.record .facts .run-mark').count(), 2);
     await picture(page, 'compare_light');
 }));
 

@@ -13,6 +13,37 @@ import { Pill } from './pill.js';
 /** Of the first and the second run in pictures. */
 const kRunColors = ['#9a6bff', '#1fa88e'];
 
+/** What a record says of its run, in the order in which it is shown; empty: not known. */
+function factsOf(record: RecordDetail): [string, string | Node][] {
+    const now = wallTime();
+    const pill = new Pill();
+    pill.set(record.state);
+    const took = record.ended === undefined || record.ended === null ? 'running' : durationText(record.ended - record.started);
+    return [
+        ['Execution', `${record.number}`], ['State', pill.element], ['Started', timeText(record.started, now)], ['Took', took],
+        ['Server', record.server_name || record.server], ['By', [record.user, record.client_name].filter((text) => (text ?? '') !== '').join(', ')],
+        ['Reason', record.reason_text || words(record.reason ?? '')], ['Missed cycles', String(record.missed_cycles ?? 0)],
+    ];
+}
+
+/** A column for each run, so that what differs is side by side. */
+function facts(records: readonly RecordDetail[]): HTMLElement {
+    const columns = records.map(factsOf);
+    const rows = (columns[0] ?? []).map(([name], row) => ({ name, values: columns.map((column) => column[row]?.[1] ?? '') }));
+    const list = h('dl', { class: 'facts' },
+        ...(records.length > 1 ? [h('dt'), ...records.map((_, k) => runMark(k))] : []),
+        ...rows.filter(({ values }) => values.some((value) => value !== '')).flatMap(({ name, values }) => [h('dt', {}, name), ...values.map((value) => h('dd', {}, value))]));
+    list.style.setProperty('--runs', String(records.length));
+    return list;
+}
+
+/** Tells which column is which in pictures. */
+function runMark(run: number): HTMLElement {
+    const mark = h('dd', { class: 'run-mark', 'aria-hidden': 'true' });
+    mark.style.setProperty('--run', kRunColors[run] as string);
+    return mark;
+}
+
 /** Joint velocities between the points of a path [rad/s]. */
 export function velocities(path: RecordDetail['path']): number[][] {
     return path.map((point, k) => {
@@ -70,25 +101,10 @@ export class RecordView {
         fill(this.element,
             h('div', { class: 'record-head' }, h('h3', {}, records.length > 1 ? 'Comparison' : words(records[0]?.skill ?? '')),
                 drawable && h('button', { class: 'small', id: 'replay', onclick: () => this.replay(records) }, icon(kIcons.play), 'Replay in 3D')),
-            h('div', { class: 'facts-row' }, ...records.map((record, k) => this.facts(record, records.length > 1 ? (kRunColors[k] as string) : ''))),
+            facts(records),
             ...(drawable ? [this.position.element, this.velocity.element] : [h('p', { class: 'empty' }, 'No joint path was recorded.')]),
             ...(records.length === 1 ? this.details(records[0] as RecordDetail) : []));
         if (drawable) this.plot(records);
-    }
-
-    private facts(record: RecordDetail, color: string): HTMLElement {
-        const now = wallTime();
-        const pill = new Pill();
-        pill.set(record.state);
-        const took = record.ended === undefined || record.ended === null ? 'running' : durationText(record.ended - record.started);
-        const rows: [string, string | Node][] = [
-            ['Execution', `${record.number}`], ['State', pill.element], ['Started', timeText(record.started, now)], ['Took', took],
-            ['Server', record.server_name || record.server], ['By', [record.user, record.client_name].filter((text) => (text ?? '') !== '').join(', ')],
-            ['Reason', record.reason_text || words(record.reason ?? '')], ['Missed cycles', String(record.missed_cycles ?? 0)],
-        ];
-        const list = h('dl', { class: 'facts' }, ...rows.filter(([, value]) => value !== '').flatMap(([name, value]) => [h('dt', {}, name), h('dd', {}, value)]));
-        if (color !== '') list.style.setProperty('--run', color);
-        return list;
     }
 
     private details(record: RecordDetail): Node[] {
