@@ -85,14 +85,15 @@ void Rosbridge::send(Client& client, const std::string& text) {
         return;
     }
     const std::size_t total = (text.size() + *client.fragment_size - 1) / *client.fragment_size;
-    const std::string id = std::to_string(client.fragments_sent++);
+    Json fragment{{"op", "fragment"},
+                  {"id", std::to_string(client.fragments_sent++)},
+                  {"data", ""},
+                  {"num", 0},
+                  {"total", total}};
     for (std::size_t number = 0; number < total; ++number) {
-        client.send(
-            toText({{"op", "fragment"},
-                    {"id", id},
-                    {"data", text.substr(number * *client.fragment_size, *client.fragment_size)},
-                    {"num", number},
-                    {"total", total}}));
+        fragment["data"] = text.substr(number * *client.fragment_size, *client.fragment_size);
+        fragment["num"] = number;
+        client.send(toText(fragment));
     }
 }
 
