@@ -39,6 +39,13 @@ std::string chainOf(std::string_view body, std::string_view chain_before) {
     return sha256(fmt::format("{}\n{}", chain_before, body));
 }
 
+/// Nothing, if there is no such key or it holds no text.
+std::optional<std::string> textIn(const nlohmann::ordered_json& json, std::string_view key) {
+    const auto found = json.find(std::string(key));
+    return found != json.end() && found->is_string() ? std::optional(found->get<std::string>())
+                                                     : std::nullopt;
+}
+
 }  // namespace
 
 ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view chain_before) {
@@ -61,16 +68,17 @@ std::optional<ReadLine> readLastLine(std::string_view text) {
         return {};
     }
     const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-    if (!json.is_object() || !json.contains("n") || !json["n"].is_number_unsigned() ||
-        !json.contains("time") || !json["time"].is_string() || !json["chain"].is_string()) {
+    if (!json.is_object() || !json.contains("n") || !json["n"].is_number_unsigned()) {
         return {};
     }
-    ReadLine line{json["n"].get<std::uint64_t>(),
-                  json["time"].get<std::string>(),
-                  json["chain"].get<std::string>(),
-                  {}};
-    if (json.value("event", std::string()) == kContinued) {
-        line.after = json.value(kAfter, std::string());
+    const auto time = textIn(json, "time");
+    const auto chain = textIn(json, "chain");
+    if (!time || !chain) {
+        return {};
+    }
+    ReadLine line{json["n"].get<std::uint64_t>(), *time, *chain, {}};
+    if (textIn(json, "event") == kContinued) {
+        line.after = textIn(json, kAfter).value_or("");
     }
     return line.chain.size() == kNoChain.size() ? std::optional(std::move(line)) : std::nullopt;
 }

@@ -40,6 +40,18 @@ TEST(Chain, IsBrokenByEachChange) {
     EXPECT_FALSE(readLine("{}", first.chain));
 }
 
+TEST(Chain, IsNoneInADamagedLine) {
+    EXPECT_FALSE(readLastLine(R"({"n":1,"time":"","event":{"a":1,"chain":"0"})"));
+    EXPECT_FALSE(readLastLine(R"({"n":1,"time":"","a":{"b":1,"chain":"0"},"c":"1"})"
+                              R"(,"chain":7,"d":"2"})"));
+    const std::string nested = R"({"n":1,"time":"","a":[{"b":1,"chain":"0"}],"c":"0"})";
+    EXPECT_FALSE(readLastLine(nested)) << "a chain of something else";
+    const auto line = chainLine(entryOf("Start"), 1, kNoChain);
+    auto numbered = line.text;
+    numbered.replace(numbered.find("\"Start\""), 7, "7");
+    EXPECT_TRUE(readLastLine(numbered)) << "an event that is no text is not a continuation";
+}
+
 TEST(Chain, HoldsWhateverAPeerIsCalled) {
     auto entry = entryOf("Login");
     entry.fields = {{"user", "a\"},\n\"chain\":\"x\"}"}, {"name", "\xff\xfe\x01"}};
