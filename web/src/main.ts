@@ -24,6 +24,12 @@ function soon(tell: () => void): void {
     setTimeout(tell, 16);
 }
 
+/**
+ * How long a tab that nobody sees keeps its stream, unless it has control [ms]. A browser has six connections to a
+ * server for all its tabs: those that rest leave theirs to the one that is to halt.
+ */
+const kUnseen = 5_000;
+
 const kPanes: [Pane, string][] = [['stage', 'Cell'], ['skills', 'Skills'], ['run', 'Run'], ['below', 'History']];
 
 class App {
@@ -45,6 +51,7 @@ class App {
         this.below?.redraw();
     });
     private stream: Stream | null = null;
+    private unseen = 0;
 
     constructor(root: HTMLElement) {
         const header = new Header(this.context, {
@@ -55,7 +62,23 @@ class App {
             new ServerList(this.context).element, this.stage.element, this.run.element, this.below.element),
         panes, this.toasts.element, this.log_in.element, this.help.element);
         this.keys();
+        document.addEventListener('visibilitychange', () => this.seenOrNot());
         void this.begin();
+    }
+
+    private seenOrNot(): void {
+        clearTimeout(this.unseen);
+        if (document.visibilityState === 'visible') {
+            // Servers may have come meanwhile. Should the dashboard be away, the stream tells.
+            if (this.stream?.resume() === true) this.loadCell().catch(() => undefined);
+        } else this.unseen = window.setTimeout(() => this.rest(), kUnseen);
+    }
+
+    private rest(): void {
+        if (controlSummary(this.state.get()) !== 'none') return;
+        this.stream?.rest();
+        this.live.forgetClock();
+        this.state.update(afterLoss);
     }
 
     private async begin(): Promise<void> {
@@ -76,6 +99,7 @@ class App {
         }
         await this.loadCell();
         this.stream = new Stream('/api/stream', (name, data) => this.receive(name, data), () => this.lost());
+        this.seenOrNot();
     }
 
     private async loadCell(): Promise<void> {

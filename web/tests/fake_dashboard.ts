@@ -1,8 +1,9 @@
 // A stand-in for `metier dashboard`: serves the page and the same API over a made-up cell. Test code only.
 //
-//   node fake_dashboard.mjs PAGE_FOLDER MODELS_FOLDER [--port N] [--square] [--login USER:PASSWORD] [--meshes FOLDER]
+//   node fake_dashboard.mjs PAGE_FOLDER MODELS_FOLDER [--port N] [--square] [--login USER:PASSWORD] [--meshes FOLDER] [--silent-records]
 //
-// Prints its address. With --square other clients' arms go around squares.
+// Prints its address. With --square other clients' arms go around squares; with --silent-records
+// nobody who asks for records is ever answered.
 
 import { createServer, type IncomingMessage, type ServerResponse } from 'node:http';
 import { readdirSync, readFileSync } from 'node:fs';
@@ -95,6 +96,7 @@ function get(request: IncomingMessage, response: ServerResponse, url: URL): void
     if (!isLoggedIn(request)) throw new Refusal(401, 'login_required', 'Log in first');
     if (path === '/api/cell') return answer(response, 200, { ...cell.description.cell, meshes: meshes !== null });
     if (path === '/api/stream') return openStream(response);
+    if (path.startsWith('/api/records') && options.includes('--silent-records')) return;
     if (path === '/api/records') return answer(response, 200, records(url.searchParams));
     if (path === '/api/meshes' && meshes !== null) {
         return answer(response, 200, { files: readdirSync(meshes, { recursive: true }).map(String).filter((name) => name.endsWith('.urdf')) });

@@ -159,6 +159,43 @@ test('frees what a closed tab controlled', () => withVisit(browser, quiet.line, 
     await page.locator('[data-server=iiwa] .owner', { hasText: 'free' }).waitFor();
 }));
 
+/** As the browser does it with a tab behind others. */
+async function setSeen(page: Page, seen: boolean): Promise<void> {
+    await page.evaluate((state) => {
+        Object.defineProperty(document, 'visibilityState', { value: state, configurable: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+    }, seen ? 'visible' : 'hidden');
+}
+
+test('leaves its connection to other tabs while nobody sees it, unless it has control', () => withVisit(browser, quiet.line, async (page) => {
+    const other = await visit(browser, quiet.line);
+    await other.page.locator('.link-state[data-link=live]').waitFor();
+    await takeControl(other.page);
+    await setSeen(other.page, false);
+    await setSeen(page, false);
+    await page.locator('.link-state[data-link=lost]').waitFor();
+    await setSeen(page, true);
+    await page.locator('.link-state[data-link=live]').waitFor();
+    assert.equal(await other.page.locator('.mode').getAttribute('data-control'), 'all');
+    await other.close();
+}));
+
+test('halts at once although no record comes', async () => {
+    const program = await startFake('--square', '--silent-records');
+    try {
+        await withVisit(browser, program.line, async (page) => {
+            await page.locator('.skill .pill[data-state=running]').first().waitFor();
+            await page.click('#tab-timeline');
+            for (const state of ['Running', 'Ready', 'Halted', 'Suspended', 'Running', 'Ready']) await page.selectOption('[aria-label=State]', state);
+            await page.keyboard.press('Shift+H');
+            // Sooner than the page gives up a request.
+            await page.locator('.toast.good', { hasText: 'not an emergency stop' }).waitFor({ timeout: 15_000 });
+        });
+    } finally {
+        await program.end();
+    }
+});
+
 test('logs in with user and password, and not with wrong ones', async () => {
     const closed = await startFake('--login', 'maria:secret');
     const visitor = await visit(browser, closed.line);

@@ -52,6 +52,13 @@ Result<void> checkIntent(const httplib::Request& request) {
     return {};
 }
 
+std::string sessionCookieName(const httplib::Request& request) {
+    const auto header = request.get_header_value("Host");
+    const auto port = header.find_last_not_of("0123456789") + 1;
+    const bool has_port = port > 0 && port < header.size() && header[port - 1] == ':';
+    return has_port ? "metier_" + header.substr(port) : "metier";
+}
+
 std::string cookie(const httplib::Request& request, const std::string& name) {
     const auto header = request.get_header_value("Cookie");
     std::string_view rest = header;

@@ -21,6 +21,11 @@ Result<void> checkOrigin(const httplib::Request& request, const std::string& hos
 /// Errors: access_denied; invalid_argument.
 Result<void> checkIntent(const httplib::Request& request);
 
+/// Of the cookie that says who is logged in: `metier_` and the port that the browser asked at,
+/// since browsers send the cookies of all ports of a host to each of them; `metier` where it named
+/// none.
+std::string sessionCookieName(const httplib::Request& request);
+
 /// The value of a cookie; empty if there is none.
 std::string cookie(const httplib::Request& request, const std::string& name);
 

@@ -17,15 +17,18 @@ using nlohmann::json;
 
 namespace {
 
-constexpr const char* kCookie = "metier";
-
 Reply notLoggedIn() {
     return errorReply(401, "login_required", "log in first");
 }
 
-std::string sessionCookie(const std::string& token) {
-    return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}", kCookie, token,
-                       token.empty() ? "; Max-Age=0" : "");
+std::string tokenOf(const Request& request) {
+    return cookie(request, sessionCookieName(request));
+}
+
+void setToken(const Request& request, const std::string& token, Response& response) {
+    response.set_header("Set-Cookie", fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}",
+                                                  sessionCookieName(request), token,
+                                                  token.empty() ? "; Max-Age=0" : ""));
 }
 
 }  // namespace
@@ -41,7 +44,7 @@ Api::Api(const Parts& parts)
       streams_(parts.board, parts.options.limits) {}
 
 std::shared_ptr<Person> Api::personOf(const Request& request) const {
-    return people_.find(cookie(request, kCookie));
+    return people_.find(tokenOf(request));
 }
 
 void Api::get(http::HttpServer& server, const std::string& path, Get handler) {
@@ -101,15 +104,15 @@ void Api::bindLogin(http::HttpServer& server) {
                                   : errorReply(token.error()),
                          response);
         }
-        response.set_header("Set-Cookie", sessionCookie(*token));
+        setToken(request, *token, response);
         write(me(people_.find(*token)), response);
     });
     server.Post("/api/logout", [this](const Request& request, Response& response) {
         if (const auto meant = checkIntent(request); !meant) {
             return write(errorReply(meant.error()), response);
         }
-        people_.logout(cookie(request, kCookie));
-        response.set_header("Set-Cookie", sessionCookie(""));
+        people_.logout(tokenOf(request));
+        setToken(request, "", response);
         write(me(nullptr), response);
     });
 }
@@ -121,7 +124,7 @@ void Api::beginStream(const Request& request, Response& response) {
     }
     const auto tab = randomName();
     tabs_.open(tab, person);
-    const auto may_listen = [this, token = cookie(request, kCookie), person] {
+    const auto may_listen = [this, token = tokenOf(request), person] {
         return people_.find(token) == person;
     };
     if (const auto begun =

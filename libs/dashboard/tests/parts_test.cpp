@@ -259,6 +259,23 @@ TEST(Arms, WithoutAModelHaveNoShape) {
     EXPECT_TRUE(shown.at("tools").at(1).at("frame").is_null());
 }
 
+TEST(Cookies, AreNamedByThePortSoThatPagesOfOneHostDoNotLogEachOtherOut) {
+    const auto nameAt = [](const std::string& host) {
+        httplib::Request request;
+        request.headers = {{"Host", host}};
+        return sessionCookieName(request);
+    };
+    EXPECT_EQ(nameAt("127.0.0.1:8080"), "metier_8080");
+    EXPECT_EQ(nameAt("[::1]:8081"), "metier_8081");
+    EXPECT_EQ(nameAt("[::1]"), "metier");
+    EXPECT_EQ(nameAt("cell.example"), "metier");
+    EXPECT_EQ(nameAt("127.0.0.1"), "metier");
+    EXPECT_EQ(nameAt("1:"), "metier");
+    EXPECT_EQ(nameAt("80"), "metier");
+    EXPECT_EQ(nameAt(""), "metier");
+    EXPECT_EQ(nameAt("a:1;b=2"), "metier");
+}
+
 TEST(Cookies, AreFoundAmongOthers) {
     httplib::Request request;
     request.headers = {{"Cookie", "a=1; metier=abc; metier2=x"}};

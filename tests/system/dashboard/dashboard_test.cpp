@@ -239,7 +239,8 @@ TEST_F(ClosedDashboard, LetsPeopleInAsTheServersDo) {
     const auto anna = logIn("anna", "correct horse");
     ASSERT_EQ(anna.status, 200) << anna.error();
     EXPECT_EQ(anna.body.at("role"), "operator");
-    EXPECT_THAT(anna.cookie, HasSubstr("metier="));
+    const auto port = page_->url().substr(page_->url().rfind(':') + 1);
+    EXPECT_THAT(anna.cookie, HasSubstr("metier_" + port + "="));
     Tab tab(page_->url(), anna.cookie);
     const auto taken = tab.tell("/api/control", {{"server", "all"}, {"action", "take"}});
     EXPECT_EQ(taken.status, 200) << taken.error();

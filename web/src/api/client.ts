@@ -46,6 +46,20 @@ async function request(path: string, init: RequestInit): Promise<unknown> {
     }
 }
 
+/** One request after the other, each with its own deadline from its own beginning. */
+class Lane {
+    private last: Promise<unknown> = Promise.resolve();
+
+    run<T>(ask: () => Promise<T>): Promise<T> {
+        const answer = this.last.then(ask);
+        this.last = answer.catch(() => undefined);
+        return answer;
+    }
+}
+
+/** A browser has six connections to a server. Where records come slowly or not at all, they hold up one of them: a Halt finds another. */
+const records_lane = new Lane();
+
 function get<T>(path: string): Promise<T> {
     return request(path, { method: 'GET' }) as Promise<T>;
 }
@@ -102,8 +116,8 @@ export const api = {
     start: (tab: string, key: string, parameters: object) => post<{ execution: string }>('/api/skills/start', { tab, key, parameters }),
     skill: (tab: string, key: string, command: SkillCommand) => post<object>(`/api/skills/${command}`, { tab, key }),
     halt: (what: { server?: string; arm?: string }) => post<HaltAnswer>('/api/halt', what),
-    records: (filter: RecordFilter) => get<{ records: RecordRow[]; more: boolean }>(`/api/records?${recordsQuery(filter)}`),
-    record: (number: number) => get<RecordDetail>(`/api/records/${number}`),
+    records: (filter: RecordFilter) => records_lane.run(() => get<{ records: RecordRow[]; more: boolean }>(`/api/records?${recordsQuery(filter)}`)),
+    record: (number: number) => records_lane.run(() => get<RecordDetail>(`/api/records/${number}`)),
 };
 
 export type Api = typeof api;

@@ -26,6 +26,19 @@ export class Stream {
         this.drop();
     }
 
+    /** Gives its connection back until resume(). */
+    rest(): void {
+        this.drop();
+    }
+
+    /** Whether it rested, or was about to open anew. */
+    resume(): boolean {
+        if (this.closed || this.source !== null) return false;
+        clearTimeout(this.watchdog);
+        this.open();
+        return true;
+    }
+
     private open(): void {
         const source = new EventSource(this.url);
         this.source = source;

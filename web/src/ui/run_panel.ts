@@ -33,6 +33,7 @@ export class RunPanel {
     private form: SkillForm | null = null;
     /** The parameters that were found possible, as text. */
     private checked = '';
+    private checking = false;
 
     constructor(private readonly context: Context) {
         this.buttons.start.setAttribute('aria-describedby', 'why-not');
@@ -42,7 +43,7 @@ export class RunPanel {
 
     /** Check of the form by keyboard. */
     async check(): Promise<boolean> {
-        if (this.skill === null || this.form === null) return false;
+        if (this.skill === null || this.form === null || this.checking) return false;
         const values = this.form.read();
         this.form.showErrors(values.errors, true);
         if (Object.keys(values.errors).length > 0) {
@@ -51,8 +52,10 @@ export class RunPanel {
         }
         const skill = this.skill;
         if (skill.can.check === false) return true;
+        this.checking = true;
         this.buttons.check.disabled = true;
         const result = await this.context.actions.check(skill, values.parameters);
+        this.checking = false;
         this.buttons.check.disabled = false;
         if (this.skill !== skill) return false;
         this.checked = result.possible ? JSON.stringify(values.parameters) : '';
@@ -158,7 +161,7 @@ export class RunPanel {
     private renderCommands(state: CellState, skill: Skill): void {
         const can = commandsOf(state, skill);
         this.buttons.check.hidden = skill.can.check === false;
-        this.buttons.check.disabled = state.link !== 'live';
+        this.buttons.check.disabled = state.link !== 'live' || this.checking;
         this.buttons.start.disabled = !can.start;
         this.buttons.suspend.disabled = !can.suspend;
         this.buttons.resume.disabled = !can.resume;

@@ -33,6 +33,9 @@ export class Timeline {
     private chosen: number | null = null;
     private seen = -1;
     private typing = 0;
+    private loading = false;
+    /** What is to be loaded after what is being loaded. */
+    private next: { before: number | undefined } | null = null;
 
     constructor(private readonly context: Context) {
         this.view = new RecordView(context, (number) => this.choose(number));
@@ -78,7 +81,22 @@ export class Timeline {
         return filter;
     }
 
+    /** What was asked last is shown last; of what is asked while an answer is awaited only the last. */
     private async load(before?: number): Promise<void> {
+        this.next = { before };
+        if (this.loading) return;
+        this.loading = true;
+        for (let wanted = this.takeNext(); wanted !== null; wanted = this.takeNext()) await this.loadOnce(wanted.before);
+        this.loading = false;
+    }
+
+    private takeNext(): { before: number | undefined } | null {
+        const next = this.next;
+        this.next = null;
+        return next;
+    }
+
+    private async loadOnce(before?: number): Promise<void> {
         try {
             const answer = await this.context.api.records(this.filter(before));
             this.rows = before === undefined ? answer.records : [...this.rows, ...answer.records];
