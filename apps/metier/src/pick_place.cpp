@@ -4,14 +4,12 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
 
-#include "metier/base/queue.hpp"
 #include "metier/skill_client/skill_handle.hpp"
 #include "pick_place_command.hpp"
-#include "progress_view.hpp"
 #include "servers.hpp"
+#include "side_by_side.hpp"
 #include "value_text.hpp"
 
 namespace metier::app {
@@ -20,7 +18,6 @@ namespace {
 using skill_client::SkillHandle;
 
 constexpr const char* kType = "PickPlaceSkillType";
-constexpr std::size_t kUpdates = 10'000;
 
 /// One PickPlaceSkill with the connection that it is used over.
 struct Component {
@@ -34,13 +31,6 @@ struct Tally {
     int placed = 0;
     std::vector<std::string> failures;  // "part 3: why"
     double time = 0.0;                  // of all parts [s]
-};
-
-struct Update {
-    std::size_t row = 0;
-    double fraction = 0.0;
-    std::string text;
-    bool last = false;
 };
 
 Result<std::vector<Component>> findComponents(const std::vector<std::string>& urls) {
@@ -87,9 +77,8 @@ Frame placeOf(int part, const Frame& first, const PickPlaceSettings& settings) {
 
 class Mover {
 public:
-    Mover(Component& component, const PickPlaceSettings& settings,
-          std::function<void(double, std::string)> tell)
-        : component_(component), settings_(settings), tell_(std::move(tell)) {}
+    Mover(Component& component, const PickPlaceSettings& settings, const TellRow& tell)
+        : component_(component), settings_(settings), tell_(tell) {}
 
     Tally run() {
         const auto begun = std::chrono::steady_clock::now();
@@ -139,44 +128,23 @@ private:
 
     Component& component_;
     const PickPlaceSettings& settings_;
-    const std::function<void(double, std::string)> tell_;
+    const TellRow& tell_;
     Tally tally_;
     bool overruled_ = false;  // somebody else has halted it, so it is not begun again
 };
 
-/// All components at the same time, one thread each; this one shows how it goes.
+/// All components at the same time.
 std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSettings& settings) {
     std::vector<std::string> names;
     for (const auto& component : components) {
         names.push_back(component.name);
     }
     std::vector<Tally> tallies(components.size());
-    ProgressView view(names, ProgressView::detect());
-    Queue<Update> updates(kUpdates);
-    std::vector<std::jthread> threads;
-    for (std::size_t row = 0; row < components.size(); ++row) {
-        threads.emplace_back([&, row] {
-            Mover mover(components[row], settings, [&](double fraction, std::string text) {
-                updates.tryPush({row, fraction, std::move(text), false});
-            });
-            tallies[row] = mover.run();
-            updates.tryPush({row, 1.0, tallies[row].failures.empty() ? "done" : "failed", true});
-        });
-    }
-    const auto deadline = std::chrono::steady_clock::now() + settings.timeout * settings.parts;
-    for (std::size_t running = components.size(); running > 0;) {
-        const auto update = updates.popUntil(deadline);
-        if (!update) {
-            break;  // every part has its own deadline: the threads end soon
-        }
-        if (update->last) {
-            view.finish(update->row, update->text);
-            --running;
-        } else {
-            view.update(update->row, update->fraction, update->text);
-        }
-    }
-    threads.clear();
+    runSideBySide(names, settings.timeout * settings.parts,
+                  [&](std::size_t row, const TellRow& tell) {
+                      tallies[row] = Mover(components[row], settings, tell).run();
+                      return tallies[row].failures.empty();
+                  });
     return tallies;
 }
 

@@ -1,19 +1,15 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <thread>
 #include <utility>
 
-#include "metier/base/queue.hpp"
-#include "progress_view.hpp"
 #include "servers.hpp"
+#include "side_by_side.hpp"
 #include "square_command.hpp"
 #include "square_report.hpp"
 
 namespace metier::app {
 namespace {
-
-constexpr std::size_t kUpdates = 10'000;
 
 /// One arm with the connection it is moved over.
 struct ConnectedArm {
@@ -49,14 +45,7 @@ Result<std::vector<ConnectedArm>> findArms(const std::vector<std::string>& urls)
     return found;
 }
 
-struct Update {
-    std::size_t row = 0;
-    double fraction = 0;
-    std::string text;
-    bool last = false;
-};
-
-/// Moves all arms at the same time, one thread each; this one shows how it goes.
+/// Moves all arms at the same time.
 std::vector<SquareOutcome> moveAll(std::vector<ConnectedArm>& arms,
                                    const SquareSettings& settings) {
     std::vector<SquareOutcome> outcomes;
@@ -65,33 +54,12 @@ std::vector<SquareOutcome> moveAll(std::vector<ConnectedArm>& arms,
         names.push_back(arm.name);
         outcomes.push_back({arm.name, arm.url, fail(Errc::internal, "not run")});
     }
-    ProgressView view(names, ProgressView::detect());
-    Queue<Update> updates(kUpdates);
-    std::vector<std::jthread> threads;
-    for (std::size_t row = 0; row < arms.size(); ++row) {
-        threads.emplace_back([&, row] {
-            const auto tell = [&](double fraction, const std::string& text) {
-                updates.tryPush({row, fraction, text, false});
-            };
-            outcomes[row].result = runSquare(*arms[row].client, arms[row].arm, settings, tell);
-            updates.tryPush({row, 1.0, outcomes[row].result ? "done" : "failed", true});
-        });
-    }
-    const auto deadline =
-        std::chrono::steady_clock::now() + settings.move_timeout * (settings.laps * 4 + 2);
-    for (std::size_t running = arms.size(); running > 0;) {
-        const auto update = updates.popUntil(deadline);
-        if (!update) {
-            break;  // every move has its own deadline: the threads end soon
-        }
-        if (update->last) {
-            view.finish(update->row, update->text);
-            --running;
-        } else {
-            view.update(update->row, update->fraction, update->text);
-        }
-    }
-    threads.clear();
+    runSideBySide(names, settings.move_timeout * (settings.laps * 4 + 2),
+                  [&](std::size_t row, const TellRow& tell) {
+                      auto& arm = arms[row];
+                      outcomes[row].result = runSquare(*arm.client, arm.arm, settings, tell);
+                      return outcomes[row].result.has_value();
+                  });
     return outcomes;
 }
 

@@ -36,7 +36,6 @@ void setToken(const Request& request, const std::string& token, Response& respon
 Api::Api(const Parts& parts)
     : options_(parts.options),
       board_(parts.board),
-      watches_(parts.watches),
       people_(parts.people),
       tabs_(parts.tabs),
       records_(parts.records),

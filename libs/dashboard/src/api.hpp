@@ -53,7 +53,6 @@ private:
 
     const Options& options_;
     Board& board_;
-    Watches& watches_;
     People& people_;
     Tabs& tabs_;
     RecordsView& records_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 #include "random_name.hpp"
 
 namespace metier::dashboard {
@@ -24,7 +25,6 @@ constexpr auto kLongestRest = 1h;
 constexpr int kFreeOfUser = 3;   // wrong passwords for one name before waiting begins
 constexpr int kFreeOfPeer = 10;  // from one address, for whatever names
 constexpr auto kConnect = 5'000ms;
-constexpr const char* kMetier = "urn:metier:skills";
 
 bool isDenial(const opcua::Failure& failure) {
     return failure.code == Errc::access_denied ||
@@ -35,7 +35,7 @@ bool isDenial(const opcua::Failure& failure) {
 
 /// Whether a session may take control of a controller.
 bool mayCommand(opcua::Client& client, const ServerLink& link) {
-    const auto metier = client.namespaceIndex(kMetier);
+    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
     if (!metier || link.controllers().empty()) {
         return false;
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 #include "survey.hpp"
 
 namespace metier::dashboard {
@@ -17,7 +18,6 @@ using opcua::DataValue;
 constexpr auto kJoints = 33ms;  // 30 Hz
 constexpr auto kStates = 100ms;
 constexpr auto kSlow = 500ms;
-constexpr const char* kMetier = "urn:metier:skills";
 
 /// SafetyStateKind of the Metier NodeSet.
 std::string safetyName(std::int32_t kind) {
@@ -131,7 +131,7 @@ void ServerLink::showCycles(const Arm& arm) {
 }
 
 void ServerLink::showController(const LinkedController& controller) {
-    const auto metier = client_->namespaceIndex(kMetier);
+    const auto metier = client_->namespaceIndex(opcua_skill::kMetierUri);
     if (!metier) {
         return;
     }
@@ -177,7 +177,7 @@ void ServerLink::showGripper(const opcua::NodeId& object, std::uint16_t metier) 
 }
 
 void ServerLink::showSkill(const LinkedSkill& skill) {
-    const auto metier = client_->namespaceIndex(kMetier);
+    const auto metier = client_->namespaceIndex(opcua_skill::kMetierUri);
     if (!metier) {
         return;
     }

@@ -7,6 +7,7 @@
 
 #include "arm_json.hpp"
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 #include "metier/skill_client/skill_references.hpp"
 #include "transitions.hpp"
 
@@ -20,7 +21,6 @@ using skill_client::KinematicsNodes;
 using skill_client::SkillAddress;
 
 const NodeId kServerArray{0, 2254U};
-constexpr const char* kMetier = "urn:metier:skills";
 
 std::string applicationUri(opcua::Client& client) {
     const auto value = client.read(kServerArray);
@@ -67,7 +67,7 @@ Answer<> Survey::run() {
 
 double Survey::stroke() {
     auto& client = link_.client();
-    const auto metier = client.namespaceIndex(kMetier);
+    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
     for (const auto& controller : metier ? link_.controllers_ : std::vector<LinkedController>()) {
         const auto node = client.translate(controller.node, {{*metier, "GripperStroke"}});
         const auto value = node ? client.read(*node) : Answer<opcua::Value>();

@@ -5,13 +5,13 @@
 
 #include "metier/base/error.hpp"
 #include "metier/opcua/address_space.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 #include "metier/skill/state.hpp"
 
 namespace metier::opcua_skill {
 
 inline constexpr std::string_view kDeviceUri = "https://fortiss.org/UA/Device/";
 inline constexpr std::string_view kRoboticsUri = "https://fortiss.org/UA/Robotics/";
-inline constexpr std::string_view kMetierUri = "urn:metier:skills";
 inline constexpr std::string_view kDiUri = "http://opcfoundation.org/UA/DI/";
 inline constexpr std::string_view kOpcRoboticsUri = "http://opcfoundation.org/UA/Robotics/";
 

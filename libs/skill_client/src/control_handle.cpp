@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 
 namespace metier::skill_client {
 
@@ -23,7 +24,6 @@ using opcua::Value;
 
 namespace {
 
-constexpr std::string_view kMetier = "urn:metier:skills";
 constexpr int kBeatsPerLease = 4;
 
 struct LeaseNodes {
@@ -35,7 +35,7 @@ struct LeaseNodes {
 };
 
 Answer<LeaseNodes> findLease(opcua::Client& client, const NodeId& controller) {
-    const auto index = client.namespaceIndex(kMetier);
+    const auto index = client.namespaceIndex(opcua_skill::kMetierUri);
     if (!index) {
         return tl::unexpected(index.error());
     }

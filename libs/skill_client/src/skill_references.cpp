@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include "metier/opcua_skill/namespaces.hpp"
+
 namespace metier::skill_client {
 namespace {
 
@@ -14,7 +16,6 @@ const NodeId kNonHierarchicalReferences{0, 32U};
 const NodeId kHasDictionaryEntry{0, 17597U};
 
 // The Metier NodeSet.
-constexpr std::string_view kMetierUri = "urn:metier:skills";
 constexpr std::uint32_t kUsesSkill = 20306;
 constexpr std::uint32_t kUsedSkillType = 20307;
 
@@ -26,7 +27,7 @@ ReferenceReader::ReferenceReader(opcua::Client& client, std::optional<std::uint1
     : client_(&client), metier_(metier) {}
 
 Answer<ReferenceReader> ReferenceReader::create(opcua::Client& client) {
-    const auto metier = client.namespaceIndex(kMetierUri);
+    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
     if (!metier && metier.error().code != Errc::not_found) {
         return tl::unexpected(metier.error());
     }
