@@ -1,17 +1,23 @@
 // The command `metier halt` against a skill that comes to rest when the test says so.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <future>
 
+#include "hostile/raw_socket.hpp"
 #include "metier_program.hpp"
 #include "served_skills.hpp"
 
 namespace metier::system_tests {
 namespace {
 
+using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+constexpr auto kLongest = 60s;
 
 class HaltCommand : public opcua_skill::testing::ServedSkills {
 protected:
@@ -48,6 +54,25 @@ TEST_F(HaltCommand, SaysHaltedAtStandstill) {
     const auto again = halt("60");
     EXPECT_EQ(again.status, 0);
     EXPECT_THAT(again.output, HasSubstr(" is halted"));
+}
+
+TEST_F(HaltCommand, HaltsServersBesideOneThatSaysNothing) {
+    const hostile::RawListener silent;
+    const auto silent_url = fmt::format("opc.tcp://127.0.0.1:{}", silent.port());
+    auto halted = std::async(std::launch::async, [&] {
+        return runMetier({"halt", silent_url, server().endpointUrl(), "--timeout", "60"});
+    });
+    auto waiting = silent.accept(kLongest);
+    ASSERT_TRUE(waiting.isOpen());
+    ASSERT_TRUE(move_.hand->await("halt"));
+    std::string hello;
+    waiting.receive(hello, 0ms);
+    EXPECT_TRUE(waiting.isOpen()) << "the silent server had been given up before";
+    move_.hand->execution().atRest();
+    const auto finished = halted.get();
+    EXPECT_EQ(finished.status, 1);
+    EXPECT_THAT(finished.output,
+                AllOf(HasSubstr("JointPtpMoveSkill"), HasSubstr(" halted"), HasSubstr(silent_url)));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <memory>
-#include <utility>
+#include <future>
+#include <string>
 #include <vector>
 
 #include "metier/skill_client/skill_handle.hpp"
@@ -17,12 +17,6 @@ struct HaltOptions {
     ServerChoice servers;
     std::string skill;
     double timeout = 20.0;
-};
-
-/// Skills of one server that have taken their Halt.
-struct Halting {
-    std::unique_ptr<opcua::Client> client;
-    std::vector<SkillAddress> skills{};
 };
 
 void tell(const SkillAddress& skill, std::string_view what) {
@@ -40,36 +34,6 @@ Result<bool> callHalt(opcua::Client& client, const SkillAddress& skill) {
         return fail(called.error());
     }
     return called.has_value();
-}
-
-/// Calls Halt of the skills of one server, waiting for none of them.
-/// \param outcome the last error, if there is any: one refusal does not keep the others from being
-///                halted
-Halting haltServer(const std::string& url, const std::string& name, Result<void>& outcome) {
-    auto client = connectTo(url);
-    if (!client) {
-        outcome = fail(client.error());
-        return {};
-    }
-    Halting halting{std::move(*client)};
-    const auto skills = skill_client::findSkills(*halting.client);
-    if (!skills) {
-        outcome = fail(skills.error());
-        return halting;
-    }
-    for (const auto& skill : *skills) {
-        if (!name.empty() && skill.name != name) {
-            continue;
-        }
-        if (const auto called = callHalt(*halting.client, skill); !called) {
-            outcome = fail(called.error());
-        } else if (*called) {
-            halting.skills.push_back(skill);
-        } else {
-            tell(skill, "is halted");
-        }
-    }
-    return halting;
 }
 
 /// Waits for standstill: until then the skill is Running, its sub-state Stopping.
@@ -93,6 +57,54 @@ Result<void> awaitHalted(opcua::Client& client, const SkillAddress& address,
                 fmt::format("{}: still halting after {} s", address.name, options.timeout));
 }
 
+/// Halts the skills of one server, all of them before it waits for any.
+class Halting {
+public:
+    Halting(const HaltOptions& options, SteadyTime deadline)
+        : options_(options), deadline_(deadline) {}
+
+    Exit halt(const std::string& url) {
+        const auto client = connectTo(url);
+        if (!client) {
+            return report(client.error());
+        }
+        const auto skills = skill_client::findSkills(**client);
+        if (!skills) {
+            return report(skills.error());
+        }
+        for (const auto& skill : *skills) {
+            if (options_.skill.empty() || skill.name == options_.skill) {
+                call(**client, skill);
+            }
+        }
+        for (const auto& skill : called_) {
+            note(awaitHalted(**client, skill, options_, deadline_));
+        }
+        return exit_;
+    }
+
+private:
+    void call(opcua::Client& client, const SkillAddress& skill) {
+        const auto called = callHalt(client, skill);
+        if (!called) {
+            note(fail(called.error()));
+        } else if (*called) {
+            called_.push_back(skill);
+        } else {
+            tell(skill, "is halted");
+        }
+    }
+
+    /// One refusal does not keep the others from being halted.
+    void note(const Result<void>& outcome) { exit_ = outcome ? exit_ : report(outcome.error()); }
+
+    const HaltOptions& options_;
+    const SteadyTime deadline_;
+    std::vector<SkillAddress> called_;
+    Exit exit_ = Exit::success;
+};
+
+/// All servers at the same time: one that does not answer delays none.
 Exit runHalt(const HaltOptions& options) {
     const auto urls = addressesOf(options.servers);
     if (!urls) {
@@ -101,18 +113,16 @@ Exit runHalt(const HaltOptions& options) {
     const auto deadline =
         std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                std::chrono::duration<double>(options.timeout));
-    auto exit = Exit::success;
-    std::vector<Halting> servers;
+    std::vector<std::future<Exit>> servers;
     for (const auto& url : *urls) {
-        Result<void> outcome;
-        servers.push_back(haltServer(url, options.skill, outcome));
-        exit = outcome ? exit : report(outcome.error());
+        servers.push_back(std::async(std::launch::async, [&options, &url, deadline] {
+            return Halting(options, deadline).halt(url);
+        }));
     }
-    for (const auto& server : servers) {
-        for (const auto& skill : server.skills) {
-            const auto halted = awaitHalted(*server.client, skill, options, deadline);
-            exit = halted ? exit : report(halted.error());
-        }
+    auto exit = Exit::success;
+    for (auto& server : servers) {
+        const auto ended = server.get();
+        exit = ended == Exit::success ? exit : ended;
     }
     return exit;
 }
