@@ -8,6 +8,7 @@ namespace metier::virtual_iiwa {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::max();
+constexpr double kNoLimit = 1e6;
 
 /// So many arguments of an impedance command, from `first`, must be from `lower` to `upper`.
 struct ImpedanceRange {
@@ -48,16 +49,20 @@ constexpr std::array kImpedanceRanges{
 
 }  // namespace
 
-bool impedancePossible(int code, const std::array<double, 7>& arguments) noexcept {
+std::array<double, 7> impedanceAfter(int code, const std::array<double, 7>& before,
+                                     const std::array<double, 7>& arguments) noexcept {
+    auto after = arguments;
     for (const auto& range : kImpedanceRanges) {
-        for (std::size_t i = 0; range.command == code && i < range.count; ++i) {
-            const double value = arguments[range.first + i];
-            if (!(value >= range.lower && value <= range.upper)) {
-                return false;
+        for (std::size_t i = range.first; range.command == code && i < range.first + range.count;
+             ++i) {
+            if (code >= 224 && code <= 226 && arguments[i] < 0.0) {
+                after[i] = kNoLimit;
+            } else if (!(arguments[i] >= range.lower && arguments[i] <= range.upper)) {
+                after[i] = before[i];
             }
         }
     }
-    return true;
+    return after;
 }
 
 }  // namespace metier::virtual_iiwa

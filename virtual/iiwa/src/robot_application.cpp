@@ -40,6 +40,11 @@ bool isWhole(double value) {
     return within(value, -1e6, 1e6) && value == std::trunc(value);
 }
 
+/// As the application's language rounds; 0 if it is no number.
+int rounded(double value) {
+    return within(value, -1e6, 1e6) ? static_cast<int>(std::floor(value + 0.5)) : 0;
+}
+
 /// Commands that stop what moves before anything else.
 bool stopsFirst(int code) {
     return code == 101 || code == 211 || code == 212 || within(code, 301, 305) || code == 400;
@@ -56,11 +61,12 @@ RobotApplication::Answer RobotApplication::execute(const Command& command) {
     status_ = false;
     waiting_ = false;
     asked_to_move_ = false;
-    const int code = isWhole(command.code) ? static_cast<int>(command.code) : 0;
+    const int code = rounded(command.code);
     if (stopsFirst(code)) {
         cabinet_.arm.brake(Arm::End::cancelled);
+        fired_ = false;  // the motion that it was about is forgotten
     }
-    if (code == 212 && !within(command.arguments[0], 0.0, 6.0)) {
+    if (code == 212 && !within(rounded(command.arguments[0]), 0, 6)) {
         return Answer::application_ends;
     }
     status_ = dispatch(code, command.arguments);
@@ -94,7 +100,8 @@ bool RobotApplication::dispatch(int code, const Arguments& arguments) {
         return setLimit(code, arguments[0]);
     }
     if (within(code, 221, 243)) {
-        return setImpedance(code, arguments);
+        setImpedance(code, arguments);
+        return true;
     }
     // An unknown command is refused without an error.
     return within(code, 301, 305) && setMode(code, arguments[0]);
@@ -216,37 +223,43 @@ bool RobotApplication::setLimit(int code, double value) {
 }
 
 bool RobotApplication::setForceCondition(const Arguments& arguments) {
+    bool taken = true;
     for (std::size_t axis = 0; axis < force_thresholds_.size(); ++axis) {
-        if (arguments[axis] < 0.0 || arguments[axis + 3] <= 0.0) {
-            return refuse(ErrorCode::value);
+        const double threshold = arguments[axis];
+        const double tolerance = arguments[axis + 3];
+        force_thresholds_[axis].reset();
+        if (std::isnan(threshold) || std::isnan(tolerance)) {
+            continue;
+        }
+        if (threshold < 0.0 || tolerance <= 0.0) {
+            taken = refuse(ErrorCode::value);
+        } else {
+            force_thresholds_[axis] = threshold;
         }
     }
-    for (std::size_t axis = 0; axis < force_thresholds_.size(); ++axis) {
-        const bool wanted = !std::isnan(arguments[axis]) && !std::isnan(arguments[axis + 3]);
-        force_thresholds_[axis] = wanted ? std::optional(arguments[axis]) : std::nullopt;
-    }
-    return true;
+    return taken;
 }
 
 bool RobotApplication::setTorqueCondition(const Arguments& arguments) {
-    const auto axis = static_cast<std::size_t>(arguments[0]);
+    auto& limits = torque_limits_.at(static_cast<std::size_t>(rounded(arguments[0])));
     const double lower = arguments[1];
     const double upper = arguments[2];
+    limits.reset();
     if (std::isnan(lower) || std::isnan(upper)) {
-        torque_limits_.at(axis).reset();
         return true;
     }
     if (!(lower < upper)) {
         return refuse(ErrorCode::value);
     }
-    torque_limits_.at(axis) = Interval{lower, upper};
+    limits = Interval{lower, upper};
     return true;
 }
 
 bool RobotApplication::setMode(int code, double value) {
     const auto* const choice = std::ranges::find(kChoices, code, &Choice::command);
     if (!isWhole(value) || !within(value, choice->first, choice->last)) {
-        return refuse(ErrorCode::value);
+        // Of a way to tell the state that it does not know the application says nothing more.
+        return code != 301 && refuse(ErrorCode::value);
     }
     const int chosen = static_cast<int>(value);
     switch (code) {
@@ -268,12 +281,9 @@ bool RobotApplication::setMode(int code, double value) {
     return true;
 }
 
-bool RobotApplication::setImpedance(int code, const Arguments& arguments) {
-    if (!impedancePossible(code, arguments)) {
-        return refuse(ErrorCode::impedance);
-    }
-    impedance_[code] = arguments;
-    return true;
+void RobotApplication::setImpedance(int code, const Arguments& arguments) {
+    auto& setting = impedance_[code];
+    setting = impedanceAfter(code, setting, arguments);
 }
 
 bool RobotApplication::attachTool(double index) {

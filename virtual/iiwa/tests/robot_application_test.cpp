@@ -157,14 +157,28 @@ TEST_F(ApplicationTest, EndsOnATorqueConditionOfAJointThatIsNone) {
     EXPECT_EQ(send(212, {kNaN, -1, 1}), Answer::application_ends);
 }
 
-TEST_F(ApplicationTest, StoresImpedanceSettingsThatArePossible) {
+TEST_F(ApplicationTest, RoundsCodesAndAxes) {
+    EXPECT_EQ(status(201.4, {0.5}), 1.0);
+    EXPECT_EQ(send(212, {6.4, -1, 1}), Answer::at_once);
+    EXPECT_EQ(send(212, {6.5, -1, 1}), Answer::application_ends);
+}
+
+TEST_F(ApplicationTest, SaysNothingOfAWayToTellTheStateThatItDoesNotKnow) {
+    EXPECT_EQ(status(301, {13}), 0.0);
+    EXPECT_EQ(error(), -10.0);
+}
+
+TEST_F(ApplicationTest, KeepsWhatWasSetOfAnImpedanceThatIsOutOfRange) {
     EXPECT_EQ(status(221, {2000, 2000, 2000, 200, 200, 200, 100}), 1.0);
     EXPECT_EQ(status(228, {1, 1, 1, 1, 1, 1, 0}), 1.0);
     EXPECT_EQ(status(241, {1, 5, 10, 500}), 1.0);
     EXPECT_EQ(application_.impedance().size(), 3U);
-    EXPECT_EQ(status(221, {5001, 0, 0, 0, 0, 0, 0}), 0.0);
-    EXPECT_EQ(status(222, {0.7, 0.7, 0.7, 0.7, 0.7, 0.7, 0.2}), 0.0);
-    EXPECT_EQ(error(), -15.0);
+    EXPECT_EQ(status(221, {5001, 1, 0, 0, 301, 0, 0}), 1.0);
+    EXPECT_THAT(application_.impedance().at(221), ::testing::ElementsAre(2000, 1, 0, 0, 200, 0, 0));
+    EXPECT_EQ(status(226, {-1, -1, 10, -1, -1, -1, -1}), 1.0);
+    EXPECT_THAT(application_.impedance().at(226),
+                ::testing::ElementsAre(1e6, 1e6, 10, 1e6, 1e6, 1e6, -1));
+    EXPECT_EQ(error(), -10.0);
 }
 
 TEST_F(ApplicationTest, FollowsSetPointsOnTheServoInterface) {
@@ -242,6 +256,36 @@ TEST_F(ApplicationTest, StopsAtAForceAndTellsSoUntilTheNextMotion) {
     EXPECT_EQ(element(state_index::kConditionFired), 0.0);
     untilStanding();
     EXPECT_NEAR(element(state_index::kJointPosition), 1.0, 1e-12);
+}
+
+TEST_F(ApplicationTest, ForgetsThatAConditionStoppedAMotionOnceItIsToldToStopMotions) {
+    for (const double code : {101.0, 211.0, 303.0}) {
+        EXPECT_EQ(status(211, {10, kNaN, kNaN, 5, 5, 5}), 1.0);
+        EXPECT_EQ(status(102, {1.0, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}), 1.0);
+        cabinet_.wrench.force = {11.0, 0.0, 0.0};
+        cycle();
+        EXPECT_EQ(element(state_index::kConditionFired), 1.0);
+        untilStanding();
+        EXPECT_EQ(status(code, {22, 22, 22, 1, 1, 1}), 1.0);
+        EXPECT_EQ(element(state_index::kConditionFired), 0.0) << code;
+        cabinet_.wrench = {};
+    }
+}
+
+TEST_F(ApplicationTest, SwitchesAConditionOffThatItThenRefuses) {
+    EXPECT_EQ(status(211, {10, 10, 10, 5, 5, 5}), 1.0);
+    EXPECT_EQ(status(211, {kNaN, -1, 20, -5, 5, 5}), 0.0);
+    EXPECT_EQ(error(), -11.0);
+    EXPECT_EQ(status(212, {0, -5, 5}), 1.0);
+    EXPECT_EQ(status(212, {0, 5, -5}), 0.0);
+    EXPECT_EQ(status(102, {1.0, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}), 1.0);
+    cabinet_.wrench.force = {15.0, 15.0, 15.0};
+    cycle();
+    EXPECT_EQ(element(state_index::kConditionFired), 0.0);
+    cabinet_.wrench.force = {15.0, 15.0, 21.0};
+    cycle();
+    EXPECT_EQ(element(state_index::kConditionFired), 1.0) << "the third axis was taken";
+    untilStanding();
 }
 
 TEST_F(ApplicationTest, StopsAtATorqueOfAnAxis) {

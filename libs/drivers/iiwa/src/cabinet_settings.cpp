@@ -46,4 +46,10 @@ void CabinetSettings::taken(const Command& command) noexcept {
     }
 }
 
+void CabinetSettings::refused(const Command& command) noexcept {
+    if (const auto* known = find(command.code)) {
+        known_[static_cast<std::size_t>(known - known_.data())] = known_[--count_];
+    }
+}
+
 }  // namespace metier::iiwa_driver

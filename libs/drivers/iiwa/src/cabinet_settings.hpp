@@ -38,6 +38,8 @@ public:
     void require(const Command& command, CommandList& list) const noexcept;
     /// The cabinet executed it.
     void taken(const Command& command) noexcept;
+    /// The cabinet refused it: what it has now is not known.
+    void refused(const Command& command) noexcept;
     /// Nothing is known any more.
     void forget() noexcept { count_ = 0; }
 

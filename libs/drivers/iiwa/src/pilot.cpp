@@ -212,6 +212,8 @@ void Pilot::takeChore(const Command& sent, const CabinetState& answer) noexcept 
     chores_.drop();
     if (answer.executed) {
         settings_.taken(sent);
+    } else {
+        settings_.refused(sent);
     }
 }
 

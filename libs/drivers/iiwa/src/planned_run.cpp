@@ -171,6 +171,7 @@ void PlannedRun::note(const CabinetState& answer) noexcept {
 bool PlannedRun::told(const Command& sent, const CabinetState& answer,
                       CabinetSettings& settings) noexcept {
     if (!answer.executed) {
+        settings.refused(sent);
         end_.command = sent;
         return overAs(answer.ready ? Cause::refused : Cause::not_ready);
     }

@@ -146,6 +146,7 @@ ServoRun::Status ServoRun::take(const Command& sent, const CabinetState& answer,
 ServoRun::Status ServoRun::enter(const Command& sent, const CabinetState& answer,
                                  CabinetSettings& settings) noexcept {
     if (!answer.executed) {
+        settings.refused(sent);
         refuse({Kind::refused, 0, 0.0, 0.0, sent});
         return Status::running;
     }

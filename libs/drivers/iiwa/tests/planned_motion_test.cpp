@@ -188,6 +188,19 @@ TEST_F(PlannedMoves, ARefusedCommandIsNamed) {
     EXPECT_EQ(bench.cabinet->codes().back(), 211) << "nothing moved";
 }
 
+TEST_F(PlannedMoves, AConditionIsToldAgainAfterTheCabinetRefusedAnother) {
+    auto watched = ArmBench::toJoints(0.2);
+    watched.until = device::ForceCondition{{std::nullopt, std::nullopt, 20.0}};
+    ASSERT_TRUE(run(watched));
+    bench.cabinet->change([](auto& behaviour) { behaviour.refused.insert(211); });
+    EXPECT_FALSE(run(ArmBench::toJoints(0.3)));
+    bench.cabinet->change([](auto& behaviour) { behaviour.refused.clear(); });
+    watched.target_joints[0] = 0.4;
+    const auto before = bench.cabinet->codes().size();
+    ASSERT_TRUE(run(watched));
+    EXPECT_THAT(codesSince(before), ElementsAre(211, 102)) << "a cabinet may have switched it off";
+}
+
 TEST_F(PlannedMoves, TheStickyErrorIsToldOnceForTheMotionThatMadeIt) {
     bench.cabinet->change([](auto& behaviour) {
         behaviour.error_of_next_move = -14;

@@ -60,7 +60,7 @@ private:
     bool setForceCondition(const std::array<double, 7>& arguments);
     bool setTorqueCondition(const std::array<double, 7>& arguments);
     bool setMode(int code, double value);
-    bool setImpedance(int code, const std::array<double, 7>& arguments);
+    void setImpedance(int code, const std::array<double, 7>& arguments);
     bool attachTool(double index);
     bool conditionHolds() const;
     MovingFrame frame() const;
@@ -70,7 +70,7 @@ private:
     MotionLimits limits_;
     std::array<std::optional<double>, 3> force_thresholds_;  // [N]
     std::array<std::optional<Interval>, 7> torque_limits_;   // [Nm]
-    std::map<int, std::array<double, 7>> impedance_;         // as they came
+    std::map<int, std::array<double, 7>> impedance_;         // by command
     geometry::Pose flange_from_tool_;
     bool servo_ = false;
     bool synchronous_ = false;
