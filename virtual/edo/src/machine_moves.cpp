@@ -95,8 +95,10 @@ void Machine::resume(const Movement& movement) {
         return;
     }
     say(FeedbackType::received);
-    move_phase_ = MovePhase::idle;
-    peers_.passMove(movement);
+    if (move_phase_ == MovePhase::pause) {
+        move_phase_ = MovePhase::idle;
+        peers_.passMove(movement);
+    }
 }
 
 void Machine::cancel() {
@@ -124,14 +126,22 @@ void Machine::onFeedback(Feedback feedback) {
         onExecuted(feedback);
         return;
     }
-    peers_.publishFeedback(feedback);
     if (feedback.type == FeedbackType::need_data) {
-        if (state_ == MachineState::move && move_phase_ == MovePhase::idle && !moves_.empty()) {
-            passNext();
-        }
+        onNeedData(feedback);
         return;
     }
+    peers_.publishFeedback(feedback);
     enter(MachineState::calibrated);
+}
+
+void Machine::onNeedData(Feedback feedback) {
+    if (state_ == MachineState::move && move_phase_ != MovePhase::idle) {
+        return;
+    }
+    peers_.publishFeedback(feedback);
+    if (state_ == MachineState::move && !moves_.empty()) {
+        passNext();
+    }
 }
 
 void Machine::onExecuted(Feedback feedback) {

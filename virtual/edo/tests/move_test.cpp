@@ -276,6 +276,60 @@ TEST(Move, QueuesFiveWhilePausedAndSaysThatItIsFull) {
     EXPECT_NEAR(rig.joint(0), 5.0, 1e-9);  // the sixth was dropped
 }
 
+TEST(Move, TakesAResumeOfNothingWithoutPassingItOn) {
+    Rig rig;
+    rig.command('R');
+    rig.runSeconds(1.0);
+    EXPECT_EQ(rig.state(), 3);
+    EXPECT_THAT(rig.feedback(), ElementsAre(kReceived));
+    rig.moveJoints({2});
+    rig.run(5);
+    rig.command('R');
+    EXPECT_TRUE(rig.runUntilState(2));
+    EXPECT_THAT(rig.feedback(), ElementsAre(kReceived, kReceived, kEnded));
+}
+
+/// The state machine alone: keeps what it says and what it passes on.
+class Peers final : public MachinePeers {
+public:
+    std::size_t loadConfiguration(std::size_t axes) override { return axes; }
+    JointBus& bus() override { return bus_; }
+    void passMove(const Movement& movement) override { passed.push_back(movement.command); }
+    void passJog(const Movement&) override {}
+    bool algorithmBusy() const override { return true; }
+    void publishFeedback(Feedback feedback) override { said.push_back(feedback.type); }
+    void publishBrakesCheck(std::int8_t, std::uint8_t) override {}
+    void onBraked() override {}
+
+    std::vector<int> passed;
+    std::vector<FeedbackType> said;
+
+private:
+    JointBus bus_{limitsOf(edoModel()), kMostAxes, AxisValues{}};
+};
+
+TEST(Move, IsNotAskedForTheNextPointWhilePausedOrCancelled) {
+    constexpr Feedback kNeedData{.type = FeedbackType::need_data,
+                                 .data = FeedbackData::next_wanted};
+    Movement move{.command = 'M', .type = 'J', .delay = kFly};
+    move.target.data_type = 'J';
+    for (const char command : {'P', 'C'}) {
+        Peers peers;
+        Machine machine(peers);
+        machine.makeReady(kMostAxes);
+        machine.onMove(move);
+        machine.onFeedback(kNeedData);
+        EXPECT_THAT(peers.said, ElementsAre(FeedbackType::received, FeedbackType::need_data));
+        machine.onMove(Movement{.command = static_cast<std::uint8_t>(command)});
+        machine.onMove(move);
+        peers.said.clear();
+        peers.passed.clear();
+        machine.onFeedback(kNeedData);
+        EXPECT_THAT(peers.said, IsEmpty()) << command;
+        EXPECT_THAT(peers.passed, IsEmpty()) << command;
+    }
+}
+
 TEST(Move, RunsOneAfterTheOther) {
     Rig rig;
     rig.moveJoints({5});

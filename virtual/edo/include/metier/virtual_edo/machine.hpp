@@ -99,6 +99,7 @@ private:
     void resume(const Movement& movement);
     void cancel();
     void onExecuted(Feedback feedback);
+    void onNeedData(Feedback feedback);
     void say(FeedbackType type, FeedbackData data = FeedbackData::none) {
         peers_.publishFeedback({type, data});
     }
