@@ -15,7 +15,7 @@ using namespace metier::virtual_edo;
 
 namespace {
 
-constexpr std::array<std::string_view, 12> kRequests{
+constexpr std::array<std::string_view, 13> kRequests{
     R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":77,"target":{%}}})",
     R"({"op":"publish","topic":"/algo_jnt_ctrl","msg":{"joints":[%]}})",
     R"({"op":"publish","topic":"/machine_state","msg":{%}})",
@@ -28,6 +28,7 @@ constexpr std::array<std::string_view, 12> kRequests{
     R"({"op":"advertise","topic":"/%","type":"std_msgs/Bool"})",
     R"({"op":"fragment","id":"f","data":"%","num":0,"total":1})",
     R"({"op":"set_level","level":"%"})",
+    R"({"op":"subscribe","topic":"/machine_state","compression":"%"})",
 };
 
 struct Release {

@@ -171,16 +171,19 @@ Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
     if (!throttle || !queue || !compression) {
         return fail(!throttle ? throttle.error() : (!queue ? queue.error() : compression.error()));
     }
-    if (!compression->empty() && *compression != "none") {
-        return fail(Errc::not_supported,
-                    fmt::format("compression {}: only none is there", *compression));
-    }
     if (auto established = establish(*topic, request); !established) {
         return established;
     }
     auto& wishes = client.subscriptions[*topic].wishes;
     if (wishes.size() < kMost) {
         wishes[requestId(request)] = {.throttle_ms = *throttle, .queue_length = *queue};
+    }
+    if (!compression->empty() && *compression != "none") {
+        // Clients tell a compressed message by its op: they understand one that is not.
+        sendStatus(client,
+                   fmt::format("subscribe: there is no compression {}: {} is sent without",
+                               *compression, *topic),
+                   request);
     }
     return {};
 }

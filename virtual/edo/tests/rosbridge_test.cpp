@@ -185,6 +185,20 @@ TEST(Bridge, KeepsTheNewestMessagesOfAThrottledQueue) {
     EXPECT_EQ(notes[2]["data"], 4);
 }
 
+TEST(Bridge, SendsWithoutCompressionAndSaysSo) {
+    for (const char* compression : {"png", "cbor", "cbor-raw"}) {
+        Rig rig;
+        ScriptedClient other(rig.bridge);
+        other.say({{"op", "subscribe"}, {"topic", "/machine_state"}, {"compression", compression}});
+        rig.run(20);
+        EXPECT_THAT(other.messages("/machine_state"), SizeIs(2));
+        EXPECT_THAT(other.errors(), ElementsAre(HasSubstr("/machine_state is sent without")));
+    }
+    Rig rig;
+    rig.client.say({{"op", "subscribe"}, {"topic", "/machine_state"}, {"compression", "none"}});
+    EXPECT_THAT(rig.client.errors(), IsEmpty());
+}
+
 TEST(Bridge, EndsASubscriptionById) {
     Rig rig;
     ScriptedClient other(rig.bridge);
@@ -235,7 +249,7 @@ TEST(Bridge, AnswersWhatIsNoRequest) {
          {"", "{", "[]", "5", "{}", R"({"op":7})", R"({"op":"dance"})", R"({"op":"publish"})",
           R"({"op":"subscribe","topic":5})", R"({"op":"call_service"})",
           R"({"op":"set_level","level":"loud"})",
-          R"({"op":"subscribe","topic":"/machine_state","compression":"png"})",
+          R"({"op":"subscribe","topic":"/machine_state","compression":5})",
           R"({"op":"subscribe","topic":"/machine_state","throttle_rate":"1"})"}) {
         rig.client.received.clear();
         rig.client.sayText(text);
