@@ -15,7 +15,7 @@ using namespace metier::virtual_edo;
 
 namespace {
 
-constexpr std::array<std::string_view, 13> kRequests{
+constexpr std::array<std::string_view, 15> kRequests{
     R"({"op":"publish","topic":"/bridge_move","msg":{"move_command":77,"target":{%}}})",
     R"({"op":"publish","topic":"/algo_jnt_ctrl","msg":{"joints":[%]}})",
     R"({"op":"publish","topic":"/machine_state","msg":{%}})",
@@ -29,6 +29,8 @@ constexpr std::array<std::string_view, 13> kRequests{
     R"({"op":"fragment","id":"f","data":"%","num":0,"total":1})",
     R"({"op":"set_level","level":"%"})",
     R"({"op":"subscribe","topic":"/machine_state","compression":"%"})",
+    R"({"op":"call_service","service":"/rosapi/%","args":["/machine_state"]})",
+    R"({"op":"call_service","service":"rosapi/topic_type","args":{"topic":"%"}})",
 };
 
 struct Release {

@@ -90,7 +90,7 @@ public:
 private:
     void powerOn() {
         robot_ = std::make_unique<Robot>(options_.robot, model_);
-        bridge_ = std::make_unique<Rosbridge>(types_, robot_->graph());
+        bridge_ = std::make_unique<Rosbridge>(types_, robot_->graph(), started_);
         bridge_->setTime(now_);
         robot_->connect([this](const std::string& topic,
                                const Json& message) { bridge_->publish(topic, message); },
@@ -121,6 +121,7 @@ private:
     Options options_;
     MessageTypes types_;
     SteadyTime now_{};  // the robot's own, which time_scale makes faster
+    UtcTime started_ = std::chrono::system_clock::now();
     std::unique_ptr<Robot> robot_;
     std::unique_ptr<Rosbridge> bridge_;
     std::unique_ptr<BridgePort> port_;

@@ -118,6 +118,22 @@ void addServices(Definitions& types) {
     types[edo("SystemCommandSrv.Response")] = {{"res", "string"}};
 }
 
+void addRosApi(Definitions& types) {
+    types["time"] = fieldsOf("uint32", {"secs", "nsecs"});
+    types["rosapi/Topics.Request"] = {};
+    types["rosapi/Topics.Response"] = fieldsOf("string[]", {"topics", "types"});
+    types["rosapi/TopicType.Request"] = {{"topic", "string"}};
+    types["rosapi/TopicType.Response"] = {{"type", "string"}};
+    types["rosapi/TopicsForType.Request"] = {{"type", "string"}};
+    types["rosapi/TopicsForType.Response"] = {{"topics", "string[]"}};
+    types["rosapi/Services.Request"] = {};
+    types["rosapi/Services.Response"] = {{"services", "string[]"}};
+    types["rosapi/ServiceType.Request"] = {{"service", "string"}};
+    types["rosapi/ServiceType.Response"] = {{"type", "string"}};
+    types["rosapi/GetTime.Request"] = {};
+    types["rosapi/GetTime.Response"] = {{"time", "time"}};
+}
+
 }  // namespace
 
 Definitions definitionsFor(const Software& software) {
@@ -126,6 +142,7 @@ Definitions definitionsFor(const Software& software) {
     addCommands(types, software);
     addStates(types, software);
     addServices(types);
+    addRosApi(types);
     return types;
 }
 

@@ -6,6 +6,7 @@
 
 #include "json_text.hpp"
 #include "request_fields.hpp"
+#include "ros_api.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -17,8 +18,12 @@ constexpr std::array<std::string_view, 4> kLevels{"none", "error", "warning", "i
 
 }  // namespace
 
-Rosbridge::Rosbridge(const MessageTypes& types, RosGraph graph)
-    : types_(types), graph_(std::move(graph)) {}
+Rosbridge::Rosbridge(const MessageTypes& types, RosGraph graph, UtcTime started)
+    : types_(types), graph_(std::move(graph)) {
+    serveRosApi(graph_, [this, started] {
+        return started + std::chrono::duration_cast<UtcTime::duration>(now_.time_since_epoch());
+    });
+}
 
 Rosbridge::ClientId Rosbridge::addClient(Send send) {
     clients_[++last_id_].send = std::move(send);
@@ -226,7 +231,8 @@ Result<void> Rosbridge::callService(Client& client, const Json& request) {
 }
 
 Result<Json> Rosbridge::call(const std::string& service, const Json& arguments) const {
-    const auto known = graph_.services.find(service);
+    // A name without slash begins at the root, as on the robot: newer roslib calls rosapi/topics.
+    const auto known = graph_.services.find(service.starts_with('/') ? service : '/' + service);
     if (known == graph_.services.end()) {
         return fail(Errc::not_found, fmt::format("Service {} does not exist", service));
     }

@@ -41,8 +41,13 @@ public:
     using Send = std::function<void(const std::string& text)>;
     using ClientId = std::uint64_t;
 
-    /// \param types outlives the bridge
-    Rosbridge(const MessageTypes& types, RosGraph graph);
+    /// Serves what the graph has, and /rosapi, by which clients look around in it.
+    ///
+    /// \param types   outlives the bridge
+    /// \param started the robot's date when the time that setTime() counts is zero
+    Rosbridge(const MessageTypes& types, RosGraph graph, UtcTime started = {});
+    Rosbridge(const Rosbridge&) = delete;
+    Rosbridge& operator=(const Rosbridge&) = delete;
 
     ClientId addClient(Send send);
     void removeClient(ClientId id);
