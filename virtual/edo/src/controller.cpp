@@ -33,7 +33,8 @@ Result<Options> readOptions(const ControllerRequest& request) {
         .robot = {.software = software.value_or(Software{}),
                   .axes = static_cast<std::size_t>(axes),
                   .ready = settings.flagOr("ready", true),
-                  .collision_force = settings.numberOr("collision_force", 50.0, 1.0, 1000.0)},
+                  .collision_force = settings.numberOr("collision_force", 50.0, 1.0, 1000.0),
+                  .kinematics_services = settings.flagOr("kinematics_services", false)},
         .port = static_cast<std::uint16_t>(settings.numberOr("port", kDefaultPort, 0, 65535)),
         .time_scale = settings.numberOr("time_scale", 1.0, 0.01, 100.0)};
     if (auto read = settings.finish(); !read) {

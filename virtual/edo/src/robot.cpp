@@ -23,6 +23,7 @@ AxisValues startOf(const RobotOptions& options, const motion::RobotModel& model)
 
 Robot::Robot(RobotOptions options, const motion::RobotModel& model)
     : options_(std::move(options)),
+      topics_(topicsOf(options_.software)),
       bus_(limitsOf(model), options_.axes, startOf(options_, model)),
       node_(options_.software, model, [this](Feedback feedback) { machine_.onFeedback(feedback); }),
       machine_(*this) {
@@ -58,7 +59,7 @@ WorldReport Robot::step(const WorldEffect& effect) {
     machine_.step(report, node_.collision());
     if (report) {
         if (bus_.justCalibrated()) {
-            ++calibrations_;
+            countCalibration();
             node_.rebase(*report);
         }
         node_.onJointState(*report);
@@ -140,16 +141,26 @@ Json Robot::jointState(const JointReport& joint) const {
     return state;
 }
 
+Json Robot::jointStates(const BusReport& report) const {
+    Json joints = Json::array();
+    for (const auto& joint : report.joints) {
+        joints.push_back(jointState(joint));
+    }
+    return Json::object({{"joints_mask", report.mask}, {"joints", joints}});
+}
+
 void Robot::publishJointStates(const BusReport& report) {
     if (wants("/usb_jnt_state")) {
-        Json joints = Json::array();
-        for (const auto& joint : report.joints) {
-            joints.push_back(jointState(joint));
-        }
-        send("/usb_jnt_state", {{"joints_mask", report.mask}, {"joints", joints}});
+        send("/usb_jnt_state", jointStates(report));
     }
     // Forwarded by the state machine, which knows the joints only once it is configured.
-    if (machine_.axes() > 0 && report.joints.size() == machine_.axes() && wants("/app_jnt_state")) {
+    if (machine_.axes() == 0 || report.joints.size() != machine_.axes()) {
+        return;
+    }
+    if (wants("/machine_bridge_jnt_state")) {
+        send("/machine_bridge_jnt_state", jointStates(report));
+    }
+    if (wants("/app_jnt_state")) {
         Json joints = Json::array();
         for (const auto& joint : report.joints) {
             joints.push_back({{"position", finiteOrNull(joint.position)},

@@ -1,39 +1,47 @@
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "metier/virtual_edo/robot.hpp"
 
 namespace metier::virtual_edo {
 namespace {
 
-struct Named {
+/// A topic and the releases that have it. They compare as text: each of their numbers is a digit.
+struct Topic {
     const char* name;
     const char* type;
+    std::string_view from = "2.4.0";
+    std::string_view before = "9";
 };
 
+// Comau/eDO_core: SubscribePublish.cpp, StateManager.cpp, AlgorithmManager.cpp, TabletCheck.cpp of
+// 906c2f4 (2.4.0), 8b99eb3 (3.0.1) and 286074d (3.1.2).
 constexpr std::array kTopics{
     // What clients write.
-    Named{"/bridge_init", "edo_core_msgs/JointInit"},
-    Named{"/bridge_jnt_reset", "edo_core_msgs/JointReset"},
-    Named{"/bridge_jnt_calib", "edo_core_msgs/JointCalibration"},
-    Named{"/bridge_jnt_config", "edo_core_msgs/JointConfigurationArray"},
-    Named{"/bridge_move", "edo_core_msgs/MovementCommand"},
-    Named{"/bridge_jog", "edo_core_msgs/MovementCommand"},
-    Named{"/algo_jnt_ctrl", "edo_core_msgs/JointControlArray"},
-    Named{"/tablet_HB_start", "std_msgs/Bool"},
-    Named{"/tablet_HB", "std_msgs/Int8"},
-    Named{"/brakes_check_start", "std_msgs/Bool"},
-    Named{"/tool_configuration", "std_msgs/Int8"},
-    Named{"/algo_coll_thr", "edo_core_msgs/CollisionThreshold"},
+    Topic{"/bridge_init", "edo_core_msgs/JointInit"},
+    Topic{"/bridge_jnt_reset", "edo_core_msgs/JointReset"},
+    Topic{"/bridge_jnt_calib", "edo_core_msgs/JointCalibration"},
+    Topic{"/bridge_jnt_config", "edo_core_msgs/JointConfigurationArray"},
+    Topic{"/bridge_move", "edo_core_msgs/MovementCommand"},
+    Topic{"/bridge_jog", "edo_core_msgs/MovementCommand"},
+    Topic{"/algo_jnt_ctrl", "edo_core_msgs/JointControlArray"},
+    Topic{"/tablet_HB_start", "std_msgs/Bool", "3.0.1"},
+    Topic{"/tablet_HB", "std_msgs/Int8", "3.0.1"},
+    Topic{"/brakes_check_start", "std_msgs/Bool", "3.0.1"},
+    Topic{"/algo_coll_thr", "edo_core_msgs/CollisionThreshold", "3.0.1"},
+    Topic{"/tool_configuration", "std_msgs/Int8", "3.1.2"},
+    Topic{"/external_control", "edo_core_msgs/JointValue", "3.1.2"},
     // What the robot writes.
-    Named{"/machine_state", "edo_core_msgs/MachineState"},
-    Named{"/usb_jnt_state", "edo_core_msgs/JointStateArray"},
-    Named{"/app_jnt_state", "edo_core_msgs/AppStateArray"},
-    Named{"/machine_movement_ack", "edo_core_msgs/MovementFeedback"},
-    Named{"/cartesian_pose", "edo_core_msgs/CartesianPose"},
-    Named{"/algorithm_state", "std_msgs/Int8"},
-    Named{"/brakes_check_ack", "edo_core_msgs/BrakesCheckAck"},
-    Named{"/machine_jnt_version", "std_msgs/UInt8"},
+    Topic{"/machine_state", "edo_core_msgs/MachineState"},
+    Topic{"/usb_jnt_state", "edo_core_msgs/JointStateArray"},
+    Topic{"/machine_bridge_jnt_state", "edo_core_msgs/JointStateArray", "2.4.0", "3.0.1"},
+    Topic{"/app_jnt_state", "edo_core_msgs/AppStateArray", "3.0.1"},
+    Topic{"/machine_movement_ack", "edo_core_msgs/MovementFeedback"},
+    Topic{"/cartesian_pose", "edo_core_msgs/CartesianPose"},
+    Topic{"/algorithm_state", "std_msgs/Int8"},
+    Topic{"/brakes_check_ack", "edo_core_msgs/BrakesCheckAck", "3.0.1"},
+    Topic{"/machine_jnt_version", "std_msgs/UInt8"},
 };
 
 AxisValues axisValues(const Json& list) {
@@ -49,46 +57,87 @@ std::uint64_t maskIn(const Json& message) {
     return message["joints_mask"].get<std::uint64_t>();
 }
 
+template <typename Call>
+void serve(RosGraph& graph, const char* name, const char* type, Call call) {
+    graph.services.emplace(name, RosGraph::Service{std::string("edo_core_msgs/") + type, call});
+}
+
 }  // namespace
+
+Robot::Topics Robot::topicsOf(const Software& software) {
+    Topics topics;
+    for (const auto& topic : kTopics) {
+        if (software.version >= topic.from && software.version < topic.before) {
+            topics.emplace(topic.name, topic.type);
+        }
+    }
+    return topics;
+}
 
 RosGraph Robot::graph() {
     RosGraph graph;
-    for (const auto& topic : kTopics) {
-        graph.topics.emplace(topic.name, topic.type);
+    graph.topics = topics_;
+    graph.on_message = [this](const std::string& topic, const Json& message) {
+        // Under a name that this release does not have clients may agree on any type.
+        if (topics_.contains(topic)) {
+            onMessage(topic, message);
+        }
+    };
+    serveAlways(graph);
+    if (options_.kinematics_services) {
+        serveKinematics(graph);
     }
     if (options_.software.external_control) {
-        graph.topics.emplace("/external_control", "edo_core_msgs/JointValue");
+        serveToolAndCounter(graph);
     }
-    graph.on_message = [this](const std::string& topic, const Json& message) {
-        onMessage(topic, message);
-    };
-    const auto serve = [&](const char* name, const char* type, auto call) {
-        graph.services.emplace(name, RosGraph::Service{std::string("edo_core_msgs/") + type, call});
-    };
-    serve("/algo_jnt_number_srv", "JointsNumber", [this](const Json&) { return jointsNumber(); });
-    serve("/algo_control_switch_srv", "ControlSwitch", [this](const Json& arguments) {
+    return graph;
+}
+
+void Robot::serveAlways(RosGraph& graph) {
+    serve(graph, "/algo_jnt_number_srv", "JointsNumber",
+          [this](const Json&) { return jointsNumber(); });
+    serve(graph, "/algo_control_switch_srv", "ControlSwitch", [this](const Json& arguments) {
         return Result<Json>(
             Json::object({{"result", node_.switchControl(arguments["mode"].get<std::uint8_t>())}}));
     });
-    serve("/algo_direct_kinematics_srv", "DirectKinematics",
-          [this](const Json& arguments) { return directKinematics(arguments); });
-    serve("/algo_inverse_kinematics_srv", "InverseKinematics",
-          [this](const Json& arguments) { return inverseKinematics(arguments); });
-    serve("/algo_load_configuration_file_srv", "LoadConfigurationFile", [this](const Json&) {
+    serve(graph, "/algo_load_configuration_file_srv", "LoadConfigurationFile", [this](const Json&) {
         // Loads the configuration that was chosen last, once.
         const bool loaded = node_.axes() == 0 && node_.load(options_.axes) > 0;
         return Result<Json>(Json::object({{"result", loaded ? 1 : 0}}));
     });
-    serve("/algo_tool_configuration_srv", "ToolConfiguration", [this](const Json&) {
+    serve(graph, "/machine_bridge_sw_version_srv", "SoftwareVersion",
+          [this](const Json&) { return softwareVersions(); });
+}
+
+void Robot::serveKinematics(RosGraph& graph) {
+    serve(graph, "/algo_direct_kinematics_srv", "DirectKinematics",
+          [this](const Json& arguments) { return directKinematics(arguments); });
+    serve(graph, "/algo_inverse_kinematics_srv", "InverseKinematics",
+          [this](const Json& arguments) { return inverseKinematics(arguments); });
+}
+
+void Robot::serveToolAndCounter(RosGraph& graph) {
+    serve(graph, "/algo_tool_configuration_srv", "ToolConfiguration", [this](const Json&) {
         return Result<Json>(Json::object({{"tool_id", tool()}}));
     });
-    serve("/machine_bridge_sw_version_srv", "SoftwareVersion",
-          [this](const Json&) { return softwareVersions(); });
-    serve("/calibration_counter_srv", "CalibCounter", [this](const Json& arguments) {
-        calibrations_ += arguments["increment"].get<bool>() ? 1 : 0;
+    // CalibCounter.cpp: the one ignores `increment`, the other does not tell the count.
+    serve(graph, "/calibration_counter_srv", "CalibCounter", [this](const Json&) {
         return Result<Json>(Json::object({{"cnt", calibrations_}}));
     });
-    return graph;
+    serve(graph, "/increment_calib_counter_srv", "CalibCounter", [this](const Json& arguments) {
+        constexpr std::uint64_t kCountWithoutIncrement = 2;
+        if (arguments["increment"].get<bool>()) {
+            countCalibration();
+        } else {
+            calibrations_ = kCountWithoutIncrement;
+        }
+        return Result<Json>(Json::object());
+    });
+}
+
+void Robot::countCalibration() {
+    constexpr std::uint64_t kCountsUpTo = 1'000'000;
+    calibrations_ = (calibrations_ + 1) % kCountsUpTo;
 }
 
 bool Robot::isCommand(const std::string& topic) const {

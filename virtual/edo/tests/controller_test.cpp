@@ -269,6 +269,19 @@ TEST(Controller, ReportsFlangeAndJawsToTheWorld) {
     EXPECT_NEAR(report.jaw_width.value(), 0.0, 1e-9);
 }
 
+TEST(Controller, ServesKinematicsOnlyIfItIsSetTo) {
+    for (const bool wanted : {false, true}) {
+        Controlled edo({{"kinematics_services", wanted}});
+        SocketClient client(edo.port);
+        client.say({{"op", "call_service"}, {"service", "/algo_direct_kinematics_srv"}});
+        Json answer = client.next();
+        while (!answer.is_null() && answer["op"] != "service_response") {
+            answer = client.next();
+        }
+        EXPECT_EQ(answer["result"], wanted);
+    }
+}
+
 TEST(Controller, RefusesSettingsThatAreWrong) {
     asio::io_context context;
     EmptyWorld world;

@@ -13,7 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
 using testing::IsSupersetOf;
+using testing::Not;
 
 using Names = std::vector<std::string>;
 
@@ -25,8 +28,92 @@ Names servicesOf(Rig& rig) {
     return rig.client.call("/rosapi/services")["services"].get<Names>();
 }
 
+bool has(const Names& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 Json advertisement(const std::string& topic, const std::string& type) {
     return {{"op", "advertise"}, {"topic", topic}, {"type", type}};
+}
+
+TEST(Topics, AreThoseOfTheRelease) {
+    const Names later{"/app_jnt_state",   "/algo_coll_thr",      "/tablet_HB",
+                      "/tablet_HB_start", "/brakes_check_start", "/brakes_check_ack"};
+    const Names newest{"/external_control", "/tool_configuration"};
+    for (const std::string release : {"2.4.0", "3.0.1", "3.1.2", "3.2.0"}) {
+        Rig rig({.software = release});
+        const auto topics = topicsOf(rig);
+        EXPECT_THAT(topics, IsSupersetOf({"/bridge_init", "/bridge_jnt_reset", "/bridge_move",
+                                          "/machine_state", "/usb_jnt_state", "/algorithm_state",
+                                          "/machine_movement_ack", "/algo_jnt_ctrl"}));
+        EXPECT_EQ(has(topics, "/machine_bridge_jnt_state"), release == "2.4.0");
+        for (const auto& topic : later) {
+            EXPECT_EQ(has(topics, topic), release >= "3.0.1") << release << topic;
+        }
+        for (const auto& topic : newest) {
+            EXPECT_EQ(has(topics, topic), release >= "3.1.2") << release << topic;
+        }
+    }
+}
+
+TEST(Topics, CarryTheJointStatesOnUnderTheNameOfTheRelease) {
+    Rig old({.software = "2.4.0"});
+    old.client.subscribe("/machine_bridge_jnt_state");
+    old.run(3);
+    EXPECT_EQ(old.client.messages("/machine_bridge_jnt_state"),
+              old.client.messages("/usb_jnt_state"));
+    EXPECT_EQ(old.client.messages("/usb_jnt_state").size(), 3U);
+
+    Rig later({.software = "3.0.1"});
+    later.client.subscribe("/app_jnt_state");
+    later.run(3);
+    EXPECT_EQ(later.client.messages("/app_jnt_state").size(), 3U);
+    EXPECT_NEAR(later.client.last("/app_jnt_state")["joints"][2]["position"].get<double>(), 90.0,
+                1e-9);
+}
+
+TEST(Topics, AreLeftToTheClientsWhereTheReleaseHasNone) {
+    Rig rig({.software = "2.4.0"});
+    rig.client.say(advertisement("/tablet_HB_start", "std_msgs/String"));
+    rig.client.say(advertisement("/external_control", "std_msgs/Bool"));
+    rig.client.say(advertisement("/app_jnt_state", "std_msgs/Int8"));
+    rig.client.subscribe("/app_jnt_state");
+    rig.client.publish("/tablet_HB_start", {{"data", "true"}});
+    rig.client.publish("/external_control", {{"data", true}});
+    rig.client.publish("/app_jnt_state", {{"data", 7}});
+    rig.runSeconds(3.0);
+    EXPECT_THAT(rig.client.errors(), IsEmpty());
+    EXPECT_EQ(rig.state(), 2);
+    EXPECT_THAT(rig.client.messages("/app_jnt_state"), ElementsAre(Json::object({{"data", 7}})));
+}
+
+TEST(Services, AreThoseOfTheRelease) {
+    const Names newest{"/algo_tool_configuration_srv", "/calibration_counter_srv",
+                       "/increment_calib_counter_srv"};
+    for (const std::string release : {"2.4.0", "3.0.1", "3.1.2", "3.2.0"}) {
+        Rig rig({.software = release});
+        const auto services = servicesOf(rig);
+        EXPECT_THAT(services, IsSupersetOf({"/algo_jnt_number_srv", "/algo_control_switch_srv",
+                                            "/algo_load_configuration_file_srv",
+                                            "/machine_bridge_sw_version_srv"}));
+        EXPECT_THAT(services, Not(Contains("/algo_direct_kinematics_srv")));
+        EXPECT_THAT(services, Not(Contains("/algo_inverse_kinematics_srv")));
+        for (const auto& service : newest) {
+            EXPECT_EQ(has(services, service), release >= "3.1.2") << release << service;
+        }
+    }
+}
+
+TEST(Services, CountCalibrationsByTheOneAndTellThemByTheOther) {
+    Rig rig;
+    const auto count = [&](const Json& arguments = Json::object()) {
+        return rig.client.call("/calibration_counter_srv", arguments)["cnt"];
+    };
+    EXPECT_EQ(count({{"increment", true}}), 0);
+    EXPECT_EQ(rig.client.call("/increment_calib_counter_srv", {{"increment", true}})["cnt"], 0);
+    EXPECT_EQ(count(), 1);
+    rig.client.call("/increment_calib_counter_srv", {{"increment", false}});
+    EXPECT_EQ(count(), 2);
 }
 
 TEST(RosApi, TellsTopicsAndTheirTypes) {

@@ -78,6 +78,7 @@ struct RigOptions {
     std::string software = "3.2.0";
     bool ready = true;
     std::size_t axes = kMostAxes;
+    bool kinematics_services = false;
 };
 
 /// A robot behind its bridge, whose time is moved by hand.
@@ -86,7 +87,11 @@ public:
     explicit Rig(const RigOptions& options = {})
         : software(Software::find(options.software).value()),
           types(software),
-          robot({.software = software, .axes = options.axes, .ready = options.ready}, edoModel()),
+          robot({.software = software,
+                 .axes = options.axes,
+                 .ready = options.ready,
+                 .kinematics_services = options.kinematics_services},
+                edoModel()),
           bridge(types, robot.graph()),
           client(bridge) {
         robot.connect([this](const std::string& topic,

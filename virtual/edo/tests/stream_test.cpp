@@ -253,8 +253,8 @@ TEST(Services, TellTheJoints) {
     EXPECT_EQ(answer["joints_aux_mask"], 64);
 }
 
-TEST(Services, ComputeKinematics) {
-    Rig rig;
+TEST(Services, ComputeKinematicsWhenAsked) {
+    Rig rig({.kinematics_services = true});
     const auto pose = rig.client.call(
         "/algo_direct_kinematics_srv",
         Json::object({{"positions", Json::object({{"positions", {0, 0, 90, 0, 0, 0}}})}}));

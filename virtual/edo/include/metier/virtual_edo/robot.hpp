@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct RobotOptions {
     /// INIT, at zero, uncalibrated.
     bool ready = true;
     double collision_force = 50.0;  ///< on the flange [N], from which on it is a collision
+    /// Whether it computes kinematics for clients, which no release of the maker does.
+    bool kinematics_services = false;
 };
 
 /// The e.DO behind the bridge: its nodes, topics and services, in cycles of 10 ms.
@@ -54,6 +57,15 @@ public:
     motion::JointVector jointPosition() const;
 
 private:
+    using Topics = std::map<std::string, std::string, std::less<>>;
+
+    /// The robot's own topics in one release, name to type.
+    static Topics topicsOf(const Software& software);
+    void serveAlways(RosGraph& graph);
+    void serveKinematics(RosGraph& graph);
+    void serveToolAndCounter(RosGraph& graph);
+    void countCalibration();
+
     void publishJointStates(const BusReport& report);
     void publishControl();
     bool nodeCommands() const;
@@ -61,8 +73,11 @@ private:
     void publishPose();
     void sayMode();
     void send(const std::string& topic, const Json& message);
-    bool wants(std::string_view topic) const { return wanted_ && wanted_(topic); }
+    bool wants(std::string_view topic) const {
+        return topics_.contains(topic) && wanted_ && wanted_(topic);
+    }
     Json jointState(const JointReport& joint) const;
+    Json jointStates(const BusReport& report) const;
 
     void onMessage(const std::string& topic, const Json& message);
     void onSetPoints(const Json& message);
@@ -90,6 +105,7 @@ private:
     void onBraked() override { node_.onBraked(); }
 
     RobotOptions options_;
+    Topics topics_;
     JointBus bus_;
     TrajectoryNode node_;
     Machine machine_;

@@ -15,7 +15,7 @@ struct Software {
     std::string version;  ///< as "3.2.0"
     /// From 3.1.2 on: set-points come by /external_control, mode 0 gives control back, the node
     /// goes on publishing while it is switched off, MovementCommand has a payload, commandFlag 16
-    /// bits.
+    /// bits, and there are services for the tool and for the count of calibrations.
     bool external_control = false;
     /// From 3.0.1 on: JointState has R_jnt, JointControl has R_rasp.
     bool residuals = false;
