@@ -18,8 +18,12 @@ void CycleTimer::wait() {
         if (error) {
             return;
         }
-        time_base_.begin(std::chrono::steady_clock::now());
+        const auto due = time_base_.begin(std::chrono::steady_clock::now());
         cycle_();
+        if (next_period_) {
+            time_base_ = virtual_robots::TimeBase(due + *next_period_, *next_period_);
+            next_period_.reset();
+        }
         wait();
     });
 }

@@ -39,5 +39,20 @@ TEST(CycleTimer, CatchesUpOnWhatALongCallDelayed) {
     EXPECT_EQ(calls, 20) << "the 19 calls after the long one were due already";
 }
 
+TEST(CycleTimer, TakesAnotherPeriod) {
+    asio::io_context context;
+    int calls = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    CycleTimer timer(context, 1ms, [&] {
+        if (++calls == 10) {
+            context.stop();
+        }
+    });
+    timer.setPeriod(20ms);
+    context.run_for(10s);
+    EXPECT_EQ(calls, 10);
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, 181ms);
+}
+
 }  // namespace
 }  // namespace metier::virtual_controller

@@ -4,6 +4,7 @@
 #include <asio/steady_timer.hpp>
 #include <chrono>
 #include <functional>
+#include <optional>
 
 #include "metier/joint_simulator/time_base.hpp"
 
@@ -18,12 +19,16 @@ public:
     CycleTimer(const CycleTimer&) = delete;
     CycleTimer& operator=(const CycleTimer&) = delete;
 
+    /// From the next call on. The grid begins anew there.
+    void setPeriod(std::chrono::nanoseconds period) noexcept { next_period_ = period; }
+
 private:
     void wait();
 
     asio::steady_timer timer_;
     virtual_robots::TimeBase time_base_;
     std::function<void()> cycle_;
+    std::optional<std::chrono::nanoseconds> next_period_;
 };
 
 }  // namespace metier::virtual_controller
