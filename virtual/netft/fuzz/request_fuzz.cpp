@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <span>
-#include <string_view>
+#include <string>
 
 #include "metier/virtual_netft/rdt.hpp"
 #include "metier/virtual_netft/web.hpp"
@@ -14,12 +14,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (parseRequest(bytes) && size != 8) {
         std::abort();
     }
-    std::string text(size, '\0');
-    for (std::size_t i = 0; i < size; ++i) {
-        text[i] = static_cast<char>(data[i]);
-    }
-    if (!answerWeb(text, "product", {}).starts_with("HTTP/1.0 ")) {
-        std::abort();
+    const std::string text(data, data + size);
+    for (const std::string before :
+         {"", "GET /", "GET /comm.cgi?comrdtrate=", "GET /setting.cgi?"}) {
+        const auto answer = answerWeb(before + text, {});
+        if (!answer.text.starts_with("HTTP/1.0 ") ||
+            answer.changes.empty() == answer.text.starts_with("HTTP/1.0 302")) {
+            std::abort();
+        }
     }
     return 0;
 }

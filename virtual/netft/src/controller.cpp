@@ -9,8 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "metier/virtual_netft/web.hpp"
-
 namespace metier::virtual_netft {
 
 namespace {
@@ -19,8 +17,6 @@ using virtual_controller::InjectionHelp;
 using virtual_controller::TcpPeer;
 
 constexpr std::size_t kLongestWebRequest = 8192;
-// The sensor's own samples, whatever the rate of the records [1/s].
-constexpr double kSampleRate = 7000.0;
 
 struct NamedStatus {
     std::string_view name;
@@ -48,13 +44,22 @@ Unit readUnit(const configuration::Settings& settings, std::string_view name,
     return units.front();
 }
 
+/// The records have a whole part of the samples' rate: the next one that is not below `rate`.
+int samplesPerRecord(double rate) {
+    return std::max(1, static_cast<int>(kSampleRate / rate));
+}
+
+std::chrono::nanoseconds period(int samples_per_record) {
+    return std::chrono::nanoseconds(std::llround(1e9 * samples_per_record / kSampleRate));
+}
+
 Options readOptions(const configuration::Settings& settings) {
     Options options;
     auto& calibration = options.calibration;
     options.port = static_cast<std::uint16_t>(settings.numberOr("port", 49152, 0, 65535));
     options.http_port = static_cast<std::uint16_t>(settings.numberOr("http_port", 0, 0, 65535));
     options.rate = settings.numberOr("rate", options.rate, 1.0, kSampleRate);
-    options.buffer_size = static_cast<std::size_t>(settings.numberOr("buffer_size", 5, 1, 40));
+    options.buffer_size = static_cast<int>(settings.numberOr("buffer_size", 5, 1, 40));
     options.product = settings.textOr("product", "Net F/T");
     calibration.force_unit = readUnit(settings, "force_unit", forceUnits());
     calibration.torque_unit = readUnit(settings, "torque_unit", torqueUnits());
@@ -121,10 +126,12 @@ Result<std::unique_ptr<NetFtController>> NetFtController::start(
 NetFtController::NetFtController(const virtual_controller::ControllerRequest& request,
                                  Options options)
     : options_(std::move(options)),
+      address_(request.address),
+      samples_per_record_(samplesPerRecord(options_.rate)),
+      buffer_size_(options_.buffer_size),
       world_(request.world),
       sensor_(options_.calibration),
-      timer_(request.context, std::chrono::nanoseconds(std::llround(1e9 / options_.rate)),
-             [this] { cycle(); }) {}
+      timer_(request.context, period(samples_per_record_), [this] { cycle(); }) {}
 
 Result<void> NetFtController::open(const virtual_controller::ControllerRequest& request) {
     asio::error_code error;
@@ -136,7 +143,8 @@ Result<void> NetFtController::open(const virtual_controller::ControllerRequest& 
     auto udp =
         UdpPort::bind(request.context, {address, options_.port}, request.faults,
                       [this](const UdpPort::Endpoint& from, std::span<const std::byte> datagram) {
-                          if (const auto parsed = parseRequest(datagram)) {
+                          const auto parsed = parseRequest(datagram);
+                          if (parsed && rdt_enabled_) {
                               handle(from, *parsed);
                           }
                       });
@@ -172,9 +180,47 @@ void NetFtController::serveWeb(TcpPeer& peer, std::span<const std::byte> bytes) 
         request += static_cast<char>(byte);
     }
     if (request.find("\r\n\r\n") != std::string::npos || request.size() > kLongestWebRequest) {
-        peer.send(answerWeb(request, options_.product, options_.calibration));
+        const auto answer = answerWeb(request, pages());
+        std::ranges::for_each(answer.changes, [this](const Change& change) { apply(change); });
+        peer.send(answer.text);
         peer.close();
         request.resize(kLongestWebRequest + 1);
+    }
+}
+
+WebPages NetFtController::pages() const {
+    return {.product = options_.product,
+            .address = address_,
+            .calibration = options_.calibration,
+            .reading = last_,
+            .gauge_bias = sensor_->gaugeBias(),
+            .rate = rate(),
+            .buffer_size = buffer_size_,
+            .rdt_enabled = rdt_enabled_,
+            .filter = filter_};
+}
+
+void NetFtController::apply(const Change& change) {
+    switch (change.setting) {
+        case Setting::rate:
+            samples_per_record_ = samplesPerRecord(change.value);
+            timer_.setPeriod(period(samples_per_record_));
+            break;
+        case Setting::buffer_size:
+            buffer_size_ = change.value;
+            break;
+        case Setting::rdt_enabled:
+            rdt_enabled_ = change.value != 0;
+            if (!rdt_enabled_) {
+                stream_.reset();
+            }
+            break;
+        case Setting::filter:
+            filter_ = change.value;
+            break;
+        case Setting::gauge_bias:
+            sensor_->setGaugeBias(change.gauge, change.value);
+            break;
     }
 }
 
@@ -185,7 +231,8 @@ void NetFtController::handle(const UdpPort::Endpoint& from, const Request& reque
         case Command::start_real_time:
         case Command::start_buffered: {
             const bool buffered = request.command == Command::start_buffered;
-            stream_ = Stream{from, buffered ? options_.buffer_size : 1, request.sample_count};
+            const auto size = static_cast<std::uint32_t>(buffered ? buffer_size_ : 1);
+            stream_ = Stream{from, size, request.sample_count};
             break;
         }
         case Command::stop:
@@ -201,7 +248,7 @@ void NetFtController::handle(const UdpPort::Endpoint& from, const Request& reque
 }
 
 void NetFtController::cycle() {
-    ++cycles_;
+    ft_sequence_ += static_cast<std::uint32_t>(samples_per_record_);
     world_.report({});  // asks for the newest effect
     geometry::Wrench load = world_.effect().wrench;
     load.force += extra_load_.force;
@@ -219,9 +266,7 @@ void NetFtController::stream(const Sensor::Reading& reading) {
     if (records_to_lose_ > 0) {
         --records_to_lose_;
     } else {
-        const double samples = static_cast<double>(cycles_) * kSampleRate / options_.rate;
-        const auto ft_sequence = static_cast<std::uint32_t>(static_cast<std::uint64_t>(samples));
-        append(to.datagram, {to.sent, ft_sequence, reading.status, reading.counts});
+        append(to.datagram, {to.sent, ft_sequence_, reading.status, reading.counts});
     }
     if (end || to.sent % to.records_per_datagram == 0) {
         udp_->send(to.to, std::exchange(to.datagram, {}));
@@ -238,7 +283,7 @@ void NetFtController::restart() {
     stream_.reset();
     extra_load_ = {};
     records_to_lose_ = 0;
-    cycles_ = 0;
+    ft_sequence_ = 0;
     if (web_) {
         web_->resetAll();
     }
@@ -289,6 +334,7 @@ nlohmann::ordered_json NetFtController::state() const {
     return {
         {"port", udp_->port()},
         {"http_port", web_ ? web_->port() : 0},
+        {"rate", rate()},
         {"client", stream_ ? client() : ""},
         {"records", stream_ ? stream_->sent : 0},
         {"status", fmt::format("{:08x}", last_.status)},

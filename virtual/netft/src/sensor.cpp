@@ -12,15 +12,17 @@ constexpr double kPoundForce = 4.4482216152605;  // [N]
 constexpr double kInch = 0.0254;                 // [m]
 constexpr double kFoot = 0.3048;                 // [m]
 
-constexpr std::array kForceUnits{Unit{"N", 1.0}, Unit{"kN", 1e3}, Unit{"lbf", kPoundForce},
-                                 Unit{"klbf", 1e3 * kPoundForce}};
-constexpr std::array kTorqueUnits{Unit{"Nm", 1.0},
-                                  Unit{"N-m", 1.0},
-                                  Unit{"Nmm", 1e-3},
-                                  Unit{"N-mm", 1e-3},
-                                  Unit{"kN-m", 1e3},
-                                  Unit{"lbf-in", kPoundForce* kInch},
-                                  Unit{"lbf-ft", kPoundForce* kFoot}};
+constexpr double kGaugeRange = 32767.0;
+
+constexpr std::array kForceUnits{Unit{"N", 1.0, 2}, Unit{"kN", 1e3, 4}, Unit{"lbf", kPoundForce, 1},
+                                 Unit{"klbf", 1e3 * kPoundForce, 3}};
+constexpr std::array kTorqueUnits{Unit{"Nm", 1.0, 3},
+                                  Unit{"N-m", 1.0, 3},
+                                  Unit{"Nmm", 1e-3, 4},
+                                  Unit{"N-mm", 1e-3, 4},
+                                  Unit{"kN-m", 1e3, 6},
+                                  Unit{"lbf-in", kPoundForce* kInch, 1},
+                                  Unit{"lbf-ft", kPoundForce* kFoot, 2}};
 
 std::int32_t toCounts(double value) {
     constexpr double most = std::numeric_limits<std::int32_t>::max();
@@ -56,6 +58,19 @@ Sensor::Reading Sensor::read(const geometry::Wrench& load) {
         reading.counts[axis] = toCounts((last_[axis] - bias_[axis]) * scale);
     }
     return reading;
+}
+
+std::array<int, 6> Sensor::gaugeBias() const noexcept {
+    std::array<int, 6> result{};
+    for (std::size_t gauge = 0; gauge < result.size(); ++gauge) {
+        const double part = bias_[gauge] / calibration_.range[gauge];
+        result[gauge] = static_cast<int>(std::lround(part * kGaugeRange));
+    }
+    return result;
+}
+
+void Sensor::setGaugeBias(std::size_t gauge, int bias) noexcept {
+    bias_[gauge] = bias / kGaugeRange * calibration_.range[gauge];
 }
 
 void Sensor::resetLatch() noexcept {

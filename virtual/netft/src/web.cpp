@@ -1,16 +1,57 @@
 #include "metier/virtual_netft/web.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "metier/base/error.hpp"
 
 namespace metier::virtual_netft {
 
 namespace {
 
-std::string answer(std::string_view status, std::string_view type, std::string_view body) {
+constexpr std::size_t kLongestShown = 32;
+
+/// A variable of a page that sets.
+struct Variable {
+    std::string_view page;
+    std::string_view name;
+    Setting setting;
+    int least;
+    int most;
+    std::size_t gauge = 0;
+};
+
+constexpr int kLeastBias = -32768;
+constexpr int kMostBias = 32767;
+constexpr std::array kVariables{
+    Variable{"/comm.cgi", "comrdtrate", Setting::rate, 1, 7000},
+    Variable{"/comm.cgi", "commrdtrate", Setting::rate, 1, 7000},  // as some firmware has it
+    Variable{"/comm.cgi", "comrdtbsiz", Setting::buffer_size, 1, 40},
+    Variable{"/comm.cgi", "comrdte", Setting::rdt_enabled, 0, 1},
+    Variable{"/setting.cgi", "setuserfilter", Setting::filter, 0, 12},
+    Variable{"/setting.cgi", "setbias0", Setting::gauge_bias, kLeastBias, kMostBias, 0},
+    Variable{"/setting.cgi", "setbias1", Setting::gauge_bias, kLeastBias, kMostBias, 1},
+    Variable{"/setting.cgi", "setbias2", Setting::gauge_bias, kLeastBias, kMostBias, 2},
+    Variable{"/setting.cgi", "setbias3", Setting::gauge_bias, kLeastBias, kMostBias, 3},
+    Variable{"/setting.cgi", "setbias4", Setting::gauge_bias, kLeastBias, kMostBias, 4},
+    Variable{"/setting.cgi", "setbias5", Setting::gauge_bias, kLeastBias, kMostBias, 5},
+};
+
+/// \param header lines besides the usual ones, each with its end
+std::string answer(std::string_view status, std::string_view type, std::string_view body,
+                   std::string_view header = "") {
     return fmt::format(
         "HTTP/1.0 {}\r\nServer: NetFT\r\nContent-Type: {}\r\nContent-Length: {}\r\n"
-        "Connection: close\r\n\r\n{}",
-        status, type, body.size(), body);
+        "Connection: close\r\n{}\r\n{}",
+        status, type, body.size(), header, body);
+}
+
+WebAnswer refusal(std::string_view status, std::string_view why) {
+    return {answer(status, "text/plain", fmt::format("{}\n", why))};
 }
 
 std::string escaped(std::string_view text) {
@@ -33,43 +74,167 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-std::string configuration(std::string_view product, const Calibration& calibration) {
-    return fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<netft>\n<prodname>{}</prodname>\n"
-        "<scfgfu>{}</scfgfu>\n<scfgtu>{}</scfgtu>\n<cfgcpf>{:.0f}</cfgcpf>\n"
-        "<cfgcpt>{:.0f}</cfgcpt>\n</netft>\n",
-        escaped(product), calibration.force_unit.name, calibration.torque_unit.name,
-        calibration.counts_per_force, calibration.counts_per_torque);
+/// The elements of a page, one a line.
+class Elements {
+public:
+    template <typename Value>
+    void add(std::string_view name, const Value& value) {
+        text_ += fmt::format("<{}>{}</{}>\n", name, value, name);
+    }
+    template <typename Value>
+    void addAll(std::string_view name, const std::array<Value, 6>& values) {
+        add(name, fmt::format("{}", fmt::join(values, ";")));
+    }
+    void addCounts(std::string_view name, double counts) {
+        add(name, fmt::format("{:.0f}", counts));
+    }
+
+    std::string within(std::string_view root) const {
+        return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<{}>\n{}</{}>\n", root,
+                           text_, root);
+    }
+
+private:
+    std::string text_;
+};
+
+/// The largest readings, in the units of the pages.
+std::array<std::string, 6> ratings(const Calibration& calibration) {
+    std::array<std::string, 6> result;
+    for (std::size_t axis = 0; axis < result.size(); ++axis) {
+        const auto& unit = axis < 3 ? calibration.force_unit : calibration.torque_unit;
+        result[axis] = fmt::format("{:.6g}", calibration.range[axis] / unit.size);
+    }
+    return result;
+}
+
+void addRunData(Elements& page, const WebPages& pages) {
+    page.add("prodname", escaped(pages.product));
+    page.add("runstat", fmt::format("0x{:08x}", pages.reading.status));
+    page.addAll("runft", pages.reading.counts);
+    page.add("runrate", kSampleRate);
+}
+
+void addConfiguration(Elements& page, const Calibration& calibration) {
+    page.add("cfgnam", "empty");
+    page.add("cfgcalsel", 0);
+    page.add("cfgcalsn", kSerialNumber);
+    page.add("cfgfu", calibration.force_unit.code);
+    page.add("scfgfu", calibration.force_unit.name);
+    page.add("cfgtu", calibration.torque_unit.code);
+    page.add("scfgtu", calibration.torque_unit.name);
+    page.add("cfgtfx", "0;0;0;0;0;0");
+    page.add("scfgtdu", "mm");
+    page.add("scfgtau", "degrees");
+    page.addCounts("cfgcpf", calibration.counts_per_force);
+    page.addCounts("cfgcpt", calibration.counts_per_torque);
+    page.addAll("cfgmr", ratings(calibration));
+}
+
+void addSettings(Elements& page, const WebPages& pages) {
+    page.add("setcfgsel", 0);
+    page.addAll("setbias", pages.gauge_bias);
+    page.add("setuserfilter", pages.filter);
+    page.add("netip", pages.address);
+    page.add("comrdte", pages.rdt_enabled ? "Enabled" : "Disabled");
+    page.add("comrdtrate", pages.rate);
+    page.add("comrdtbsiz", pages.buffer_size);
+}
+
+std::string configurationPage(const WebPages& pages) {
+    Elements page;
+    addRunData(page, pages);
+    addConfiguration(page, pages.calibration);
+    addSettings(page, pages);
+    return page.within("netft");
 }
 
 std::string calibrationPage(const Calibration& calibration) {
-    return fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<netftCalibration>\n<calcpf>{:.0f}</calcpf>\n"
-        "<calcpt>{:.0f}</calcpt>\n</netftCalibration>\n",
-        calibration.counts_per_force, calibration.counts_per_torque);
+    Elements page;
+    page.add("calsn", kSerialNumber);
+    page.add("calpn", fmt::format("SI-{:.6g}-{:.6g}", calibration.range[0], calibration.range[5]));
+    page.add("calfu", calibration.force_unit.code);
+    page.add("scalfu", calibration.force_unit.name);
+    page.add("caltu", calibration.torque_unit.code);
+    page.add("scaltu", calibration.torque_unit.name);
+    page.addCounts("calcpf", calibration.counts_per_force);
+    page.addCounts("calcpt", calibration.counts_per_torque);
+    page.addAll("calmr", ratings(calibration));
+    return page.within("netftCalibration");
+}
+
+// ---- what sets ---------------------------------------------------------------------------------
+
+bool sets(std::string_view page) {
+    return std::ranges::find(kVariables, page, &Variable::page) != kVariables.end();
+}
+
+/// \param text "name=value"
+Result<Change> parseChange(std::string_view page, std::string_view text) {
+    const auto name = text.substr(0, text.find('='));
+    const auto* const variable = std::ranges::find_if(kVariables, [&](const Variable& candidate) {
+        return candidate.page == page && candidate.name == name;
+    });
+    if (variable == kVariables.end()) {
+        return fail(Errc::invalid_argument, fmt::format("{}: not a variable of {} here",
+                                                        name.substr(0, kLongestShown), page));
+    }
+    const auto value = text.substr(std::min(name.size() + 1, text.size()));
+    const auto* const end = value.data() + value.size();
+    int number = 0;
+    const auto [stopped, error] = std::from_chars(value.data(), end, number);
+    if (error != std::errc{} || stopped != end || number < variable->least ||
+        number > variable->most) {
+        return fail(Errc::out_of_range,
+                    fmt::format("{}: '{}' is not within {} to {}", name,
+                                value.substr(0, kLongestShown), variable->least, variable->most));
+    }
+    return Change{variable->setting, number, variable->gauge};
+}
+
+/// \param query "name=value&name=value"
+WebAnswer change(std::string_view page, std::string_view query) {
+    std::vector<Change> changes;
+    while (!query.empty()) {
+        const auto text = query.substr(0, query.find('&'));
+        const auto parsed = parseChange(page, text);
+        if (!parsed) {
+            return refusal("400 Bad Request", parsed.error().message);
+        }
+        changes.push_back(*parsed);
+        query.remove_prefix(std::min(text.size() + 1, query.size()));
+    }
+    if (changes.empty()) {
+        return refusal("400 Bad Request", "no variable to set");
+    }
+    return {answer("302 Found", "text/html", "", "Location: /netftapi2.xml\r\n"),
+            std::move(changes)};
 }
 
 }  // namespace
 
-std::string answerWeb(std::string_view request, std::string_view product,
-                      const Calibration& calibration) {
+WebAnswer answerWeb(std::string_view request, const WebPages& pages) {
     const auto line = request.substr(0, request.find("\r\n"));
     const auto method = line.substr(0, line.find(' '));
     if (method.size() == line.size()) {
-        return answer("400 Bad Request", "text/plain", "no HTTP request\n");
+        return refusal("400 Bad Request", "no HTTP request");
     }
     if (method != "GET") {
-        return answer("405 Method Not Allowed", "text/plain", "GET only\n");
+        return refusal("405 Method Not Allowed", "GET only");
     }
     const auto rest = line.substr(method.size() + 1);
-    const auto path = rest.substr(0, rest.find_first_of(" ?"));
+    const auto target = rest.substr(0, rest.find(' '));
+    const auto path = target.substr(0, target.find('?'));
     if (path == "/netftapi2.xml") {
-        return answer("200 OK", "text/xml", configuration(product, calibration));
+        return {answer("200 OK", "text/xml", configurationPage(pages))};
     }
     if (path == "/netftcalapi.xml") {
-        return answer("200 OK", "text/xml", calibrationPage(calibration));
+        return {answer("200 OK", "text/xml", calibrationPage(pages.calibration))};
     }
-    return answer("404 Not Found", "text/plain", "no such page\n");
+    if (sets(path)) {
+        return change(path, target.substr(std::min(path.size() + 1, target.size())));
+    }
+    return refusal("404 Not Found", "no such page");
 }
 
 }  // namespace metier::virtual_netft

@@ -22,14 +22,15 @@ namespace {
 
 using namespace std::chrono_literals;
 using asio::ip::udp;
+using ::testing::HasSubstr;
 using virtual_controller::testing::RunningController;
 using Bytes = std::vector<unsigned char>;
 
 /// A client that knows of the sensor what its manual says.
 class Client {
 public:
-    explicit Client(RunningController& controller)
-        : sensor_(asio::ip::make_address("127.0.0.1"), controller.state()["port"]) {}
+    explicit Client(RunningController& controller, const std::string& address = "127.0.0.1")
+        : sensor_(asio::ip::make_address(address), controller.state()["port"]) {}
 
     void request(int command, unsigned char count = 0) {
         const std::array<unsigned char, 8> bytes{0x12, 0x34, 0, static_cast<unsigned char>(command),
@@ -63,6 +64,22 @@ std::uint32_t word(const Bytes& datagram, std::size_t index) {
 
 double force(const Bytes& datagram) {
     return static_cast<std::int32_t>(word(datagram, 3)) / 1e6;
+}
+
+/// The sensor's whole answer, from port 8080.
+std::string get(const std::string& address, const std::string& target) {
+    const auto deadline = std::chrono::steady_clock::now() + 5s;
+    auto link = link::TcpLink::connect(address, 8080, deadline).value();
+    const std::string request = "GET " + target + " HTTP/1.1\r\nHost: sensor\r\n\r\n";
+    if (!link.send(std::as_bytes(std::span(request)), deadline)) {
+        return {};
+    }
+    std::string answer;
+    std::array<char, 512> buffer{};
+    while (const auto count = link.receive(std::as_writable_bytes(std::span(buffer)), deadline)) {
+        answer.append(buffer.data(), *count);
+    }
+    return answer;
 }
 
 class NetFt : public ::testing::Test {
@@ -222,16 +239,82 @@ TEST(NetFtStart, HasWebPagesOnAPortOfItsOwn) {
     RunningController controller(
         virtual_controller::netftController(),
         {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.5"});
-    const auto deadline = std::chrono::steady_clock::now() + 5s;
-    auto link = link::TcpLink::connect("127.73.1.5", 8080, deadline).value();
-    const std::string request = "GET /netftapi2.xml HTTP/1.1\r\nHost: sensor\r\n\r\n";
-    ASSERT_TRUE(link.send(std::as_bytes(std::span(request)), deadline));
-    std::string answer;
-    std::array<char, 512> buffer{};
-    while (const auto count = link.receive(std::as_writable_bytes(std::span(buffer)), deadline)) {
-        answer.append(buffer.data(), *count);
+    EXPECT_THAT(get("127.73.1.5", "/netftapi2.xml"), HasSubstr("<cfgcpf>1000000</cfgcpf>"));
+    EXPECT_THAT(get("127.73.1.5", "/netftapi2.xml"), HasSubstr("<netip>127.73.1.5</netip>"));
+}
+
+TEST(NetFtStart, TakesTheNextRateThatIsAPartOfTheSamples) {
+    RunningController controller(virtual_controller::netftController(),
+                                 {.settings = {{"port", 0.0}, {"rate", 150.0}}});
+    EXPECT_EQ(controller.state()["rate"], 152) << "7000 / 46";
+}
+
+TEST(NetFtWeb, TellsTheReadingThatIsStreamed) {
+    RunningController controller(
+        virtual_controller::netftController(),
+        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.6"});
+    ASSERT_TRUE(controller.inject("wrench", "5 0 0 0 0 0"));
+    ASSERT_TRUE(controller.inject("status", "80000004"));
+    ASSERT_TRUE(controller.waitUntil([](const auto& state) {
+        return state["counts"][0] == 5'000'000 && state["status"] == "80000004";
+    }));
+    const auto page = get("127.73.1.6", "/netftapi2.xml");
+    EXPECT_THAT(page, HasSubstr("<runft>5000000;0;0;0;0;0</runft>"));
+    EXPECT_THAT(page, HasSubstr("<runstat>0x80000004</runstat>"));
+}
+
+TEST(NetFtWeb, SetsRateAndBufferSize) {
+    RunningController controller(
+        virtual_controller::netftController(),
+        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.7"});
+    EXPECT_THAT(get("127.73.1.7", "/comm.cgi?comrdtrate=500&comrdtbsiz=2"), HasSubstr("302 Found"));
+    EXPECT_THAT(get("127.73.1.7", "/netftapi2.xml"), HasSubstr("<comrdtrate>500</comrdtrate>"));
+    Client client(controller, "127.73.1.7");
+    client.request(2);
+    const auto first = word(client.next(), 1);
+    EXPECT_EQ(word(client.next(), 1) - first, 14U) << "of 7000 samples per second";
+    client.request(0);
+    while (!client.next(30ms).empty()) {
     }
-    EXPECT_THAT(answer, ::testing::HasSubstr("<cfgcpf>1000000</cfgcpf>"));
+    client.request(3, 3);
+    EXPECT_EQ(client.next().size(), 2 * 36U);
+    EXPECT_EQ(client.next().size(), 36U);
+}
+
+TEST(NetFtWeb, ClearsTheBias) {
+    RunningController controller(
+        virtual_controller::netftController(),
+        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.8"});
+    const auto counts = [&](std::int32_t wanted) {
+        return controller.waitUntil(
+            [wanted](const auto& state) { return state["counts"][0] == wanted; });
+    };
+    ASSERT_TRUE(controller.inject("wrench", "5 0 0 0 0 0"));
+    ASSERT_TRUE(counts(5'000'000));
+    Client(controller, "127.73.1.8").request(0x42);
+    ASSERT_TRUE(counts(0));
+    EXPECT_THAT(get("127.73.1.8", "/netftapi2.xml"),
+                HasSubstr("<setbias>2521;0;0;0;0;0</setbias>"));
+    EXPECT_THAT(get("127.73.1.8", "/setting.cgi?setbias0=0"), HasSubstr("302 Found"));
+    EXPECT_TRUE(counts(5'000'000));
+}
+
+TEST(NetFtWeb, EndsAndRefusesStreamsWhileRdtIsOff) {
+    RunningController controller(
+        virtual_controller::netftController(),
+        {.settings = {{"port", 0.0}, {"http_port", 8080.0}}, .address = "127.73.1.9"});
+    Client client(controller, "127.73.1.9");
+    client.request(2);
+    ASSERT_FALSE(client.next().empty());
+    EXPECT_THAT(get("127.73.1.9", "/comm.cgi?comrdte=0"), HasSubstr("302 Found"));
+    EXPECT_THAT(get("127.73.1.9", "/netftapi2.xml"), HasSubstr("<comrdte>Disabled</comrdte>"));
+    client.request(2);
+    while (!client.next(30ms).empty()) {
+    }
+    EXPECT_EQ(controller.state()["client"], "");
+    get("127.73.1.9", "/comm.cgi?comrdte=1");
+    client.request(2);
+    EXPECT_FALSE(client.next().empty());
 }
 
 }  // namespace

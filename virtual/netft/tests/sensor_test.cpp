@@ -32,6 +32,23 @@ TEST(Sensor, IsZeroAtTheBias) {
     EXPECT_EQ(sensor.read({}).counts[0], -10'000'000);
 }
 
+TEST(Sensor, TellsItsBiasByGauge) {
+    Sensor sensor({});
+    EXPECT_THAT(sensor.gaugeBias(), ElementsAre(0, 0, 0, 0, 0, 0));
+    sensor.read({{65.0, -32.5, 0.0}, {0.0, 0.0, 5.0}});
+    sensor.setBias();
+    EXPECT_THAT(sensor.gaugeBias(), ElementsAre(32767, -16384, 0, 0, 0, 32767));
+}
+
+TEST(Sensor, TakesABiasByGauge) {
+    Sensor sensor({});
+    sensor.read(kLoad);
+    sensor.setBias();
+    sensor.setGaugeBias(0, 0);
+    sensor.setGaugeBias(1, 32767);
+    EXPECT_THAT(sensor.read(kLoad).counts, ElementsAre(10'000'000, -85'000'000, 0, 0, 0, 0));
+}
+
 TEST(Sensor, IsSaturatedBeyondItsRange) {
     Sensor sensor({});
     EXPECT_EQ(sensor.read(kLoad).status, 0U);

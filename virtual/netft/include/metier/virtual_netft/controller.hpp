@@ -12,6 +12,7 @@
 #include "metier/virtual_controller/tcp_server.hpp"
 #include "metier/virtual_netft/sensor.hpp"
 #include "metier/virtual_netft/udp_port.hpp"
+#include "metier/virtual_netft/web.hpp"
 
 namespace metier::virtual_netft {
 
@@ -19,8 +20,8 @@ namespace metier::virtual_netft {
 struct Options {
     std::uint16_t port = 49152;
     std::uint16_t http_port = 0;  ///< 0: no web pages
-    double rate = 1000.0;         ///< [1/s]
-    std::size_t buffer_size = 5;  ///< records in one datagram of the buffered mode
+    double rate = 1000.0;         ///< at first [1/s]
+    int buffer_size = 5;          ///< at first; records in one datagram of the buffered mode
     std::string product;
     Calibration calibration;
 };
@@ -39,7 +40,7 @@ public:
 private:
     struct Stream {
         UdpPort::Endpoint to;
-        std::size_t records_per_datagram = 1;
+        std::uint32_t records_per_datagram = 1;
         std::uint32_t left = 0;  // records; 0: without end
         std::uint32_t sent = 0;
         std::vector<std::byte> datagram{};
@@ -50,14 +51,22 @@ private:
     Result<void> openWeb(const virtual_controller::ControllerRequest& request);
     void handle(const UdpPort::Endpoint& from, const Request& request);
     void serveWeb(virtual_controller::TcpPeer& peer, std::span<const std::byte> bytes);
+    WebPages pages() const;
+    void apply(const Change& change);
+    int rate() const noexcept { return kSampleRate / samples_per_record_; }
     void cycle();
     void stream(const Sensor::Reading& reading);
 
     const Options options_;
+    const std::string address_;
+    int samples_per_record_;  // the rate of the records
+    int buffer_size_;
+    bool rdt_enabled_ = true;
+    int filter_ = 0;
     virtual_controller::WorldLink& world_;
     std::optional<Sensor> sensor_;
     geometry::Wrench extra_load_;
-    std::uint64_t cycles_ = 0;
+    std::uint32_t ft_sequence_ = 0;  // the sensor's own samples
     std::uint64_t records_to_lose_ = 0;
     Sensor::Reading last_;
     std::optional<Stream> stream_;

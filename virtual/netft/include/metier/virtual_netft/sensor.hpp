@@ -16,16 +16,22 @@ namespace metier::virtual_netft {
 struct Unit {
     std::string_view name;
     double size = 1.0;
+    int code = 0;  ///< by which the pages name it besides
 };
 
 /// As the sensor's web pages write them.
 std::span<const Unit> forceUnits() noexcept;
 std::span<const Unit> torqueUnits() noexcept;
 
+/// The sensor's own samples, whatever the rate of the records [1/s].
+inline constexpr int kSampleRate = 7000;
+/// Of the transducer, on the pages.
+inline constexpr std::string_view kSerialNumber = "FT00001";
+
 /// The sensor's own calibration and range.
 struct Calibration {
-    Unit force_unit{"N", 1.0};
-    Unit torque_unit{"Nm", 1.0};
+    Unit force_unit{"N", 1.0, 2};
+    Unit torque_unit{"Nm", 1.0, 3};
     double counts_per_force = 1e6;   ///< per force unit
     double counts_per_torque = 1e6;  ///< per torque unit
     /// Beyond it a gauge is saturated [N], [Nm]. Of a Gamma SI-65-5.
@@ -49,6 +55,11 @@ public:
 
     /// The last load becomes zero.
     void setBias() noexcept { bias_ = last_; }
+    /// The bias as the pages tell it: that of each gauge, -32768 to 32767. A real sensor has six
+    /// gauges that a matrix maps to the axes; here each axis has one, 32767 at the end of its
+    /// range.
+    std::array<int, 6> gaugeBias() const noexcept;
+    void setGaugeBias(std::size_t gauge, int bias) noexcept;
     /// Ends a warning of the monitor condition.
     void resetLatch() noexcept;
     /// The status word of its own, until another one is set.
