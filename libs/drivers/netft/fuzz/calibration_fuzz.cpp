@@ -17,6 +17,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             __builtin_trap();
         }
     }
+    static_cast<void>(parseRate(text));
+    const auto rate = parseRate("<netft><comrdtrate>" + text + "</comrdtrate></netft>");
+    if (rate && *rate && !(**rate >= 1.0)) {
+        __builtin_trap();
+    }
     static_cast<void>(parseHttpAnswer(text));
     static_cast<void>(parseHttpAnswer("HTTP/1.0 200 OK\r\nContent-Length: " + text));
     return 0;

@@ -21,6 +21,8 @@ constexpr double kPoundForce = 4.4482216152605;
 constexpr double kInch = 0.0254;
 constexpr double kFoot = 0.3048;
 constexpr double kLargestCounts = 1e12;
+constexpr double kHighestRate = 1e5;  // [1/s]
+constexpr std::size_t kLongestShown = 32;
 constexpr std::string_view kBlanks = " \t\r\n";
 
 constexpr std::array kForceUnits{Unit{"n", 1.0}, Unit{"kn", 1e3}, Unit{"lbf", kPoundForce},
@@ -52,7 +54,6 @@ Result<double> unitIn(std::span<const Unit> units, std::string_view text, std::s
         }
         known.push_back(unit.name);
     }
-    constexpr std::size_t kLongestShown = 32;
     return fail(Errc::invalid_argument,
                 fmt::format("unknown {} unit '{}'; known are {}", what,
                             text.substr(0, kLongestShown), fmt::join(known, ", ")));
@@ -77,18 +78,25 @@ constexpr std::array kForceCounts{"cfgcpf", "calcpf"};
 constexpr std::array kTorqueCounts{"cfgcpt", "calcpt"};
 constexpr std::array kForceUnit{"scfgfu", "scalfu"};
 constexpr std::array kTorqueUnit{"scfgtu", "scaltu"};
+constexpr std::array kRdt{"comrdte"};
+constexpr std::array kRate{"comrdtrate", "commrdtrate"};
+
+std::optional<double> numberIn(std::string_view text) {
+    double number = 0.0;
+    const auto* const text_end = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), text_end, number);
+    return error == std::errc() && end == text_end ? std::optional(number) : std::nullopt;
+}
 
 Result<double> countsOf(const pugi::xml_document& page, std::span<const char* const> names) {
     const auto text = textOf(page, names);
-    double counts = 0.0;
-    const auto* const text_end = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), text_end, counts);
-    if (error == std::errc() && end == text_end && counts > 0.0 && counts <= kLargestCounts) {
-        return counts;
+    const auto counts = numberIn(text);
+    if (counts && *counts > 0.0 && *counts <= kLargestCounts) {
+        return *counts;
     }
     return fail(Errc::invalid_argument,
                 fmt::format("calibration: {} is '{}', expected counts per unit", names.front(),
-                            text.substr(0, 32)));
+                            text.substr(0, kLongestShown)));
 }
 
 Result<double> unitOf(const std::string& told, const std::string& fallback,
@@ -103,6 +111,14 @@ Result<double> unitOf(const std::string& told, const std::string& fallback,
     return parse(text);
 }
 
+Result<void> load(pugi::xml_document& document, std::string_view page) {
+    if (const auto parsed = document.load_buffer(page.data(), page.size()); !parsed) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("calibration: not XML: {}", parsed.description()));
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<double> forceUnit(std::string_view text) {
@@ -115,10 +131,8 @@ Result<double> torqueUnit(std::string_view text) {
 
 Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fallback) {
     pugi::xml_document document;
-    const auto parsed = document.load_buffer(page.data(), page.size());
-    if (!parsed) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("calibration: not XML: {}", parsed.description()));
+    if (const auto loaded = load(document, page); !loaded) {
+        return fail(loaded.error());
     }
     const auto force_counts = countsOf(document, kForceCounts);
     if (!force_counts) {
@@ -138,6 +152,31 @@ Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fal
         return fail(torque.error());
     }
     return Calibration{*force / *force_counts, *torque / *torque_counts};
+}
+
+Result<std::optional<double>> parseRate(std::string_view page) {
+    pugi::xml_document document;
+    if (const auto loaded = load(document, page); !loaded) {
+        return fail(loaded.error());
+    }
+    const auto rdt = textOf(document, kRdt);
+    if (!rdt.empty() && plain(rdt) != "enabled" && rdt != "1") {
+        return fail(Errc::device_fault,
+                    fmt::format("RDT is not enabled on the sensor's page of communication: comrdte "
+                                "is '{}', expected Enabled",
+                                rdt.substr(0, kLongestShown)));
+    }
+    const auto text = textOf(document, kRate);
+    if (text.empty()) {
+        return std::nullopt;
+    }
+    const auto rate = numberIn(text);
+    if (rate && *rate >= 1.0 && *rate <= kHighestRate) {
+        return rate;
+    }
+    return fail(Errc::invalid_argument,
+                fmt::format("{} is '{}', expected records per second, 1 to {}", kRate.front(),
+                            text.substr(0, kLongestShown), kHighestRate));
 }
 
 Calibration calibrationFrom(double counts_per_force, double counts_per_torque) noexcept {

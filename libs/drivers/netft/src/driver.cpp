@@ -8,8 +8,17 @@ namespace metier::netft_driver {
 namespace {
 
 constexpr double kSilentPeriods = 5.0;
-// A computer without a real-time kernel delays a thread by as much now and then.
-constexpr double kShortestSilence = 0.02;
+constexpr double kShortestSilence = 0.02;  // [s]
+
+std::chrono::milliseconds milliseconds(double seconds) {
+    return std::chrono::milliseconds(std::llround(seconds * 1e3));
+}
+
+std::optional<double> numberIfSet(const configuration::Settings& settings, std::string_view name,
+                                  double least, double most) {
+    return settings.has(name) ? std::optional(settings.numberOr(name, least, least, most))
+                              : std::nullopt;
+}
 
 std::uint16_t portOr(const configuration::Settings& settings, std::string_view name,
                      std::uint16_t fallback) {
@@ -66,11 +75,15 @@ Result<NetftOptions> readOptions(const driver::OpenRequest& request) {
     options.calibration = givenCalibration(settings);
     options.units = {unitText(settings, "force_unit", forceUnit),
                      unitText(settings, "torque_unit", torqueUnit)};
-    const double rate = settings.numberOr("rate", 1000.0, 1.0, 7000.0);
-    const double silence =
-        settings.numberOr("silence", std::max(kSilentPeriods / rate, kShortestSilence), 0.001, 5.0);
-    options.silence = std::chrono::milliseconds(std::llround(silence * 1e3));
+    options.rate = numberIfSet(settings, "rate", 1.0, 7000.0);
+    if (const auto silence = numberIfSet(settings, "silence", 0.001, 5.0)) {
+        options.silence = milliseconds(*silence);
+    }
     return settings.finish().map([&] { return options; });
+}
+
+std::chrono::milliseconds silenceAt(double rate) {
+    return milliseconds(std::max(kSilentPeriods / rate, kShortestSilence));
 }
 
 }  // namespace metier::netft_driver

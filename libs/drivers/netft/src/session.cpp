@@ -31,6 +31,7 @@ SteadyTime now() {
 
 NetftSensor::Session::Session(NetftOptions options)
     : options_(std::move(options)),
+      silence_(silenceAt(kUsualRate)),
       safety_({SafetyState::disconnected, named("not connected yet"), false}),
       notifier_([this] { safety_.dispatch(); }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -47,7 +48,7 @@ std::string NetftSensor::Session::named(std::string_view text) const {
 
 WrenchSample NetftSensor::Session::sample() const noexcept {
     auto sample = sample_.read();
-    if (now() - sample.stamp > options_.silence) {
+    if (now() - sample.stamp > silence_.load()) {
         sample.health = SafetyState::disconnected;
     }
     return sample;
@@ -104,17 +105,35 @@ Result<void> NetftSensor::Session::connection(const std::stop_token& stop) {
     return ended;
 }
 
-Result<Calibration> NetftSensor::Session::calibration() const {
+Result<Calibration> NetftSensor::Session::calibration() {
     if (options_.calibration) {
+        setSilence(std::nullopt);
         return *options_.calibration;
     }
+    const auto text = readPage();
+    if (!text) {
+        return fail(text.error());
+    }
+    const auto rate = parseRate(*text);
+    if (!rate) {
+        return fail(rate.error());
+    }
+    setSilence(*rate);
+    return parseCalibration(*text, options_.units);
+}
+
+Result<std::string> NetftSensor::Session::readPage() const {
     const auto deadline = now() + kPageTimeout;
     auto page = httpGet(options_.host, options_.http_port, "/netftapi2.xml", deadline);
     if (!page && page.error().code == Errc::not_found) {
         page = httpGet(options_.host, options_.http_port, "/netftcalapi.xml", deadline);
     }
-    return page.and_then(
-        [&](const std::string& text) { return parseCalibration(text, options_.units); });
+    return page;
+}
+
+void NetftSensor::Session::setSilence(std::optional<double> told_rate) noexcept {
+    const double rate = options_.rate ? *options_.rate : told_rate.value_or(kUsualRate);
+    silence_.store(options_.silence ? *options_.silence : silenceAt(rate));
 }
 
 Result<void> NetftSensor::Session::begin(const std::stop_token& stop, link::UdpLink& link,
@@ -144,9 +163,10 @@ Result<void> NetftSensor::Session::begin(const std::stop_token& stop, link::UdpL
 Result<void> NetftSensor::Session::follow(const std::stop_token& stop, link::UdpLink& link,
                                           RecordStream& stream) {
     std::array<std::byte, kLargestDatagram> buffer{};
+    const auto silence = silence_.load();
     auto last = now();
     while (!stop.stop_requested()) {
-        const auto count = link.receive(buffer, last + options_.silence);
+        const auto count = link.receive(buffer, last + silence);
         if (!count && count.error().code != Errc::timeout) {
             return fail(count.error());
         }
@@ -158,9 +178,9 @@ Result<void> NetftSensor::Session::follow(const std::stop_token& stop, link::Udp
             if (auto worked = workOnTare(link, *sample); !worked) {
                 return worked;
             }
-        } else if (now() >= last + options_.silence) {
-            return fail(Errc::timeout, fmt::format("{}: no record for {} ms", link.peer(),
-                                                   options_.silence.count()));
+        } else if (now() >= last + silence) {
+            return fail(Errc::timeout,
+                        fmt::format("{}: no record for {} ms", link.peer(), silence.count()));
         }
     }
     return {};

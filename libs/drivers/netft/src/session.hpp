@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <mutex>
 #include <stop_token>
@@ -42,7 +43,10 @@ private:
     void run(const std::stop_token& stop);
     /// One connection, from begin to end. Errors: why it ended; nothing if it was to end.
     Result<void> connection(const std::stop_token& stop);
-    Result<Calibration> calibration() const;
+    /// From the settings or the sensor's page, which also tells the rate of the records.
+    Result<Calibration> calibration();
+    Result<std::string> readPage() const;
+    void setSilence(std::optional<double> told_rate) noexcept;
     /// Asks for records until the first comes.
     Result<void> begin(const std::stop_token& stop, link::UdpLink& link, RecordStream& stream);
     Result<void> follow(const std::stop_token& stop, link::UdpLink& link, RecordStream& stream);
@@ -53,6 +57,7 @@ private:
     std::string named(std::string_view text) const;
 
     const NetftOptions options_;
+    std::atomic<std::chrono::milliseconds> silence_;
     device::SharedValue<device::WrenchSample> sample_;
     device::SafetyPublisher safety_;
     std::atomic<std::uint64_t> lost_records_{0};

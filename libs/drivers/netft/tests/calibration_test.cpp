@@ -82,6 +82,39 @@ TEST(Calibration, RefusesWhatIsNoXml) {
     EXPECT_FALSE(parseCalibration("<html>404</html>", kNoUnits));
 }
 
+std::string ratePage(const std::string& elements) {
+    return "<netft>" + elements + "</netft>";
+}
+
+TEST(Rate, IsReadFromThePageByEitherName) {
+    EXPECT_EQ(*parseRate(ratePage("<comrdte>Enabled</comrdte><comrdtrate>100</comrdtrate>")),
+              100.0);
+    EXPECT_EQ(*parseRate(ratePage("<commrdtrate>7912</commrdtrate>")), 7912.0);
+    EXPECT_EQ(*parseRate(ratePage("<comrdte>1</comrdte><comrdtrate> 50\n</comrdtrate>")), 50.0);
+}
+
+TEST(Rate, IsNotGuessed) {
+    EXPECT_EQ(*parseRate(ratePage("")), std::nullopt);
+    EXPECT_EQ(*parseRate(ratePage("<comrdtrate></comrdtrate>")), std::nullopt);
+}
+
+TEST(Rate, IsRefusedIfItIsNone) {
+    for (const std::string rate : {"0", "-1", "0.5", "abc", "12x", "nan", "inf", "1e9"}) {
+        const auto read = parseRate(ratePage("<comrdtrate>" + rate + "</comrdtrate>"));
+        ASSERT_FALSE(read) << rate;
+        EXPECT_THAT(read.error().message, HasSubstr("comrdtrate is '" + rate + "'"));
+    }
+    EXPECT_THAT(parseRate("<a><b>").error().message, HasSubstr("not XML"));
+}
+
+TEST(Rate, IsRefusedIfRdtIsNotEnabled) {
+    const auto read =
+        parseRate(ratePage("<comrdte>Disabled</comrdte><comrdtrate>100</comrdtrate>"));
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, Errc::device_fault);
+    EXPECT_THAT(read.error().message, HasSubstr("comrdte is 'Disabled', expected Enabled"));
+}
+
 TEST(Calibration, CanBeGivenInSi) {
     const auto given = calibrationFrom(1e6, 1e9);
     EXPECT_DOUBLE_EQ(given.force_per_count, 1e-6);

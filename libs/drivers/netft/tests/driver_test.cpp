@@ -9,6 +9,7 @@ Driver netftDriver();
 namespace metier::netft_driver {
 namespace {
 
+using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
 driver::OpenRequest request(std::map<std::string, configuration::Settings::Value> values) {
@@ -23,13 +24,21 @@ TEST(NetftDriver, NeedsNoSettings) {
     EXPECT_EQ(options->port, 49152);
     EXPECT_EQ(options->http_port, 80);
     EXPECT_FALSE(options->calibration);
-    EXPECT_EQ(options->silence.count(), 20);
+    EXPECT_FALSE(options->rate);
+    EXPECT_FALSE(options->silence);
 }
 
 TEST(NetftDriver, WaitsFivePeriodsOfASlowSensor) {
-    EXPECT_EQ(readOptions(request({{"rate", 100.0}}))->silence.count(), 50);
-    EXPECT_EQ(readOptions(request({{"rate", 7000.0}}))->silence.count(), 20);
-    EXPECT_EQ(readOptions(request({{"silence", 0.1}}))->silence.count(), 100);
+    EXPECT_EQ(silenceAt(kUsualRate), 20ms);
+    EXPECT_EQ(silenceAt(100.0), 50ms);
+    EXPECT_EQ(silenceAt(7000.0), 20ms);
+}
+
+TEST(NetftDriver, TakesRateAndSilence) {
+    EXPECT_EQ(readOptions(request({{"rate", 100.0}}))->rate, 100.0);
+    EXPECT_EQ(readOptions(request({{"silence", 0.1}}))->silence, 100ms);
+    EXPECT_THAT(readOptions(request({{"silence", 6.0}})).error().message,
+                HasSubstr("silence: 6 is not within 0.001 to 5"));
 }
 
 TEST(NetftDriver, TakesCountsInsteadOfTheSensorsPage) {

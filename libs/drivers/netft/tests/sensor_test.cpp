@@ -201,6 +201,51 @@ TEST_F(Sensor, DoesNotGuessItsCalibration) {
     EXPECT_TRUE(reaches(SafetyState::normal));
 }
 
+/// As page(), with more elements.
+std::string pageWith(const std::string& elements) {
+    return ok(
+        "<netft><cfgcpf>1000</cfgcpf><cfgcpt>1000</cfgcpt><scfgfu>N</scfgfu>"
+        "<scfgtu>Nm</scfgtu>" +
+        elements + "</netft>");
+}
+
+TEST_F(Sensor, WaitsFivePeriodsOfTheRateOnItsPage) {
+    WebPage web({{"/netftapi2.xml", pageWith("<comrdtrate>10</comrdtrate>")}});
+    options.calibration.reset();
+    options.silence.reset();
+    options.http_port = web.port();
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
+    fake.silence(true);
+    ASSERT_TRUE(reaches(SafetyState::disconnected));
+    EXPECT_THAT(sensor->safety().text, HasSubstr("no record for 500 ms"));
+}
+
+TEST_F(Sensor, WaitsByTheRateOfItsSettings) {
+    WebPage web({{"/netftapi2.xml", pageWith("<comrdtrate>1</comrdtrate>")}});
+    options.calibration.reset();
+    options.silence.reset();
+    options.rate = 20.0;
+    options.http_port = web.port();
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
+    fake.silence(true);
+    ASSERT_TRUE(reaches(SafetyState::disconnected));
+    EXPECT_THAT(sensor->safety().text, HasSubstr("no record for 250 ms"));
+}
+
+TEST_F(Sensor, TellsThatRdtIsNotEnabled) {
+    WebPage web({{"/netftapi2.xml", pageWith("<comrdte>Disabled</comrdte>")}});
+    options.calibration.reset();
+    options.http_port = web.port();
+    open();
+    ASSERT_TRUE(eventually([&] {
+        return sensor->safety().text.find("RDT is not enabled") != std::string::npos;
+    })) << sensor->safety().text;
+    web.set("/netftapi2.xml", pageWith("<comrdte>Enabled</comrdte>"));
+    EXPECT_TRUE(reaches(SafetyState::normal));
+}
+
 TEST_F(Sensor, ReadsItsCalibrationAnewAfterALoss) {
     WebPage web({{"/netftapi2.xml", page("N")}});
     options.calibration.reset();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,6 +33,11 @@ Result<double> torqueUnit(std::string_view text);
 /// Errors: invalid_argument if it is no such page, counts are missing or not positive, or a unit is
 ///         unknown or missing: nothing is guessed.
 Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fallback);
+
+/// The records per second that the page says the sensor sends; nothing if it does not say.
+/// Errors: invalid_argument if it is no XML or the rate is no such number; device_fault if the page
+///         says that the sensor sends none.
+Result<std::optional<double>> parseRate(std::string_view page);
 
 /// \param counts_per_force [1/N], counts_per_torque [1/Nm], as the settings give them
 Calibration calibrationFrom(double counts_per_force, double counts_per_torque) noexcept;

@@ -20,9 +20,17 @@ struct NetftOptions {
     std::uint16_t http_port = 80;
     std::optional<Calibration> calibration{};  ///< not set: the sensor's own, by HTTP
     UnitTexts units{};                         ///< for a page that does not tell them
-    /// Without a record: the sensor is lost.
-    std::chrono::milliseconds silence{20};
+    /// Records [1/s]. Not set: as the sensor's page says, else kUsualRate.
+    std::optional<double> rate{};
+    /// Without a record: the sensor is lost. Not set: silenceAt() that rate.
+    std::optional<std::chrono::milliseconds> silence{};
 };
+
+inline constexpr double kUsualRate = 1000.0;  ///< records [1/s]
+
+/// Five periods of the records, and 20 ms at least: a computer without a real-time kernel delays a
+/// thread by as much now and then.
+std::chrono::milliseconds silenceAt(double rate);
 
 /// Reads `settings`: port, http_port, rate, silence, counts_per_force and counts_per_torque, or
 /// force_unit and torque_unit.
