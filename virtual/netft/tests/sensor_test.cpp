@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace metier::virtual_netft {
@@ -22,6 +23,15 @@ TEST(Sensor, GivesCountsOfItsUnits) {
     const auto counts = other.read(kLoad).counts;
     EXPECT_NEAR(counts[0], 10.0 / 4.4482216 * 1e6, 1.0);
     EXPECT_NEAR(counts[3], 1.0 / 0.1129848 * 1e6, 10.0);
+}
+
+TEST(Sensor, KnowsTheUnitsThatWeigh) {
+    const auto sizeOf = [](std::span<const Unit> units, std::string_view name) {
+        return std::ranges::find(units, name, &Unit::name)->size;
+    };
+    EXPECT_DOUBLE_EQ(sizeOf(forceUnits(), "kgf"), 9.80665);
+    EXPECT_DOUBLE_EQ(sizeOf(forceUnits(), "gf"), 0.00980665);
+    EXPECT_DOUBLE_EQ(sizeOf(torqueUnits(), "kgf-cm"), 0.0980665);
 }
 
 TEST(Sensor, IsZeroAtTheBias) {

@@ -18,6 +18,7 @@ struct Unit {
 };
 
 constexpr double kPoundForce = 4.4482216152605;
+constexpr double kKilogramForce = 9.80665;
 constexpr double kInch = 0.0254;
 constexpr double kFoot = 0.3048;
 constexpr double kLargestCounts = 1e12;
@@ -25,14 +26,19 @@ constexpr double kHighestRate = 1e5;  // [1/s]
 constexpr std::size_t kLongestShown = 32;
 constexpr std::string_view kBlanks = " \t\r\n";
 
-constexpr std::array kForceUnits{Unit{"n", 1.0}, Unit{"kn", 1e3}, Unit{"lbf", kPoundForce},
-                                 Unit{"klbf", 1e3 * kPoundForce}};
+constexpr std::array kForceUnits{Unit{"n", 1.0},
+                                 Unit{"kn", 1e3},
+                                 Unit{"lbf", kPoundForce},
+                                 Unit{"klbf", 1e3 * kPoundForce},
+                                 Unit{"kgf", kKilogramForce},
+                                 Unit{"gf", 1e-3 * kKilogramForce}};
 constexpr std::array kTorqueUnits{
     Unit{"nm", 1.0},
     Unit{"nmm", 1e-3},
     Unit{"knm", 1e3},
     Unit{"lbfin", kPoundForce* kInch},
     Unit{"lbfft", kPoundForce* kFoot},
+    Unit{"kgfcm", 1e-2 * kKilogramForce},
 };
 
 std::string plain(std::string_view text) {

@@ -37,6 +37,9 @@ TEST(Calibration, KnowsUnitsHoweverTheyAreWritten) {
     EXPECT_DOUBLE_EQ(*torqueUnit("N-mm"), 1e-3);
     EXPECT_DOUBLE_EQ(*torqueUnit("kN-m"), 1e3);
     EXPECT_NEAR(*torqueUnit("lbf-ft"), 1.3558179483314, 1e-10);
+    EXPECT_DOUBLE_EQ(*forceUnit("kgf"), 9.80665);
+    EXPECT_DOUBLE_EQ(*forceUnit("gf"), 0.00980665);
+    EXPECT_DOUBLE_EQ(*torqueUnit("kgf-cm"), 0.0980665);
 }
 
 TEST(Calibration, RefusesUnitsThatItDoesNotKnow) {
