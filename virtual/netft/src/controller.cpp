@@ -229,7 +229,8 @@ void NetFtController::apply(const Change& change) {
 void NetFtController::handle(const UdpPort::Endpoint& from, const Request& request) {
     switch (request.command) {
         case Command::start_real_time:
-        case Command::start_buffered: {
+        case Command::start_buffered:
+        case Command::start_multi_unit: {
             const bool buffered = request.command == Command::start_buffered;
             const auto size = static_cast<std::uint32_t>(buffered ? buffer_size_ : 1);
             stream_ = Stream{from, size, request.sample_count};

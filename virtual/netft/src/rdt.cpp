@@ -8,8 +8,9 @@ namespace {
 
 constexpr std::size_t kRequestSize = 8;
 constexpr std::uint32_t kHeader = 0x1234;
-constexpr std::array kCommands{Command::stop, Command::start_real_time, Command::start_buffered,
-                               Command::reset_latch, Command::set_bias};
+constexpr std::array kCommands{Command::stop,           Command::start_real_time,
+                               Command::start_buffered, Command::start_multi_unit,
+                               Command::reset_latch,    Command::set_bias};
 
 std::uint32_t number(std::span<const std::byte> bytes) noexcept {
     std::uint32_t value = 0;

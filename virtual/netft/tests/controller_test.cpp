@@ -134,6 +134,12 @@ TEST_F(NetFt, SendsSeveralRecordsAtOnceInTheBufferedMode) {
     EXPECT_EQ(client_.next().size(), 2 * 36U);
 }
 
+TEST_F(NetFt, TakesTheStartOfSeveralSensorsForOneOfItsOwn) {
+    client_.request(4, 2);
+    EXPECT_EQ(client_.next().size(), 36U);
+    EXPECT_EQ(word(client_.next(), 0), 2U);
+}
+
 TEST_F(NetFt, ServesWhoeverAskedLast) {
     client_.request(2);
     ASSERT_FALSE(client_.next().empty());

@@ -12,9 +12,10 @@ namespace metier::virtual_netft {
 
 enum class Command : std::uint16_t {
     stop = 0x0000,
-    start_real_time = 0x0002,  ///< one record per datagram
-    start_buffered = 0x0003,   ///< several records per datagram
-    reset_latch = 0x0041,      ///< of the monitor condition
+    start_real_time = 0x0002,   ///< one record per datagram
+    start_buffered = 0x0003,    ///< several records per datagram
+    start_multi_unit = 0x0004,  ///< one, in step with other sensors; alone as in real time
+    reset_latch = 0x0041,       ///< of the monitor condition
     set_bias = 0x0042,
 };
 
