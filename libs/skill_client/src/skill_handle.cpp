@@ -242,7 +242,11 @@ Answer<> SkillHandle::call(Method method) {
         return current;
     }
     const auto& node = impl_->nodes.methods.at(static_cast<std::size_t>(method));
-    auto result = impl_->client.call(opcua::MethodCall{impl_->address.node, node, {}, impl_->boot});
+    const auto ask = [&] {
+        return impl_->client.call(opcua::MethodCall{impl_->address.node, node, {}, impl_->boot});
+    };
+    const bool begins = method == Method::start || method == Method::resume;
+    const auto result = begins ? impl_->begin(ask) : ask();
     return result ? Answer<>() : tl::unexpected(impl_->refused(result.error(), toString(method)));
 }
 
@@ -267,8 +271,10 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
 }
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
-    auto outputs = impl_->callMetier(&SkillNodes::start_with, "StartWith",
-                                     startWithInputs(request, impl_->nodes));
+    const auto outputs = impl_->begin([&] {
+        return impl_->callMetier(&SkillNodes::start_with, "StartWith",
+                                 startWithInputs(request, impl_->nodes));
+    });
     if (!outputs) {
         return tl::unexpected(outputs.error());
     }

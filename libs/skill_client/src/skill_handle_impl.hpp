@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,8 @@ struct SkillHandle::Impl {
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
     opcua::Subscription subscription{};
+    // What this handle has started or resumed, until awaitEnd() has told its end.
+    std::optional<AwaitedExecution> own{};
 
     /// Reads what the skill is like.
     opcua::Answer<> readNodes();
@@ -52,6 +55,17 @@ struct SkillHandle::Impl {
     opcua::Answer<skill::State> state();
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
     bool tellsExecutions() const { return nodes.get_execution != opcua::NodeId{}; }
+
+    /// Asks to start or resume, which awaitEnd() is then about.
+    template <typename Ask>
+    auto begin(const Ask& ask) {
+        const AwaitedExecution asked{log->mark(), client.boot()};
+        auto answer = ask();
+        if (answer) {
+            own = asked;
+        }
+        return answer;
+    }
 
     // skill_handle_outcome.cpp
 

@@ -211,19 +211,21 @@ Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
 }
 
 Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
-    auto from = impl_->log->mark();
-    const auto boot = impl_->client.boot();
+    auto [from, boot, id] =
+        impl_->own.value_or(AwaitedExecution{impl_->log->mark(), impl_->client.boot()});
     for (;;) {
         auto found = impl_->log->await(from, deadline, endsExecution);
         if (!found) {
             return tl::unexpected(found.error());
         }
         if (*found) {
+            impl_->own.reset();
             return std::move((*found)->event);
         }
         from.doubts = impl_->log->mark().doubts;
         const auto now = state();
         if (now && impl_->client.boot() != boot) {
+            impl_->own.reset();
             return tl::unexpected(failureOf(
                 Errc::execution_lost,
                 fmt::format("{}: the server was started again: what ran there was not resumed, the "
@@ -231,6 +233,7 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
                             address().name)));
         }
         if (now && isOver(*now)) {
+            impl_->own.reset();
             TransitionEvent end;  // as far as the state tells
             end.to = *now;
             end.reason_text = reasonText();
@@ -252,6 +255,7 @@ Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& parameters, Stea
     if (auto started = start(); !started) {
         return tl::unexpected(started.error());
     }
+    impl_->own.reset();  // waited for here
     return orHalt(impl_->awaitOutcome(awaited, deadline));
 }
 
@@ -266,6 +270,7 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
     }
     AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
     auto started = startWith(named);
+    impl_->own.reset();  // waited for here
     const bool unsure = !started && started.error().delivery == Delivery::unknown;
     if (!started && started.error().code == Errc::already_exists) {
         started.error().code = Errc::execution_lost;  // it began, and nothing began now

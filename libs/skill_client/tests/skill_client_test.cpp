@@ -255,6 +255,24 @@ TEST_F(SkillClient, HaltsASkillThatIsNotDoneAtItsDeadline) {
     EXPECT_TRUE(skill.awaitState(State::halted, soon()));
 }
 
+TEST_F(SkillClient, TellsTheEndOfWhatItStartedAlsoIfThatCameBefore) {
+    auto skill = open();
+    std::promise<void> ended;
+    skill.onTransition([&](const skill::TransitionEvent& event) {
+        if (event.to == State::ready) {
+            ended.set_value();
+        }
+    });
+    ASSERT_TRUE(skill.start());
+    ASSERT_EQ(ended.get_future().wait_until(soon()), std::future_status::ready);
+    const auto end = skill.awaitEnd(soon());
+    ASSERT_TRUE(end) << end.error().message;
+    EXPECT_EQ(end->to, State::ready);
+    const auto next = skill.awaitEnd(std::chrono::steady_clock::now() + 10ms);
+    ASSERT_FALSE(next) << "it was told";
+    EXPECT_EQ(next.error().code, Errc::timeout);
+}
+
 TEST_F(SkillClient, SuspendsAndResumes) {
     auto skill = open();
     behaviour_->finish_at_once = false;
