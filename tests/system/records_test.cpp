@@ -1,7 +1,6 @@
 // What servers record of executions, whichever client started them, and what is left after a crash.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -50,8 +49,7 @@ std::vector<std::string> waysOf(const RecordFile& file, const Execution& record)
 class RecordedArm : public ::testing::Test {
 protected:
     explicit RecordedArm(int disk = 0)
-        : disk_(disk == 0 || ::geteuid() != 0 ? nullptr
-                                              : std::make_unique<SmallDisk>(folder_, disk)) {}
+        : disk_(disk == 0 ? nullptr : SmallDisk::mount(folder_, disk)) {}
 
     skill::ValueMap move(double by, double speed = 1.0) const {
         auto target = home_;
@@ -232,7 +230,7 @@ protected:
 
 TEST_F(RecordedArmOnASmallDisk, MovesOnAndHaltsWhileTheDiskIsFullAndSaysSo) {
     if (disk_ == nullptr) {
-        GTEST_SKIP() << "A FULL DISK WAS NOT TESTED: to mount one needs root";
+        GTEST_SKIP() << kNoSmallDisk;
     }
     ServerEvents alarms(arm_->client(), opcua::ids::kSystemEventType);
     ASSERT_TRUE((*arm_)->startWith({.execution_id = "before", .parameters = move(0.1)}));
