@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -20,19 +21,16 @@ constexpr std::size_t kMostUnread = 64'000;
 constexpr std::uint8_t kError = 1;
 constexpr std::uint8_t kWarning = 2;
 
+/// Names of a recipe. One comma may follow the last of them: there are clients that write one
+/// behind each name.
 std::vector<std::string> split(std::string_view list) {
     std::vector<std::string> names;
-    if (list.empty()) {
-        return names;
-    }
-    while (true) {
-        const auto comma = list.find(',');
+    while (!list.empty()) {
+        const auto comma = std::min(list.find(','), list.size());
         names.emplace_back(list.substr(0, comma));
-        if (comma == std::string_view::npos) {
-            return names;
-        }
-        list.remove_prefix(comma + 1);
+        list.remove_prefix(std::min(comma + 1, list.size()));
     }
+    return names;
 }
 
 std::string join(const std::vector<std::string>& types) {

@@ -88,6 +88,34 @@ TEST_F(RtdeSessionTest, AnOutputThatIsNotFoundMakesTheRecipeInvalid) {
     EXPECT_THAT(peer_.sent, IsEmpty());
 }
 
+// As ur_rtde writes its recipes.
+TEST_F(RtdeSessionTest, OneCommaMayFollowTheLastOutput) {
+    EXPECT_EQ(answer(bytes({0, 24, 'O'}, "timestamp,robot_mode,")),
+              bytes({0, 15, 'O'}, "DOUBLE,INT32"));
+    EXPECT_EQ(answer(bytes({0, 3, 'S'})), bytes({0, 4, 'S', 1}));
+    EXPECT_EQ(answer(bytes({0, 25, 'O'}, "timestamp,robot_mode,,")),
+              bytes({0, 25, 'O'}, "DOUBLE,INT32,NOT_FOUND"));
+    EXPECT_EQ(answer(bytes({0, 25, 'O'}, "timestamp,,robot_mode,")),
+              bytes({0, 25, 'O'}, "DOUBLE,NOT_FOUND,INT32"));
+    EXPECT_EQ(answer(bytes({0, 4, 'O'}, ",")), bytes({0, 12, 'O'}, "NOT_FOUND"));
+    negotiate2();
+    const Bytes rate = bytes({0x40, 0x7F, 0x40, 0, 0, 0, 0, 0});
+    EXPECT_EQ(answer(joined({bytes({0, 21, 'O'}), rate, bytes({}, "timestamp,")})),
+              bytes({0, 10, 'O', 1}, "DOUBLE"));
+    EXPECT_EQ(answer(bytes({0, 3, 'S'})), bytes({0, 4, 'S', 1}));
+    EXPECT_EQ(answer(joined({bytes({0, 22, 'O'}), rate, bytes({}, ",timestamp,")})),
+              bytes({0, 20, 'O', 0}, "NOT_FOUND,DOUBLE"));
+}
+
+TEST_F(RtdeSessionTest, OneCommaMayFollowTheLastInput) {
+    EXPECT_EQ(answer(bytes({0, 24, 'I'}, "input_int_register_0,")), bytes({0, 9, 'I', 1}, "INT32"));
+    answer(bytes({0, 8, 'U', 1, 0, 0, 0, 7}));
+    EXPECT_EQ(state_.inputs.integers[0], 7);
+    EXPECT_THAT(written_, ElementsAre("input_int_register_0"));
+    EXPECT_EQ(answer(bytes({0, 25, 'I'}, "input_int_register_1,,")),
+              bytes({0, 19, 'I', 0}, "INT32,NOT_FOUND"));
+}
+
 TEST_F(RtdeSessionTest, Version2DividesTheRate) {
     negotiate2();
     // 125 Hz of 500.
@@ -131,8 +159,8 @@ TEST_F(RtdeSessionTest, AClientThatDoesNotReadGetsNoFurtherSamples) {
 
 TEST_F(RtdeSessionTest, InputsOfSeveralRecipesAreTakenAndKept) {
     EXPECT_EQ(answer(bytes({0, 23, 'I'}, "input_int_register_0")), bytes({0, 9, 'I', 1}, "INT32"));
-    EXPECT_EQ(answer(bytes({0, 50, 'I'}, "input_double_register_5,input_bit_register_127,")),
-              bytes({0, 25, 'I', 0}, "DOUBLE,BOOL,NOT_FOUND"));
+    EXPECT_EQ(answer(bytes({0, 51, 'I'}, "input_double_register_5,,input_bit_register_127,")),
+              bytes({0, 25, 'I', 0}, "DOUBLE,NOT_FOUND,BOOL"));
     EXPECT_EQ(answer(bytes({0, 48, 'I'}, "input_double_register_5,input_bit_register_64")),
               bytes({0, 15, 'I', 2}, "DOUBLE,BOOL"));
     EXPECT_EQ(answer(bytes({0, 8, 'U', 1, 0xFF, 0xFF, 0xFF, 0xFE})), Bytes{});
