@@ -232,8 +232,22 @@ bool Parser::isPose() const {
     if (peek().text != "p" || peek(1).kind != Kind::left_bracket) {
         return false;
     }
-    return !builder_.isVariable("p") || peek(3).kind == Kind::comma ||
-           peek(2).kind == Kind::minus || peek(4).kind == Kind::comma;
+    return !builder_.isVariable("p") || valuesWithin(2) == kPoseElements;
+}
+
+/// How many values the bracket holds whose first token is `ahead`.
+std::size_t Parser::valuesWithin(std::size_t ahead) const {
+    std::size_t values = 1;
+    for (int depth = 1; peek(ahead).kind != Kind::end_of_text; ++ahead) {
+        const Kind kind = peek(ahead).kind;
+        depth += kind == Kind::left_bracket || kind == Kind::left_paren ? 1 : 0;
+        depth -= kind == Kind::right_bracket || kind == Kind::right_paren ? 1 : 0;
+        if (depth == 0) {
+            break;
+        }
+        values += depth == 1 && kind == Kind::comma ? 1 : 0;
+    }
+    return values;
 }
 
 Result<void> Parser::pose() {

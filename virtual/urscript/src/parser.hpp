@@ -66,6 +66,7 @@ private:
     /// Expressions up to `end`, separated by commas; how many there were.
     Result<std::size_t> expressions(TokenKind end, std::size_t most);
     bool isPose() const;
+    std::size_t valuesWithin(std::size_t ahead) const;
 
     Result<void> nested(Step step);
 

@@ -62,6 +62,9 @@ TEST(UrscriptLanguage, ReadsAndWritesElements) {
     EXPECT_EQ(resultOf("a = p[1, 2, 3, 4, 5, 6]\na[2] = 0.5\nresult = a"), "p[1, 2, 0.5, 4, 5, 6]");
     EXPECT_EQ(resultOf("p = [7, 8]\nresult = p[1]"), "8");
     EXPECT_EQ(resultOf("p = [7, 8]\ni = 0\nresult = p[i + 1]"), "8");
+    EXPECT_EQ(resultOf("p = [7, 8]\nresult = [p[1], p[0], norm(p[0])]"), "[8, 7, 7]");
+    EXPECT_EQ(resultOf("p = [[7, 8], [9, 10]]\nresult = p[1, 0]"), "9");
+    EXPECT_EQ(resultOf("p = 5\nresult = p[p, 0, (1), 0, [2, 3][0], -p]"), "p[5, 0, 1, 0, 2, -5]");
     EXPECT_EQ(resultOf("result = [1, 2, 3][1]"), "2");
 }
 
