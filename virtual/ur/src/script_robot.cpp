@@ -58,6 +58,9 @@ struct StateSetter {
         state.payload_cog = payload.cog.value_or(state.payload_cog);
         state.payload_inertia = payload.inertia.value_or(state.payload_inertia);
     }
+    void operator()(const urscript::SetTargetPayload& payload) const {
+        (*this)(static_cast<const urscript::SetPayload&>(payload));  // at once
+    }
     void operator()(const urscript::SetGravity& gravity) const { state.gravity = gravity.gravity; }
     void operator()(const urscript::SetToolVoltage& tool) const {
         state.io.tool_voltage = tool.voltage;
