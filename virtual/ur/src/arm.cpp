@@ -73,8 +73,7 @@ Arm::Arm(const motion::RobotModel& model, const ArmOptions& options)
 }
 
 void Arm::reset(const Vector6& position) {
-    motion_.reset();
-    servo_ = nullptr;
+    forget();
     braking_ = false;
     target_ = {position, {}};
     acceleration_ = {};
@@ -89,17 +88,37 @@ void Arm::servo(const Vector6& target, double duration, double lag) {
     }
     if (servo_ == nullptr) {
         auto motion = std::make_unique<ServoMotion>(target_);
-        servo_ = motion.get();
-        motion_ = std::move(motion);
+        auto* const servo = motion.get();
+        begin(std::move(motion));
+        servo_ = servo;
     }
     servo_->retarget(target, duration, lag);
 }
 
+void Arm::servoLine(const geometry::Pose& base_from_target, const PathSpeed& speed) {
+    if (braking_) {
+        return;
+    }
+    if (line_servo_ == nullptr) {
+        auto motion = std::make_unique<LineServo>(target_);
+        auto* const servo = motion.get();
+        begin(std::move(motion));
+        line_servo_ = servo;
+    }
+    line_servo_->retarget(base_from_target, speed, tool());
+}
+
 void Arm::begin(std::unique_ptr<Motion> motion) {
     if (!braking_) {
-        servo_ = nullptr;
+        forget();
         motion_ = std::move(motion);
     }
+}
+
+void Arm::forget() {
+    motion_.reset();
+    servo_ = nullptr;
+    line_servo_ = nullptr;
 }
 
 void Arm::beginStanding(FromStandstill motion, double stop_acceleration) {
@@ -148,8 +167,7 @@ std::optional<ArmViolation> Arm::follow(double step) {
         if (braking_) {
             guard_.reset(toArray(target_.position));
         }
-        motion_.reset();
-        servo_ = nullptr;
+        forget();
         braking_ = false;
     }
     return std::nullopt;
@@ -169,6 +187,15 @@ ArmViolation Arm::beyondLimit(std::size_t axis) const {
     const double limit = options_.limits[axis].upper;
     return toViolation(
         {virtual_robots::Violation::Quantity::position, axis, limit + kBeyond, limit});
+}
+
+bool Arm::withinLimits(const Vector6& position) const {
+    for (std::size_t i = 0; i < kAxes; ++i) {
+        if (!(position[i] >= options_.limits[i].lower && position[i] <= options_.limits[i].upper)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 JointState Arm::actual() const {

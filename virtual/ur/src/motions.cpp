@@ -14,6 +14,8 @@ namespace {
 constexpr double kDamping = 1e-6;
 // A servo that is so near is there: an exponential alone would never arrive [rad].
 constexpr double kArrived = 1e-9;
+// A tool that is so near is there [m].
+constexpr double kThere = 1e-9;
 // A shorter line is a turn on the spot [m].
 constexpr double kOnTheSpot = 1e-6;
 
@@ -121,6 +123,30 @@ using Twist = Eigen::Matrix<double, 6, 1>;
 // However hard a script asks the tool to accelerate, its joints do not do more [rad/s2]; believed.
 constexpr double kTwistRamp = 20.0;
 
+/// Of the tool's origin, in the base frame.
+Eigen::Matrix<double, 6, 6> toolJacobian(const ToolKinematics& tool, const motion::JointVector& q) {
+    Eigen::Matrix<double, 6, 6> jacobian = tool.arm.jacobian(q);
+    const Eigen::Vector3d arm = tool.arm.forward(q).rotation * tool.flange_from_tool.translation;
+    for (Eigen::Index axis = 0; axis < 6; ++axis) {
+        const Eigen::Vector3d turn = jacobian.block<3, 1>(3, axis);
+        jacobian.block<3, 1>(0, axis) += turn.cross(arm);
+    }
+    return jacobian;
+}
+
+/// Axes near `near` that put the tool there; empty if there are none.
+std::optional<Vector6> axesAt(const ToolKinematics& tool, const geometry::Pose& base_from_tool,
+                              const Vector6& near) {
+    const auto solution = tool.arm.solutionNear(base_from_tool * tool.flange_from_tool.inverse(),
+                                                toJointVector(near), 0.0);
+    if (solution.size() != kAxes) {
+        return std::nullopt;
+    }
+    Vector6 result{};
+    std::copy(solution.begin(), solution.end(), result.begin());
+    return result;
+}
+
 class SpeedL final : public Motion {
 public:
     struct Wanted {
@@ -132,7 +158,7 @@ public:
         : wanted_(wanted), left_(wanted.duration), tool_(tool) {}
 
     std::optional<Vector6> next(const JointState& now, double step) override {
-        const auto jacobian = toolJacobian(toJointVector(now.position));
+        const auto jacobian = toolJacobian(tool_, toJointVector(now.position));
         if (!twist_) {
             twist_ = jacobian * Eigen::Map<const Twist>(now.velocity.data());
         }
@@ -152,17 +178,6 @@ public:
     bool done() const override { return wanted_.duration > 0.0 ? left_ < kRounding : reached_; }
 
 private:
-    Eigen::Matrix<double, 6, 6> toolJacobian(const motion::JointVector& q) const {
-        Eigen::Matrix<double, 6, 6> jacobian = tool_.arm.jacobian(q);
-        const Eigen::Vector3d arm =
-            tool_.arm.forward(q).rotation * tool_.flange_from_tool.translation;
-        for (Eigen::Index axis = 0; axis < 6; ++axis) {
-            const Eigen::Vector3d turn = jacobian.block<3, 1>(3, axis);
-            jacobian.block<3, 1>(0, axis) += turn.cross(arm);
-        }
-        return jacobian;
-    }
-
     Wanted wanted_;
     double left_;
     ToolKinematics tool_;
@@ -217,10 +232,7 @@ public:
         double length = 0.0;
     };
     MoveL(const Line& line, const PathSpeed& speed, const ToolKinematics& tool)
-        : line_(line),
-          profile_(line.length, speed),
-          tool_(tool),
-          tool_from_flange_(tool.flange_from_tool.inverse()) {}
+        : line_(line), profile_(line.length, speed), tool_(tool) {}
 
     std::optional<Vector6> next(const JointState& now, double step) override {
         time_ += step;
@@ -230,14 +242,7 @@ public:
         const geometry::Pose base_from_tool{
             start.translation + share * (line_.target.translation - start.translation),
             geometry::slerp(start.rotation, line_.target.rotation, share)};
-        const auto solution = tool_.arm.solutionNear(base_from_tool * tool_from_flange_,
-                                                     toJointVector(now.position), 0.0);
-        if (solution.size() != kAxes) {
-            return std::nullopt;
-        }
-        Vector6 result{};
-        std::copy(solution.begin(), solution.end(), result.begin());
-        return result;
+        return axesAt(tool_, base_from_tool, now.position);
     }
     bool done() const override { return profile_.over(time_); }
 
@@ -245,7 +250,6 @@ private:
     Line line_;
     Trapezoid profile_;
     ToolKinematics tool_;
-    geometry::Pose tool_from_flange_;
     double time_ = 0.0;
 };
 
@@ -274,6 +278,52 @@ std::optional<Vector6> ServoMotion::next(const JointState& now, double step) {
         }
     }
     return result;
+}
+
+void LineServo::retarget(const geometry::Pose& base_from_target, const PathSpeed& speed,
+                         const ToolKinematics& tool) {
+    base_from_target_ = base_from_target;
+    speed_ = speed;
+    tool_.emplace(tool);
+    waited_ = false;
+}
+
+LineServo::Twist LineServo::wanted(const Twist& way, double step) const {
+    const double length = way.norm();
+    if (length == 0.0) {
+        return Twist::Zero();
+    }
+    // The most from which the tool can still stop at the target in whole steps.
+    const double change = speed_.acceleration * step;
+    const double stoppable =
+        std::sqrt(2.0 * speed_.acceleration * length + 0.25 * change * change) - 0.5 * change;
+    return way * (std::min({speed_.velocity, stoppable, length / step}) / length);
+}
+
+std::optional<Vector6> LineServo::next(const JointState& now, double step) {
+    waited_ = true;
+    const auto q = toJointVector(now.position);
+    const auto base_from_tool = tool_->arm.forward(q) * tool_->flange_from_tool;
+    if (!twist_) {
+        twist_ = toolJacobian(*tool_, q) * Eigen::Map<const Twist>(start_velocity_.data());
+        twist_->tail<3>() *= kTurnRadius;
+    }
+    Twist way;
+    way << base_from_target_.translation - base_from_tool.translation,
+        kTurnRadius *
+            geometry::rotationVectorBetween(base_from_tool.rotation, base_from_target_.rotation);
+    const double most = speed_.acceleration * step;
+    if (way.norm() < kThere && twist_->norm() <= most) {
+        twist_->setZero();
+        return now.position;
+    }
+    const Twist change = wanted(way, step) - *twist_;
+    *twist_ += change.norm() > most ? Twist(change * (most / change.norm())) : change;
+    const geometry::Pose next{
+        base_from_tool.translation + twist_->head<3>() * step,
+        geometry::fromRotationVector(twist_->tail<3>() * (step / kTurnRadius)) *
+            base_from_tool.rotation};
+    return axesAt(*tool_, next, now.position);
 }
 
 std::unique_ptr<Motion> speedJ(const Vector6& velocity, double acceleration, double duration) {

@@ -20,6 +20,9 @@ constexpr double kFirstSecond = 64.0;
 // From the maker's list of errors: a script came while the arm is in local control.
 constexpr std::int32_t kReadOnlyInterface = 210;
 
+// Which code the controller has for a stop that a program asks for is not known.
+constexpr int kProgramsStop = 0;
+
 std::string_view trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(kSpace);
     if (first == std::string_view::npos) {
@@ -47,6 +50,7 @@ Robot::Robot(RobotOptions options, Surroundings around)
 void Robot::begin() {
     state_ = {};
     control_ = {};
+    asked_ = {};
     state_.cycle = static_cast<std::uint64_t>(std::llround(kFirstSecond * rate_));
     state_.timestamp = kFirstSecond;
     arm_.reset(options_.arm.start);
@@ -61,7 +65,7 @@ void Robot::begin() {
                 now(), {popup.title, popup.text, popup.level == urscript::Popup::Level::warning,
                         popup.level == urscript::Popup::Level::error, popup.blocking}));
         },
-        [this] { powerOff(); }});
+        [this] { asked_.power_down = true; }, [this] { asked_.protective_stop = true; }});
     programs_.emplace(*script_robot_, state_,
                       [this](const Bytes& message) { around_.tell(message); });
     publish();
@@ -84,6 +88,7 @@ void Robot::cycle() {
     state_.timestamp = static_cast<double>(state_.cycle) / rate_;
     modes_->step(options_.arm.cycle, arm_.standing());
     programs_->step(arm_.standing());
+    doAsked();
     state_.speed_scaling = programs_->timeShare();
     if (const auto violation = arm_.cycle(state_.speed_scaling * state_.speed_slider)) {
         protectiveStop(*violation);
@@ -92,6 +97,16 @@ void Robot::cycle() {
     publish();
     around_.world.report(
         {.base_from_flange = arm_.model().kinematics().forward(toJointVector(state_.actual_q))});
+}
+
+void Robot::doAsked() {
+    const auto asked = std::exchange(asked_, {});
+    if (asked.protective_stop) {
+        protectiveStop({kProgramsStop, "the program asked for it"});
+    }
+    if (asked.power_down) {
+        powerOff();
+    }
 }
 
 void Robot::watchSafety() {

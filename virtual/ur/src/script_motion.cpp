@@ -41,6 +41,24 @@ Result<Vector6> solve(const Arm& arm, const geometry::Pose& base_from_flange, co
     });
 }
 
+/// Of the tool's origin, in the base frame.
+geometry::Pose poseOf(const ToolKinematics& tool, const Target& target) {
+    if (const auto* q = std::get_if<Vector6>(&target)) {
+        return tool.arm.forward(toJointVector(*q)) * tool.flange_from_tool;
+    }
+    return toPose(std::get<urscript::Pose>(target).value);
+}
+
+/// Where a move goes; empty for what is none.
+struct Destination {
+    std::optional<Target> operator()(const urscript::Move& move) const { return move.target; }
+    template <typename Other>
+    std::enable_if_t<!std::is_base_of_v<urscript::Move, Other>, std::optional<Target>> operator()(
+        const Other&) const {
+        return std::nullopt;
+    }
+};
+
 /// Begins each kind of motion.
 class Starter {
 public:
@@ -73,6 +91,12 @@ public:
     Result<void> operator()(const urscript::MoveL& move) { return line(move, pathOf(move)); }
     Result<void> operator()(const urscript::MoveP& move) { return line(move, pathOf(move)); }
     Result<void> operator()(const urscript::MoveC& move) { return line(move, pathOf(move)); }
+    Result<void> operator()(const urscript::ServoC& servo) {
+        return pose(servo.target).map([&](const geometry::Pose& target) {
+            arm_.servoLine(
+                target, {positive(servo.velocity, 0.25), positive(servo.acceleration, 1.2), 0.0});
+        });
+    }
     Result<void> operator()(const urscript::OptimoveJ& move) {
         // Shares of what the arm can do; its slowest axis stands for all.
         const auto& limits = arm_.model().limits(0);
@@ -124,21 +148,17 @@ private:
         return {};
     }
     Result<void> line(const urscript::Move& move, const PathSpeed& speed) {
-        const auto tool = arm_.tool();
-        geometry::Pose target;
-        if (const auto* q = std::get_if<Vector6>(&move.target)) {
-            target = tool.arm.forward(toJointVector(*q)) * tool.flange_from_tool;
-        } else {
-            target = toPose(std::get<urscript::Pose>(move.target).value);
-        }
-        // A target that no axes reach is refused before the arm moves.
-        if (const auto solved = jointTarget(move.target); !solved) {
-            return fail(solved.error());
-        }
-        arm_.beginStanding([target, speed, tool](
-                               const Vector6& start) { return moveL(start, target, speed, tool); },
-                           kStopBeforeMove);
-        return {};
+        return pose(move.target).map([&](const geometry::Pose& target) {
+            arm_.beginStanding(
+                [target, speed, tool = arm_.tool()](const Vector6& start) {
+                    return moveL(start, target, speed, tool);
+                },
+                kStopBeforeMove);
+        });
+    }
+    /// Of the tool; a target that no axes reach is refused before the arm moves.
+    Result<geometry::Pose> pose(const Target& target) const {
+        return jointTarget(target).map([&](const Vector6&) { return poseOf(arm_.tool(), target); });
     }
     Result<Vector6> jointTarget(const Target& target) const {
         const auto* q = std::get_if<Vector6>(&target);
@@ -188,6 +208,7 @@ void ScriptRobot::endCycle() {
 void ScriptRobot::resumeMotion() {
     // A servo is fed by its program, and a stop was done.
     const bool once = motion_ && !std::holds_alternative<urscript::ServoJ>(*motion_) &&
+                      !std::holds_alternative<urscript::ServoC>(*motion_) &&
                       !std::holds_alternative<urscript::StopJ>(*motion_) &&
                       !std::holds_alternative<urscript::StopL>(*motion_);
     if (once) {
@@ -203,6 +224,22 @@ Result<Vector6> ScriptRobot::inverseKinematics(const urscript::Pose& base_from_t
     }
     return solve(parts_.arm,
                  toPose(base_from_tool.value) * toPose(flange_from_tool.value).inverse(), near);
+}
+
+bool ScriptRobot::withinLimits(const Target& target) const {
+    if (const auto* q = std::get_if<Vector6>(&target)) {
+        return isFinite(*q) && parts_.arm.withinLimits(*q);
+    }
+    return inverseKinematics(std::get<urscript::Pose>(target), parts_.arm.target().position,
+                             seen_.flange_from_tool)
+        .has_value();
+}
+
+urscript::Pose ScriptRobot::targetWaypoint() const {
+    const bool going = motion_ && !parts_.arm.motionDone();
+    const auto target = going ? std::visit(Destination(), *motion_) : std::nullopt;
+    return target ? urscript::Pose{toVector(poseOf(parts_.arm.tool(), *target))}
+                  : seen_.target_tool_pose;
 }
 
 Result<urscript::Pose> ScriptRobot::forwardKinematics(

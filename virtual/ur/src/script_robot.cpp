@@ -112,6 +112,7 @@ void ScriptRobot::beginCycle() {
     seen_.flange_from_tool = Pose{state.tcp_offset};
     seen_.payload_mass = state.payload;
     seen_.payload_cog = state.payload_cog;
+    seen_.payload_inertia = state.payload_inertia;
     seen_.time = state.timestamp;
     seen_.steady = parts_.arm.standing();
 
@@ -153,6 +154,8 @@ Result<void> ScriptRobot::apply(const urscript::Command& command) {
         }
     } else if (std::holds_alternative<urscript::PowerDown>(command)) {
         parts_.power_down();
+    } else if (std::holds_alternative<urscript::ProtectiveStop>(command)) {
+        parts_.protective_stop();
     } else {
         std::visit(StateSetter{parts_.state}, command);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "metier/geometry/rotation.hpp"
 #include "robot_fixture.hpp"
 
 namespace metier::virtual_ur {
@@ -193,6 +194,71 @@ TEST(Motions, AServoArrivesAtASetPointThatStands) {
     }
     EXPECT_EQ(drive.now.position, shifted(kHome, 0.01));
     EXPECT_EQ(drive.now.velocity, Vector6{});
+}
+
+TEST(Motions, ALineServoArrivesWithinItsSpeedsAndRests) {
+    const auto model = modelOf("ur5");
+    const ToolKinematics tool{model.kinematics(), toPose({0.05, 0.0, 0.1, 0.0, 0.0, 0.0})};
+    const auto poseOf = [&](const Vector6& q) {
+        return model.kinematics().forward(toJointVector(q)) * tool.flange_from_tool;
+    };
+    const auto start = poseOf(kHome);
+    auto target = start;
+    target.translation += Eigen::Vector3d(0.0, 0.1, -0.05);
+    target.rotation = toPose({0.0, 0.0, 0.0, 0.0, 0.0, 0.4}).rotation * target.rotation;
+    LineServo motion({kHome, {}});
+    Drive drive{{kHome, {}}};
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    int cycles = 0;
+    do {
+        motion.retarget(target, {0.2, 1.0, 0.0}, tool);
+        const auto before = poseOf(drive.now.position);
+        ASSERT_TRUE(drive.step(motion));
+        EXPECT_TRUE(motion.done());
+        const Eigen::Vector3d after =
+            (poseOf(drive.now.position).translation - before.translation) / kStep;
+        EXPECT_LE(after.norm(), 0.2 + 1e-6);
+        EXPECT_LE((after - velocity).norm() / kStep, 1.0 + 1e-3);
+        velocity = after;
+    } while (drive.now.velocity != Vector6{} && ++cycles < 1000);
+    EXPECT_LT(geometry::distanceBetween(poseOf(drive.now.position), target), 1e-8);
+    EXPECT_LT(geometry::rotationAngleBetween(poseOf(drive.now.position).rotation, target.rotation),
+              1e-7);
+    // 0.119 m, the turn counted as 0.04 m across it.
+    EXPECT_NEAR(cycles * kStep, 0.1188 / 0.2 + 0.2 / 1.0, 0.03);
+}
+
+TEST(Motions, ALineServoTakesOverFromAMovingArmWithoutAJump) {
+    const auto model = modelOf("ur5");
+    const ToolKinematics tool{model.kinematics(), {}};
+    const Vector6 moving{0.3, 0.0, 0.0, 0.0, 0.0, 0.0};
+    auto target = model.kinematics().forward(toJointVector(kHome));
+    target.translation += Eigen::Vector3d(0.1, 0.0, 0.0);
+    LineServo motion({kHome, moving});
+    Drive drive{{kHome, moving}};
+    motion.retarget(target, {0.25, 1.2, 0.0}, tool);
+    do {
+        ASSERT_TRUE(drive.step(motion));
+    } while (drive.now.velocity != Vector6{} && drive.cycles < 1000);
+    EXPECT_LT(drive.cycles, 1000U);
+    EXPECT_LT(drive.hardest, 10.0);
+    EXPECT_LT(geometry::distanceBetween(
+                  model.kinematics().forward(toJointVector(drive.now.position)), target),
+              1e-8);
+}
+
+TEST(Motions, ALineServoOutOfReachGivesNoSetPoint) {
+    const auto model = modelOf("ur5");
+    auto target = model.kinematics().forward(toJointVector(kHome));
+    target.translation += Eigen::Vector3d(0.0, 0.0, 2.0);
+    LineServo motion({kHome, {}});
+    Drive drive{{kHome, {}}};
+    motion.retarget(target, {0.25, 1.2, 0.0}, {model.kinematics(), {}});
+    bool followed = true;
+    while (followed && drive.cycles < 2000) {
+        followed = drive.step(motion);
+    }
+    EXPECT_FALSE(followed);
 }
 
 TEST(Motions, AServoTakesOverFromAMovingArmWithoutAJump) {

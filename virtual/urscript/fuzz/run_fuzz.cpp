@@ -96,6 +96,7 @@ private:
                                                                "socket_read_line",
                                                                "socket_read_string",
                                                                "tool_contact",
+                                                               "is_within_safety_limits",
                                                                "get_joint_temp"});
         constexpr auto kTwo = std::to_array<std::string_view>(
             {"pow", "log", "atan2", "str_cat", "str_at", "str_find", "str_sub", "make_list",
@@ -125,8 +126,9 @@ private:
             case 3:
                 return std::string(oneOf(std::to_array<std::string_view>(
                     {"sync()\n", "a = run t()\n", "kill a\n", "join a\n", "halt\n", "sleep(a)\n",
-                     "movej(c)\n", "stopj(b)\n", "popup(a, blocking=b)\n", "local d = 5\n",
-                     "textmsg(a, c)\n", "set_payload(a, c)\n", "enter_critical\n"})));
+                     "movej(c)\n", "servoc(c, b)\n", "stopj(b)\n", "popup(a, blocking=b)\n",
+                     "local d = 5\n", "textmsg(a, c)\n", "set_payload(a, c)\n",
+                     "enter_critical\n"})));
             case 4:
                 return call(0) + "\n";
             case 5:

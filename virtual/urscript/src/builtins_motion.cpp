@@ -116,6 +116,7 @@ std::span<const Builtin> motionBuiltins() {
          [](Call& call) { return untimedMove<OptimoveJ>(call, kShare); }},
         {"optimovel", "pose a v r", 1,
          [](Call& call) { return untimedMove<OptimoveL>(call, kShare); }},
+        {"servoc", "pose a v r", 1, [](Call& call) { return untimedMove<ServoC>(call, kLinear); }},
         {"servoj", "q a v t lookahead_time gain", 1, servoj},
         {"speedj", "qd a t", 1, speedj},
         {"speedl", "xd a t aRot", 1, speedl},

@@ -115,6 +115,7 @@ std::span<const Builtin> settingBuiltins() {
         {"ft_rtde_input_enable", kSensor, 1, forceSensorInput},
         {"position_deviation_warning", "enabled threshold", 1, other},
         {"powerdown", "", 0, simple<PowerDown>},
+        {"protective_stop", "", 0, simple<ProtectiveStop>},
         {"reset_revolution_counter", "qNear", 0, other},
         {"rtde_set_watchdog", "variable_name min_frequency action", 2, watchdog},
         {"set_analog_inputrange", "port range", 2, analogDomain<Port::standard_input>},

@@ -6,6 +6,9 @@
 namespace metier::urscript {
 namespace {
 
+/// Of freedrive: 1 and 2 would be near a singular place, and too near.
+constexpr std::int32_t kFarFromSingular = 0;
+
 /// One item of the robot's state.
 template <auto item>
 Value get(Call& call) {
@@ -64,6 +67,11 @@ Value forward(Call& call) {
     return call.checked(call.robot().forwardKinematics(joint_position, flange_from_tool));
 }
 
+Value withinLimits(Call& call) {
+    const Target target = call.target(0);
+    return call.ok() ? Value(call.robot().withinLimits(target)) : Value();
+}
+
 Value history(Call& call) {
     const int steps = call.integer(0, 0);
     return call.ok() ? call.checked(call.robot().jointPositionHistory(steps)) : Value();
@@ -88,6 +96,7 @@ std::span<const Builtin> stateBuiltins() {
         {"get_actual_tcp_speed", "", 0, get<&State::actual_twist>},
         {"get_actual_tool_flange_pose", "", 0, flangePose},
         {"get_forward_kin", "q tcp", 0, forward},
+        {"get_freedrive_status", "", 0, [](Call&) { return Value(kFarFromSingular); }},
         {"get_inverse_kin", kInverse, 1, [](Call& call) { return call.checked(solve(call)); }},
         {"get_inverse_kin_has_solution", kInverse, 1,
          [](Call& call) { return Value(solve(call).has_value()); }},
@@ -99,13 +108,17 @@ std::span<const Builtin> stateBuiltins() {
         {"get_target_joint_speeds", "", 0, get<&State::target_joint_velocity>},
         {"get_target_payload", "", 0, get<&State::payload_mass>},
         {"get_target_payload_cog", "", 0, payloadCog},
+        {"get_target_payload_inertia", "", 0, get<&State::payload_inertia>},
         {"get_target_tcp_pose", "", 0, get<&State::target_tool_pose>},
         {"get_target_tcp_speed", "", 0, get<&State::target_twist>},
+        {"get_target_waypoint", "", 0,
+         [](Call& call) { return Value(call.robot().targetWaypoint()); }},
         {"get_tcp_force", "", 0, get<&State::wrench>},
         {"get_tcp_offset", "", 0, get<&State::flange_from_tool>},
         {"get_tcp_pose", "", 0, get<&State::actual_tool_pose>},
         {"get_tcp_speed", "", 0, get<&State::actual_twist>},
         {"is_steady", "", 0, get<&State::steady>},
+        {"is_within_safety_limits", "pose", 1, withinLimits},
         {"tool_contact", "direction", 0, contact},
     };
     return kAll;

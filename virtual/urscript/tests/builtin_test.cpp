@@ -141,6 +141,22 @@ TEST(UrscriptState, KinematicsAreTheRobots) {
     EXPECT_EQ(resultOf("result = get_forward_kin()", robot), "p[0.25, 0, 0, 0, 0, 0]");
 }
 
+TEST(UrscriptState, WhereTheArmMayBeAndWhereItGoesAreTheRobots) {
+    FakeRobot robot;
+    robot.waypoint = {{0.4, 0, 0, 0, 0, 0}};
+    robot.now.payload_inertia = {1, 2, 3, 0, 0, 0.5};
+    EXPECT_EQ(resultOf("result = [is_within_safety_limits(p[0.5,0,0,0,0,0]), "
+                       "is_within_safety_limits(p[1.5,0,0,0,0,0]), "
+                       "is_within_safety_limits([0.5,0,0,0,0,0]), "
+                       "is_within_safety_limits([1.5,0,0,0,0,0])]",
+                       robot),
+              "[True, False, True, False]");
+    EXPECT_THAT(resultOf("is_within_safety_limits(1)"), HasSubstr("a list of 6 numbers, not int"));
+    EXPECT_EQ(resultOf("result = get_target_waypoint()", robot), "p[0.4, 0, 0, 0, 0, 0]");
+    EXPECT_EQ(resultOf("result = get_target_payload_inertia()", robot), "[1, 2, 3, 0, 0, 0.5]");
+    EXPECT_EQ(resultOf("result = get_freedrive_status()", robot), "0");
+}
+
 TEST(UrscriptSetting, CommandsReachTheRobot) {
     FakeRobot robot;
     resultOf("set_payload(1.5, [0, 0, 0.1])", robot);
@@ -168,6 +184,8 @@ TEST(UrscriptSetting, CommandsReachTheRobot) {
     EXPECT_EQ(robot.lastCommand<ForceSensorInput>().cog[2], 0.1);
     resultOf("rtde_set_watchdog(\"input_double_register_0\", 1, \"stop\")", robot);
     EXPECT_EQ(robot.lastCommand<RtdeWatchdog>().action, "stop");
+    resultOf("protective_stop()", robot);
+    EXPECT_TRUE(std::holds_alternative<ProtectiveStop>(robot.commands.back()));
     EXPECT_THAT(resultOf("rtde_set_watchdog(\"a\", 1, \"run\")", robot),
                 HasSubstr("'run' is not ignore, pause or stop"));
 }
@@ -250,6 +268,10 @@ TEST(UrscriptMotion, FillsInTheDefaultsOfTheManual) {
     resultOf("servoj([0,0,0,0,0,0], 0, 0, 0.008, 0.03, 2000)", robot);
     EXPECT_EQ(robot.lastMotion<ServoJ>().lookahead_time, 0.03);
     EXPECT_EQ(robot.lastMotion<ServoJ>().gain, 2000);
+    resultOf("servoc(p[.1,0,0,0,0,0], r=0.01)", robot);
+    EXPECT_EQ(std::get<Pose>(robot.lastMotion<ServoC>().target).value[0], 0.1);
+    EXPECT_EQ(robot.lastMotion<ServoC>().acceleration, 1.2);
+    EXPECT_EQ(robot.lastMotion<ServoC>().velocity, 0.25);
     resultOf("servoj([0,0,0,0,0,0], t=0.002)", robot);
     EXPECT_EQ(robot.lastMotion<ServoJ>().time, 0.002);
     EXPECT_EQ(robot.lastMotion<ServoJ>().gain, 300);

@@ -112,6 +112,12 @@ Result<Pose> FakeRobot::forwardKinematics(const Vector6& joint_position,
     return pose;
 }
 
+bool FakeRobot::withinLimits(const Target& target) const {
+    const auto* pose = std::get_if<Pose>(&target);
+    return pose != nullptr ? inverseKinematics(*pose, {}, {}).has_value()
+                           : std::abs(std::get<Vector6>(target)[0]) < 1.0;
+}
+
 Result<std::int32_t> FakeRobot::integerRegister(RegisterBank bank, int index) const {
     return read(bank == RegisterBank::input ? input_integers : output_integers, index);
 }

@@ -51,6 +51,8 @@ public:
                                       const Pose& flange_from_tool) const override;
     Result<Pose> forwardKinematics(const Vector6& joint_position,
                                    const Pose& flange_from_tool) const override;
+    bool withinLimits(const Target& target) const override;
+    Pose targetWaypoint() const override { return waypoint; }
     Result<std::int32_t> integerRegister(RegisterBank bank, int index) const override;
     Result<double> floatRegister(RegisterBank bank, int index) const override;
     Result<bool> bitRegister(RegisterBank bank, int index) const override;
@@ -80,6 +82,7 @@ public:
 
     double step_time = 0.008;
     RobotState now;
+    Pose waypoint;
     std::vector<Motion> motions;
     std::vector<Command> commands;
     int motion_cycles = 1;  ///< that a motion lasts

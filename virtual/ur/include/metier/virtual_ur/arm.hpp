@@ -38,6 +38,8 @@ public:
 
     // What a program asks for; each takes over from the motion before.
     void servo(const Vector6& target, double duration, double lag);
+    /// The tool along a line; speeds as those of moveL().
+    void servoLine(const geometry::Pose& base_from_target, const PathSpeed& speed);
     void begin(std::unique_ptr<Motion> motion);
     /// A motion that begins at standstill: the arm is stopped first.
     using FromStandstill = std::function<std::unique_ptr<Motion>(const Vector6& start)>;
@@ -55,6 +57,7 @@ public:
     std::optional<ArmViolation> cycle(double scaling);
     /// What a set-point of that axis beyond its upper limit would be.
     ArmViolation beyondLimit(std::size_t axis) const;
+    bool withinLimits(const Vector6& position) const;
     /// Puts the arm elsewhere, standing.
     void reset(const Vector6& position);
 
@@ -69,6 +72,7 @@ public:
     const motion::RobotModel& model() const { return model_; }
 
 private:
+    void forget();
     std::optional<ArmViolation> follow(double step);
     void take(const Vector6& position);
 
@@ -80,7 +84,8 @@ private:
     JointState target_;
     Vector6 acceleration_{};
     std::unique_ptr<Motion> motion_;
-    ServoMotion* servo_ = nullptr;  // the motion, if it is one
+    ServoMotion* servo_ = nullptr;     // the motion, if it is one
+    LineServo* line_servo_ = nullptr;  // the motion, if it is one
     bool braking_ = false;
     std::deque<Vector6> history_;  // newest first
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 
@@ -35,6 +36,13 @@ struct ToolKinematics {
     geometry::Pose flange_from_tool;
 };
 
+/// How fast a move may be along its path.
+struct PathSpeed {
+    double velocity = 0.0;
+    double acceleration = 0.0;
+    double duration = 0.0;  ///< [s]; > 0: as long as that instead
+};
+
 /// Follows a set-point that changes all the time: two equal low-passes that together lag by
 /// lookahead + 1 / gain behind it (docs in the README: what is simulated).
 class ServoMotion final : public Motion {
@@ -57,6 +65,35 @@ private:
     double left_ = 0.0;
 };
 
+/// Drives the tool along a line towards a pose that may change all the time, and rests there.
+class LineServo final : public Motion {
+public:
+    /// \param now where the arm is and how fast: the motion goes on from there
+    explicit LineServo(const JointState& now) : start_velocity_(now.velocity) {}
+    /// Where to go from now on.
+    /// \param speed velocity [m/s] and acceleration [m/s2] of the tool's origin, > 0; a turn counts
+    ///              as the way of a point kTurnRadius beside it. The duration has no meaning.
+    void retarget(const geometry::Pose& base_from_target, const PathSpeed& speed,
+                  const ToolKinematics& tool);
+
+    static constexpr double kTurnRadius = 0.1;  ///< [m]; the controller tells it, too
+
+    std::optional<Vector6> next(const JointState& now, double step) override;
+    /// A script waits for one cycle.
+    bool done() const override { return waited_; }
+
+private:
+    using Twist = Eigen::Matrix<double, 6, 1>;
+    Twist wanted(const Twist& way, double step) const;
+
+    Vector6 start_velocity_;
+    std::optional<ToolKinematics> tool_;
+    geometry::Pose base_from_target_;
+    PathSpeed speed_;
+    std::optional<Twist> twist_;  // base frame [m/s]; its turn times kTurnRadius
+    bool waited_ = false;
+};
+
 /// Reaches a joint velocity with an acceleration of the leading axis, and keeps it.
 /// \param duration [s]; 0: done when the velocity is reached
 std::unique_ptr<Motion> speedJ(const Vector6& velocity, double acceleration, double duration);
@@ -66,12 +103,6 @@ std::unique_ptr<Motion> speedL(const Vector6& twist, double acceleration, double
 /// Brakes every axis along its direction until the arm stands.
 std::unique_ptr<Motion> stopJ(double acceleration);
 
-/// How fast a move may be along its path.
-struct PathSpeed {
-    double velocity = 0.0;
-    double acceleration = 0.0;
-    double duration = 0.0;  ///< [s]; > 0: as long as that instead
-};
 /// From standstill, all axes arriving together. Speeds [rad/s] are those of the leading axis.
 std::unique_ptr<Motion> moveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed);
 /// From standstill, the tool along a line. Speeds [m/s]; of a turn on the spot [rad/s].

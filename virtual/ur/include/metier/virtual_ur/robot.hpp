@@ -83,6 +83,7 @@ public:
 private:
     void begin();
     void stopEverything();
+    void doAsked();
     void watchSafety();
     void applyControlInputs();
     void publish();
@@ -97,6 +98,12 @@ private:
     RobotState state_;
     ControlInputs control_;
     Control control_mode_;
+    // By programs, in this cycle: done once none of them runs, since it may end them.
+    struct Asked {
+        bool power_down = false;
+        bool protective_stop = false;
+    };
+    Asked asked_;
     Arm arm_;
     ScriptSockets sockets_;
     std::optional<RobotModes> modes_;

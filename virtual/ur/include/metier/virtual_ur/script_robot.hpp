@@ -26,6 +26,7 @@ public:
         std::function<void(const std::string&)> text_message;
         std::function<void(const urscript::Popup&)> popup;
         std::function<void()> power_down;
+        std::function<void()> protective_stop;
     };
     explicit ScriptRobot(Parts parts);
 
@@ -56,6 +57,8 @@ public:
                                       const urscript::Pose& flange_from_tool) const override;
     Result<urscript::Pose> forwardKinematics(const Vector6& joint_position,
                                              const urscript::Pose& flange_from_tool) const override;
+    bool withinLimits(const urscript::Target& target) const override;
+    urscript::Pose targetWaypoint() const override;
     Result<std::int32_t> integerRegister(urscript::RegisterBank bank, int index) const override;
     Result<double> floatRegister(urscript::RegisterBank bank, int index) const override;
     Result<bool> bitRegister(urscript::RegisterBank bank, int index) const override;

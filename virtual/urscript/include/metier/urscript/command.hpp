@@ -67,6 +67,8 @@ struct AnalogDomain {
     int domain = 0;  ///< 0 current, 1 voltage
 };
 struct PowerDown {};
+/// `protective_stop`: the controller stops the arm, as if it had found a fault.
+struct ProtectiveStop {};
 /// A function that exists but changes nothing that other functions can see, as
 /// `set_tool_communication`.
 struct OtherCommand {
@@ -77,6 +79,6 @@ struct OtherCommand {
 using Command = std::variant<SetPayload, SetTargetPayload, SetTcp, SetGravity, SetToolVoltage,
                              ForceMode, EndForceMode, ForceModeDamping, ForceModeGainScaling,
                              FreedriveMode, EndFreedriveMode, ZeroForceSensor, ForceSensorInput,
-                             RtdeWatchdog, AnalogDomain, PowerDown, OtherCommand>;
+                             RtdeWatchdog, AnalogDomain, PowerDown, ProtectiveStop, OtherCommand>;
 
 }  // namespace metier::urscript

@@ -47,6 +47,14 @@ struct MoveC : Move {
     Target via{};
     int mode = 0;  ///< 0 unconstrained orientation, 1 fixed
 };
+/// Drives the tool towards a target. Lasts one cycle; the arm goes on until it is there, or another
+/// motion takes over.
+struct ServoC {
+    Target target{};
+    double acceleration = 0.0;  ///< [m/s^2]
+    double velocity = 0.0;      ///< [m/s]
+    double blend_radius = 0.0;  ///< [m]
+};
 struct StopJ {
     double acceleration = 2.0;  ///< [rad/s^2]
 };
@@ -62,6 +70,6 @@ struct DirectTorque {
 };
 
 using Motion = std::variant<ServoJ, SpeedJ, SpeedL, MoveJ, MoveL, MoveP, MoveC, OptimoveJ,
-                            OptimoveL, StopJ, StopL, DirectTorque>;
+                            OptimoveL, ServoC, StopJ, StopL, DirectTorque>;
 
 }  // namespace metier::urscript

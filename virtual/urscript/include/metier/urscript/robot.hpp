@@ -28,6 +28,7 @@ struct RobotState {
     Pose flange_from_tool;      ///< as set_tcp set it
     double payload_mass = 0.0;  ///< [kg]
     Vector3 payload_cog{};      ///< [m]
+    Vector6 payload_inertia{};  ///< Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m^2]
     double time = 0.0;          ///< of the controller [s]; counts cycles, never a clock
     bool steady = true;         ///< stands still
 };
@@ -102,6 +103,10 @@ public:
                                               const Pose& flange_from_tool) const = 0;
     virtual Result<Pose> forwardKinematics(const Vector6& joint_position,
                                            const Pose& flange_from_tool) const = 0;
+    /// Whether the arm may be there: every axis within its limits, or a pose that such axes reach.
+    virtual bool withinLimits(const Target& target) const = 0;
+    /// Where the move ends that goes on, or the commanded tool pose if none does.
+    virtual Pose targetWaypoint() const = 0;
 
     // Registers. Errors: out_of_range if there is no such register.
     virtual Result<std::int32_t> integerRegister(RegisterBank bank, int index) const = 0;
