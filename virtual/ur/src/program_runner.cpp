@@ -1,5 +1,7 @@
 #include "metier/virtual_ur/program_runner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -20,6 +22,8 @@ constexpr double kPauseTime = 0.25;
 // Sums of shares are not exact.
 constexpr double kRounding = 1e-9;
 constexpr std::size_t kMostSecondary = 64;
+// Of a script's line in a message [bytes].
+constexpr std::size_t kMostEchoed = 200;
 
 struct Place {
     int line = 1;
@@ -46,6 +50,32 @@ Place placeOf(std::string_view message) {
     return place;
 }
 
+/// What is between the first two quotation marks.
+std::string_view quoted(std::string_view text) {
+    text.remove_prefix(std::min(text.find('\''), text.size() - 1) + 1);
+    return text.substr(0, text.find('\''));
+}
+
+/// \param number from 1; empty if the text has no such line
+std::string_view lineOf(std::string_view text, int number) {
+    for (; number > 1; --number) {
+        const auto end = text.find('\n');
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    }
+    text = text.substr(0, text.find('\n'));
+    return text.ends_with('\r') ? text.substr(0, text.size() - 1) : text;
+}
+
+/// As the maker says that a script is no program.
+/// Source: README.md, what is simulated.
+std::string inMakersWords(const Error& error, const Place& place, std::string_view script) {
+    if (error.code == Errc::not_found) {
+        return fmt::format("compile_error_name_not_found:{}:", quoted(place.text));
+    }
+    return fmt::format("syntax_error_on_line:{}:{}:", place.line,
+                       lineOf(script, place.line).substr(0, kMostEchoed));
+}
+
 }  // namespace
 
 ProgramRunner::ProgramRunner(ScriptRobot& robot, const RobotState& state,
@@ -60,7 +90,9 @@ void ProgramRunner::run(std::string_view text) {
     auto program = Program::parse(text);
     if (!program) {
         const auto place = placeOf(program.error().message);
-        tell_(runtimeExceptionMessage(place.line, place.column, place.text));
+        tell_(textMessage(now(), program.error().message));
+        tell_(runtimeExceptionMessage(place.line, place.column,
+                                      inMakersWords(program.error(), place, text)));
         return;
     }
     if (program->kind() == ProgramKind::secondary) {

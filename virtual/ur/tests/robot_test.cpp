@@ -40,6 +40,10 @@ void place(RobotOnTable& table, const Vector6& q, std::int32_t run) {
     table.robot.inputsWritten({"input_int_register_0", "input_double_register_0"});
 }
 
+std::string textFrom(const Bytes& message, std::size_t at) {
+    return {reinterpret_cast<const char*>(message.data()) + at, message.size() - at};
+}
+
 TEST(Robot, ComesUpRunningAndStandingAtItsStart) {
     RobotOnTable table("ur5", {{"start", std::vector{0.1, -1.0, 1.0, -1.0, -1.5, 0.2}}});
     const auto& state = table.robot.state();
@@ -212,14 +216,36 @@ TEST(Robot, ASecondaryProgramRunsBesideThePrimaryOne) {
 TEST(Robot, AScriptWithAnErrorIsToldWithItsPlace) {
     RobotOnTable table;
     table.robot.takeScript("def bad():\n  txtmsg(1)\nend\n");
-    ASSERT_TRUE(table.wasTold(kException, "txtmsg"));
+    ASSERT_TRUE(table.wasTold(kException, ""));
     const auto& message = table.told.back();
     EXPECT_EQ(static_cast<int>(message[18]), 2);  // line
+    EXPECT_EQ(static_cast<int>(message[22]), 3);  // column
+    // As URCL's test_program_execution_reports_exception expects it.
+    EXPECT_EQ(textFrom(message, 23), "compile_error_name_not_found:txtmsg:");
+    EXPECT_TRUE(table.wasTold(kText, "line 2, column 3: function 'txtmsg' is not defined"));
     table.robot.takeScript("def late():\n  sync()\n  x = [1, 2]\n  y = x[7]\nend\n");
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::playing));
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::stopped));
     EXPECT_EQ(static_cast<int>(table.told[table.told.size() - 2][18]), 4);
     EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STOPPEDlate"));
+}
+
+TEST(Robot, AScriptThatIsNoneIsToldWithTheLineInTheMakersWords) {
+    RobotOnTable table;
+    const auto told = [&](std::string_view script) {
+        table.robot.takeScript(script);
+        return textFrom(table.told.back(), 23);
+    };
+    EXPECT_EQ(told("def u():\n    textmsg(\"log\", 1\nend\n"), "syntax_error_on_line:3:end:");
+    EXPECT_EQ(told("def u():\n  movej([0.5, -1], a=1):\nend\n"),
+              "syntax_error_on_line:2:  movej([0.5, -1], a=1)::");
+    EXPECT_EQ(told("def u():\r\n  sleep()\r\nend\r\n"), "syntax_error_on_line:2:  sleep():");
+    EXPECT_EQ(told("def u():\n  x = y\nend\n"), "compile_error_name_not_found:y:");
+    EXPECT_EQ(told("def u():\n  run t()\nend\n"), "compile_error_name_not_found:t:");
+    const std::string spaces(1000, ' ');
+    EXPECT_EQ(told("def u():\n" + spaces + "break\nend\n"),
+              "syntax_error_on_line:2:" + spaces.substr(0, 200) + ":");
+    EXPECT_TRUE(table.wasTold(kText, "line 2, column 1001: 'break' outside of a loop"));
 }
 
 TEST(Robot, TextMessagesAndPopupsGoToThePrimaryPort) {

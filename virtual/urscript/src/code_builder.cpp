@@ -59,6 +59,10 @@ Result<std::vector<std::uint8_t>> parametersOf(const std::vector<WrittenArgument
     return result;
 }
 
+tl::unexpected<Error> notDefined(Position at, std::string_view what, std::string_view name) {
+    return failAt(at, fmt::format("{} '{}' is not defined", what, name), Errc::not_found);
+}
+
 }  // namespace
 
 CodeBuilder::CodeBuilder(ProgramKind kind, std::string_view name) : open_(1) {
@@ -214,7 +218,7 @@ Result<void> CodeBuilder::bind(const OpenCall& call) {
         signature.parameters = split(builtin->parameters);
         signature.required = builtin->required;
     } else {
-        return failAt(instruction.at, fmt::format("function '{}' is not defined", call.name));
+        return notDefined(instruction.at, "function", call.name);
     }
     auto parameters = parametersOf(call.arguments, signature, instruction.at);
     if (!parameters) {
@@ -235,7 +239,7 @@ Result<void> CodeBuilder::bind(const OpenCall& call) {
 Result<void> CodeBuilder::bindRun(const OpenCall& call, Instruction& instruction) {
     const auto found = functions_.find(call.name);
     if (found == functions_.end() || !code_.functions[found->second].is_thread) {
-        return failAt(instruction.at, fmt::format("thread '{}' is not defined", call.name));
+        return notDefined(instruction.at, "thread", call.name);
     }
     instruction.a = static_cast<std::int32_t>(found->second);
     return {};
@@ -245,7 +249,7 @@ Result<void> CodeBuilder::checkGlobals() const {
     for (const std::string& name : code_.globals) {
         const Global& global = globals_.find(name)->second;
         if (!global.declared) {
-            return failAt(global.first_use, fmt::format("variable '{}' is not defined", name));
+            return notDefined(global.first_use, "variable", name);
         }
     }
     return {};

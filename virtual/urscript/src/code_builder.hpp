@@ -51,7 +51,8 @@ public:
     void call(std::string_view name, std::vector<WrittenArgument> arguments, Position at);
     void run(std::string_view name, Position at);
 
-    /// Binds the calls and checks that every name is known. Errors: invalid_argument.
+    /// Binds the calls and checks that every name is known. Errors: not_found (a name that nobody
+    /// defines), invalid_argument.
     /// \param end of the program's text
     Result<Code> finish(Position end);
 

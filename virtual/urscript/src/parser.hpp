@@ -11,7 +11,8 @@
 namespace metier::urscript {
 
 /// Reads the tokens of one program and writes its code in the same pass.
-/// Errors of all: invalid_argument, "line L, column C: why".
+/// Errors of all: invalid_argument, "line L, column C: why"; program() also those of
+/// CodeBuilder::finish().
 class Parser : private TokenReader {
 public:
     /// \param tokens as tokenize() gives them; outlive the parser

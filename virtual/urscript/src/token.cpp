@@ -200,9 +200,8 @@ private:
 
 }  // namespace
 
-tl::unexpected<Error> failAt(Position at, std::string_view why) {
-    return fail(Errc::invalid_argument,
-                fmt::format("line {}, column {}: {}", at.line, at.column, why));
+tl::unexpected<Error> failAt(Position at, std::string_view why, Errc code) {
+    return fail(code, fmt::format("line {}, column {}: {}", at.line, at.column, why));
 }
 
 Result<std::vector<Token>> tokenize(std::string_view text) {

@@ -91,6 +91,6 @@ struct LineBlocks {
 };
 LineBlocks blocksOf(std::string_view line);
 
-tl::unexpected<Error> failAt(Position at, std::string_view why);
+tl::unexpected<Error> failAt(Position at, std::string_view why, Errc code = Errc::invalid_argument);
 
 }  // namespace metier::urscript

@@ -179,6 +179,10 @@ TEST(UrscriptParse, RefusesNamesThatNobodyDefines) {
     EXPECT_EQ(parseError("def a():\n  x = y + 1\nend"),
               "line 2, column 7: variable 'y' is not defined");
     EXPECT_EQ(parseError("run foo()"), "line 1, column 1: thread 'foo' is not defined");
+    for (const auto* text : {"foo(1)", "x = y", "run foo()"}) {
+        EXPECT_EQ(Program::parse(text).error().code, Errc::not_found) << text;
+    }
+    EXPECT_EQ(Program::parse("x = (").error().code, Errc::invalid_argument);
     EXPECT_EQ(parseError("def a():\nthread t():\nend\nt()\nend"),
               "line 4, column 1: thread 't' has to be started by run");
     EXPECT_EQ(parseError("def a():\ndef f():\nend\ndef f():\nend\nend"),

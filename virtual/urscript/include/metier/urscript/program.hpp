@@ -27,8 +27,10 @@ public:
 
     /// Understands one `def ... end`, one `sec ... end`, or statements outside of both, which make
     /// an anonymous primary program.
-    /// Errors: invalid_argument with "line L, column C: why" (both count from 1), also for names
-    /// that nobody defines, wrong argument counts and text beyond the limits.
+    /// Errors, all with "line L, column C: why" (both count from 1):
+    ///         not_found for a function, thread or variable that nobody defines, its name in '',
+    ///         invalid_argument for the rest, also wrong argument counts and text beyond the
+    ///         limits.
     static Result<Program> parse(std::string_view text);
 
     /// Empty for an anonymous program.
