@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cctype>
+
 #include "call.hpp"
 
 namespace metier::urscript {
@@ -72,11 +75,17 @@ Value forceSensorInput(Call& call) {
     return call.applies(input);
 }
 
+std::string inLowerCase(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
 Value watchdog(Call& call) {
     RtdeWatchdog watchdog;
     watchdog.variable = call.string(0);
     watchdog.min_frequency = call.number(1);
-    watchdog.action = call.string(2, watchdog.action);
+    watchdog.action = inLowerCase(call.string(2, watchdog.action));
     if (call.ok() && watchdog.action != "ignore" && watchdog.action != "pause" &&
         watchdog.action != "stop") {
         return call.failed(Errc::invalid_argument,

@@ -184,6 +184,10 @@ TEST(UrscriptSetting, CommandsReachTheRobot) {
     EXPECT_EQ(robot.lastCommand<ForceSensorInput>().cog[2], 0.1);
     resultOf("rtde_set_watchdog(\"input_double_register_0\", 1, \"stop\")", robot);
     EXPECT_EQ(robot.lastCommand<RtdeWatchdog>().action, "stop");
+    resultOf("rtde_set_watchdog(\"input_double_register_0\", 1, \"PAUSE\")", robot);
+    EXPECT_EQ(robot.lastCommand<RtdeWatchdog>().action, "pause");
+    resultOf("rtde_set_watchdog(\"input_double_register_0\", 1, \"Ignore\")", robot);
+    EXPECT_EQ(robot.lastCommand<RtdeWatchdog>().action, "ignore");
     resultOf("protective_stop()", robot);
     EXPECT_TRUE(std::holds_alternative<ProtectiveStop>(robot.commands.back()));
     EXPECT_THAT(resultOf("rtde_set_watchdog(\"a\", 1, \"run\")", robot),
