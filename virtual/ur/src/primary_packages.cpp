@@ -250,8 +250,8 @@ Bytes safetyModeMessage(MessageTime time, SafetyMode mode) {
     return package(kRobotMessage, std::move(body));
 }
 
-Bytes runtimeExceptionMessage(int line, int column, std::string_view text) {
-    auto body = message(kNoTime, kFromProgram, 10);
+Bytes runtimeExceptionMessage(MessageTime time, int line, int column, std::string_view text) {
+    auto body = message(time, kFromProgram, 10);
     body.put(std::int32_t{line}).put(std::int32_t{column}).text(text);
     return package(kRobotMessage, std::move(body));
 }

@@ -91,7 +91,7 @@ void ProgramRunner::run(std::string_view text) {
     if (!program) {
         const auto place = placeOf(program.error().message);
         tell_(textMessage(now(), program.error().message));
-        tell_(runtimeExceptionMessage(place.line, place.column,
+        tell_(runtimeExceptionMessage(now(), place.line, place.column,
                                       inMakersWords(program.error(), place, text)));
         return;
     }
@@ -259,7 +259,7 @@ void ProgramRunner::tellKey(std::string_view title) {
 
 void ProgramRunner::tellException(const urscript::Interpreter& interpreter) {
     if (const auto& exception = interpreter.exception()) {
-        tell_(runtimeExceptionMessage(exception->line, exception->column, exception->text));
+        tell_(runtimeExceptionMessage(now(), exception->line, exception->column, exception->text));
     }
 }
 

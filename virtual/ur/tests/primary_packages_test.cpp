@@ -191,8 +191,10 @@ TEST(PrimaryMessages, AreLaidOutAsTheMakers) {
     EXPECT_EQ(key.byteAt(23), 19);
     EXPECT_EQ(key.textAt(24, 24), "PROGRAM_XXX_STARTEDsilly");
 
-    const Decoder exception(runtimeExceptionMessage(2, 1, "syntax_error_on_line:2:end:"));
+    const Decoder exception(
+        runtimeExceptionMessage(64'008'000, 2, 1, "syntax_error_on_line:2:end:"));
     EXPECT_EQ(exception.size(), 50U);  // as seen
+    EXPECT_EQ(exception.unsignedAt(5, 8), 64'008'000U);
     EXPECT_EQ(exception.byteAt(14), 10);
     EXPECT_EQ(exception.unsignedAt(15, 4), 2U);
     EXPECT_EQ(exception.unsignedAt(19, 4), 1U);

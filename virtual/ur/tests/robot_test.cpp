@@ -44,6 +44,11 @@ std::string textFrom(const Bytes& message, std::size_t at) {
     return {reinterpret_cast<const char*>(message.data()) + at, message.size() - at};
 }
 
+std::uint64_t timeOf(const Bytes& message) {
+    ByteReader reader{std::span(message).subspan(5)};
+    return reader.get<std::uint64_t>();
+}
+
 TEST(Robot, ComesUpRunningAndStandingAtItsStart) {
     RobotOnTable table("ur5", {{"start", std::vector{0.1, -1.0, 1.0, -1.0, -1.5, 0.2}}});
     const auto& state = table.robot.state();
@@ -217,7 +222,7 @@ TEST(Robot, AScriptWithAnErrorIsToldWithItsPlace) {
     RobotOnTable table;
     table.robot.takeScript("def bad():\n  txtmsg(1)\nend\n");
     ASSERT_TRUE(table.wasTold(kException, ""));
-    const auto& message = table.told.back();
+    const auto message = table.told.back();
     EXPECT_EQ(static_cast<int>(message[18]), 2);  // line
     EXPECT_EQ(static_cast<int>(message[22]), 3);  // column
     // As URCL's test_program_execution_reports_exception expects it.
@@ -226,7 +231,13 @@ TEST(Robot, AScriptWithAnErrorIsToldWithItsPlace) {
     table.robot.takeScript("def late():\n  sync()\n  x = [1, 2]\n  y = x[7]\nend\n");
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::playing));
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::stopped));
-    EXPECT_EQ(static_cast<int>(table.told[table.told.size() - 2][18]), 4);
+    const auto& late = table.told[table.told.size() - 2];
+    EXPECT_EQ(static_cast<int>(late[18]), 4);
+    // Microseconds of the controller, which begins at 64 s.
+    for (const auto& exception : {message, late}) {
+        EXPECT_EQ(timeOf(exception) / 1'000'000, 64U);
+    }
+    EXPECT_EQ(timeOf(late) - timeOf(message), 16'000U);
     EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STOPPEDlate"));
 }
 

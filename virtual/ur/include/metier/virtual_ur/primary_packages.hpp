@@ -35,7 +35,7 @@ Bytes textMessage(MessageTime time, std::string_view text);
 /// \param title as "PROGRAM_XXX_STARTED", at most 255 bytes
 Bytes keyMessage(MessageTime time, std::string_view title, std::string_view text);
 Bytes safetyModeMessage(MessageTime time, SafetyMode mode);
-Bytes runtimeExceptionMessage(int line, int column, std::string_view text);
+Bytes runtimeExceptionMessage(MessageTime time, int line, int column, std::string_view text);
 
 /// As the maker's log shows it: C150A1, with a level.
 struct ErrorCode {
