@@ -28,6 +28,24 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
+std::string inUpperCase(std::string_view text) {
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return result;
+}
+
+/// A file's name within the folder of programs, which a client may give whole: as on the
+/// controller, or in URSim.
+std::string_view withinPrograms(std::string_view file) {
+    for (const std::string_view folder : {"/ursim/programs/", "/programs/"}) {
+        if (file.starts_with(folder)) {
+            return file.substr(folder.size());
+        }
+    }
+    return file;
+}
+
 std::string_view yesNo(bool value) {
     return value ? "true" : "false";
 }
@@ -104,6 +122,11 @@ const std::vector<Dashboard::Command> Dashboard::kCommands{
          d.robot_.programs().stop();
          return std::string("Stopped");
      }},
+    {"load installation", Command::On::both, Command::Effect::changes,
+     [](Dashboard&, std::string_view file) {
+         return fmt::format("{}: {}", file.empty() ? "File not found" : "Loading installation",
+                            file.substr(0, kMostEchoed));
+     }},
     {"load", Command::On::both, Command::Effect::changes,
      [](Dashboard& d, std::string_view file) { return d.load(file); }},
     {"get loaded program", Command::On::both, Command::Effect::asks,
@@ -153,12 +176,17 @@ const std::vector<Dashboard::Command> Dashboard::kCommands{
              std::exchange(d.operational_mode_, "NONE"));
      }},
     {"setUserRole", Command::On::cb3, Command::Effect::asks,
-     [](Dashboard& d, std::string_view role) {
-         d.user_role_ = role.substr(0, kMostEchoed);
-         return "Setting user role: " + d.user_role_;
-     }},
+     [](Dashboard& d, std::string_view role) { return d.setUserRole(role); }},
     {"getUserRole", Command::On::cb3, Command::Effect::asks,
      [](Dashboard& d, std::string_view) { return d.user_role_; }},
+    {"saveLog", Command::On::both, Command::Effect::asks,
+     [](Dashboard&, std::string_view) { return std::string("Log saved to disk"); }},
+    {"generate flight report", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view) {
+         return fmt::format("Flight Report generated with id:{}", ++d.flight_reports_);
+     }},
+    {"generate support file", Command::On::both, Command::Effect::asks,
+     [](Dashboard& d, std::string_view folder) { return d.generateSupportFile(folder); }},
 };
 
 Dashboard::Answer Dashboard::answer(std::string_view line) {
@@ -187,7 +215,7 @@ Dashboard::Answer Dashboard::answer(std::string_view line) {
 }
 
 std::string Dashboard::load(std::string_view file) {
-    const std::filesystem::path name{std::string(file)};
+    const std::filesystem::path name{std::string(withinPrograms(file))};
     const auto& folder = robot_.options().programs;
     const bool plain = !file.empty() && !name.is_absolute() &&
                        std::find(name.begin(), name.end(), "..") == name.end();
@@ -233,6 +261,22 @@ std::string Dashboard::setOperationalMode(std::string_view mode) {
     }
     operational_mode_ = mode == "manual" ? "MANUAL" : "AUTOMATIC";
     return fmt::format("Operational mode {} is set", operational_mode_);
+}
+
+std::string Dashboard::setUserRole(std::string_view role) {
+    constexpr std::array kRoles{"PROGRAMMER", "OPERATOR", "NONE", "LOCKED", "RESTRICTED"};
+    const auto wanted = inUpperCase(role);
+    if (std::find(kRoles.begin(), kRoles.end(), wanted) == kRoles.end()) {
+        return fmt::format("Failed setting user role: {}", role.substr(0, kMostEchoed));
+    }
+    user_role_ = wanted;
+    return fmt::format("Setting user role: {}", role);
+}
+
+std::string Dashboard::generateSupportFile(std::string_view folder) const {
+    const auto file = std::filesystem::path(std::string(folder.substr(0, kMostEchoed))) /
+                      ("ursupport_" + robot_.options().serial_number + ".zip");
+    return "Completed successfully:" + file.string();
 }
 
 std::string Dashboard::isProgramSaved() const {

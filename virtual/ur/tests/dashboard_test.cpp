@@ -90,6 +90,55 @@ TEST(Dashboard, LoadsPlaysPausesAndStopsAProgram) {
     EXPECT_EQ(desk.ask("programState"), "STOPPED wait.urp");
 }
 
+TEST(Dashboard, LoadsFromTheFolderThatTheControllerHasItsProgramsIn) {
+    const Folder folder;
+    folder.write("wait.script", "def wait():\n  sync()\nend\n");
+    Desk desk("ur5e", {{"programs", folder.path.string()}});
+    EXPECT_EQ(desk.ask("load /programs/wait.urp"), "Loading program: /programs/wait.urp");
+    EXPECT_EQ(desk.ask("programState"), "STOPPED wait.urp");
+    EXPECT_EQ(desk.ask("load /ursim/programs/wait.urp"),
+              "Loading program: /ursim/programs/wait.urp");
+    const auto whole = (folder.path / "wait.urp").string();
+    for (const auto& file : {whole, "/programs/" + whole, std::string("/programs/../wait.urp"),
+                             std::string("/programs/"), std::string("/programs/none.urp")}) {
+        EXPECT_EQ(desk.ask("load " + file), "File not found: " + file);
+    }
+}
+
+TEST(Dashboard, SaysThatInstallationsLogsAndReportsAreDone) {
+    for (const auto* model : {"ur5", "ur5e"}) {
+        Desk desk(model);
+        EXPECT_EQ(desk.ask("load installation default.installation"),
+                  "Loading installation: default.installation");
+        EXPECT_EQ(desk.ask("load installation"), "File not found: ");
+        EXPECT_EQ(desk.ask("saveLog"), "Log saved to disk");
+        EXPECT_EQ(desk.ask("generate flight report controller"),
+                  "Flight Report generated with id:1");
+        EXPECT_EQ(desk.ask("generate flight report "), "Flight Report generated with id:2");
+        EXPECT_EQ(desk.ask("generate support file /programs"),
+                  "Completed successfully:/programs/ursupport_20195599999.zip");
+    }
+    Desk local("ur5e", {{"remote_control", false}});
+    EXPECT_THAT(local.ask("load installation default.installation"), HasSubstr("not allowed"));
+}
+
+TEST(Dashboard, TakesTheRolesThatThereAre) {
+    Desk desk;
+    EXPECT_EQ(desk.ask("getUserRole"), "PROGRAMMER");
+    for (const auto& [role, stored] : {std::pair{"operator", "OPERATOR"},
+                                       {"None", "NONE"},
+                                       {"LOCKED", "LOCKED"},
+                                       {"restricted", "RESTRICTED"},
+                                       {"programmer", "PROGRAMMER"}}) {
+        EXPECT_EQ(desk.ask(std::string("setUserRole ") + role),
+                  std::string("Setting user role: ") + role);
+        EXPECT_EQ(desk.ask("getUserRole"), stored);
+    }
+    EXPECT_EQ(desk.ask("setUserRole king"), "Failed setting user role: king");
+    EXPECT_EQ(desk.ask("setUserRole"), "Failed setting user role: ");
+    EXPECT_EQ(desk.ask("getUserRole"), "PROGRAMMER");
+}
+
 TEST(Dashboard, UnlocksAProtectiveStopAfterAWhile) {
     Desk desk;
     EXPECT_EQ(desk.ask("unlock protective stop"), "Failed to execute: unlock protective stop");

@@ -37,6 +37,8 @@ private:
     std::string unlock();
     std::string addToLog(std::string_view text);
     std::string setOperationalMode(std::string_view mode);
+    std::string setUserRole(std::string_view role);
+    std::string generateSupportFile(std::string_view folder) const;
     std::string isProgramSaved() const;
     std::string programState() const;
     std::string softwareVersion() const;
@@ -45,6 +47,7 @@ private:
     std::function<void(std::string)> log_;
     std::string operational_mode_ = "NONE";
     std::string user_role_ = "PROGRAMMER";
+    unsigned flight_reports_ = 0;  // so many were made
 };
 
 }  // namespace metier::virtual_ur
