@@ -3,6 +3,15 @@
 #include <fmt/format.h>
 
 namespace metier::robot_skills {
+namespace {
+
+Result<void> checkStanding(const device::Arm& arm) {
+    return arm.state().standstill
+               ? Result<void>()
+               : fail(Errc::invalid_state, arm.info().name + ": the arm still moves");
+}
+
+}  // namespace
 
 Result<void> checkReady(const device::Arm& arm) {
     const auto safety = arm.safety();
@@ -10,10 +19,11 @@ Result<void> checkReady(const device::Arm& arm) {
         return fail(Errc::device_fault,
                     fmt::format("{} ({})", safety.text, device::toString(safety.state)));
     }
-    if (!arm.state().standstill) {
-        return fail(Errc::invalid_state, arm.info().name + ": the arm still moves");
-    }
-    return {};
+    return checkStanding(arm);
+}
+
+Result<void> resetArm(device::Arm& arm) {
+    return arm.resetFault().and_then([&] { return checkStanding(arm); });
 }
 
 Result<void> checkSameAxes(const device::Arm& arm, const motion::RobotModel& model) {

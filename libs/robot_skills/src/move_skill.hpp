@@ -43,7 +43,7 @@ public:
           setup_(std::move(setup)),
           plan_(std::move(variant.plan)) {}
 
-    Result<void> reset() override { return setup_.arm.resetFault(); }
+    Result<void> reset() override { return resetArm(setup_.arm); }
 
 protected:
     Result<std::unique_ptr<skill::Body>> plan(const Parameters& parameters) override {

@@ -103,7 +103,7 @@ public:
           clock_(clock),
           options_(options) {}
 
-    Result<void> reset() override { return arm_.resetFault(); }
+    Result<void> reset() override { return resetArm(arm_); }
 
 protected:
     Result<std::unique_ptr<skill::Body>> plan(const PositionStreamParameters& given) override {

@@ -144,7 +144,12 @@ TEST_F(MovingArm, UsesTheArmsOwnStopWhenItDoesNotComeToRestInTime) {
     ASSERT_TRUE(program.halt(bench.caller()));
     executor->advance(std::chrono::milliseconds(2));
     EXPECT_EQ(program.state(), State::halted);
+    const auto early = program.reset(bench.caller());
+    ASSERT_FALSE(early) << "a Start would be refused";
+    EXPECT_THAT(early.error().message, HasSubstr("the arm still moves"));
     EXPECT_TRUE(bench.stepUntil([&] { return bench.arm().state().standstill; }));
+    EXPECT_TRUE(program.reset(bench.caller()));
+    EXPECT_EQ(program.state(), State::ready);
 }
 
 TEST_F(MovingArm, ComesToRestWhenItsProgramIsGone) {

@@ -128,7 +128,7 @@ TEST(IiwaFaults, AStateThatCannotBeReadEndsTheConnection) {
     for (const auto& [tamper, text] : broken) {
         ArmBench bench;
         ASSERT_TRUE(bench.ready());
-        bench.cabinet->change([&](auto& b) { b.tamper = tamper; });
+        bench.cabinet->change([how = tamper](auto& b) { b.tamper = how; });
         ASSERT_TRUE(bench.becomes(SafetyState::disconnected)) << text;
         EXPECT_THAT(bench.arm->safety().text, HasSubstr(text));
         ASSERT_TRUE(until([&] { return !bench.cabinet->ended().empty(); })) << "the arm is stopped";
