@@ -17,9 +17,9 @@ skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& result
     skill::ValueMap values;
     for (const auto& [key, value] :
          pairs.as<std::vector<opcua::KeyValue>>().value_or(std::vector<opcua::KeyValue>{})) {
-        const auto field = std::find_if(results.begin(), results.end(), [&](const auto& result) {
-            return result.name == key.name;
-        });
+        const auto field =
+            std::find_if(results.begin(), results.end(),
+                         [&name = key.name](const auto& result) { return result.name == name; });
         if (field != results.end()) {
             values[key.name] = opcua_skill::fromOpcua(value, field->type).value_or(skill::Value{});
         }
