@@ -89,9 +89,9 @@ Result<skill::ValueMap> parametersIn(const json& body, const skill::SkillDescrip
         return fail(Errc::invalid_argument, "parameters: an object expected");
     }
     for (const auto& [name, value] : found->items()) {
-        const auto field = std::find_if(
-            skill.parameters.begin(), skill.parameters.end(),
-            [&wanted = name](const skill::Field& one) { return one.name == wanted; });
+        const auto field =
+            std::find_if(skill.parameters.begin(), skill.parameters.end(),
+                         [&wanted = name](const skill::Field& one) { return one.name == wanted; });
         if (field == skill.parameters.end()) {
             return fail(Errc::not_found, fmt::format("{} has no parameter '{}'", skill.name,
                                                      opcua::sanitise(name.substr(0, 60))));
