@@ -270,7 +270,9 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
     }
     AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
     auto started = startWith(named);
-    impl_->own.reset();  // waited for here
+    if (started) {
+        impl_->own.reset();  // waited for here
+    }
     const bool unsure = !started && started.error().delivery == Delivery::unknown;
     if (!started && started.error().code == Errc::already_exists) {
         started.error().code = Errc::execution_lost;  // it began, and nothing began now

@@ -273,6 +273,18 @@ TEST_F(SkillClient, TellsTheEndOfWhatItStartedAlsoIfThatCameBefore) {
     EXPECT_EQ(next.error().code, Errc::timeout);
 }
 
+TEST_F(SkillClient, TellsTheEndOfWhatItStartedAlsoAfterARefusedStart) {
+    auto skill = open();
+    behaviour_->finish_at_once = false;
+    ASSERT_TRUE(skill.start());
+    ASSERT_FALSE(skill.runWith({}, soon())) << "it is Running";
+    ASSERT_TRUE(skill.halt());
+    ASSERT_TRUE(skill.awaitState(State::halted, soon()));
+    const auto end = skill.awaitEnd(soon());
+    ASSERT_TRUE(end) << end.error().message;
+    EXPECT_EQ(end->to, State::halted);
+}
+
 TEST_F(SkillClient, SuspendsAndResumes) {
     auto skill = open();
     behaviour_->finish_at_once = false;

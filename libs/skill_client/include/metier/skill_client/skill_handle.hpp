@@ -92,8 +92,9 @@ public:
     opcua::Answer<> awaitState(skill::State wanted, SteadyTime deadline);
     /// Waits for the end of what this handle started or resumed last, which may have come already;
     /// once that was told, or if it was somebody else's, for the next transition to Ready or
-    /// Halted. \return that transition; of one that was missed, where it led to and why Errors: as
-    /// awaitState(); execution_lost, if the server was started again meanwhile.
+    /// Halted.
+    /// \return that transition; of one that was missed, where it led to and why
+    /// Errors: as awaitState(); execution_lost, if the server was started again meanwhile.
     opcua::Answer<skill::TransitionEvent> awaitEnd(SteadyTime deadline);
 
     /// Sets the parameters, starts, and waits for the end of this execution.
