@@ -3,10 +3,12 @@
 #include <sched.h>
 #include <sys/mount.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 
 namespace metier::system_tests {
 
@@ -17,15 +19,22 @@ constexpr const char* kNoSmallDisk =
 class SmallDisk {
 public:
     /// Nothing where none can be mounted: that needs root, and a `/` that is a mount point, as in
-    /// every system but one in a changed root.
+    /// every system but one in a changed root. Throws if it fails for another reason.
     /// \param kilobytes its size [1024 byte]
     static std::unique_ptr<SmallDisk> mount(const std::filesystem::path& folder,
                                             int kilobytes = 64) {
+        if (::unshare(CLONE_NEWNS) != 0 ||
+            ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) {
+            if (errno == EPERM || errno == EINVAL) {
+                return nullptr;
+            }
+            throw std::system_error(errno, std::generic_category(), "own mounts");
+        }
         const auto size = "size=" + std::to_string(kilobytes) + "k";
-        const bool mounted = ::unshare(CLONE_NEWNS) == 0 &&
-                             ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-                             ::mount("tmpfs", folder.c_str(), "tmpfs", 0, size.c_str()) == 0;
-        return mounted ? std::make_unique<SmallDisk>(folder) : nullptr;
+        if (::mount("tmpfs", folder.c_str(), "tmpfs", 0, size.c_str()) != 0) {
+            throw std::system_error(errno, std::generic_category(), "a tmpfs");
+        }
+        return std::make_unique<SmallDisk>(folder);
     }
     /// \param folder where it is mounted
     explicit SmallDisk(const std::filesystem::path& folder) : filler_(folder / "filler") {}
