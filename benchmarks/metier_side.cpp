@@ -12,6 +12,7 @@
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
+#include "metier/recording/packed_json.hpp"
 #include "metier/recording/program_recorder.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/skill/lambda_skill.hpp"
@@ -104,8 +105,10 @@ private:
         return options;
     }
     void record(const std::string& file) {
-        recorder_ = orThrow(records::Recorder::create(
-            {.url = file, .server = "urn:benchmark", .most_waiting = 100'000}));
+        recorder_ = orThrow(records::Recorder::create({.url = file,
+                                                       .server = "urn:benchmark",
+                                                       .to_json = recording::packedJson,
+                                                       .most_waiting = 100'000}));
         for (auto* program : skills_->programs()) {
             program_recorders_.push_back(std::make_unique<recording::ProgramRecorder>(
                 *program, *recorder_, nullptr,

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "metier/recording/packed_json.hpp"
+
 namespace metier::app {
 namespace {
 
@@ -28,6 +30,7 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
         {.url = config.records.url,
          .server = server,
          .keep = retentionOf(config.records),
+         .to_json = recording::packedJson,
          .on_health =
              [&alarm = made->alarm_](const records::HealthReport& report) {
                  alarm.tell(report.health == records::Health::failing ? ServerAlarm::Kind::begins

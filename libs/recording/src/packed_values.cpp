@@ -1,5 +1,6 @@
 #include "packed_values.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -44,56 +45,72 @@ void put(const Value& value, std::string& out) {
     std::visit([&](const auto& one) { put(one, out); }, value);
 }
 
-/// Takes what put() has put from the front of `in`.
+// From the front of `in`, which may hold anything, what put() has put; false if it is not there.
+
 template <typename T>
 requires std::is_trivially_copyable_v<T>
-void take(std::string_view& in, T& value) {
+bool take(std::string_view& in, T& value) {
+    if (in.size() < sizeof value) {
+        return false;
+    }
     std::memcpy(&value, in.data(), sizeof value);
     in.remove_prefix(sizeof value);
+    return true;
 }
-void take(std::string_view& in, std::string& text) {
+bool take(std::string_view& in, bool& value) {
+    char byte = 0;
+    const bool taken = take(in, byte);
+    value = byte != 0;
+    return taken;
+}
+bool take(std::string_view& in, std::string& text) {
     std::size_t size = 0;
-    take(in, size);
+    if (!take(in, size) || size > in.size()) {
+        return false;
+    }
     text = in.substr(0, size);
     in.remove_prefix(size);
+    return true;
 }
 template <typename T>
-void take(std::string_view& in, std::vector<T>& list) {
+bool take(std::string_view& in, std::vector<T>& list) {
     std::size_t size = 0;
-    take(in, size);
-    list.resize(size);
-    for (auto& element : list) {
-        take(in, element);
+    if (!take(in, size) || size > in.size()) {  // an element takes a byte at least
+        return false;
     }
+    list.resize(size);
+    return std::all_of(list.begin(), list.end(), [&in](T& element) { return take(in, element); });
 }
 
 template <std::size_t Index>
-Value takeOf(std::string_view& in) {
-    std::variant_alternative_t<Index, Value> value{};
-    take(in, value);
-    return value;
+bool takeOf(std::string_view& in, Value& value) {
+    return take(in, value.emplace<Index>());
 }
 
-Value takeValue(std::string_view& in) {
+bool take(std::string_view& in, Value& value) {
     char index = 0;
-    take(in, index);
-    return [&]<std::size_t... I>(std::index_sequence<I...> /*all*/) {
-        Value value;
-        static_cast<void>(
-            ((index == static_cast<char>(I) ? (value = takeOf<I>(in), true) : false) || ...));
-        return value;
+    return take(in, index)&& [&]<std::size_t... I>(std::index_sequence<I...> /*all*/) {
+        return ((index == static_cast<char>(I) && takeOf<I>(in, value)) || ...);
     }
     (std::make_index_sequence<std::variant_size_v<Value>>{});
 }
 
-ValueMap takeMap(std::string_view in) {
-    ValueMap values;
+bool take(std::string_view& in, ValueMap& values) {
     while (!in.empty()) {
         std::string name;
-        take(in, name);
-        values.emplace_hint(values.end(), std::move(name), takeValue(in));
+        Value value;
+        if (!take(in, name) || !take(in, value)) {
+            return false;
+        }
+        values.insert_or_assign(values.end(), std::move(name), std::move(value));
     }
-    return values;
+    return true;
+}
+
+template <typename T>
+std::string jsonOfPacked(std::string_view in) {
+    T value{};
+    return take(in, value) ? skill::jsonOf(value) : "null";
 }
 
 }  // namespace
@@ -117,12 +134,16 @@ std::string packedText(std::string_view json) {
 }
 
 std::string packedJson(std::string_view packed) {
-    const auto form = static_cast<Form>(packed.front());
-    packed.remove_prefix(1);
-    if (form == Form::map) {
-        return skill::jsonOf(takeMap(packed));
+    const auto form = packed.empty() ? Form::json : static_cast<Form>(packed.front());
+    switch (form) {
+        case Form::map:
+            return jsonOfPacked<ValueMap>(packed.substr(1));
+        case Form::value:
+            return jsonOfPacked<Value>(packed.substr(1));
+        case Form::json:
+            return std::string(packed.substr(packed.empty() ? 0 : 1));
     }
-    return form == Form::value ? skill::jsonOf(takeValue(packed)) : std::string(packed);
+    return "null";
 }
 
 }  // namespace metier::recording

@@ -50,38 +50,46 @@ bool endsExecution(TransitionNumber transition) {
 
 ProgramRecorder::ProgramRecorder(skill::Program& program, records::Recorder& recorder,
                                  PathSampler* sampler, Place place)
-    : program_(program), recorder_(recorder), sampler_(sampler), state_(program.state()) {
-    begun_.server_name = std::move(place.server_name);
-    begun_.controller = std::move(place.controller);
-    begun_.device = std::move(place.device);
-    begun_.skill = program.description().name;
-    begun_.state = nameOf(State::running);
+    : program_(program),
+      recorder_(recorder),
+      sampler_(sampler),
+      place_(std::move(place)),
+      state_(program.state()) {
     program_.attach(*this);
 }
 
 ProgramRecorder::~ProgramRecorder() {
     program_.detach(*this);
     if (key_ != 0) {
-        end({.to = State::halted,
-             .time = std::chrono::system_clock::now(),
-             .reason = skill::Reason::error,
-             .reason_text = "the server was stopped"});
+        const skill::TransitionEvent stopped{.to = State::halted,
+                                             .time = std::chrono::system_clock::now(),
+                                             .reason = skill::Reason::error,
+                                             .reason_text = "the server was stopped"};
+        recorder_.end(key_, outcomeOf(stopped));
     }
 }
 
-void ProgramRecorder::onBegin(const skill::ExecutionRecord& execution) {
+void ProgramRecorder::begin(const skill::ExecutionRecord& execution,
+                            const skill::TransitionEvent& event) {
     const auto* check = checkOf(execution);
-    begun_.id = execution.id;
-    begun_.parent = execution.parent.id;
-    begun_.parent_server = execution.parent.server;
-    begun_.session = execution.client.session_id;
-    begun_.client_name = execution.client.client_name;
-    begun_.user = execution.client.user_name;
-    begun_.thumbprint = execution.client.thumbprint;
-    begun_.check = check == nullptr ? std::string_view() : std::string_view(*check);
-    begun_.started = execution.start_time;
-    pack(*execution.parameters, begun_.parameters);
-    key_ = recorder_.begin(begun_, packedJson);
+    pack(*execution.parameters, packed_);
+    key_ =
+        recorder_.begin({.id = execution.id,
+                         .server_name = place_.server_name,
+                         .skill = program_.description().name,
+                         .controller = place_.controller,
+                         .device = place_.device,
+                         .parent = execution.parent.id,
+                         .parent_server = execution.parent.server,
+                         .session = execution.client.session_id,
+                         .client_name = execution.client.client_name,
+                         .user = execution.client.user_name,
+                         .thumbprint = execution.client.thumbprint,
+                         .parameters = packed_,
+                         .check = check == nullptr ? std::string_view() : std::string_view(*check),
+                         .started = execution.start_time,
+                         .state = nameOf(State::running)},
+                        transitionOf(event));
     if (sampler_ != nullptr) {
         sampler_->begin(key_);
     }
@@ -113,7 +121,9 @@ void ProgramRecorder::onSubState(skill::SubState sub_state, std::string_view ste
     step_ = step;
     // Of a change of the state the transition tells.
     if (key_ != 0 && changed && program_.state() == state_) {
-        tell({.from = state_, .to = state_, .time = std::chrono::system_clock::now()});
+        recorder_.transition(
+            key_,
+            transitionOf({.from = state_, .to = state_, .time = std::chrono::system_clock::now()}));
     }
 }
 
@@ -134,41 +144,42 @@ void ProgramRecorder::onStarted(const skill::StartedExecution& child) {
     }
 }
 
-void ProgramRecorder::tell(const skill::TransitionEvent& event) {
-    transition_.time = event.time;
-    transition_.from = nameOf(event.from);
-    transition_.to = nameOf(event.to);
-    transition_.sub_state = nameOf(sub_state_);
-    transition_.step = step_;
-    transition_.reason = nameOf(event.reason);
-    transition_.reason_text = event.reason_text;
-    recorder_.transition(key_, transition_);
-}
-
 void ProgramRecorder::onTransition(const skill::TransitionEvent& event) {
     state_ = event.to;
-    if (key_ == 0) {
-        return;
-    }
-    tell(event);
-    if (endsExecution(event.number)) {
-        end(event);
+    const auto* latest = program_.recentExecution(0);
+    if (event.number == TransitionNumber::ready_to_running && latest != nullptr) {
+        begin(*latest, event);
+    } else if (key_ != 0 && endsExecution(event.number)) {
+        const auto outcome = outcomeOf(event);
+        recorder_.end(std::exchange(key_, 0), outcome, transitionOf(event));
+    } else if (key_ != 0) {
+        recorder_.transition(key_, transitionOf(event));
     }
 }
 
-void ProgramRecorder::end(const skill::TransitionEvent& event) {
-    const auto key = std::exchange(key_, 0);
-    const auto missed = sampler_ == nullptr ? 0 : sampler_->end(key);
-    outcome_.time = event.time;
-    outcome_.state = nameOf(event.to);
-    outcome_.reason = nameOf(event.reason);
-    outcome_.reason_text = event.reason_text;
-    outcome_.missed_cycles = missed;
-    outcome_.result.clear();
+/// Valid until the next change of the step.
+records::TransitionView ProgramRecorder::transitionOf(const skill::TransitionEvent& event) const {
+    return {.time = event.time,
+            .from = nameOf(event.from),
+            .to = nameOf(event.to),
+            .sub_state = nameOf(sub_state_),
+            .step = step_,
+            .reason = nameOf(event.reason),
+            .reason_text = event.reason_text};
+}
+
+/// Ends the sampling. Valid until something else is packed.
+records::OutcomeView ProgramRecorder::outcomeOf(const skill::TransitionEvent& event) {
+    packed_.clear();
     if (event.reason == skill::Reason::finished) {
-        pack(program_.finalResult(), outcome_.result);
+        pack(program_.finalResult(), packed_);
     }
-    recorder_.end(key, outcome_);
+    return {.time = event.time,
+            .state = nameOf(event.to),
+            .reason = nameOf(event.reason),
+            .reason_text = event.reason_text,
+            .result = packed_,
+            .missed_cycles = sampler_ == nullptr ? 0 : sampler_->end(key_)};
 }
 
 }  // namespace metier::recording

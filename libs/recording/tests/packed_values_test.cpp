@@ -49,5 +49,20 @@ TEST(PackedValues, KeepJsonAsItIs) {
     EXPECT_EQ(packedJson(packedText(R"({"started":1})")), R"({"started":1})");
 }
 
+TEST(PackedValues, MayBeAnyBytes) {
+    std::string bytes;
+    pack(everything(), bytes);
+    EXPECT_EQ(packedJson(""), "");
+    EXPECT_EQ(packedJson("?"), "null");
+    for (std::size_t i = 1; i < bytes.size(); ++i) {
+        EXPECT_FALSE(packedJson(bytes.substr(0, i)).empty()) << i;
+        for (const int bit : {0x01, 0x80, 0xFF}) {
+            auto damaged = bytes;
+            damaged[i] = static_cast<char>(damaged[i] ^ bit);
+            EXPECT_FALSE(packedJson(damaged).empty()) << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace metier::recording

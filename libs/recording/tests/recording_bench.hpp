@@ -10,6 +10,7 @@
 
 #include "metier/device/arm.hpp"
 #include "metier/device/shared_value.hpp"
+#include "metier/recording/packed_json.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/records/store.hpp"
 
@@ -98,7 +99,8 @@ private:
         std::move(*records::Recorder::create({.url = file_,
                                               .server = "urn:test",
                                               // The Programs live in 1970.
-                                              .keep = {.age = {}, .bytes = 0}}));
+                                              .keep = {.age = {}, .bytes = 0},
+                                              .to_json = packedJson}));
 };
 
 }  // namespace metier::recording::testing

@@ -1,11 +1,16 @@
 #include "message_log.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
+
+#include "packing.hpp"
 
 namespace metier::records {
 namespace {
@@ -15,195 +20,221 @@ constexpr std::size_t kPiece = 262'144;
 /// Pieces that are kept: what a lively second takes.
 constexpr std::size_t kMostKept = 64;
 
-/// How long a text is, in one byte, unless it is one of these.
-constexpr std::uint8_t kLong = 254;       // four bytes tell
-constexpr std::uint8_t kAsBefore = 255;   // as in the message before of that kind
-constexpr std::size_t kMostOfLength = 5;  // [byte]
-
-/// A beginning that its teller has.
-struct Beginning {
-    const Execution& execution;
-    Recorder::ToJson to_json;
-};
-
-enum class Kind : std::uint8_t { begun, transition, intermediate, outcome };
-
-Kind kindOf(const Beginning& /*message*/) {
-    return Kind::begun;
-}
-Kind kindOf(const Transition& /*message*/) {
-    return Kind::transition;
-}
-Kind kindOf(const Intermediate& /*message*/) {
-    return Kind::intermediate;
-}
-Kind kindOf(const Outcome& /*message*/) {
-    return Kind::outcome;
-}
-
-// What is kept of a message, in its order.
+// What is kept of a message: names, which are few and come again and again, and what is its own.
 
 template <typename Message>
 requires requires(Message& m) {
-    m.to_json;
+    m.thumbprint;
 }
-auto fieldsOf(Message& m) {
-    auto& e = m.execution;
-    return std::tie(m.to_json, e.id, e.server_name, e.skill, e.controller, e.device, e.parent,
-                    e.parent_server, e.session, e.client_name, e.user, e.thumbprint, e.parameters,
-                    e.check, e.started, e.state, e.reason, e.reason_text, e.result,
-                    e.missed_cycles);
+auto namesOf(Message& e) {
+    return std::tie(e.server_name, e.skill, e.controller, e.device, e.parent_server, e.session,
+                    e.client_name, e.user, e.thumbprint, e.state, e.reason, e.reason_text);
+}
+template <typename Message>
+requires requires(Message& m) {
+    m.thumbprint;
+}
+auto ownOf(Message& e) {
+    return std::tie(e.id, e.parent, e.parameters, e.check, e.result, e.started, e.missed_cycles);
 }
 template <typename Message>
 requires requires(Message& m) {
     m.sub_state;
 }
-auto fieldsOf(Message& t) {
-    return std::tie(t.time, t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
+auto namesOf(Message& t) {
+    return std::tie(t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
 }
-auto fieldsOf(const Intermediate& i) {
-    return std::tie(i.time, i.value);
+template <typename Message>
+requires requires(Message& m) {
+    m.sub_state;
 }
-auto fieldsOf(Intermediate& i) {
+auto ownOf(Message& t) {
+    return std::tie(t.time);
+}
+template <typename Message>
+requires requires(Message& m) {
+    m.value;
+}
+auto namesOf(Message& /*i*/) {
+    return std::tie();
+}
+template <typename Message>
+requires requires(Message& m) {
+    m.value;
+}
+auto ownOf(Message& i) {
     return std::tie(i.time, i.value);
 }
 template <typename Message>
 requires requires(Message& m) {
     m.result, m.time;
 }
-auto fieldsOf(Message& o) {
-    return std::tie(o.time, o.state, o.reason, o.reason_text, o.result, o.missed_cycles);
+auto namesOf(Message& o) {
+    return std::tie(o.state, o.reason, o.reason_text);
+}
+template <typename Message>
+requires requires(Message& m) {
+    m.result, m.time;
+}
+auto ownOf(Message& o) {
+    return std::tie(o.time, o.result, o.missed_cycles);
 }
 
-/// How many bytes they take at most.
-struct Size {
-    static std::size_t of(const std::string& text) { return kMostOfLength + text.size(); }
-    template <typename T>
-    static std::size_t of(const T& value) {
-        return sizeof value;
-    }
-    template <typename... Fields>
-    std::size_t operator()(const Fields&... each) const {
-        return (of(each) + ...);
+/// Recent texts of messages that are told together.
+template <typename... Messages>
+struct Recent {
+    RecentTexts names{};
+    std::array<RecentTexts, (std::tuple_size_v<decltype(ownOf(std::declval<Messages&>()))> + ...)>
+        own{};
+
+    void clear() {
+        names.clear();
+        std::for_each(own.begin(), own.end(), [](RecentTexts& texts) { texts.clear(); });
     }
 };
 
-/// Into memory that has room for it.
-class Put {
-public:
-    explicit Put(char* to) : to_(to) {}
-    const char* position() const { return to_; }
+void put(Packer& packer, std::string_view text, RecentTexts& recent) {
+    packer.put(text, recent);
+}
+template <typename T>
+void put(Packer& packer, const T& value, RecentTexts& /*recent*/) {
+    packer.put(value);
+}
+void take(Unpacker& unpacker, std::string& text, RecentTexts& recent) {
+    unpacker.take(text, recent);
+}
+template <typename T>
+void take(Unpacker& unpacker, T& value, RecentTexts& /*recent*/) {
+    unpacker.take(value);
+}
 
-    template <typename T>
-    requires std::is_trivially_copyable_v<T>
-    void value(const T& put) { bytes(&put, sizeof put); }
-    void field(const std::string& text, std::string& before) {
-        if (text == before) {
-            value(kAsBefore);
-            return;
-        }
-        before = text;
-        if (text.size() < kLong) {
-            value(static_cast<std::uint8_t>(text.size()));
-        } else {
-            value(kLong);
-            value(static_cast<std::uint32_t>(text.size()));
-        }
-        bytes(text.data(), text.size());
-    }
-    template <typename T>
-    void field(const T& field, T& /*before*/) {
-        value(field);
-    }
-
-private:
-    void bytes(const void* from, std::size_t size) {
-        std::memcpy(to_, from, size);
-        to_ += size;
-    }
-
-    char* to_;
-};
-
-class Get {
-public:
-    explicit Get(const char* from) : from_(from) {}
-    const char* position() const { return from_; }
-
-    template <typename T>
-    requires std::is_trivially_copyable_v<T> T value() {
-        T got{};
-        std::memcpy(&got, from_, sizeof got);
-        from_ += sizeof got;
-        return got;
-    }
-    void field(std::string& text, std::string& before) {
-        const auto length = value<std::uint8_t>();
-        if (length != kAsBefore) {
-            const std::size_t size = length == kLong ? value<std::uint32_t>() : length;
-            before.assign(from_, size);
-            from_ += size;
-        }
-        text = before;
-    }
-    template <typename T>
-    void field(T& field, T& /*before*/) {
-        field = value<T>();
-    }
-
-private:
-    const char* from_;
-};
-
-/// Puts or gets each field, beside that of the message before of its kind.
-template <typename Io, typename Message, typename Before>
-void exchange(Io& io, Message& message, Before& before) {
-    const auto fields = fieldsOf(message);
-    const auto befores = fieldsOf(before);
+/// Calls `one` with each of `fields` and of `recent`.
+template <typename Fields, typename Recents, typename One>
+void forEach(const Fields& fields, Recents& recent, One one) {
     [&]<std::size_t... I>(std::index_sequence<I...> /*all*/) {
-        (io.field(std::get<I>(fields), std::get<I>(befores)), ...);
+        (one(std::get<I>(fields), recent[I]), ...);
     }
-    (std::make_index_sequence<std::tuple_size_v<decltype(befores)>>{});
+    (std::make_index_sequence<std::tuple_size_v<Fields>>{});
 }
 
-template <typename Message>
-void giveOne(Get& get, Recorder::Key key, Message& before, MessageTaker& taker) {
-    Message message;
-    exchange(get, message, before);
-    if constexpr (std::is_same_v<Message, Begun>) {
-        taker.take(key, std::move(message.execution), message.to_json);
-    } else {
-        taker.take(key, std::move(message));
+// Names as one text: the length of each in a byte, or kLong and then in four, and the name.
+
+constexpr std::uint8_t kLong = 255;
+
+void joinOne(std::string_view name, std::string& joined) {
+    const auto size = static_cast<std::uint32_t>(name.size());
+    joined += static_cast<char>(std::min<std::uint32_t>(size, kLong));
+    if (size >= kLong) {
+        const auto bytes = std::bit_cast<std::array<char, sizeof size>>(size);
+        joined.append(bytes.data(), bytes.size());
     }
+    joined += name;
 }
 
-void giveNext(Get& get, LatestMessages& before, MessageTaker& taker) {
-    const auto kind = get.value<Kind>();
-    const auto key = get.value<Recorder::Key>();
-    switch (kind) {
-        case Kind::begun:
-            return giveOne(get, key, before.begun, taker);
-        case Kind::transition:
-            return giveOne(get, key, before.transition, taker);
-        case Kind::intermediate:
-            return giveOne(get, key, before.intermediate, taker);
-        case Kind::outcome:
-            return giveOne(get, key, before.outcome, taker);
+/// False if it is not there.
+bool splitOne(std::string_view& joined, std::string& name) {
+    if (joined.empty()) {
+        return false;
     }
-}
-
-/// They keep their memory.
-template <typename Message>
-void clearTexts(Message& message) {
-    const auto clear = [](auto& field) {
-        if constexpr (std::is_same_v<decltype(field), std::string&>) {
-            field.clear();
+    std::uint32_t size = static_cast<std::uint8_t>(joined.front());
+    joined.remove_prefix(1);
+    if (size == kLong) {
+        if (joined.size() < sizeof size) {
+            return false;
         }
+        std::memcpy(&size, joined.data(), sizeof size);
+        joined.remove_prefix(sizeof size);
+    }
+    if (joined.size() < size) {
+        return false;
+    }
+    name = joined.substr(0, size);
+    joined.remove_prefix(size);
+    return true;
+}
+
+/// \return false if they are damaged
+template <typename... Messages>
+bool give(Unpacker& unpacker, Recorder::Key key, Recent<Messages...>& recent, MessageTaker& taker) {
+    std::tuple<Messages...> all;
+    const auto of_all = [&all](auto fields_of) {
+        return std::apply([&](auto&... one) { return std::tuple_cat(fields_of(one)...); }, all);
     };
-    std::apply([&](auto&... each) { (clear(each), ...); }, fieldsOf(message));
+    std::string joined;
+    unpacker.take(joined, recent.names);
+    forEach(of_all([](auto& one) { return ownOf(one); }), recent.own,
+            [&](auto& field, RecentTexts& texts) { take(unpacker, field, texts); });
+    std::string_view rest(joined);
+    const bool whole = unpacker.isWhole() &&
+                       std::apply([&](auto&... name) { return (splitOne(rest, name) && ...); },
+                                  of_all([](auto& one) { return namesOf(one); }));
+    if (whole) {
+        std::apply([&](auto&... one) { (taker.take(key, std::move(one)), ...); }, all);
+    }
+    return whole;
 }
 
 }  // namespace
+
+/// What the next messages are told as a difference from.
+struct MessageLog::Before {
+    BeforeIntegers integers{};
+    Recent<Execution> begun{};
+    Recent<Transition> transition{};
+    Recent<Intermediate> intermediate{};
+    Recent<Outcome> outcome{};
+    Recent<Execution, Transition> started{};
+    Recent<Transition, Outcome> ended{};
+    // Of the message that is put; they have their memory already.
+    std::string names{};
+    Bytes packed{};
+
+    void clear() {
+        integers = {};
+        begun.clear();
+        transition.clear();
+        intermediate.clear();
+        outcome.clear();
+        started.clear();
+        ended.clear();
+    }
+    /// \return false if they are damaged
+    bool giveAll(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
+        Unpacker unpacker(bytes, integers);
+        while (!unpacker.isAtEnd()) {
+            if (!giveNext(unpacker, taker)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+private:
+    bool giveNext(Unpacker& unpacker, MessageTaker& taker) {
+        const auto kind = static_cast<Kind>(unpacker.byte());
+        const auto key = unpacker.key();
+        switch (kind) {
+            case Kind::begun:
+                return records::give(unpacker, key, begun, taker);
+            case Kind::transition:
+                return records::give(unpacker, key, transition, taker);
+            case Kind::intermediate:
+                return records::give(unpacker, key, intermediate, taker);
+            case Kind::outcome:
+                return records::give(unpacker, key, outcome, taker);
+            case Kind::started:
+                return records::give(unpacker, key, started, taker);
+            case Kind::ended:
+                return records::give(unpacker, key, ended, taker);
+        }
+        return false;
+    }
+};
+
+MessageLog::MessageLog() : before_(std::make_unique<Before>()) {}
+MessageLog::~MessageLog() = default;
+MessageLog::MessageLog(MessageLog&&) noexcept = default;
+MessageLog& MessageLog::operator=(MessageLog&&) noexcept = default;
 
 /// With room for so many bytes.
 MessageLog::Piece& MessageLog::pieceFor(std::size_t most) {
@@ -218,55 +249,82 @@ MessageLog::Piece& MessageLog::pieceFor(std::size_t most) {
     return pieces_[used_ - 1];
 }
 
-template <typename Message, typename Before>
-void MessageLog::append(Key key, const Message& message, Before& before) {
-    const auto kind = kindOf(message);
-    const auto most = sizeof kind + sizeof key + std::apply(Size{}, fieldsOf(message));
-    auto& piece = pieceFor(most);
-    auto* const begin = piece.bytes.data() + piece.used;
-    Put put(begin);
-    put.value(kind);
-    put.value(key);
-    exchange(put, message, before);
-    piece.used += static_cast<std::size_t>(put.position() - begin);
+template <typename Recent, typename... Messages>
+void MessageLog::append(Kind kind, Key key, Recent& recent, const Messages&... messages) {
+    auto& names = before_->names;
+    auto& packed = before_->packed;
+    names.clear();
+    packed.clear();
+    std::apply([&](const auto&... name) { (joinOne(name, names), ...); },
+               std::tuple_cat(namesOf(messages)...));
+    Packer packer(packed, before_->integers);
+    packer.byte(static_cast<std::uint8_t>(kind));
+    packer.key(key);
+    packer.put(names, recent.names);
+    forEach(std::tuple_cat(ownOf(messages)...), recent.own,
+            [&](const auto& field, RecentTexts& texts) { records::put(packer, field, texts); });
+    auto& piece = pieceFor(packed.size());
+    std::memcpy(piece.bytes.data() + piece.used, packed.data(), packed.size());
+    piece.used += packed.size();
     ++count_;
 }
 
-void MessageLog::put(Key key, const Execution& begun, Recorder::ToJson to_json) {
-    append(key, Beginning{begun, to_json}, latest_.begun);
+void MessageLog::put(Key key, const ExecutionView& begun) {
+    append(Kind::begun, key, before_->begun, begun);
 }
 
-void MessageLog::put(Key key, const Transition& transition) {
-    append(key, transition, latest_.transition);
+void MessageLog::put(Key key, const TransitionView& transition) {
+    append(Kind::transition, key, before_->transition, transition);
 }
 
-void MessageLog::put(Key key, const Intermediate& intermediate) {
-    append(key, intermediate, latest_.intermediate);
+void MessageLog::put(Key key, const IntermediateView& intermediate) {
+    append(Kind::intermediate, key, before_->intermediate, intermediate);
 }
 
-void MessageLog::put(Key key, const Outcome& outcome) {
-    append(key, outcome, latest_.outcome);
+void MessageLog::put(Key key, const OutcomeView& outcome) {
+    append(Kind::outcome, key, before_->outcome, outcome);
+}
+
+void MessageLog::put(Key key, const ExecutionView& begun, const TransitionView& first) {
+    append(Kind::started, key, before_->started, begun, first);
+}
+
+void MessageLog::put(Key key, const TransitionView& last, const OutcomeView& outcome) {
+    append(Kind::ended, key, before_->ended, last, outcome);
 }
 
 void MessageLog::giveTo(MessageTaker& taker) const {
-    LatestMessages before;
+    Before before;
     for (std::size_t i = 0; i < used_; ++i) {
-        Get get(pieces_[i].bytes.data());
-        const auto* const end = pieces_[i].bytes.data() + pieces_[i].used;
-        while (get.position() != end) {
-            giveNext(get, before, taker);
-        }
+        before.giveAll(std::span(pieces_[i].bytes).first(pieces_[i].used), taker);
     }
+}
+
+bool MessageLog::give(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
+    Before before;
+    return before.giveAll(bytes, taker);
+}
+
+void MessageLog::appendTo(Bytes& bytes) const {
+    for (std::size_t i = 0; i < used_; ++i) {
+        const auto used = std::span(pieces_[i].bytes).first(pieces_[i].used);
+        bytes.insert(bytes.end(), used.begin(), used.end());
+    }
+}
+
+std::size_t MessageLog::size() const noexcept {
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < used_; ++i) {
+        size += pieces_[i].used;
+    }
+    return size;
 }
 
 void MessageLog::clear() {
     count_ = 0;
     used_ = 0;
     // Whoever reads the next message begins without any before it.
-    clearTexts(latest_.begun);
-    clearTexts(latest_.transition);
-    clearTexts(latest_.intermediate);
-    clearTexts(latest_.outcome);
+    before_->clear();
     pieces_.resize(std::min(pieces_.size(), kMostKept));
     std::erase_if(pieces_, [](const Piece& piece) { return piece.bytes.size() > kPiece; });
 }

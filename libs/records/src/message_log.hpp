@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
+#include "database.hpp"
 #include "metier/records/execution.hpp"
 #include "metier/records/recorder.hpp"
 
@@ -13,54 +16,63 @@ namespace metier::records {
 class MessageTaker {
 public:
     virtual ~MessageTaker() = default;
-    virtual void take(Recorder::Key key, Execution&& execution, Recorder::ToJson to_json) = 0;
+    virtual void take(Recorder::Key key, Execution&& execution) = 0;
     virtual void take(Recorder::Key key, Transition&& transition) = 0;
     virtual void take(Recorder::Key key, Intermediate&& intermediate) = 0;
     virtual void take(Recorder::Key key, Outcome&& outcome) = 0;
 };
 
-/// The beginning of an execution.
-struct Begun {
-    Execution execution{};
-    Recorder::ToJson to_json = nullptr;
-};
-
-/// One of each kind.
-struct LatestMessages {
-    Begun begun{};
-    Transition transition{};
-    Intermediate intermediate{};
-    Outcome outcome{};
+/// A sample and whose it is.
+struct KeyedSample {
+    Recorder::Key key = 0;
+    PathSample sample{};
 };
 
 /// Messages to a recorder, one after the other in pieces of memory that are used again and again:
-/// putting one is copying those of its texts that are not as before, and leaves nothing that
-/// another thread has to free.
+/// a text that is among the last ones of its field is a byte there, so that an execution takes some
+/// sixty, and putting a message leaves nothing that another thread has to free.
 ///
 /// Threading: one thread at a time.
 class MessageLog {
 public:
     using Key = Recorder::Key;
 
+    MessageLog();
+    ~MessageLog();
+    MessageLog(MessageLog&&) noexcept;
+    MessageLog& operator=(MessageLog&&) noexcept;
+
     /// Its number, server and end are not kept.
-    void put(Key key, const Execution& begun, Recorder::ToJson to_json);
-    void put(Key key, const Transition& transition);
-    void put(Key key, const Intermediate& intermediate);
-    void put(Key key, const Outcome& outcome);
+    void put(Key key, const ExecutionView& begun);
+    void put(Key key, const TransitionView& transition);
+    void put(Key key, const IntermediateView& intermediate);
+    void put(Key key, const OutcomeView& outcome);
+    // Two at once, which count as one.
+    void put(Key key, const ExecutionView& begun, const TransitionView& first);
+    void put(Key key, const TransitionView& last, const OutcomeView& outcome);
 
     std::size_t count() const noexcept { return count_; }
     /// In the order in which they were put.
     void giveTo(MessageTaker& taker) const;
+    /// Appends all of them, for give() of any process.
+    void appendTo(Bytes& bytes) const;
+    /// What appendTo() appends [byte].
+    std::size_t size() const noexcept;
+    /// Gives what appendTo() has appended.
+    /// \return false if it is damaged: what came before that was given
+    static bool give(std::span<const std::uint8_t> bytes, MessageTaker& taker);
     /// Keeps its memory, unless that is more than a lively second takes.
     void clear();
 
 private:
-    template <typename Message, typename Before>
-    void append(Key key, const Message& message, Before& before);
+    struct Before;
+    enum class Kind : std::uint8_t { begun, transition, intermediate, outcome, started, ended };
+    template <typename Recent, typename... Messages>
+    void append(Kind kind, Key key, Recent& recent, const Messages&... messages);
 
     /// Holds whole messages.
     struct Piece {
-        std::vector<char> bytes;
+        Bytes bytes;
         std::size_t used = 0;
     };
     Piece& pieceFor(std::size_t most);
@@ -68,7 +80,7 @@ private:
     std::vector<Piece> pieces_;
     std::size_t used_ = 0;  // pieces with messages; the others wait to be used again
     std::size_t count_ = 0;
-    LatestMessages latest_;  // of each kind that was put
+    std::unique_ptr<Before> before_;
 };
 
 }  // namespace metier::records

@@ -134,23 +134,30 @@ void encodeSample(const PathSample& sample, Bytes& bytes) {
     }
 }
 
-void decodeSamples(const Bytes& bytes, std::vector<PathSample>& samples) {
+std::optional<PathSample> takeSample(std::span<const std::uint8_t>& bytes) {
     constexpr std::size_t kHead = 3 + 8;
-    std::size_t at = 0;
-    while (at + kHead <= bytes.size()) {
-        const std::array<std::size_t, 3> counts{bytes[at], bytes[at + 1], bytes[at + 2]};
-        const auto size = kHead + 8 * (counts[0] + counts[1] + counts[2]);
-        if (std::any_of(counts.begin(), counts.end(),
-                        [](std::size_t n) { return n > SampleValues::kMost; }) ||
-            at + size > bytes.size()) {
-            return;
-        }
-        const auto* values = bytes.data() + at + kHead;
-        samples.push_back({.time = getDouble(bytes.data() + at + 3),
-                           .actual = getValues(values, counts[0]),
-                           .commanded = getValues(values + 8 * counts[0], counts[1]),
-                           .force = getValues(values + 8 * (counts[0] + counts[1]), counts[2])});
-        at += size;
+    if (bytes.size() < kHead) {
+        return std::nullopt;
+    }
+    const std::array<std::size_t, 3> counts{bytes[0], bytes[1], bytes[2]};
+    const auto size = kHead + 8 * (counts[0] + counts[1] + counts[2]);
+    if (std::any_of(counts.begin(), counts.end(),
+                    [](std::size_t n) { return n > SampleValues::kMost; }) ||
+        size > bytes.size()) {
+        return std::nullopt;
+    }
+    const auto* values = bytes.data() + kHead;
+    PathSample sample{.time = getDouble(bytes.data() + 3),
+                      .actual = getValues(values, counts[0]),
+                      .commanded = getValues(values + 8 * counts[0], counts[1]),
+                      .force = getValues(values + 8 * (counts[0] + counts[1]), counts[2])};
+    bytes = bytes.subspan(size);
+    return sample;
+}
+
+void decodeSamples(std::span<const std::uint8_t> bytes, std::vector<PathSample>& samples) {
+    while (auto sample = takeSample(bytes)) {
+        samples.push_back(*sample);
     }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -29,7 +31,9 @@ void decodeEvents(std::string_view text, std::vector<Event>& events);
 /// Appends a sample: the number of values of actual, commanded and force, one byte each, then time
 /// and values as little-endian doubles.
 void encodeSample(const PathSample& sample, Bytes& bytes);
+/// Takes one sample from the front of `bytes`; nothing if they are none.
+std::optional<PathSample> takeSample(std::span<const std::uint8_t>& bytes);
 /// Appends what `bytes` holds, as far as it is whole.
-void decodeSamples(const Bytes& bytes, std::vector<PathSample>& samples);
+void decodeSamples(std::span<const std::uint8_t> bytes, std::vector<PathSample>& samples);
 
 }  // namespace metier::records

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "database.hpp"
+#include "metier/records/recorder.hpp"
 
 namespace metier::records {
 
@@ -10,12 +11,15 @@ namespace metier::records {
 enum class Opening { first, again };
 
 /// Tells all others who open the store that the server is there, until the connection ends. The
-/// first time, closes what a server of that name has left under way when it died, unless another
-/// one is there.
-Result<void> attend(Database& database, const std::string& server, Opening opening);
+/// first time, makes rows of what a server of that name has left when it died and closes what was
+/// under way, unless another one is there.
+/// \return what it could not make rows of
+Result<Dropped> attend(Database& database, const std::string& server, Opening opening,
+                       Recorder::ToJson to_json);
 
-/// Closes what servers have left under way that are there no longer.
+/// The same for servers that are there no longer.
 /// \param own server that is left out
-Result<void> closeLostOfOthers(Database& database, const std::string& own);
+Result<Dropped> closeLostOfOthers(Database& database, const std::string& own,
+                                  Recorder::ToJson to_json);
 
 }  // namespace metier::records

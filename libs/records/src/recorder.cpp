@@ -19,15 +19,19 @@ Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recorder::~Recorder() = default;
 
-Recorder::Key Recorder::begin(const Execution& execution, ToJson to_json) {
-    return impl_->begin(execution, to_json);
+Recorder::Key Recorder::begin(const ExecutionView& execution) {
+    return impl_->begin(execution);
 }
 
-void Recorder::transition(Key key, const Transition& transition) {
+Recorder::Key Recorder::begin(const ExecutionView& execution, const TransitionView& first) {
+    return impl_->begin(execution, first);
+}
+
+void Recorder::transition(Key key, const TransitionView& transition) {
     impl_->tell(key, transition);
 }
 
-void Recorder::intermediate(Key key, const Intermediate& intermediate) {
+void Recorder::intermediate(Key key, const IntermediateView& intermediate) {
     impl_->tell(key, intermediate);
 }
 
@@ -35,8 +39,12 @@ void Recorder::sample(Key key, const PathSample& sample) noexcept {
     impl_->sample({key, sample});
 }
 
-void Recorder::end(Key key, const Outcome& outcome) {
+void Recorder::end(Key key, const OutcomeView& outcome) {
     impl_->end(key, outcome);
+}
+
+void Recorder::end(Key key, const OutcomeView& outcome, const TransitionView& last) {
+    impl_->end(key, last, outcome);
 }
 
 bool Recorder::flush(SteadyTime deadline) {

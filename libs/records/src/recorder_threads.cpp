@@ -31,6 +31,14 @@ std::uint64_t sumOf(const Dropped& dropped) {
     return dropped.executions + dropped.events + dropped.samples;
 }
 
+/// What comes faster is made rows of later: messages of so many in a second, and at once.
+constexpr double kFloodRate = 4'000;
+constexpr std::size_t kFloodLeast = 500;
+/// Later than this it is made rows of however fast more comes.
+constexpr auto kMostBehind = 10s;
+/// A backlog of that size takes no more; what comes then waits in the queue [byte].
+constexpr std::size_t kMostBacklog = 256'000'000;
+
 constexpr int kNice = 15;
 
 /// Where every core is busy, robots come first: what is recorded then waits in the queue.
@@ -51,7 +59,8 @@ std::string lossText(const Dropped& d) {
 Recorder::Impl::Impl(Options options)
     : options_(std::move(options)),
       samples_(options_.most_waiting_samples),
-      writer_(options_.server) {
+      writer_(options_.server, options_.to_json),
+      backlog_(options_.server) {
     watcher_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
     thread_ = std::jthread([this](const std::stop_token& stop) { write(stop); });
 }
@@ -63,16 +72,21 @@ Recorder::Impl::~Impl() {
     watcher_ = {};
 }
 
-Recorder::Key Recorder::Impl::begin(const Execution& execution, ToJson to_json) {
+template <typename... Messages>
+Recorder::Key Recorder::Impl::begin(const Messages&... messages) {
     const std::lock_guard lock(mutex_);
     if (waiting_.count() >= options_.most_waiting) {
         ++dropped_.executions;
         return 0;
     }
-    waiting_.put(++newest_, execution, to_json);
+    waiting_.put(++newest_, messages...);
     wakeWriter();
     return newest_;
 }
+
+template Recorder::Key Recorder::Impl::begin(const ExecutionView& execution);
+template Recorder::Key Recorder::Impl::begin(const ExecutionView& execution,
+                                             const TransitionView& first);
 
 template <typename Message>
 void Recorder::Impl::tell(Key key, const Message& message) {
@@ -88,18 +102,22 @@ void Recorder::Impl::tell(Key key, const Message& message) {
     }
 }
 
-template void Recorder::Impl::tell(Key key, const Transition& message);
-template void Recorder::Impl::tell(Key key, const Intermediate& message);
+template void Recorder::Impl::tell(Key key, const TransitionView& message);
+template void Recorder::Impl::tell(Key key, const IntermediateView& message);
 
 /// An execution ends once, so that beyond the queue's size there are never more than began.
-void Recorder::Impl::end(Key key, const Outcome& outcome) {
+template <typename... Messages>
+void Recorder::Impl::end(Key key, const Messages&... messages) {
     if (key == 0) {
         return;
     }
     const std::lock_guard lock(mutex_);
-    waiting_.put(key, outcome);
+    waiting_.put(key, messages...);
     wakeWriter();
 }
+
+template void Recorder::Impl::end(Key key, const OutcomeView& outcome);
+template void Recorder::Impl::end(Key key, const TransitionView& last, const OutcomeView& outcome);
 
 /// With the lock, after each message. Only when the writer has something to wait for no longer,
 /// since waking a thread costs more than all else here.
@@ -135,7 +153,7 @@ bool Recorder::Impl::flush(SteadyTime deadline) {
 Recorder::Status Recorder::Impl::status() const {
     const std::lock_guard lock(mutex_);
     return {.health = told_,
-            .waiting = waiting_.count(),
+            .waiting = waiting_.count() + behind_,
             .waiting_samples = samples_.size(),
             .written = written_,
             .dropped = dropped()};
@@ -152,9 +170,8 @@ void Recorder::Impl::write(const std::stop_token& stop) {
     yieldToOthers();
     while (true) {
         const bool go_on = waitForWork(stop);
-        std::uint64_t answered = 0;
-        const auto done = writeRound(answered);
-        finishRound(done, answered);
+        const auto done = writeRound(!go_on);
+        finishRound(done);
         if (!go_on && (!done || !somethingWaits())) {
             return;
         }
@@ -165,14 +182,14 @@ void Recorder::Impl::write(const std::stop_token& stop) {
     }
 }
 
-/// False if nothing will come any more: one last round.
+/// False if nothing will come any more: all is written.
 bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     const auto asked = [this] { return asked_ > answered_; };
     if (!writer_busy_ && !trimming_ && database_ != nullptr) {
         changed_.wait_for(lock, stop, kTrimEvery, [&] { return waiting_.count() > 0 || asked(); });
     }
-    if (database_ != nullptr && !trimming_) {
+    if (database_ != nullptr && !trimming_ && !isBacklogDue(false)) {
         changed_.wait_for(lock, stop, kGather,
                           [&] { return asked() || waiting_.count() > options_.most_waiting / 2; });
     }
@@ -180,24 +197,104 @@ bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
     return !stop.stop_requested();
 }
 
-/// Gives the writer what waits, unless it still has what it could not write: the queue is bounded.
-/// \return which flush is answered once that is written
-std::uint64_t Recorder::Impl::giveToWriter() {
-    if (writer_.hasChanges()) {
-        return 0;
-    }
-    std::uint64_t asked = 0;
+Result<void> Recorder::Impl::writeRound(bool everything) {
     {
         const std::lock_guard lock(mutex_);
-        std::swap(waiting_, taken_);
-        asked = asked_;
+        everything = everything || asked_ > answered_;
     }
-    const auto lost = writer_.take(taken_, takeSamples());
+    auto done = database_ == nullptr ? openStore() : Result<void>();
+    if (done && !isTaken()) {
+        takeWaiting(everything);
+    }
+    if (done) {
+        done = writeTaken();
+    }
+    if (done && isBacklogDue(everything)) {
+        done = workOffBacklog();
+    }
+    if (done) {
+        done = trim();
+    }
+    if (!done) {
+        database_.reset();
+        trimming_.reset();
+    }
+    return done;
+}
+
+/// Whether something was taken that could not be written: no more is taken until it is, since the
+/// queue is bounded.
+bool Recorder::Impl::isTaken() const {
+    return adds_ || works_off_ || writer_.hasChanges();
+}
+
+void Recorder::Impl::takeWaiting(bool everything) {
+    const auto passed = now() - taken_at_;
+    {
+        const std::lock_guard lock(mutex_);
+        // While a backlog is worked off, what comes is added to it in few pieces.
+        const bool early = !backlog_.isEmpty() && passed < kGather && !everything &&
+                           waiting_.count() <= options_.most_waiting / 2;
+        if (early || backlog_.bytes() > kMostBacklog) {
+            return;
+        }
+        std::swap(waiting_, taken_);
+        asked_then_ = asked_;
+    }
+    taken_at_ = now();
+    const auto count = taken_.count();
+    // What waits came within the last of these, unless the store held the writer up.
+    const std::chrono::duration<double> came = std::min<SteadyTime::duration>(passed, 2 * kGather);
+    flooded_ = count >= kFloodLeast && static_cast<double>(count) > kFloodRate * came.count();
+    const auto samples = takeSamples();
+    if (backlog_.isEmpty() && (everything || !flooded_)) {
+        lose(writer_.take(taken_, samples));
+    } else if (count > 0 || !samples.empty()) {
+        makeTold(taken_, samples, for_backlog_);
+        adds_ = true;
+    }
     taken_.clear();
+}
+
+Result<void> Recorder::Impl::writeTaken() {
+    if (adds_) {
+        auto added = backlog_.add(*database_, for_backlog_, writer_.underWay());
+        adds_ = !added;
+        return added;
+    }
+    if (!works_off_) {
+        return writer_.write(*database_);
+    }
+    auto done = writer_.write(
+        *database_, [this] { return backlog_.removeOldest(*database_, writer_.underWay()); });
+    if (done) {
+        backlog_.oldestRemoved();
+        works_off_ = false;
+    }
+    return done;
+}
+
+bool Recorder::Impl::isBacklogDue(bool everything) const {
+    return !backlog_.isEmpty() && (everything || !flooded_ || backlog_.bytes() > kMostBacklog ||
+                                   now() - backlog_.oldest() > kMostBehind);
+}
+
+/// Of the backlog the oldest.
+Result<void> Recorder::Impl::workOffBacklog() {
+    const auto told = backlog_.readOldest(*database_);
+    if (!told) {
+        return fail(told.error());
+    }
+    if (*told) {
+        lose(writer_.take(**told));
+    }
+    works_off_ = true;
+    return writeTaken();
+}
+
+void Recorder::Impl::lose(const Dropped& lost) {
     const std::lock_guard lock(mutex_);
-    dropped_.events += lost.events;
-    dropped_.samples += lost.samples;
-    return asked;
+    dropped_ += lost;
 }
 
 std::vector<KeyedSample> Recorder::Impl::takeSamples() {
@@ -213,25 +310,9 @@ std::vector<KeyedSample> Recorder::Impl::takeSamples() {
     return taken;
 }
 
-Result<void> Recorder::Impl::writeRound(std::uint64_t& answered) {
-    auto done = database_ == nullptr ? openStore() : Result<void>();
-    if (done) {
-        answered = giveToWriter();
-        done = writer_.write(*database_);
-    }
-    if (done) {
-        done = trim();
-    }
-    if (!done) {
-        database_.reset();
-        trimming_.reset();
-    }
-    return done;
-}
-
 bool Recorder::Impl::somethingWaits() const {
     const std::lock_guard lock(mutex_);
-    return waiting_.count() > 0;
+    return waiting_.count() > 0 || !backlog_.isEmpty();
 }
 
 Result<void> Recorder::Impl::openStore() {
@@ -240,9 +321,11 @@ Result<void> Recorder::Impl::openStore() {
         return fail(opened.error());
     }
     const auto opening = opened_ ? Opening::again : Opening::first;
-    if (auto there = attend(**opened, options_.server, opening); !there) {
-        return there;
+    const auto lost = attend(**opened, options_.server, opening, options_.to_json);
+    if (!lost) {
+        return fail(lost.error());
     }
+    lose(*lost);
     opened_ = true;
     database_ = std::move(*opened);
     return {};
@@ -251,9 +334,11 @@ Result<void> Recorder::Impl::openStore() {
 /// A part of it: what is told meanwhile is written in between.
 Result<void> Recorder::Impl::trim() {
     if (!trimming_ && (!trimmed_ || now() - *trimmed_ >= kTrimEvery)) {
-        if (auto closed = closeLostOfOthers(*database_, options_.server); !closed) {
-            return closed;
+        const auto lost = closeLostOfOthers(*database_, options_.server, options_.to_json);
+        if (!lost) {
+            return fail(lost.error());
         }
+        lose(*lost);
         trimmed_ = now();
         trimming_.emplace(options_.keep, std::chrono::system_clock::now());
     }
@@ -270,13 +355,14 @@ Result<void> Recorder::Impl::trim() {
     return {};
 }
 
-void Recorder::Impl::finishRound(const Result<void>& done, std::uint64_t answered) {
+void Recorder::Impl::finishRound(const Result<void>& done) {
     {
         const std::lock_guard lock(mutex_);
         error_ = done ? std::string() : done.error().message;
-        answered_ = done ? std::max(answered, answered_) : answered_;
+        answered_ = done && backlog_.isEmpty() ? asked_then_ : answered_;
         written_ = writer_.written();
-        writer_busy_ = writer_.hasChanges() || writer_.isBusy();
+        behind_ = backlog_.messages() + (adds_ ? for_backlog_.messages : 0);
+        writer_busy_ = isTaken() || writer_.isBusy() || !backlog_.isEmpty();
         round_began_.reset();
     }
     changed_.notify_all();

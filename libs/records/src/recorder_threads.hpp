@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "backlog.hpp"
 #include "message_log.hpp"
 #include "metier/records/recorder.hpp"
 #include "retention.hpp"
@@ -28,10 +29,12 @@ public:
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    Key begin(const Execution& execution, ToJson to_json);
+    template <typename... Messages>
+    Key begin(const Messages&... messages);
     template <typename Message>
     void tell(Key key, const Message& message);
-    void end(Key key, const Outcome& outcome);
+    template <typename... Messages>
+    void end(Key key, const Messages&... messages);
     void sample(const KeyedSample& sample) noexcept;
     bool flush(SteadyTime deadline);
     Status status() const;
@@ -41,12 +44,17 @@ private:
     void write(const std::stop_token& stop);
     bool somethingWaits() const;
     bool waitForWork(const std::stop_token& stop);
-    std::uint64_t giveToWriter();
+    Result<void> writeRound(bool everything);
+    void takeWaiting(bool everything);
     std::vector<KeyedSample> takeSamples();
-    Result<void> writeRound(std::uint64_t& answered);
+    bool isTaken() const;
+    Result<void> writeTaken();
+    bool isBacklogDue(bool everything) const;
+    Result<void> workOffBacklog();
+    void lose(const Dropped& lost);
     Result<void> openStore();
     Result<void> trim();
-    void finishRound(const Result<void>& done, std::uint64_t answered);
+    void finishRound(const Result<void>& done);
 
     void watch(const std::stop_token& stop);
     bool hangs() const;
@@ -65,7 +73,8 @@ private:
     std::uint64_t asked_ = 0;     // flushes
     std::uint64_t answered_ = 0;  // flushes
     std::uint64_t written_ = 0;
-    bool writer_busy_ = false;  // has changes that are not in the store, or executions under way
+    std::uint64_t behind_ = 0;  // messages that were taken and are no rows yet
+    bool writer_busy_ = false;  // has something to write, or executions under way
     std::optional<SteadyTime> round_began_;
     std::string error_;  // of the last round; empty: it went well
     Health told_ = Health::writing;
@@ -75,6 +84,13 @@ private:
     MessageLog taken_;     // changes places with what is waiting
     bool opened_ = false;  // once
     Writer writer_;
+    Backlog backlog_;
+    Told for_backlog_;
+    bool adds_ = false;       // that to the backlog
+    bool works_off_ = false;  // the writer has the oldest of the backlog
+    bool flooded_ = false;    // more came last than rows are made of at once
+    SteadyTime taken_at_{};
+    std::uint64_t asked_then_ = 0;  // flushes, when something was taken last
     std::optional<RetentionRun> trimming_;
     std::optional<SteadyTime> trimmed_;
     // ----

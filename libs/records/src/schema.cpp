@@ -13,7 +13,8 @@ constexpr std::string_view kMarker = "metier_records";
 // a filter looks for those that fit, which are few, and then takes the newest of each from an
 // index; where many notes fit, it goes through executions that have one, newest first. `parts`
 // holds what came while an execution was under way, in the order it was written: its key is number
-// * 1048576 + count.
+// * 1048576 + count. `backlog` holds what a recorder was told faster than it made rows of it, each
+// recorder a life of its own, with the executions that were under way before the oldest.
 constexpr std::string_view kTables = R"(
 CREATE TABLE metier_records (name TEXT PRIMARY KEY, value BIGINT NOT NULL);
 INSERT INTO metier_records VALUES ('schema_version', {version}), ('revision', 0);
@@ -45,19 +46,36 @@ CREATE VIEW history AS SELECT e.number, e.id, k.server, k.server_name, k.control
     FROM executions e JOIN kinds k ON k.kind = e.kind JOIN notes n ON n.note = e.note;
 )";
 
-Result<void> makeTables(Database& database) {
+// Later than the others: stores of the same version may lack it until somebody writes.
+constexpr std::string_view kBacklogName = "backlog";
+constexpr std::string_view kBacklog = R"(
+CREATE TABLE backlog (life BIGINT NOT NULL, number BIGINT NOT NULL, server TEXT NOT NULL,
+    under_way TEXT NOT NULL, content {blob} NOT NULL, PRIMARY KEY (life, number));
+)";
+
+Result<void> make(Database& database, std::string_view marker, std::string_view tables) {
     return inTransaction(database, [&]() -> Result<void> {
         // Another server may have made them while this one waited for its transaction.
-        const auto there = database.hasTable(kMarker);
+        const auto there = database.hasTable(marker);
         if (!there) {
             return fail(there.error());
         }
         const auto& dialect = database.dialect();
         return *there ? Result<void>()
-                      : database.script(fmt::format(kTables, fmt::arg("version", kSchemaVersion),
+                      : database.script(fmt::format(fmt::runtime(tables),
+                                                    fmt::arg("version", kSchemaVersion),
                                                     fmt::arg("number_key", dialect.number_key),
                                                     fmt::arg("blob", dialect.blob)));
     });
+}
+
+/// What this version has and the one that made the store may not have had.
+Result<void> complete(Database& database) {
+    const auto there = database.hasTable(kBacklogName);
+    if (!there) {
+        return fail(there.error());
+    }
+    return *there ? Result<void>() : make(database, kBacklogName, kBacklog);
 }
 
 Result<void> checkVersion(Database& database) {
@@ -82,22 +100,24 @@ Result<void> prepareSchema(Database& database, Store::Access access) {
     if (!marked) {
         return fail(marked.error());
     }
-    if (*marked) {
-        return checkVersion(database);
+    if (!*marked) {
+        const auto empty = database.isEmpty();
+        if (!empty) {
+            return fail(empty.error());
+        }
+        if (!*empty) {
+            return fail(Errc::invalid_argument,
+                        database.name() + " holds other tables than those of records");
+        }
+        if (access == Store::Access::read) {
+            return fail(Errc::not_found, database.name() + ": there are no records");
+        }
+        if (auto made = make(database, kMarker, kTables); !made) {
+            return made;
+        }
     }
-    const auto empty = database.isEmpty();
-    if (!empty) {
-        return fail(empty.error());
-    }
-    if (!*empty) {
-        return fail(Errc::invalid_argument,
-                    database.name() + " holds other tables than those of records");
-    }
-    if (access == Store::Access::read) {
-        return fail(Errc::not_found, database.name() + ": there are no records");
-    }
-    auto made = makeTables(database);
-    return made ? checkVersion(database) : made;
+    auto known = checkVersion(database);
+    return known && access == Store::Access::write ? complete(database) : known;
 }
 
 }  // namespace metier::records

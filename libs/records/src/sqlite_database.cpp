@@ -202,7 +202,8 @@ Result<void> SqliteDatabase::setUp(Store::Access access) {
     // The first one works only before the first table; the rest of the space is given back by it.
     return script(
         "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-        "PRAGMA journal_size_limit = 16777216; PRAGMA temp_store = MEMORY");
+        "PRAGMA journal_size_limit = 16777216; PRAGMA wal_autocheckpoint = 4096;"
+        "PRAGMA temp_store = MEMORY");
 }
 
 tl::unexpected<Error> SqliteDatabase::failed() const {

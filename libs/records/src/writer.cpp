@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
+#include "backlog.hpp"
 #include "text.hpp"
 
 namespace metier::records {
@@ -20,12 +22,6 @@ void cut(std::size_t longest, Texts&... texts) {
         }
     };
     (cut_one(texts), ...);
-}
-
-void makeJson(Recorder::ToJson to_json, std::string& value) {
-    if (to_json != nullptr && !value.empty()) {
-        value = to_json(value);
-    }
 }
 
 /// The latest time that is known of an execution under way.
@@ -67,10 +63,28 @@ Dropped Writer::take(const MessageLog& messages, const std::vector<KeyedSample>&
     return dropped_;
 }
 
-void Writer::take(Recorder::Key key, Execution&& e, Recorder::ToJson to_json) {
-    if (to_json != parameters_.by || e.parameters != parameters_.from) {
-        parameters_ = {.by = to_json, .from = e.parameters, .json = e.parameters};
-        makeJson(to_json, parameters_.json);
+Dropped Writer::take(std::span<const std::uint8_t> told) {
+    dropped_ = {};
+    std::vector<KeyedSample> samples;
+    if (!giveTold(told, *this, samples)) {
+        ++dropped_.events;
+    }
+    const auto early = std::exchange(early_, {});
+    takeSamples(early);
+    takeSamples(samples);
+    return dropped_;
+}
+
+void Writer::makeJson(std::string& value) const {
+    if (to_json_ != nullptr && !value.empty()) {
+        value = to_json_(value);
+    }
+}
+
+void Writer::take(Recorder::Key key, Execution&& e) {
+    if (e.parameters != parameters_.from) {
+        parameters_ = {.from = e.parameters, .json = e.parameters};
+        makeJson(parameters_.json);
     }
     e.parameters = parameters_.json;
     e.server = server_;
@@ -81,7 +95,6 @@ void Writer::take(Recorder::Key key, Execution&& e, Recorder::ToJson to_json) {
     newest_ = std::max(newest_, key);
     auto& active = active_[key];
     active.execution = std::move(e);
-    active.to_json = to_json;
     note(key, active);
 }
 
@@ -105,7 +118,7 @@ void Writer::take(Recorder::Key key, Transition&& t) {
 
 void Writer::take(Recorder::Key key, Intermediate&& intermediate) {
     if (auto* active = findForEvent(key)) {
-        makeJson(active->to_json, intermediate.value);
+        makeJson(intermediate.value);
         cut(kLongestText, intermediate.value);
         active->events.emplace_back(std::move(intermediate));
         note(key, *active);
@@ -117,7 +130,7 @@ void Writer::take(Recorder::Key key, Outcome&& o) {
     if (active == nullptr) {
         return;
     }
-    makeJson(active->to_json, o.result);
+    makeJson(o.result);
     cut(kLongestName, o.state, o.reason);
     cut(kLongestKey, o.reason_text);
     cut(kLongestText, o.result);
@@ -173,11 +186,14 @@ void Writer::note(Recorder::Key key, Active& active) {
     }
 }
 
-Result<void> Writer::write(Database& database) {
-    if (changed_.empty()) {
+Result<void> Writer::write(Database& database, const std::function<Result<void>()>& also) {
+    if (changed_.empty() && !also) {
         return {};
     }
-    auto done = inTransaction(database, [&] { return writeAll(database); });
+    auto done = inTransaction(database, [&] {
+        auto written = writeAll(database);
+        return written && also ? also() : written;
+    });
     if (done) {
         kept();
     } else {
@@ -186,7 +202,18 @@ Result<void> Writer::write(Database& database) {
     return done;
 }
 
+Result<void> Writer::writeWithin(Database& database) {
+    auto done = writeAll(database);
+    if (done) {
+        kept();
+    }
+    return done;
+}
+
 Result<void> Writer::writeAll(Database& database) {
+    if (changed_.empty()) {
+        return {};
+    }
     RowWriter rows(database, kinds_);
     if (auto taken = rows.takeRevisions(static_cast<std::int64_t>(changed_.size())); !taken) {
         return taken;
@@ -214,7 +241,7 @@ Result<void> Writer::writeOne(RowWriter& rows, Recorder::Key key, Active& active
             return saved;
         }
     }
-    if (active.events.empty() && active.samples.empty()) {
+    if (!active.hasPart()) {
         return {};
     }
     return rows.addPart(execution.number * kMostParts + active.parts, encodeEvents(active.events),
@@ -229,7 +256,7 @@ void Writer::kept() {
             active_.erase(key);
             continue;
         }
-        active.parts += active.events.empty() && active.samples.empty() ? 0 : 1;
+        active.parts += active.hasPart() ? 1 : 0;
         active.events.clear();
         active.samples.clear();
         active.row_changed = false;
@@ -249,6 +276,53 @@ void Writer::undone() {
     numbered_.clear();
     kinds_.clear();
     in_doubt_ = true;
+}
+
+/// An array for each: key, number, parts and events kept.
+std::string Writer::underWay() const {
+    auto all = nlohmann::json::array();
+    for (const auto& [key, active] : active_) {
+        if (!active.execution.isOver()) {
+            all.push_back({key, active.execution.number, active.parts + (active.hasPart() ? 1 : 0),
+                           active.events_kept});
+        }
+    }
+    return all.dump();
+}
+
+Result<void> Writer::goOnWith(Database& database, std::string_view under_way) {
+    const auto all = nlohmann::json::parse(under_way, nullptr, false);
+    for (const auto& one : all.is_array() ? all : nlohmann::json::array()) {
+        const bool whole = one.is_array() && one.size() == 4 &&
+                           std::all_of(one.begin(), one.end(), [](const auto& number) {
+                               return number.is_number_integer();
+                           });
+        auto done = whole ? goOnWith(database, one[0], one[1], one[2], one[3]) : Result<void>();
+        if (!done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+Result<void> Writer::goOnWith(Database& database, Recorder::Key key, std::int64_t number,
+                              std::int64_t parts, std::size_t events_kept) {
+    const auto rows = database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
+                                         " FROM history WHERE number = $1 AND server = $2",
+                                     std::array<Cell, 2>{number, server_});
+    if (!rows) {
+        return fail(rows.error());
+    }
+    newest_ = std::max(newest_, key);
+    if (!rows->empty()) {
+        auto& active = active_[key];
+        active.execution = toExecution(rows->front());
+        active.execution.ended = {};  // others may have closed it
+        active.parts = parts;
+        active.events_kept = events_kept;
+        active.row_changed = false;
+    }
+    return {};
 }
 
 Result<void> Writer::closeLost(Database& database, const std::string& server) {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -15,23 +18,29 @@
 
 namespace metier::records {
 
-struct KeyedSample {
-    Recorder::Key key = 0;
-    PathSample sample{};
-};
-
 /// Turns what a recorder was told into rows. Threading: one thread.
 class Writer final : private MessageTaker {
 public:
     /// \param server ApplicationUri of all that it is told of
-    explicit Writer(std::string server) : server_(std::move(server)) {}
+    Writer(std::string server, Recorder::ToJson to_json)
+        : server_(std::move(server)), to_json_(to_json) {}
 
     /// Takes the messages in their order, then the samples; nothing is written yet.
     /// \return how much was too much for its execution
     Dropped take(const MessageLog& messages, const std::vector<KeyedSample>& samples);
+    /// The same of Told::content. What is damaged counts as one event.
+    Dropped take(std::span<const std::uint8_t> told);
     /// Writes what was taken, all of it or nothing; may be called again after an error, also with
     /// another connection to the same store.
-    Result<void> write(Database& database);
+    /// \param also done in the same transaction; may be empty
+    Result<void> write(Database& database, const std::function<Result<void>()>& also = {});
+    /// The same within a transaction that is rolled back after an error, as the end of this.
+    Result<void> writeWithin(Database& database);
+    /// The executions under way, once what was taken is in the store.
+    std::string underWay() const;
+    /// Takes over from another writer of this server.
+    /// \param under_way of that one
+    Result<void> goOnWith(Database& database, std::string_view under_way);
     /// Closes what the server left under way when it died. Within a transaction.
     static Result<void> closeLost(Database& database, const std::string& server);
 
@@ -45,15 +54,16 @@ private:
     /// An execution that is under way, or over and not written yet.
     struct Active {
         Execution execution{};
-        Recorder::ToJson to_json = nullptr;
         std::int64_t parts = 0;
         std::size_t events_kept = 0;
         std::vector<Event> events{};  // that are not written yet
         Bytes samples{};              // as well
         bool row_changed = true;
         bool changed = false;
+
+        bool hasPart() const { return !events.empty() || !samples.empty(); }
     };
-    void take(Recorder::Key key, Execution&& execution, Recorder::ToJson to_json) override;
+    void take(Recorder::Key key, Execution&& execution) override;
     void take(Recorder::Key key, Transition&& transition) override;
     void take(Recorder::Key key, Intermediate&& intermediate) override;
     void take(Recorder::Key key, Outcome&& outcome) override;
@@ -69,12 +79,16 @@ private:
 
     /// A value that was made JSON; the next one is often the same.
     struct Made {
-        Recorder::ToJson by = nullptr;
         std::string from{};
         std::string json{};
     };
 
+    void makeJson(std::string& value) const;
+    Result<void> goOnWith(Database& database, Recorder::Key key, std::int64_t number,
+                          std::int64_t parts, std::size_t events_kept);
+
     const std::string server_;
+    const Recorder::ToJson to_json_;
     Made parameters_;
     std::unordered_map<Recorder::Key, Active> active_;
     std::vector<Recorder::Key> changed_;

@@ -7,16 +7,11 @@
 namespace metier::records {
 namespace {
 
-std::string shouted(std::string_view text) {
-    return std::string(text) + "!";
-}
-
 /// Keeps what it takes.
 struct Taken final : MessageTaker {
-    void take(Recorder::Key key, Execution&& e, Recorder::ToJson make) override {
+    void take(Recorder::Key key, Execution&& e) override {
         order.push_back("begin " + std::to_string(key));
         begun = std::move(e);
-        to_json = make;
     }
     void take(Recorder::Key key, Transition&& t) override {
         order.push_back("transition " + std::to_string(key));
@@ -33,7 +28,6 @@ struct Taken final : MessageTaker {
 
     std::vector<std::string> order;
     Execution begun;
-    Recorder::ToJson to_json = nullptr;
     Transition transition;
     Intermediate intermediate;
     Outcome outcome;
@@ -52,7 +46,7 @@ Transition stopping() {
 TEST(MessageLog, GivesEachMessageAsItWasPutAndInItsOrder) {
     MessageLog log;
     const auto move = moveOf("m-1", at(3));
-    log.put(7, move, shouted);
+    log.put(7, move);
     log.put(8, stopping());
     log.put(7, Intermediate{.time = at(6), .value = "0.5"});
     log.put(7, halted(at(9), "axis 2"));
@@ -66,7 +60,6 @@ TEST(MessageLog, GivesEachMessageAsItWasPutAndInItsOrder) {
     EXPECT_EQ(taken.begun.parameters, move.parameters);
     EXPECT_EQ(taken.begun.check, move.check);
     EXPECT_EQ(taken.begun.started, at(3));
-    EXPECT_EQ(taken.to_json("a"), "a!");
     EXPECT_EQ(taken.transition.step, "approach");
     EXPECT_EQ(taken.transition.reason_text, std::string("a\0b", 3));
     EXPECT_EQ(taken.intermediate.value, "0.5");
@@ -84,7 +77,7 @@ TEST(MessageLog, TellsApartWhatIsAsBeforeAndWhatIsNot) {
     for (int round = 0; round < 2; ++round) {
         std::vector<Execution> told;
         for (const auto& one : {move, move, other, other, move}) {
-            log.put(1, one, nullptr);
+            log.put(1, one);
             Taken taken;
             log.giveTo(taken);
             told.push_back(taken.begun);
@@ -100,19 +93,49 @@ TEST(MessageLog, TellsApartWhatIsAsBeforeAndWhatIsNot) {
     }
 }
 
+TEST(MessageLog, TellsApartMoreTextsThanItRemembers) {
+    MessageLog log;
+    std::vector<std::string> sessions;
+    for (const int i : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 1, 2, 9, 1, 10, 10, 3}) {
+        auto move = moveOf("m-1");
+        move.session = "session-" + std::to_string(i);
+        sessions.push_back(move.session);
+        log.put(1, move);
+        Taken taken;
+        log.giveTo(taken);
+        EXPECT_EQ(taken.begun.session, sessions.back());
+        EXPECT_EQ(taken.begun.user, move.user);
+    }
+}
+
+TEST(MessageLog, TakesTwoMessagesAtOnce) {
+    MessageLog log;
+    log.put(3, moveOf("m-1"), stopping());
+    log.put(3, stopping(), halted(at(9), "axis 2"));
+    EXPECT_EQ(log.count(), 2U);
+    Taken taken;
+    log.giveTo(taken);
+    EXPECT_THAT(taken.order,
+                ::testing::ElementsAre("begin 3", "transition 3", "transition 3", "end 3"));
+    EXPECT_EQ(taken.begun.user, moveOf("").user);
+    EXPECT_EQ(taken.transition.step, "approach");
+    EXPECT_EQ(taken.outcome.reason_text, "axis 2");
+    EXPECT_EQ(taken.outcome.time, at(9));
+}
+
 TEST(MessageLog, HoldsMessagesOfAnySizeAndNothingOnceItIsCleared) {
     MessageLog log;
     auto large = moveOf("m-2");
     large.parameters.assign(3'000'000, 'x');
-    log.put(1, moveOf("m-1"), nullptr);
-    log.put(2, large, nullptr);
-    log.put(3, moveOf("m-3"), nullptr);
+    log.put(1, moveOf("m-1"));
+    log.put(2, large);
+    log.put(3, moveOf("m-3"));
     Taken all;
     log.giveTo(all);
     EXPECT_THAT(all.order, ::testing::ElementsAre("begin 1", "begin 2", "begin 3"));
     log.clear();
     EXPECT_EQ(log.count(), 0U);
-    log.put(4, large, nullptr);
+    log.put(4, large);
     Taken last;
     log.giveTo(last);
     EXPECT_THAT(last.order, ::testing::ElementsAre("begin 4"));
@@ -125,7 +148,7 @@ TEST(MessageLog, AllocatesNothingOnceItHasHeldAsMuch) {
     const auto transition = stopping();
     const auto fill = [&] {
         for (Recorder::Key key = 1; key <= 2'000; ++key) {
-            log.put(key, move, nullptr);
+            log.put(key, move);
             log.put(key, transition);
         }
     };

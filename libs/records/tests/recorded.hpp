@@ -75,10 +75,12 @@ inline PathSample sampleAt(double time, double axis) {
 }
 
 inline std::unique_ptr<Recorder> recorderOf(const std::string& url,
-                                            const std::string& server = "urn:test:ur5") {
+                                            const std::string& server = "urn:test:ur5",
+                                            std::size_t most_waiting = 10'000) {
     Recorder::Options options;
     options.url = url;
     options.server = server;
+    options.most_waiting = most_waiting;
     return Recorder::create(std::move(options)).value();
 }
 

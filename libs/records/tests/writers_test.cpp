@@ -2,19 +2,15 @@
 #include <gmock/gmock.h>
 
 #include <fcntl.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
-#include <condition_variable>
 #include <csignal>
 #include <map>
-#include <mutex>
 #include <set>
-#include <thread>
 
+#include "lateness.hpp"
 #include "metier/process/child_process.hpp"
 #include "recorded.hpp"
 #include "socket_deadline.hpp"
@@ -49,31 +45,6 @@ std::map<std::string, UtcTime> told(ChildProcess& writer, int lines) {
     }
     return times;
 }
-
-/// How late a thread of the writer's priority wakes up on this machine now: nothing that it does
-/// can be more punctual.
-class Lateness {
-public:
-    /// The latest so far.
-    std::chrono::nanoseconds worst() const { return worst_; }
-
-private:
-    void measure(const std::stop_token& stop) {
-        static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15));
-        std::mutex mutex;
-        std::condition_variable_any nobody;
-        std::unique_lock lock(mutex);
-        while (!stop.stop_requested()) {
-            const auto due = std::chrono::steady_clock::now() + 5ms;
-            nobody.wait_until(lock, stop, due, [] { return false; });
-            const std::chrono::nanoseconds late = std::chrono::steady_clock::now() - due;
-            worst_ = std::max(worst_.load(), late);
-        }
-    }
-
-    std::atomic<std::chrono::nanoseconds> worst_{};
-    std::jthread thread_{[this](const std::stop_token& stop) { measure(stop); }};  // last
-};
 
 // It wakes up to gather, to write and to sync: on a machine that is busy, each may be late.
 TEST(KilledServer, LosesAtMostTheLastSecondOfItsRecords) {

@@ -23,6 +23,7 @@ public:
     };
 
     /// \param program  must outlive this, as the recorder and the sampler
+    /// \param recorder with packedJson() as its to_json
     /// \param sampler  of the arm that the Program moves; null: it moves none
     ProgramRecorder(skill::Program& program, records::Recorder& recorder, PathSampler* sampler,
                     Place place);
@@ -31,7 +32,8 @@ public:
     ProgramRecorder& operator=(const ProgramRecorder&) = delete;
 
 private:
-    void onBegin(const skill::ExecutionRecord& execution) override;
+    // Its transition, which follows at once, tells of it.
+    void onBegin(const skill::ExecutionRecord& /*execution*/) override {}
     void onTransition(const skill::TransitionEvent& event) override;
     void onSubState(skill::SubState sub_state, std::string_view step) override;
     void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
@@ -43,17 +45,16 @@ private:
     void onCheck(const skill::Caller& caller, const skill::ValueMap& parameters,
                  const skill::CheckReport& report) override;
 
-    void tell(const skill::TransitionEvent& event);
-    void end(const skill::TransitionEvent& event);
+    void begin(const skill::ExecutionRecord& execution, const skill::TransitionEvent& event);
+    records::TransitionView transitionOf(const skill::TransitionEvent& event) const;
+    records::OutcomeView outcomeOf(const skill::TransitionEvent& event);
     const std::string* checkOf(const skill::ExecutionRecord& execution) const;
 
     skill::Program& program_;
     records::Recorder& recorder_;
     PathSampler* sampler_;
-    // Each is told again and again, so that its texts have their memory already.
-    records::Execution begun_;
-    records::Transition transition_;
-    records::Outcome outcome_;
+    const Place place_;
+    std::string packed_;  // parameters or a result; has its memory already
 
     records::Recorder::Key key_ = 0;  ///< of the execution that is under way; 0: none
     skill::State state_;              ///< that was told last

@@ -22,6 +22,12 @@ struct Dropped {
     std::uint64_t samples = 0;
 
     bool any() const noexcept { return executions + events + samples > 0; }
+    Dropped& operator+=(const Dropped& more) noexcept {
+        executions += more.executions;
+        events += more.events;
+        samples += more.samples;
+        return *this;
+    }
     friend bool operator==(const Dropped&, const Dropped&) = default;
 };
 
@@ -41,7 +47,9 @@ struct HealthReport {
 /// Records the executions of one server. Every call returns at once, whatever the disk does.
 ///
 /// A writer thread of its own writes at least every 500 ms: a crash of the server loses at most the
-/// last second. While the store cannot be written or opened, events wait in a queue of a fixed
+/// last second. What comes faster than 2,000 executions a second is written as it was told, and
+/// made rows of, which readers see, once less comes, after ten seconds, or when the server is
+/// started again. While the store cannot be written or opened, events wait in a queue of a fixed
 /// size; beyond it new executions and events are dropped, of samples the oldest. An end is never
 /// dropped if its begin was not. What servers that died left under way is closed as kLost
 /// when it opens the store, and every hour. The store is trimmed to its retention at the beginning
@@ -57,6 +65,10 @@ public:
         std::string url{};     ///< as Store::open() takes it
         std::string server{};  ///< ApplicationUri; nobody else records under it
         Retention keep{};
+        /// Called on a thread of the recorder with parameters, intermediate values and results,
+        /// unless empty, whatever was told; null: they are JSON. Takes any bytes: the store may be
+        /// damaged.
+        ToJson to_json = nullptr;
         /// On a thread of the recorder, at each change of its health. May be empty.
         std::function<void(const HealthReport&)> on_health{};
         std::size_t most_waiting = 10'000;          ///< executions and events
@@ -68,7 +80,7 @@ public:
     /// How it is, for metrics.
     struct Status {
         Health health = Health::writing;
-        std::size_t waiting = 0;          ///< executions and events in the queue
+        std::size_t waiting = 0;          ///< messages of which there are no rows yet
         std::size_t waiting_samples = 0;  ///< about
         std::uint64_t written = 0;        ///< executions that began and are in the store
         Dropped dropped{};
@@ -85,18 +97,20 @@ public:
     /// An execution begins; its server is Options::server whatever it says. Its state changes with
     /// its transitions. Threads: any, but no cycle thread (allocates, locks for a moment); the same
     /// for all but sample().
-    /// \param to_json called on a thread of the recorder with the execution's parameters,
-    ///                intermediate values and result, unless empty; null: they are JSON
-    Key begin(const Execution& execution, ToJson to_json = nullptr);
+    Key begin(const ExecutionView& execution);
+    /// The same, and its first transition.
+    Key begin(const ExecutionView& execution, const TransitionView& first);
     /// Of one execution in the order of their times; the 100,000 first are kept.
-    void transition(Key key, const Transition& transition);
-    void intermediate(Key key, const Intermediate& intermediate);
+    void transition(Key key, const TransitionView& transition);
+    void intermediate(Key key, const IntermediateView& intermediate);
     /// Threads: any, cycle threads as well; neither locks nor allocates. One at a time for a key.
     void sample(Key key, const PathSample& sample) noexcept;
     /// Nothing may be told of it any more.
-    void end(Key key, const Outcome& outcome);
+    void end(Key key, const OutcomeView& outcome);
+    /// The same, and its last transition before.
+    void end(Key key, const OutcomeView& outcome, const TransitionView& last);
 
-    /// Waits until all that was told before is in the store; false at the deadline. For tests and
+    /// Waits until readers see all that was told before; false at the deadline. For tests and
     /// tools, not for servers.
     bool flush(SteadyTime deadline);
     /// Threads: any.

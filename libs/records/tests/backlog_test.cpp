@@ -1,0 +1,268 @@
+// What comes faster than rows are made of it: in the store as it was told, whatever happens next.
+#include "backlog.hpp"
+
+#include <csignal>
+#include <functional>
+#include <map>
+
+#include "lateness.hpp"
+#include "metier/process/child_process.hpp"
+#include "metier/records/recorder.hpp"
+#include "recorded.hpp"
+#include "temporary_postgres.hpp"
+
+namespace metier::records {
+namespace {
+
+using namespace std::chrono_literals;
+using process::ChildProcess;
+
+/// Takes all and keeps the ids.
+struct Ids final : MessageTaker {
+    void take(Recorder::Key /*key*/, Execution&& e) override { ids.push_back(e.id); }
+    void take(Recorder::Key /*key*/, Transition&& /*t*/) override {}
+    void take(Recorder::Key /*key*/, Intermediate&& /*i*/) override {}
+    void take(Recorder::Key /*key*/, Outcome&& /*o*/) override { ++ended; }
+
+    std::vector<std::string> ids;
+    int ended = 0;
+};
+
+Told toldOfThree() {
+    MessageLog log;
+    for (Recorder::Key key = 1; key <= 3; ++key) {
+        log.put(key, moveOf("m-" + std::to_string(key)));
+        log.put(key, finished(at(7)));
+    }
+    Told told;
+    makeTold(log, {{2, sampleAt(0.5, 1.5)}, {3, sampleAt(0.6, 1.6)}}, told);
+    return told;
+}
+
+TEST(ToldContent, ComesBackAsItWasTold) {
+    const auto told = toldOfThree();
+    EXPECT_EQ(told.messages, 6U);
+    Ids taken;
+    std::vector<KeyedSample> samples;
+    ASSERT_TRUE(giveTold(told.content, taken, samples));
+    EXPECT_THAT(taken.ids, ::testing::ElementsAre("m-1", "m-2", "m-3"));
+    EXPECT_EQ(taken.ended, 3);
+    ASSERT_EQ(samples.size(), 2U);
+    EXPECT_EQ(samples[1].key, 3U);
+    EXPECT_EQ(samples[1].sample.actual, sampleAt(0.6, 1.6).actual);
+}
+
+TEST(ToldContent, MayBeAnyBytes) {
+    const auto told = toldOfThree();
+    std::size_t whole = 0;
+    for (std::size_t i = 0; i < told.content.size(); ++i) {
+        for (const auto bit : {0x01, 0x80, 0xFF}) {
+            auto damaged = told.content;
+            damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ bit);
+            Ids taken;
+            std::vector<KeyedSample> samples;
+            whole += giveTold(damaged, taken, samples) ? 1 : 0;
+            EXPECT_LE(taken.ids.size(), 6U);
+        }
+        Ids taken;
+        std::vector<KeyedSample> samples;
+        const auto cut = std::span(told.content).first(i);
+        EXPECT_FALSE(giveTold(cut, taken, samples) && samples.size() == 2);
+        EXPECT_LE(taken.ids.size(), 3U);
+    }
+    EXPECT_LT(whole, 3 * told.content.size());
+}
+
+TEST(ToldContent, OfAnotherVersionIsLeftAlone) {
+    auto told = toldOfThree();
+    ++told.content.front();
+    Ids taken;
+    std::vector<KeyedSample> samples;
+    EXPECT_FALSE(giveTold(told.content, taken, samples));
+    EXPECT_TRUE(taken.ids.empty());
+}
+
+/// More than rows are made of at once, less than a recorder takes.
+constexpr int kFlood = 20'000;
+
+class EitherBacklog : public ::testing::TestWithParam<const char*> {
+protected:
+    void SetUp() override {
+        if (GetParam() == std::string("Sqlite")) {
+            url_ = (testFolder() / "records.db").string();
+        } else if (auto* postgres = TemporaryPostgres::instance()) {
+            url_ = postgres->freshDatabase();
+        } else {
+            GTEST_SKIP() << "PostgreSQL is not installed";
+        }
+    }
+    std::unique_ptr<Recorder> recorder(const std::string& server) const {
+        return recorderOf(url_, server, 100'000);
+    }
+    static void flood(Recorder& recorder, const std::string& name) {
+        for (int i = 1; i <= kFlood; ++i) {
+            const auto key = recorder.begin(moveOf(name + "-" + std::to_string(i)),
+                                            {.time = at(1), .from = "Ready", .to = "Running"});
+            recorder.end(key, finished(at(2)), {.time = at(2), .from = "Running", .to = "Ready"});
+        }
+    }
+    std::int64_t number(const std::string& sql) {
+        if (database_ == nullptr) {
+            database_ = openDatabase(url_, Store::Access::write).value();
+        }
+        return database_->query(sql, {}).value().front().integer(0);
+    }
+    std::int64_t pieces() { return number("SELECT count(*) FROM backlog"); }
+    std::int64_t rows() { return number("SELECT count(*) FROM executions"); }
+    static void await(const std::function<bool()>& condition) {
+        const auto deadline = soon();
+        while (!condition()) {
+            if (std::chrono::steady_clock::now() > deadline) {
+                throw std::runtime_error("it does not come");
+            }
+        }
+    }
+    /// A server of that name that is flooded; killed when `is_time`.
+    std::map<std::string, UtcTime> killWhen(const std::function<bool()>& is_time,
+                                            const std::string& how, UtcTime& killed) {
+        auto dying = ChildProcess::start({METIER_RECORDS_WRITER, url_, "dying", how}).value();
+        static_cast<void>(dying.readLine(soon()));
+        await(is_time);
+        dying.signal(SIGKILL);
+        killed = std::chrono::system_clock::now();
+        EXPECT_EQ(dying.waitUntil(soon()), 128 + SIGKILL);
+        std::map<std::string, UtcTime> told;
+        while (const auto line = dying.readLine(soon())) {
+            const auto space = line->find(' ');
+            told[line->substr(0, space)] =
+                UtcTime(std::chrono::microseconds(std::stoll(line->substr(space + 1))));
+        }
+        return told;
+    }
+    /// All that was told a second before the kill has ended, and nothing is there twice. On a
+    /// machine that is busy, each of three times the writer wakes up may be late.
+    void expectAllOf(const std::map<std::string, UtcTime>& told, UtcTime killed) {
+        std::size_t checked = 0;
+        const auto store = Store::open(url_).value();
+        for (const auto& [id, time] : told) {
+            if (time < killed - 1s - 3 * lateness_.worst()) {
+                const auto found = store->find(id);
+                ASSERT_TRUE(found) << id;
+                EXPECT_EQ(found->state, "Ready") << id;
+                EXPECT_EQ(store->transitions(found->number)->size(), 2U) << id;
+                ++checked;
+            }
+        }
+        EXPECT_GT(checked, 0U) << "of " << told.size();
+        EXPECT_EQ(pieces(), 0);
+        EXPECT_EQ(number("SELECT count(*) - count(DISTINCT id) FROM executions"), 0);
+        EXPECT_EQ(number("SELECT count(*) FROM executions WHERE ended = 0"), 0);
+    }
+
+    std::string url_;
+    std::unique_ptr<Database> database_;
+    const Lateness lateness_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Of, EitherBacklog, ::testing::Values("Sqlite", "Postgres"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(EitherBacklog, HoldsAFloodAndBecomesRowsOnceItIsOver) {
+    const auto recorder = this->recorder("one");
+    const auto long_one = recorder->begin(moveOf("long"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    flood(*recorder, "short");
+    await([this] { return pieces() > 0; });
+    await([&] { return recorder->status().waiting > 0; });
+    recorder->sample(long_one, sampleAt(0.5, 1.5));
+    recorder->transition(long_one, {.time = at(5), .from = "Running", .to = "Suspended"});
+    recorder->end(long_one, halted(at(6), "axis 2"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(pieces(), 0);
+    EXPECT_EQ(rows(), kFlood + 1);
+    EXPECT_EQ(recorder->status().waiting, 0U);
+    EXPECT_EQ(recorder->status().written, kFlood + 1U);
+    EXPECT_FALSE(recorder->status().dropped.any());
+    const auto store = Store::open(url_).value();
+    const auto ended = store->find("long").value();
+    EXPECT_EQ(ended.reason_text, "axis 2");
+    EXPECT_EQ(store->path(ended.number)->size(), 1U);
+    EXPECT_EQ(store->transitions(ended.number)->size(), 1U);
+    const auto last = store->find("short-" + std::to_string(kFlood)).value();
+    EXPECT_EQ(last.parameters, moveOf("").parameters);
+    EXPECT_EQ(last.missed_cycles, 2U);
+    EXPECT_EQ(store->transitions(last.number)->back().to, "Ready");
+}
+
+TEST_P(EitherBacklog, BecomesRowsWithoutAnybodyWhoAsks) {
+    const auto recorder = this->recorder("one");
+    flood(*recorder, "short");
+    await([this] { return pieces() > 0; });
+    await([this] { return rows() == kFlood && pieces() == 0; });
+}
+
+TEST_P(EitherBacklog, OfAServerThatWasKilledIsThereOnceItIsStartedAgain) {
+    UtcTime killed;
+    const auto told = killWhen([this] { return pieces() > 6; }, "flood", killed);
+    ASSERT_GT(pieces(), 0);
+    ASSERT_TRUE(recorder("dying")->flush(soon()));
+    expectAllOf(told, killed);
+}
+
+TEST_P(EitherBacklog, OfAServerThatWasKilledIsThereOnceAnyIsStarted) {
+    UtcTime killed;
+    const auto told = killWhen([this] { return pieces() > 6; }, "flood", killed);
+    ASSERT_TRUE(recorder("another")->flush(soon()));
+    expectAllOf(told, killed);
+}
+
+TEST_P(EitherBacklog, OutlivesAServerThatIsKilledWhileItMakesRowsOfIt) {
+    UtcTime killed;
+    std::int64_t most = 0;
+    const auto is_worked_off = [&] {
+        most = std::max(most, pieces());
+        return most > 6 && pieces() < most;
+    };
+    const auto told = killWhen(is_worked_off, "wave", killed);
+    ASSERT_TRUE(recorder("dying")->flush(soon()));
+    expectAllOf(told, killed);
+}
+
+TEST_P(EitherBacklog, OfALivingServerIsLeftToIt) {
+    const auto first = recorder("one");
+    flood(*first, "first");
+    await([this] { return pieces() > 0; });
+    const auto second = recorder("one");
+    flood(*second, "second");
+    ASSERT_TRUE(second->flush(soon()));
+    ASSERT_TRUE(first->flush(soon()));
+    EXPECT_EQ(rows(), 2 * kFlood);
+    EXPECT_EQ(number("SELECT count(DISTINCT id) FROM executions WHERE ended <> 0"), 2 * kFlood);
+}
+
+TEST_P(EitherBacklog, ThatIsDamagedIsToldAndKeepsNobodyFromRecording) {
+    UtcTime killed;
+    killWhen([this] { return pieces() > 2; }, "flood", killed);
+    const auto before = pieces();
+    ASSERT_TRUE(database_->query("UPDATE backlog SET content = $1 WHERE number = 1",
+                                 std::array<Cell, 1>{Bytes{1, 2, 3}}));
+    const auto recorder = this->recorder("dying");
+    recordOne(*recorder, moveOf("next"), finished(at(3)));
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_GE(recorder->status().dropped.events, 1U) << "one of " << before;
+    EXPECT_EQ(pieces(), 0);
+    EXPECT_TRUE(Store::open(url_).value()->find("next"));
+}
+
+TEST_P(EitherBacklog, IsMadeInAStoreThatHasNone) {
+    recordOne(*recorder("one"), moveOf("old"), finished(at(1)));
+    ASSERT_GT(rows(), 0);
+    ASSERT_TRUE(database_->script("DROP TABLE backlog"));
+    EXPECT_TRUE(Store::open(url_).value()->find("old"));
+    const auto recorder = this->recorder("one");
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(pieces(), 0);
+}
+
+}  // namespace
+}  // namespace metier::records
