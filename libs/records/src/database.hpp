@@ -70,6 +70,7 @@ public:
     virtual Result<bool> hasTable(std::string_view name) = 0;
     /// Whether there is any table at all.
     virtual Result<bool> isEmpty() = 0;
+    /// What executions and their parts take.
     virtual Result<std::uint64_t> bytes() = 0;
     /// Gives back what removed rows took, as far as it can.
     virtual Result<void> shrink() = 0;

@@ -320,17 +320,22 @@ Result<bool> SqliteDatabase::isEmpty() {
 }
 
 Result<std::uint64_t> SqliteDatabase::bytes() {
-    std::int64_t size = 0;
+    // A backlog is made rows of soon. Who only reads may find a store that has none yet.
+    const auto has_backlog = hasTable("backlog");
+    if (!has_backlog) {
+        return fail(has_backlog.error());
+    }
     const auto pages = number("PRAGMA page_count");
     const auto unused = number("PRAGMA freelist_count");
     const auto page_size = number("PRAGMA page_size");
-    for (const auto* one : {&pages, &unused, &page_size}) {
+    const auto backlog =
+        *has_backlog ? number("SELECT coalesce(sum(length(content)), 0) FROM backlog") : 0;
+    for (const auto* one : {&pages, &unused, &page_size, &backlog}) {
         if (!*one) {
             return fail(one->error());
         }
     }
-    size = (*pages - *unused) * *page_size;
-    return static_cast<std::uint64_t>(size);
+    return static_cast<std::uint64_t>((*pages - *unused) * *page_size - *backlog);
 }
 
 Result<void> SqliteDatabase::shrink() {

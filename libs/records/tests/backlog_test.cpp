@@ -254,6 +254,25 @@ TEST_P(EitherBacklog, ThatIsDamagedIsToldAndKeepsNobodyFromRecording) {
     EXPECT_TRUE(Store::open(url_).value()->find("next"));
 }
 
+TEST_P(EitherBacklog, TakesNoRoomFromTheRowsThatAreKept) {
+    const auto living = recorder("living");
+    ASSERT_TRUE(living->flush(soon()));
+    ASSERT_EQ(pieces(), 0);
+    ASSERT_TRUE(database_->query("INSERT INTO backlog VALUES (1, 0, 'living', '[]', $1)",
+                                 std::array<Cell, 1>{Bytes(4'000'000)}));
+    recordOne(*living, moveOf("kept"), finished(at(1)));
+    ASSERT_TRUE(living->flush(soon()));
+    Recorder::Options options;
+    options.url = url_;
+    options.server = "another";
+    options.keep = {.age = {}, .bytes = 2'000'000};
+    const auto another = Recorder::create(std::move(options)).value();
+    recordOne(*another, moveOf("next"), finished(at(2)));
+    ASSERT_TRUE(another->flush(soon()));
+    EXPECT_EQ(rows(), 2);
+    ASSERT_TRUE(database_->script("DELETE FROM backlog"));
+}
+
 TEST_P(EitherBacklog, IsMadeInAStoreThatHasNone) {
     recordOne(*recorder("one"), moveOf("old"), finished(at(1)));
     ASSERT_GT(rows(), 0);
