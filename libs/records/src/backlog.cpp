@@ -90,7 +90,8 @@ bool giveTold(std::span<const std::uint8_t> content, MessageTaker& taker,
     return true;
 }
 
-Backlog::Backlog(std::string server) : server_(storable(server, kLongestName)), life_(newLife()) {}
+Backlog::Backlog(const std::string& server)
+    : server_(storable(server, kLongestName)), life_(newLife()) {}
 
 Result<void> Backlog::add(Database& database, const Told& told, std::string_view under_way) {
     const auto number = first_ + static_cast<std::int64_t>(entries_.size());

@@ -33,7 +33,7 @@ bool giveTold(std::span<const std::uint8_t> content, MessageTaker& taker,
 class Backlog {
 public:
     /// \param server ApplicationUri
-    explicit Backlog(std::string server);
+    explicit Backlog(const std::string& server);
 
     bool isEmpty() const noexcept { return entries_.empty(); }
     std::uint64_t messages() const noexcept { return messages_; }

@@ -20,10 +20,11 @@ std::uint64_t unfolded(std::uint64_t folded) {
     return (folded >> 1U) ^ (0 - (folded & 1U));
 }
 
+constexpr std::uint64_t kFactor = 0x9E37'79B9'7F4A'7C15U;
+constexpr std::size_t kPlaces = 6;
+
 /// Of a few places of it, since whoever has the same is compared as a whole.
 std::uint64_t hashOf(std::string_view text) {
-    constexpr std::uint64_t kFactor = 0x9E37'79B9'7F4A'7C15U;
-    constexpr std::size_t kPlaces = 6;
     std::uint64_t hash = text.size();
     std::uint64_t word = 0;
     if (text.size() < sizeof word) {
@@ -115,7 +116,7 @@ void Packer::put(std::uint64_t value) {
 
 std::uint8_t Unpacker::byte() {
     const auto one = next(1);
-    return one.empty() ? 0 : static_cast<std::uint8_t>(one.front());
+    return one.empty() ? 0 : one.front();
 }
 
 Recorder::Key Unpacker::key() {
@@ -130,7 +131,8 @@ void Unpacker::take(std::string& text, RecentTexts& recent) {
         return;
     }
     const auto shared = integer();
-    const auto rest = next(integer());
+    const auto bytes = next(integer());
+    const std::string rest(bytes.begin(), bytes.end());
     whole_ = whole_ && number == RecentTexts::kMost && shared <= recent.latest().size();
     if (whole_) {
         recent.add(shared, rest);
@@ -156,14 +158,14 @@ std::uint64_t Unpacker::integer() {
     return 0;
 }
 
-std::string_view Unpacker::next(std::uint64_t size) {
+std::span<const std::uint8_t> Unpacker::next(std::uint64_t size) {
     whole_ = whole_ && size <= bytes_.size();
     if (!whole_) {
         return {};
     }
     const auto taken = bytes_.first(size);
     bytes_ = bytes_.subspan(size);
-    return {reinterpret_cast<const char*>(taken.data()), taken.size()};
+    return taken;
 }
 
 }  // namespace metier::records

@@ -76,7 +76,7 @@ public:
 
 private:
     std::uint64_t integer();
-    std::string_view next(std::uint64_t size);
+    std::span<const std::uint8_t> next(std::uint64_t size);
 
     std::span<const std::uint8_t> bytes_;
     BeforeIntegers& before_;

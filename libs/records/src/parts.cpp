@@ -18,6 +18,8 @@ using nlohmann::json;
 
 constexpr std::size_t kTransitionFields = 8;
 constexpr std::size_t kIntermediateFields = 3;
+/// Of a sample: the three counts and the time [byte].
+constexpr std::size_t kHead = 3 + 8;
 
 /// With quotes. Most texts are names, which are written as they are.
 void putText(std::string_view text, std::string& out) {
@@ -135,7 +137,6 @@ void encodeSample(const PathSample& sample, Bytes& bytes) {
 }
 
 std::optional<PathSample> takeSample(std::span<const std::uint8_t>& bytes) {
-    constexpr std::size_t kHead = 3 + 8;
     if (bytes.size() < kHead) {
         return std::nullopt;
     }

@@ -295,34 +295,40 @@ Result<void> Writer::goOnWith(Database& database, std::string_view under_way) {
     for (const auto& one : all.is_array() ? all : nlohmann::json::array()) {
         const bool whole = one.is_array() && one.size() == 4 &&
                            std::all_of(one.begin(), one.end(), [](const auto& number) {
-                               return number.is_number_integer();
+                               return number.is_number_unsigned();
                            });
-        auto done = whole ? goOnWith(database, one[0], one[1], one[2], one[3]) : Result<void>();
-        if (!done) {
-            return done;
+        if (!whole) {
+            continue;
+        }
+        Active active{.events_kept = one[3], .row_changed = false};
+        active.parts = std::min<std::int64_t>(one[2].get<std::uint32_t>(), kMostParts);
+        active.execution.number = one[1];
+        const auto found = readRow(database, active.execution);
+        if (!found) {
+            return fail(found.error());
+        }
+        if (*found) {
+            const Recorder::Key key = one[0];
+            newest_ = std::max(newest_, key);
+            active_[key] = std::move(active);
         }
     }
     return {};
 }
 
-Result<void> Writer::goOnWith(Database& database, Recorder::Key key, std::int64_t number,
-                              std::int64_t parts, std::size_t events_kept) {
+/// The row of its number as one under way; false if there is none of this server.
+Result<bool> Writer::readRow(Database& database, Execution& execution) const {
     const auto rows = database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
                                          " FROM history WHERE number = $1 AND server = $2",
-                                     std::array<Cell, 2>{number, server_});
+                                     std::array<Cell, 2>{execution.number, server_});
     if (!rows) {
         return fail(rows.error());
     }
-    newest_ = std::max(newest_, key);
     if (!rows->empty()) {
-        auto& active = active_[key];
-        active.execution = toExecution(rows->front());
-        active.execution.ended = {};  // others may have closed it
-        active.parts = parts;
-        active.events_kept = events_kept;
-        active.row_changed = false;
+        execution = toExecution(rows->front());
+        execution.ended = {};  // others may have closed it
     }
-    return {};
+    return !rows->empty();
 }
 
 Result<void> Writer::closeLost(Database& database, const std::string& server) {

@@ -84,8 +84,7 @@ private:
     };
 
     void makeJson(std::string& value) const;
-    Result<void> goOnWith(Database& database, Recorder::Key key, std::int64_t number,
-                          std::int64_t parts, std::size_t events_kept);
+    Result<bool> readRow(Database& database, Execution& execution) const;
 
     const std::string server_;
     const Recorder::ToJson to_json_;

@@ -161,7 +161,7 @@ protected:
 
     std::string url_;
     std::unique_ptr<Database> database_;
-    const Lateness lateness_;
+    Lateness lateness_;
 };
 
 INSTANTIATE_TEST_SUITE_P(Of, EitherBacklog, ::testing::Values("Sqlite", "Postgres"),

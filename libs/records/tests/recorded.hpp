@@ -27,7 +27,7 @@ inline std::filesystem::path testFolder() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     std::string name = std::string(test->test_suite_name()) + "." + test->name();
     std::replace(name.begin(), name.end(), '/', '_');
-    const auto folder = std::filesystem::path(::testing::TempDir()) / "records" / name;
+    auto folder = std::filesystem::path(::testing::TempDir()) / "records" / name;
     std::filesystem::remove_all(folder);
     return folder;
 }
