@@ -28,7 +28,9 @@ std::uint64_t hashOf(std::string_view text) {
     std::uint64_t hash = text.size();
     std::uint64_t word = 0;
     if (text.size() < sizeof word) {
-        std::memcpy(&word, text.data(), text.size());
+        for (const char c : text) {
+            word = word << 8U | static_cast<std::uint8_t>(c);
+        }
         return (hash ^ word) * kFactor;
     }
     const auto last = text.size() - sizeof word;
