@@ -39,6 +39,14 @@ public:
                        bench_.sharedExecutor(), programs(), clock_);
     }
 
+    /// The watch lets go on the owner's thread.
+    ~Watched() {
+        watch_.reset();
+        bench_.executor().run();
+    }
+    Watched(const Watched&) = delete;
+    Watched& operator=(const Watched&) = delete;
+
     /// A move of axis 1 that takes some seconds, and so many cycles of it.
     void startMove(int cycles = 50) {
         auto target = bench_.commanded();
