@@ -13,8 +13,9 @@
 
 namespace metier::records {
 
+/// What has not come by then never comes, however busy the machine.
 inline SteadyTime soon() {
-    return std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    return std::chrono::steady_clock::now() + std::chrono::seconds(60);
 }
 
 /// Milliseconds after the beginning of 2026-11-22.

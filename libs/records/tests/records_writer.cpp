@@ -2,7 +2,7 @@
 // Arguments: store, ApplicationUri, how many executions (0: until it is killed).
 // After each one that is told to the recorder, a line with its id and the time [us since 1970].
 //
-// With "flood" for the count it tells 20,000 a second until it is killed, with "wave" for two
+// With "flood" for the count it tells 6,000 a second until it is killed, with "wave" for two
 // seconds, and of some of them, which have ended, by such a line; "ready" comes first. One in a
 // hundred lasts as long as the next five hundred.
 #include <fmt/format.h>
@@ -26,11 +26,11 @@ using namespace std::chrono_literals;
 constexpr auto kPause = 5ms;
 
 constexpr auto kTick = 1ms;
-constexpr long kOfATick = 20;
+constexpr long kOfATick = 6;
 constexpr long kTicksOfAWave = 2'000;
 constexpr long kLong = 100;         // every so many is a long one
 constexpr std::size_t kAtOnce = 5;  // long ones
-constexpr long kShown = 50;
+constexpr long kShown = 20;
 
 void show(const std::string& id, metier::UtcTime time) {
     fmt::print(
