@@ -12,6 +12,8 @@
 
 namespace metier::benchmarks {
 
+class RecordingSwitch;
+
 /// One client of one side, as far as the benchmarks need it.
 ///
 /// Threading: one thread.
@@ -41,8 +43,8 @@ inline constexpr std::chrono::milliseconds kPublishingInterval{100};
 
 /// Errors of the functions that they hold: exceptions.
 Side metierSide(opcua_skill::NodeStyle style = opcua_skill::NodeStyle::readable);
-/// The same, which records every execution in that file.
-Side recordingSide(const std::string& file);
+/// The same, which records every execution while `recording`, which must outlive it, is on.
+Side recordingSide(const RecordingSwitch& recording);
 Side bareSide();
 /// metier's server with open62541 alone as its client; can only call().
 Side metierServerBareClient();

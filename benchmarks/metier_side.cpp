@@ -17,6 +17,7 @@
 #include "metier/records/recorder.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "metier/skill_client/skill_finder.hpp"
+#include "recording_switch.hpp"
 
 namespace metier::benchmarks {
 namespace {
@@ -70,8 +71,9 @@ skill::SkillDescription moveDescription(std::string name) {
 /// An OPC UA server with skills that end as soon as they are started.
 class SkillServers {
 public:
-    /// \param records file for a record of each execution; empty: none
-    SkillServers(std::size_t idle, opcua_skill::NodeStyle style, const std::string& records = {}) {
+    /// \param recording of executions; null: none
+    SkillServers(std::size_t idle, opcua_skill::NodeStyle style,
+                 const RecordingSwitch* recording = nullptr) {
         auto& nodes = server_->nodes();
         const auto index = orThrow(nodes.namespaceIndex("urn:benchmark"));
         const auto system = orThrow(opcua_skill::publishMotionDeviceSystem(
@@ -80,13 +82,25 @@ public:
         for (std::size_t i = 0; i < idle; ++i) {
             publish(system.skills, fmt::format("JointPtpMoveSkill{}", i), style);
         }
-        if (!records.empty()) {
-            record(records);
+        if (recording != nullptr) {
+            recorder_ = orThrow(records::Recorder::create({.url = recording->file(),
+                                                           .server = "urn:benchmark",
+                                                           .to_json = recording::packedJson,
+                                                           .most_waiting = 100'000}));
         }
         orThrow(server_->start().map([] { return true; }));
+        if (recording != nullptr) {
+            recording_switch_ = recording->serve([this](bool on, std::function<void()> done) {
+                server_->post([this, on, done = std::move(done)] {
+                    record(on);
+                    done();
+                });
+            });
+        }
     }
     /// Observers let go of their Programs between the server's thread and the Programs' end.
     ~SkillServers() {
+        recording_switch_ = {};
         server_->stop();
         program_recorders_.clear();
         recorder_.reset();
@@ -104,11 +118,11 @@ private:
         options.logger = std::make_shared<spdlog::logger>("quiet");
         return options;
     }
-    void record(const std::string& file) {
-        recorder_ = orThrow(records::Recorder::create({.url = file,
-                                                       .server = "urn:benchmark",
-                                                       .to_json = recording::packedJson,
-                                                       .most_waiting = 100'000}));
+    void record(bool on) {
+        program_recorders_.clear();
+        if (!on) {
+            return;
+        }
         for (auto* program : skills_->programs()) {
             program_recorders_.push_back(std::make_unique<recording::ProgramRecorder>(
                 *program, *recorder_, nullptr,
@@ -127,6 +141,7 @@ private:
         *server_, clock_, std::make_shared<spdlog::logger>("quiet")));
     std::unique_ptr<records::Recorder> recorder_;
     std::vector<std::unique_ptr<recording::ProgramRecorder>> program_recorders_;
+    RecordingSwitch::Serving recording_switch_;
 };
 
 class MetierCaller final : public Caller {
@@ -228,11 +243,11 @@ Side metierSide(opcua_skill::NodeStyle style) {
             [](const std::string& url) { return std::make_unique<MetierCaller>(url); }};
 }
 
-Side recordingSide(const std::string& file) {
+Side recordingSide(const RecordingSwitch& recording) {
     auto side = metierSide();
-    side.serve = [file](std::size_t idle) {
+    side.serve = [&recording](std::size_t idle) {
         const auto server =
-            std::make_shared<SkillServers>(idle, opcua_skill::NodeStyle::readable, file);
+            std::make_shared<SkillServers>(idle, opcua_skill::NodeStyle::readable, &recording);
         return Served{server->url(), server};
     };
     return side;

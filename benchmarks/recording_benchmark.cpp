@@ -1,113 +1,180 @@
 // What a record of each execution costs: executions/s of the spine's benchmark with and without.
 //
-// A round is two servers in processes of their own, one after the other: one records into a SQLite
-// file, the other does not; which one comes first alternates. Eight clients start executions of one
-// Program, which end at once, for two seconds. The cost is the median of the rounds' ratios, since
-// the machine's speed changes from round to round. How many of the executions are in the file is
-// counted after the recording server has ended.
+// Eight clients start executions of one Program, which end at once, again and again for eight
+// seconds. Meanwhile the server's recording into a SQLite file is turned on and off in slices of
+// 40 ms, two by two, so that both see the same process and the same moods of the machine, which
+// differ by more than what is looked for; of each kind the middle half is taken. That is a round;
+// each has a server process of its own. The writer's thread works through both kinds of slices: its
+// time is told for each execution that it records. How many of the executions are in the file is
+// counted after the server has ended.
 //
-// `recording_benchmark [ROUNDS]`: 15 unless told.
+// `recording_benchmark [ROUNDS]`: 10 unless told.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
+#include "both_sides.hpp"
 #include "metier/records/store.hpp"
+#include "recording_switch.hpp"
 #include "throughput.hpp"
 
 namespace metier::benchmarks {
 namespace {
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
+using namespace std::chrono_literals;
+using std::chrono::steady_clock;
+
+constexpr std::size_t kClients = 8;
+constexpr int kSlices = 180;
+constexpr int kWarmUp = 8;  // slices that do not count
+constexpr auto kSlice = 40ms;
+/// After a turn, until the caches are as they stay.
+constexpr auto kSettle = 3ms;
 
 void removeStore(const std::string& file) {
-    for (const auto* more : {"", "-wal", "-shm"}) {
+    for (const auto* more : {"", "-wal", "-shm", "-servers"}) {
         std::filesystem::remove(file + more);
     }
 }
 
-std::int64_t countOf(const std::string& file) {
+double countOf(const std::string& file) {
     const auto store = records::Store::open(file);
     if (!store) {
         throw std::runtime_error(store.error().message);
     }
     const auto listed = (*store)->list({}, {.count = 1});
-    return listed && !listed->executions.empty() ? listed->executions.front().number : 0;
+    return listed && !listed->executions.empty()
+               ? static_cast<double>(listed->executions.front().number)
+               : 0.0;
 }
 
-struct Round {
-    Throughput with;
-    Throughput without;
-    double recorded = 0;  ///< of the executions that began
+double microseconds(std::chrono::nanoseconds time) {
+    return std::chrono::duration<double, std::micro>(time).count();
+}
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Of the middle half.
+double middle(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto quarter = static_cast<std::ptrdiff_t>(values.size() / 4);
+    return mean({values.begin() + quarter, values.end() - quarter});
+}
+
+/// Clients that start executions for as long as this lives.
+class Load {
+public:
+    Load(const Side& side, const std::string& url, Watching watching) {
+        for (std::size_t i = 0; i < kClients; ++i) {
+            callers_.push_back(side.connect(url));
+            if (watching == Watching::seen) {
+                callers_.back()->subscribe();
+            }
+        }
+        for (const auto& caller : callers_) {
+            threads_.emplace_back([this, &caller](const std::stop_token& stop) {
+                while (!stop.stop_requested()) {
+                    caller->start();
+                    ++count_;
+                }
+            });
+        }
+    }
+    double count() const { return static_cast<double>(count_); }
+
+private:
+    std::atomic<std::size_t> count_{0};
+    std::vector<std::unique_ptr<Caller>> callers_;
+    std::vector<std::jthread> threads_;  // end before what they use
 };
 
-constexpr std::chrono::milliseconds kTime{2000};
+/// Of all slices of a kind.
+struct Slices {
+    std::vector<double> per_second;
+    std::vector<double> server_thread;  // us for each execution
+};
 
-Round measure(Watching watching, bool recording_first, const std::string& file) {
+struct Round {
+    std::array<Slices, 2> slices;  // not recorded, recorded
+    double other_threads = 0;      // us for each recorded execution
+    double in_file = 0;            // of those that began while they were recorded
+};
+
+Round measure(Watching watching, const std::string& file) {
     removeStore(file);
+    const RecordingSwitch recording(file);
+    const auto side = recordingSide(recording);
     Round round;
-    if (!recording_first) {
-        round.without = throughput(metierSide(), watching, kTime);
+    double recorded = 0;
+    {
+        const ServerProcess server([&] { return side.serve(0); });
+        const auto others_before = server.cpuTime() - server.busiestThreadTime();
+        const Load load(side, server.url(), watching);
+        for (int i = 0; i < kSlices; ++i) {
+            const bool on = i % 4 == 1 || i % 4 == 2;
+            const auto turned_on = load.count();
+            recording.turn(on);
+            std::this_thread::sleep_for(kSettle);
+            const auto count = load.count();
+            const auto thread_time = server.busiestThreadTime();
+            const auto begin = steady_clock::now();
+            std::this_thread::sleep_for(kSlice);
+            const auto started = load.count() - count;
+            const std::chrono::duration<double> passed = steady_clock::now() - begin;
+            auto& slices = round.slices.at(on ? 1 : 0);
+            if (i >= kWarmUp) {
+                slices.per_second.push_back(started / passed.count());
+                slices.server_thread.push_back(
+                    microseconds(server.busiestThreadTime() - thread_time) / started);
+            }
+            recorded += on ? load.count() - turned_on : 0;
+        }
+        recording.turn(false);
+        const auto others = server.cpuTime() - server.busiestThreadTime() - others_before;
+        round.other_threads = microseconds(others) / recorded;
     }
-    round.with = throughput(recordingSide(file), watching, kTime);
-    if (recording_first) {
-        round.without = throughput(metierSide(), watching, kTime);
-    }
-    const std::chrono::duration<double> seconds = kTime;
-    round.recorded = static_cast<double>(countOf(file)) / (round.with.per_second * seconds.count());
+    round.in_file = countOf(file) / recorded;
     removeStore(file);
     return round;
 }
 
-/// Of all rounds, each beside the other.
-class Comparison {
-public:
-    void add(const Round& round) {
-        ratio_.push_back(round.with.per_second / round.without.per_second);
-        recorded_.push_back(round.recorded);
-        with_.push_back(round.with);
-        without_.push_back(round.without);
-    }
-    void print(const char* name) const {
-        const auto of = [](const std::vector<Throughput>& side, double Throughput::*what) {
-            std::vector<double> values;
-            for (const auto& one : side) {
-                values.push_back(one.*what);
-            }
-            return median(values);
-        };
-        fmt::print("{:<30}", name);
-        for (const auto what :
-             {&Throughput::per_second, &Throughput::server_thread, &Throughput::server_threads}) {
-            fmt::print(" {:>8.{}f} {:>8.{}f}", of(with_, what),
-                       what == &Throughput::per_second ? 0 : 2, of(without_, what),
-                       what == &Throughput::per_second ? 0 : 2);
-        }
-        fmt::print(" {:>8.4f} {:>8.3f}\n", median(ratio_), median(recorded_));
-        static_cast<void>(std::fflush(stdout));
-    }
-
-private:
-    std::vector<Throughput> with_;
-    std::vector<Throughput> without_;
-    std::vector<double> ratio_;
-    std::vector<double> recorded_;
-};
-
 void compare(const char* name, Watching watching, std::size_t rounds, const std::string& file) {
-    Comparison comparison;
-    measure(watching, true, file);  // warms up
+    std::vector<double> ratio;
+    std::vector<double> other_threads;
+    std::vector<double> in_file;
+    std::array<std::vector<double>, 2> per_second;
+    std::array<std::vector<double>, 2> server_thread;
     for (std::size_t i = 0; i < rounds; ++i) {
-        comparison.add(measure(watching, i % 2 == 0, file));
+        const auto round = measure(watching, file);
+        for (std::size_t kind = 0; kind < 2; ++kind) {
+            per_second.at(kind).push_back(middle(round.slices.at(kind).per_second));
+            server_thread.at(kind).push_back(middle(round.slices.at(kind).server_thread));
+        }
+        ratio.push_back(per_second[1].back() / per_second[0].back());
+        other_threads.push_back(round.other_threads);
+        in_file.push_back(round.in_file);
     }
-    comparison.print(name);
+    double squares = 0;
+    for (const auto one : ratio) {
+        squares += (one - mean(ratio)) * (one - mean(ratio));
+    }
+    const auto count = static_cast<double>(rounds);
+    fmt::print("{:<30} {:>8.0f} {:>8.0f} {:>8.2f} {:>8.2f} {:>13.2f} {:>9.4f} {:>8.4f} {:>8.3f}\n",
+               name, mean(per_second[1]), mean(per_second[0]), mean(server_thread[1]),
+               mean(server_thread[0]), mean(other_threads), mean(ratio),
+               std::sqrt(squares / (count - 1) / count), mean(in_file));
+    static_cast<void>(std::fflush(stdout));
 }
 
 }  // namespace
@@ -116,14 +183,14 @@ void compare(const char* name, Watching watching, std::size_t rounds, const std:
 int main(int argc, char** argv) {
     using namespace metier::benchmarks;
     try {
-        const std::size_t rounds = argc > 1 ? std::stoul(argv[1]) : 15;
+        const std::size_t rounds = argc > 1 ? std::stoul(argv[1]) : 10;
         const auto file =
             (std::filesystem::temp_directory_path() / fmt::format("recording_benchmark.db"))
                 .string();
-        fmt::print("{:<30} {:^17} {:^17} {:^17}   goal: ratio > 0.98\n", "", "executions/s",
-                   "server thread [us]", "all threads [us]");
-        fmt::print("{:<30} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "", "recorded",
-                   "not", "recorded", "not", "recorded", "not", "ratio", "in file");
+        fmt::print("{:<30} {:^17} {:^17} {:>13}   goal: ratio > 0.98\n", "", "executions/s",
+                   "server thread [us]", "others [us]");
+        fmt::print("{:<30} {:>8} {:>8} {:>8} {:>8} {:>13} {:>9} {:>8} {:>8}\n", "", "recorded",
+                   "not", "recorded", "not", "for a record", "ratio", "+-", "in file");
         compare("8 clients, nobody subscribed", Watching::unseen, rounds, file);
         compare("8 clients, each told of all", Watching::seen, rounds, file);
     } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -36,8 +37,13 @@ void put(const std::string& text, std::string& out) {
 template <typename T>
 void put(const std::vector<T>& list, std::string& out) {
     put(list.size(), out);
-    for (const auto& element : list) {
-        put(element, out);
+    if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+        const auto bytes = std::as_bytes(std::span(list));
+        out.append(static_cast<const char*>(static_cast<const void*>(bytes.data())), bytes.size());
+    } else {
+        for (const auto& element : list) {
+            put(element, out);
+        }
     }
 }
 void put(const Value& value, std::string& out) {

@@ -34,6 +34,16 @@ std::string jsonOf(const skill::CheckReport& report) {
         skill::jsonOf(skill::Value(report.planned_duration)));
 }
 
+/// Fewer than the history of a Program keeps, since one more may be under way.
+constexpr std::size_t kMostUntold = skill::ExecutionHistory::kMost / 2;
+
+records::TransitionView beginOf(const skill::ExecutionRecord& execution) {
+    return {.time = execution.start_time,
+            .from = nameOf(State::ready),
+            .to = nameOf(State::running),
+            .sub_state = nameOf(skill::SubState::executing)};
+}
+
 bool endsExecution(TransitionNumber transition) {
     switch (transition) {
         case TransitionNumber::running_to_halted:
@@ -60,39 +70,105 @@ ProgramRecorder::ProgramRecorder(skill::Program& program, records::Recorder& rec
 
 ProgramRecorder::~ProgramRecorder() {
     program_.detach(*this);
+    tellUntold();
     if (key_ != 0) {
-        const skill::TransitionEvent stopped{.to = State::halted,
-                                             .time = std::chrono::system_clock::now(),
-                                             .reason = skill::Reason::error,
-                                             .reason_text = "the server was stopped"};
-        recorder_.end(key_, outcomeOf(stopped));
+        recorder_.end(key_, {.time = std::chrono::system_clock::now(),
+                             .state = nameOf(State::halted),
+                             .reason = nameOf(skill::Reason::error),
+                             .reason_text = "the server was stopped",
+                             .missed_cycles = endSampling()});
     }
 }
 
-void ProgramRecorder::begin(const skill::ExecutionRecord& execution,
-                            const skill::TransitionEvent& event) {
+/// Of an arm's execution samples follow; what Check said may be something else later.
+void ProgramRecorder::begin(const skill::ExecutionRecord& execution) {
     const auto* check = checkOf(execution);
-    pack(*execution.parameters, packed_);
-    key_ =
-        recorder_.begin({.id = execution.id,
-                         .server_name = place_.server_name,
-                         .skill = program_.description().name,
-                         .controller = place_.controller,
-                         .device = place_.device,
-                         .parent = execution.parent.id,
-                         .parent_server = execution.parent.server,
-                         .session = execution.client.session_id,
-                         .client_name = execution.client.client_name,
-                         .user = execution.client.user_name,
-                         .thumbprint = execution.client.thumbprint,
-                         .parameters = packed_,
-                         .check = check == nullptr ? std::string_view() : std::string_view(*check),
-                         .started = execution.start_time,
-                         .state = nameOf(State::running)},
-                        transitionOf(event));
+    if (check != nullptr || sampler_ != nullptr) {
+        tellUntold();
+        tellBegin(execution, check);
+        return;
+    }
+    if (untold_ == kMostUntold) {
+        tellUntold();
+    }
+    begun_ = true;
+    tellLater();
+}
+
+void ProgramRecorder::tellBegin(const skill::ExecutionRecord& execution, const std::string* check) {
+    key_ = recorder_.begin(viewOf(execution, check), beginOf(execution));
     if (sampler_ != nullptr) {
         sampler_->begin(key_);
     }
+}
+
+/// Of an execution that went from Ready to Running and out of it.
+void ProgramRecorder::tellWhole(const skill::ExecutionRecord& execution) {
+    const auto sub_state = execution.state == State::halted
+                               ? skill::haltedBecause(execution.reason)
+                               : skill::SubState::ready_not_configured;
+    recorder_.record({.execution = viewOf(execution, nullptr),
+                      .first = beginOf(execution),
+                      .last = {.time = execution.end_time,
+                               .from = nameOf(State::running),
+                               .to = nameOf(execution.state),
+                               .sub_state = nameOf(sub_state),
+                               .reason = nameOf(execution.reason),
+                               .reason_text = execution.reason_text},
+                      .outcome = {.time = execution.end_time,
+                                  .state = nameOf(execution.state),
+                                  .reason = nameOf(execution.reason),
+                                  .reason_text = execution.reason_text,
+                                  .result = packedResult(execution.reason, execution.result)}});
+}
+
+/// Valid until the next.
+/// \param check null: nothing was asked before
+records::ExecutionView ProgramRecorder::viewOf(const skill::ExecutionRecord& execution,
+                                               const std::string* check) {
+    if (execution.parameters != parameters_) {
+        parameters_ = execution.parameters;
+        pack(*parameters_, packed_parameters_);
+    }
+    return {.id = execution.id,
+            .server_name = place_.server_name,
+            .skill = program_.description().name,
+            .controller = place_.controller,
+            .device = place_.device,
+            .parent = execution.parent.id,
+            .parent_server = execution.parent.server,
+            .session = execution.client.session_id,
+            .client_name = execution.client.client_name,
+            .user = execution.client.user_name,
+            .thumbprint = execution.client.thumbprint,
+            .parameters = packed_parameters_,
+            .check = check == nullptr ? std::string_view() : std::string_view(*check),
+            .started = execution.start_time,
+            .state = nameOf(State::running)};
+}
+
+void ProgramRecorder::tellUntold() {
+    later_.reset();
+    // The history's latest is the one that is under way, if one is.
+    const std::size_t newer = state_ == State::running || state_ == State::suspended ? 1 : 0;
+    for (; untold_ > 0; --untold_) {
+        if (const auto* execution = program_.recentExecution(untold_ - 1 + newer)) {
+            tellWhole(*execution);
+        }
+    }
+    if (const auto* latest = program_.recentExecution(0); std::exchange(begun_, false) && latest) {
+        tellBegin(*latest, nullptr);
+    }
+}
+
+void ProgramRecorder::tellLater() {
+    if (!later_) {
+        later_ = program_.executor().after(kLater, [this] { tellUntold(); });
+    }
+}
+
+bool ProgramRecorder::isUnderWay() const {
+    return begun_ || key_ != 0;
 }
 
 /// What the same session was told of the same values; null: nothing. Defaults need not have been
@@ -117,10 +193,14 @@ void ProgramRecorder::onCheck(const skill::Caller& caller, const skill::ValueMap
 
 void ProgramRecorder::onSubState(skill::SubState sub_state, std::string_view step) {
     const bool changed = sub_state != sub_state_ || step != step_;
+    // Of a change of the state the transition tells.
+    const bool told = changed && isUnderWay() && program_.state() == state_;
+    if (told) {
+        tellUntold();
+    }
     sub_state_ = sub_state;
     step_ = step;
-    // Of a change of the state the transition tells.
-    if (key_ != 0 && changed && program_.state() == state_) {
+    if (told) {
         recorder_.transition(
             key_,
             transitionOf({.from = state_, .to = state_, .time = std::chrono::system_clock::now()}));
@@ -128,14 +208,16 @@ void ProgramRecorder::onSubState(skill::SubState sub_state, std::string_view ste
 }
 
 void ProgramRecorder::onProgress(const skill::Value& intermediate) {
-    if (key_ != 0) {
+    if (isUnderWay()) {
+        tellUntold();
         recorder_.intermediate(
             key_, {.time = std::chrono::system_clock::now(), .value = packed(intermediate)});
     }
 }
 
 void ProgramRecorder::onStarted(const skill::StartedExecution& child) {
-    if (key_ != 0) {
+    if (isUnderWay()) {
+        tellUntold();
         recorder_.intermediate(key_, {.time = std::chrono::system_clock::now(),
                                       .value = packedText(fmt::format(
                                           R"({{"started":{{"id":{},"skill":{},"server_url":{}}}}})",
@@ -145,16 +227,43 @@ void ProgramRecorder::onStarted(const skill::StartedExecution& child) {
 }
 
 void ProgramRecorder::onTransition(const skill::TransitionEvent& event) {
-    state_ = event.to;
     const auto* latest = program_.recentExecution(0);
+    const bool ends = endsExecution(event.number);
+    if (!ends && isUnderWay()) {
+        tellUntold();
+    }
+    state_ = event.to;
     if (event.number == TransitionNumber::ready_to_running && latest != nullptr) {
-        begin(*latest, event);
-    } else if (key_ != 0 && endsExecution(event.number)) {
-        const auto outcome = outcomeOf(event);
-        recorder_.end(std::exchange(key_, 0), outcome, transitionOf(event));
+        begin(*latest);
+    } else if (ends && std::exchange(begun_, false)) {
+        ++untold_;
+    } else if (ends && key_ != 0) {
+        const auto missed_cycles = endSampling();
+        recorder_.end(std::exchange(key_, 0),
+                      {.time = event.time,
+                       .state = nameOf(event.to),
+                       .reason = nameOf(event.reason),
+                       .reason_text = event.reason_text,
+                       .result = packedResult(event.reason, program_.finalResult()),
+                       .missed_cycles = missed_cycles},
+                      transitionOf(event));
     } else if (key_ != 0) {
         recorder_.transition(key_, transitionOf(event));
     }
+}
+
+std::uint64_t ProgramRecorder::endSampling() {
+    return sampler_ == nullptr ? 0 : sampler_->end(key_);
+}
+
+/// Empty unless it finished. Valid until the next.
+std::string_view ProgramRecorder::packedResult(skill::Reason reason,
+                                               const skill::ValueMap& result) {
+    if (reason != skill::Reason::finished) {
+        return {};
+    }
+    pack(result, packed_result_);
+    return packed_result_;
 }
 
 /// Valid until the next change of the step.
@@ -166,20 +275,6 @@ records::TransitionView ProgramRecorder::transitionOf(const skill::TransitionEve
             .step = step_,
             .reason = nameOf(event.reason),
             .reason_text = event.reason_text};
-}
-
-/// Ends the sampling. Valid until something else is packed.
-records::OutcomeView ProgramRecorder::outcomeOf(const skill::TransitionEvent& event) {
-    packed_.clear();
-    if (event.reason == skill::Reason::finished) {
-        pack(program_.finalResult(), packed_);
-    }
-    return {.time = event.time,
-            .state = nameOf(event.to),
-            .reason = nameOf(event.reason),
-            .reason_text = event.reason_text,
-            .result = packed_,
-            .missed_cycles = sampler_ == nullptr ? 0 : sampler_->end(key_)};
 }
 
 }  // namespace metier::recording

@@ -1,6 +1,9 @@
 #include "metier/recording/program_recorder.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <algorithm>
 
 #include "metier/skill/lambda_skill.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
@@ -10,9 +13,11 @@
 namespace metier::recording {
 namespace {
 
+using namespace std::chrono_literals;
 using skill::Reason;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::PlacedArm;
 using testing::RecordedFile;
 
@@ -169,6 +174,131 @@ TEST_F(RecordedProgram, CountsTheMissedCyclesOfItsArm) {
     execution.finish();
     executor->run();
     EXPECT_EQ(only().missed_cycles, 2U);
+}
+
+/// Of a Program that moves no arm.
+struct ArmlessProgram : RecordedProgram {
+    ArmlessProgram() {
+        recorder = std::make_unique<ProgramRecorder>(
+            *program, file.recorder(), nullptr, ProgramRecorder::Place{"ur5", "Controller", ""});
+    }
+    std::vector<records::Execution> all() {
+        const auto listed = file.store()->list({}, {.count = 500});
+        EXPECT_TRUE(listed);
+        return listed->executions;
+    }
+    std::string runOnce() {
+        const auto id = program->startWith(kAlice, {});
+        EXPECT_TRUE(id);
+        execution.finish({{"Length", ++length}});
+        executor->run();
+        return *id;
+    }
+
+    double length = 0;
+};
+
+TEST_F(ArmlessProgram, IsToldOfALittleLater) {
+    const auto id = runOnce();
+    executor->advance(ProgramRecorder::kLater - 1ms);
+    EXPECT_THAT(all(), IsEmpty());
+    executor->advance(1ms);
+    const auto record = only();
+    EXPECT_EQ(record.id, id);
+    EXPECT_EQ(record.server_name, "ur5");
+    EXPECT_EQ(record.user, "alice");
+    EXPECT_EQ(record.parameters, R"({"Speed":0.5})");
+    EXPECT_EQ(record.state, "Ready");
+    EXPECT_EQ(record.reason, "Finished");
+    EXPECT_EQ(record.result, R"({"Length":1})");
+    EXPECT_TRUE(record.isOver());
+    EXPECT_THAT(ways(record.number),
+                ElementsAre("Ready>Running Executing", "Running>Ready ReadyNotConfigured"));
+    executor->advance(1s);
+    EXPECT_EQ(executor->timerCount(), 0U);
+}
+
+TEST_F(ArmlessProgram, IsToldOfInItsOrderHoweverOftenItRuns) {
+    std::vector<std::string> ids;
+    for (int i = 0; i < 200; ++i) {
+        ids.push_back(runOnce());
+    }
+    EXPECT_GE(all().size(), 100U) << "the history of a Program is short";
+    executor->advance(ProgramRecorder::kLater);
+    auto records = all();
+    ASSERT_EQ(records.size(), ids.size());
+    std::sort(records.begin(), records.end(),
+              [](const auto& a, const auto& b) { return a.number < b.number; });
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        EXPECT_EQ(records[i].id, ids[i]);
+        EXPECT_EQ(records[i].result, fmt::format(R"({{"Length":{}}})", i + 1));
+    }
+}
+
+TEST_F(ArmlessProgram, IsToldOfWhileItRuns) {
+    const auto first = runOnce();
+    ASSERT_TRUE(program->startWith(kAlice, {.parameters = {{"Speed", 0.25}}}));
+    executor->advance(ProgramRecorder::kLater);
+    auto records = all();
+    ASSERT_EQ(records.size(), 2U);
+    EXPECT_EQ(records[1].id, first);
+    EXPECT_EQ(records[0].state, "Running");
+    EXPECT_FALSE(records[0].isOver());
+    execution.fail(Reason::error, "no wire");
+    executor->run();
+    records = all();
+    EXPECT_EQ(records[0].state, "Halted");
+    EXPECT_EQ(records[0].reason_text, "no wire");
+    EXPECT_EQ(records[0].parameters, R"({"Speed":0.25})");
+    EXPECT_EQ(records[1].parameters, R"({"Speed":0.5})");
+    EXPECT_THAT(ways(records[0].number),
+                ElementsAre("Ready>Running Executing", "Running>Halted HaltedError"));
+}
+
+TEST_F(ArmlessProgram, ThatFailsAtOnceIsToldOfWithItsReason) {
+    ASSERT_TRUE(program->start(kAlice));
+    execution.fail(Reason::error, "no wire");
+    executor->run();
+    ASSERT_TRUE(program->reset(kAlice));
+    executor->advance(ProgramRecorder::kLater);
+    const auto record = only();
+    EXPECT_EQ(record.state, "Halted");
+    EXPECT_EQ(record.reason, "Error");
+    EXPECT_EQ(record.reason_text, "no wire");
+    EXPECT_EQ(record.result, "");
+    EXPECT_THAT(ways(record.number),
+                ElementsAre("Ready>Running Executing", "Running>Halted HaltedError"));
+}
+
+TEST_F(ArmlessProgram, IsToldOfAtOnceIfThereIsMoreToTell) {
+    runOnce();
+    ASSERT_TRUE(program->start(kAlice));
+    execution.step("approach");
+    execution.progress(0.5);
+    executor->run();
+    auto records = all();
+    ASSERT_EQ(records.size(), 2U);
+    EXPECT_EQ(records[0].state, "Running");
+    EXPECT_EQ(file.store()->intermediates(records[0].number)->size(), 1U);
+    ASSERT_TRUE(program->suspend(kAlice));
+    executor->run();
+    EXPECT_EQ(all()[0].state, "Suspended");
+    ASSERT_TRUE(program->reset(kAlice));
+    EXPECT_THAT(ways(all()[0].number),
+                ElementsAre("Ready>Running Executing", "Running>Running at approach Executing",
+                            "Running>Running at approach Stopping",
+                            "Running>Suspended", "Suspended>Ready ReadyNotConfigured"));
+}
+
+TEST_F(ArmlessProgram, IsToldOfWithItsServersEnd) {
+    runOnce();
+    ASSERT_TRUE(program->start(kAlice));
+    recorder.reset();
+    const auto records = all();
+    ASSERT_EQ(records.size(), 2U);
+    EXPECT_EQ(records[0].state, "Halted");
+    EXPECT_THAT(records[0].reason_text, HasSubstr("the server was stopped"));
+    EXPECT_EQ(records[1].state, "Ready");
 }
 
 TEST_F(RecordedProgram, ThatEndsWithItsServerWasHalted) {

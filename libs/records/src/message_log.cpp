@@ -20,115 +20,130 @@ constexpr std::size_t kPiece = 262'144;
 /// Pieces that are kept: what a lively second takes.
 constexpr std::size_t kMostKept = 64;
 
-// What is kept of a message: names, which are few and come again and again, and what is its own.
+// What is kept of a message: names, which are few and come again and again, texts, times and
+// counts.
 
 template <typename Message>
-requires requires(Message& m) {
-    m.thumbprint;
-}
-auto namesOf(Message& e) {
+concept AnExecution = requires(Message& m) { m.thumbprint; };
+template <typename Message>
+concept ATransition = requires(Message& m) { m.sub_state; };
+template <typename Message>
+concept AnIntermediate = requires(Message& m) { m.value; };
+template <typename Message>
+concept AnOutcome = requires(Message& m) { m.result, m.time; };
+
+auto namesOf(AnExecution auto& e) {
     return std::tie(e.server_name, e.skill, e.controller, e.device, e.parent_server, e.session,
                     e.client_name, e.user, e.thumbprint, e.state, e.reason, e.reason_text);
 }
-template <typename Message>
-requires requires(Message& m) {
-    m.thumbprint;
+auto textsOf(AnExecution auto& e) {
+    return std::tie(e.id, e.parent, e.parameters, e.check, e.result);
 }
-auto ownOf(Message& e) {
-    return std::tie(e.id, e.parent, e.parameters, e.check, e.result, e.started, e.missed_cycles);
+auto timesOf(AnExecution auto& e) {
+    return std::tie(e.started);
 }
-template <typename Message>
-requires requires(Message& m) {
-    m.sub_state;
+auto countsOf(AnExecution auto& e) {
+    return std::tie(e.missed_cycles);
 }
-auto namesOf(Message& t) {
+auto namesOf(ATransition auto& t) {
     return std::tie(t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text);
 }
-template <typename Message>
-requires requires(Message& m) {
-    m.sub_state;
-}
-auto ownOf(Message& t) {
-    return std::tie(t.time);
-}
-template <typename Message>
-requires requires(Message& m) {
-    m.value;
-}
-auto namesOf(Message& /*i*/) {
+auto textsOf(ATransition auto& /*t*/) {
     return std::tie();
 }
-template <typename Message>
-requires requires(Message& m) {
-    m.value;
+auto timesOf(ATransition auto& t) {
+    return std::tie(t.time);
 }
-auto ownOf(Message& i) {
-    return std::tie(i.time, i.value);
+auto countsOf(ATransition auto& /*t*/) {
+    return std::tie();
 }
-template <typename Message>
-requires requires(Message& m) {
-    m.result, m.time;
+auto namesOf(AnIntermediate auto& /*i*/) {
+    return std::tie();
 }
-auto namesOf(Message& o) {
+auto textsOf(AnIntermediate auto& i) {
+    return std::tie(i.value);
+}
+auto timesOf(AnIntermediate auto& i) {
+    return std::tie(i.time);
+}
+auto countsOf(AnIntermediate auto& /*i*/) {
+    return std::tie();
+}
+auto namesOf(AnOutcome auto& o) {
     return std::tie(o.state, o.reason, o.reason_text);
 }
-template <typename Message>
-requires requires(Message& m) {
-    m.result, m.time;
+auto textsOf(AnOutcome auto& o) {
+    return std::tie(o.result);
 }
-auto ownOf(Message& o) {
-    return std::tie(o.time, o.result, o.missed_cycles);
+auto timesOf(AnOutcome auto& o) {
+    return std::tie(o.time);
+}
+auto countsOf(AnOutcome auto& o) {
+    return std::tie(o.missed_cycles);
 }
 
 /// Recent texts of messages that are told together.
 template <typename... Messages>
 struct Recent {
     RecentTexts names{};
-    std::array<RecentTexts, (std::tuple_size_v<decltype(ownOf(std::declval<Messages&>()))> + ...)>
-        own{};
+    std::array<RecentTexts, (std::tuple_size_v<decltype(textsOf(std::declval<Messages&>()))> + ...)>
+        texts{};
 
     void clear() {
         names.clear();
-        std::for_each(own.begin(), own.end(), [](RecentTexts& texts) { texts.clear(); });
+        std::for_each(texts.begin(), texts.end(), [](RecentTexts& one) { one.clear(); });
     }
 };
 
-void put(Packer& packer, std::string_view text, RecentTexts& recent) {
-    packer.put(text, recent);
-}
-template <typename T>
-void put(Packer& packer, const T& value, RecentTexts& /*recent*/) {
-    packer.put(value);
-}
-void take(Unpacker& unpacker, std::string& text, RecentTexts& recent) {
-    unpacker.take(text, recent);
-}
-template <typename T>
-void take(Unpacker& unpacker, T& value, RecentTexts& /*recent*/) {
-    unpacker.take(value);
-}
-
-/// Calls `one` with each of `fields` and of `recent`.
-template <typename Fields, typename Recents, typename One>
-void forEach(const Fields& fields, Recents& recent, One one) {
-    [&]<std::size_t... I>(std::index_sequence<I...> /*all*/) {
-        (one(std::get<I>(fields), recent[I]), ...);
-    }
-    (std::make_index_sequence<std::tuple_size_v<Fields>>{});
+/// Of tuples, one after the other.
+template <typename T, typename... Tuples>
+auto arrayOf(const Tuples&... tuples) {
+    return std::apply(
+        [](const auto&... one) { return std::array<T, sizeof...(one)>{T(one)...}; },
+        std::tuple_cat(tuples...));
 }
 
 // Names as one text: the length of each in a byte, or kLong and then in four, and the name.
 
 constexpr std::uint8_t kLong = 255;
 
-void joinOne(std::string_view name, std::string& joined) {
-    const auto size = static_cast<std::uint32_t>(name.size());
-    joined += static_cast<char>(std::min<std::uint32_t>(size, kLong));
-    if (size >= kLong) {
-        const auto bytes = std::bit_cast<std::array<char, sizeof size>>(size);
-        joined.append(bytes.data(), bytes.size());
+std::size_t mostOfJoined(std::string_view name) {
+    return 1 + sizeof(std::uint32_t) + name.size();
+}
+
+/// Without a call for the few bytes that most names have.
+char* copyName(std::string_view name, char* at) {
+    const auto* const data = name.data();
+    const auto size = name.size();
+    const auto ends = [&](auto half) {  // both halves, which overlap
+        std::memcpy(&half, data, sizeof half);
+        std::memcpy(at, &half, sizeof half);
+        std::memcpy(&half, data + size - sizeof half, sizeof half);
+        std::memcpy(at + size - sizeof half, &half, sizeof half);
+    };
+    if (size > 2 * sizeof(std::uint64_t)) {
+        std::memcpy(at, data, size);
+    } else if (size >= sizeof(std::uint64_t)) {
+        ends(std::uint64_t{});
+    } else if (size >= sizeof(std::uint32_t)) {
+        ends(std::uint32_t{});
+    } else {
+        std::copy(name.begin(), name.end(), at);
     }
-    joined += name;
+    return at + size;
+}
+
+char* joinOne(std::string_view name, char* at) {
+    const auto size = static_cast<std::uint32_t>(name.size());
+    *at++ = static_cast<char>(std::min<std::uint32_t>(size, kLong));
+    if (size == 0) {
+        return at;
+    }
+    if (size >= kLong) {
+        std::memcpy(at, &size, sizeof size);
+        at += sizeof size;
+    }
+    return copyName(name, at);
 }
 
 /// False if it is not there.
@@ -162,8 +177,13 @@ bool give(Unpacker& unpacker, Recorder::Key key, Recent<Messages...>& recent, Me
     };
     std::string joined;
     unpacker.take(joined, recent.names);
-    forEach(of_all([](auto& one) { return ownOf(one); }), recent.own,
-            [&](auto& field, RecentTexts& texts) { take(unpacker, field, texts); });
+    auto* texts = recent.texts.data();
+    std::apply([&](auto&... one) { (unpacker.take(one, *texts++), ...); },
+               of_all([](auto& one) { return textsOf(one); }));
+    std::apply([&](auto&... one) { (unpacker.take(one), ...); },
+               of_all([](auto& one) { return timesOf(one); }));
+    std::apply([&](auto&... one) { (unpacker.take(one), ...); },
+               of_all([](auto& one) { return countsOf(one); }));
     std::string_view rest(joined);
     const bool whole = unpacker.isWhole() &&
                        std::apply([&](auto&... name) { return (splitOne(rest, name) && ...); },
@@ -185,9 +205,8 @@ struct MessageLog::Before {
     Recent<Outcome> outcome{};
     Recent<Execution, Transition> started{};
     Recent<Transition, Outcome> ended{};
-    // Of the message that is put; they have their memory already.
-    std::string names{};
-    Bytes packed{};
+    Recent<Execution, Transition, Transition, Outcome> whole{};
+    std::string joined{};  // names of the message that is put; has its memory already
 
     void clear() {
         integers = {};
@@ -197,6 +216,22 @@ struct MessageLog::Before {
         outcome.clear();
         started.clear();
         ended.clear();
+        whole.clear();
+    }
+    /// Valid until the next.
+    std::string_view join(std::span<const std::string_view> names) {
+        std::size_t most = 0;
+        for (const auto name : names) {
+            most += mostOfJoined(name);
+        }
+        if (joined.size() < most) {
+            joined.resize(most);
+        }
+        auto* at = joined.data();
+        for (const auto name : names) {
+            at = joinOne(name, at);
+        }
+        return {joined.data(), static_cast<std::size_t>(at - joined.data())};
     }
     /// \return false if they are damaged
     bool giveAll(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
@@ -226,6 +261,8 @@ private:
                 return records::give(unpacker, key, started, taker);
             case Kind::ended:
                 return records::give(unpacker, key, ended, taker);
+            case Kind::whole:
+                return records::give(unpacker, key, whole, taker);
         }
         return false;
     }
@@ -249,23 +286,50 @@ MessageLog::Piece& MessageLog::pieceFor(std::size_t most) {
     return pieces_[used_ - 1];
 }
 
+/// Of messages that are told together.
+struct MessageLog::Fields {
+    std::span<const std::string_view> names;
+    RecentTexts& recent_names;
+    std::span<const std::string_view> texts;
+    RecentTexts* recent_texts;
+    std::span<const UtcTime> times;
+    std::span<const std::uint64_t> counts;
+};
+
 template <typename Recent, typename... Messages>
 void MessageLog::append(Kind kind, Key key, Recent& recent, const Messages&... messages) {
-    auto& names = before_->names;
-    auto& packed = before_->packed;
-    names.clear();
-    packed.clear();
-    std::apply([&](const auto&... name) { (joinOne(name, names), ...); },
-               std::tuple_cat(namesOf(messages)...));
-    Packer packer(packed, before_->integers);
+    const auto names = arrayOf<std::string_view>(namesOf(messages)...);
+    const auto texts = arrayOf<std::string_view>(textsOf(messages)...);
+    const auto times = arrayOf<UtcTime>(timesOf(messages)...);
+    const auto counts = arrayOf<std::uint64_t>(countsOf(messages)...);
+    append(kind, key, {names, recent.names, texts, recent.texts.data(), times, counts});
+}
+
+/// One for all kinds: code, too, takes memory that is then missing in the caches.
+void MessageLog::append(Kind kind, Key key, const Fields& fields) {
+    const auto joined = before_->join(fields.names);
+    auto most = 1 + Packer::mostOf(joined) +
+                Packer::kMostOfInteger * (1 + fields.times.size() + fields.counts.size());
+    for (const auto text : fields.texts) {
+        most += Packer::mostOf(text);
+    }
+    auto& piece = pieceFor(most);
+    auto* const room = piece.bytes.data() + piece.used;
+    Packer packer(room, before_->integers);
     packer.byte(static_cast<std::uint8_t>(kind));
     packer.key(key);
-    packer.put(names, recent.names);
-    forEach(std::tuple_cat(ownOf(messages)...), recent.own,
-            [&](const auto& field, RecentTexts& texts) { records::put(packer, field, texts); });
-    auto& piece = pieceFor(packed.size());
-    std::memcpy(piece.bytes.data() + piece.used, packed.data(), packed.size());
-    piece.used += packed.size();
+    packer.put(joined, fields.recent_names);
+    auto* recent = fields.recent_texts;
+    for (const auto text : fields.texts) {
+        packer.put(text, *recent++);
+    }
+    for (const auto time : fields.times) {
+        packer.put(time);
+    }
+    for (const auto count : fields.counts) {
+        packer.put(count);
+    }
+    piece.used += static_cast<std::size_t>(packer.end() - room);
     ++count_;
 }
 
@@ -291,6 +355,12 @@ void MessageLog::put(Key key, const ExecutionView& begun, const TransitionView& 
 
 void MessageLog::put(Key key, const TransitionView& last, const OutcomeView& outcome) {
     append(Kind::ended, key, before_->ended, last, outcome);
+}
+
+void MessageLog::put(Key key, const WholeExecution& whole) {
+    append(Kind::whole, key, before_->whole, whole.execution, whole.first, whole.last,
+           whole.outcome);
+    ++count_;
 }
 
 void MessageLog::giveTo(MessageTaker& taker) const {

@@ -50,6 +50,8 @@ public:
     // Two at once, which count as one.
     void put(Key key, const ExecutionView& begun, const TransitionView& first);
     void put(Key key, const TransitionView& last, const OutcomeView& outcome);
+    /// All of an execution, which count as two.
+    void put(Key key, const WholeExecution& whole);
 
     std::size_t count() const noexcept { return count_; }
     /// In the order in which they were put.
@@ -66,9 +68,11 @@ public:
 
 private:
     struct Before;
-    enum class Kind : std::uint8_t { begun, transition, intermediate, outcome, started, ended };
+    enum class Kind : std::uint8_t { begun, transition, intermediate, outcome, started, ended, whole };
+    struct Fields;
     template <typename Recent, typename... Messages>
     void append(Kind kind, Key key, Recent& recent, const Messages&... messages);
+    void append(Kind kind, Key key, const Fields& fields);
 
     /// Holds whole messages.
     struct Piece {

@@ -20,18 +20,24 @@ std::uint64_t unfolded(std::uint64_t folded) {
     return (folded >> 1U) ^ (0 - (folded & 1U));
 }
 
+/// In place of the number of a recent text.
+constexpr std::uint8_t kNew = RecentTexts::kMost;
+constexpr std::uint8_t kEmpty = kNew + 1;
+
 constexpr std::uint64_t kFactor = 0x9E37'79B9'7F4A'7C15U;
 constexpr std::size_t kPlaces = 6;
 
+}  // namespace
+
 /// Of a few places of it, since whoever has the same is compared as a whole.
-std::uint64_t hashOf(std::string_view text) {
+std::uint32_t RecentTexts::hashOf(std::string_view text) {
     std::uint64_t hash = text.size();
     std::uint64_t word = 0;
     if (text.size() < sizeof word) {
         for (const char c : text) {
             word = word << 8U | static_cast<std::uint8_t>(c);
         }
-        return (hash ^ word) * kFactor;
+        return static_cast<std::uint32_t>((hash ^ word) * kFactor >> 32U);
     }
     const auto last = text.size() - sizeof word;
     for (std::size_t i = 0; i <= kPlaces; ++i) {
@@ -39,16 +45,10 @@ std::uint64_t hashOf(std::string_view text) {
         hash = (hash ^ word) * kFactor;
         hash ^= hash >> 32U;
     }
-    return hash;
+    return static_cast<std::uint32_t>(hash);
 }
 
-}  // namespace
-
-std::uint8_t RecentTexts::find(std::string_view text) const {
-    const auto hash = hashOf(text);
-    if (hashes_[latest_] == hash && texts_[latest_] == text) {
-        return latest_;
-    }
+std::uint8_t RecentTexts::find(std::string_view text, std::uint32_t hash) const {
     std::uint8_t number = 0;
     while (number < kMost && (hashes_[number] != hash || texts_[number] != text)) {
         ++number;
@@ -61,14 +61,9 @@ const std::string& RecentTexts::use(std::uint8_t number) {
     return texts_[number];
 }
 
-void RecentTexts::add(std::size_t shared, std::string_view rest) {
-    auto& text = texts_[next_];
-    if (next_ != latest_) {
-        text.assign(texts_[latest_], 0, shared);
-    }
-    text.resize(shared);
-    text.append(rest);
-    hashes_[next_] = hashOf(text);
+void RecentTexts::add(std::string_view text, std::uint32_t hash) {
+    texts_[next_] = text;
+    hashes_[next_] = hash;
     latest_ = next_;
     next_ = static_cast<std::uint8_t>((next_ + 1) % kMost);
 }
@@ -88,9 +83,18 @@ void Packer::key(Recorder::Key key) {
 
 /// Its number, or what it adds to the latest.
 void Packer::put(std::string_view text, RecentTexts& recent) {
-    const auto number = recent.find(text);
+    if (text.empty()) {
+        byte(kEmpty);
+        return;
+    }
+    if (text == recent.latest()) {
+        byte(recent.latestNumber());
+        return;
+    }
+    const auto hash = RecentTexts::hashOf(text);
+    const auto number = recent.find(text, hash);
     byte(number);
-    if (number < RecentTexts::kMost) {
+    if (number != kNew) {
         recent.use(number);
         return;
     }
@@ -100,8 +104,8 @@ void Packer::put(std::string_view text, RecentTexts& recent) {
     const auto rest = text.substr(shared);
     put(shared);
     put(rest.size());
-    bytes_.insert(bytes_.end(), rest.begin(), rest.end());
-    recent.add(shared, rest);
+    at_ = std::copy(rest.begin(), rest.end(), at_);
+    recent.add(text, hash);
 }
 
 void Packer::put(UtcTime time) {
@@ -128,17 +132,19 @@ Recorder::Key Unpacker::key() {
 void Unpacker::take(std::string& text, RecentTexts& recent) {
     text.clear();
     const auto number = byte();
-    if (number < RecentTexts::kMost && whole_) {
+    if (number == kEmpty) {
+        return;
+    }
+    if (number < kNew && whole_) {
         text = recent.use(number);
         return;
     }
     const auto shared = integer();
     const auto bytes = next(integer());
-    const std::string rest(bytes.begin(), bytes.end());
-    whole_ = whole_ && number == RecentTexts::kMost && shared <= recent.latest().size();
+    whole_ = whole_ && number == kNew && shared <= recent.latest().size();
     if (whole_) {
-        recent.add(shared, rest);
-        text = recent.latest();
+        text.assign(recent.latest(), 0, shared).append(bytes.begin(), bytes.end());
+        recent.add(text, RecentTexts::hashOf(text));
     }
 }
 

@@ -19,20 +19,24 @@ public:
     static constexpr std::uint8_t kMost = 8;
 
     RecentTexts() { clear(); }
+    static std::uint32_t hashOf(std::string_view text);
     /// Its number; kMost if it is not among them.
-    std::uint8_t find(std::string_view text) const;
+    /// \param hash of the text
+    std::uint8_t find(std::string_view text, std::uint32_t hash) const;
     const std::string& use(std::uint8_t number);
+    std::uint8_t latestNumber() const { return latest_; }
     const std::string& latest() const { return texts_[latest_]; }
     /// In place of the one that was added first.
-    /// \param shared how much of the beginning is as in the latest [byte]
-    void add(std::size_t shared, std::string_view rest);
+    /// \param hash of the text
+    void add(std::string_view text, std::uint32_t hash);
     /// As at first, but for the memory, which is kept.
     void clear();
 
 private:
+    // What is looked at each time is in one cache line.
+    alignas(64) std::array<std::uint32_t, kMost> hashes_{};
     std::uint8_t latest_ = 0;
     std::uint8_t next_ = 0;
-    std::array<std::uint64_t, kMost> hashes_{};
     std::array<std::string, kMost> texts_;
 };
 
@@ -42,19 +46,27 @@ struct BeforeIntegers {
     std::uint64_t time = 0;
 };
 
-/// Appends to `bytes`.
+/// Packs into memory that has room for the most that everything may take.
 class Packer {
 public:
-    Packer(Bytes& bytes, BeforeIntegers& before) : bytes_(bytes), before_(before) {}
+    /// An integer takes so much at most [byte].
+    static constexpr std::size_t kMostOfInteger = 10;
+    static constexpr std::size_t mostOf(std::string_view text) {
+        return 1 + 2 * kMostOfInteger + text.size();
+    }
 
-    void byte(std::uint8_t value) { bytes_.push_back(value); }
+    Packer(std::uint8_t* room, BeforeIntegers& before) : at_(room), before_(before) {}
+
+    void byte(std::uint8_t value) { *at_++ = value; }
     void key(Recorder::Key key);
     void put(std::string_view text, RecentTexts& recent);
     void put(UtcTime time);
     void put(std::uint64_t value);
+    /// Of what was packed.
+    const std::uint8_t* end() const { return at_; }
 
 private:
-    Bytes& bytes_;
+    std::uint8_t* at_;
     BeforeIntegers& before_;
 };
 

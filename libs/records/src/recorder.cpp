@@ -47,6 +47,10 @@ void Recorder::end(Key key, const OutcomeView& outcome, const TransitionView& la
     impl_->end(key, last, outcome);
 }
 
+void Recorder::record(const WholeExecution& whole) {
+    impl_->begin(whole);
+}
+
 bool Recorder::flush(SteadyTime deadline) {
     return impl_->flush(deadline);
 }

@@ -79,14 +79,16 @@ Recorder::Key Recorder::Impl::begin(const Messages&... messages) {
         ++dropped_.executions;
         return 0;
     }
+    const auto before = waiting_.count();
     waiting_.put(++newest_, messages...);
-    wakeWriter();
+    wakeWriter(before);
     return newest_;
 }
 
 template Recorder::Key Recorder::Impl::begin(const ExecutionView& execution);
 template Recorder::Key Recorder::Impl::begin(const ExecutionView& execution,
                                              const TransitionView& first);
+template Recorder::Key Recorder::Impl::begin(const WholeExecution& whole);
 
 template <typename Message>
 void Recorder::Impl::tell(Key key, const Message& message) {
@@ -97,8 +99,9 @@ void Recorder::Impl::tell(Key key, const Message& message) {
     if (waiting_.count() >= options_.most_waiting) {
         ++dropped_.events;
     } else {
+        const auto before = waiting_.count();
         waiting_.put(key, message);
-        wakeWriter();
+        wakeWriter(before);
     }
 }
 
@@ -112,8 +115,9 @@ void Recorder::Impl::end(Key key, const Messages&... messages) {
         return;
     }
     const std::lock_guard lock(mutex_);
+    const auto before = waiting_.count();
     waiting_.put(key, messages...);
-    wakeWriter();
+    wakeWriter(before);
 }
 
 template void Recorder::Impl::end(Key key, const OutcomeView& outcome);
@@ -121,8 +125,10 @@ template void Recorder::Impl::end(Key key, const TransitionView& last, const Out
 
 /// With the lock, after each message. Only when the writer has something to wait for no longer,
 /// since waking a thread costs more than all else here.
-void Recorder::Impl::wakeWriter() {
-    if (waiting_.count() == 1 || waiting_.count() == options_.most_waiting / 2 + 1) {
+/// \param before how many were waiting before it
+void Recorder::Impl::wakeWriter(std::size_t before) {
+    const auto many = options_.most_waiting / 2;
+    if (before == 0 || (before <= many && waiting_.count() > many)) {
         changed_.notify_all();
     }
 }

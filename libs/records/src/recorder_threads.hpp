@@ -40,7 +40,7 @@ public:
     Status status() const;
 
 private:
-    void wakeWriter();
+    void wakeWriter(std::size_t before);
     void write(const std::stop_token& stop);
     bool somethingWaits() const;
     bool waitForWork(const std::stop_token& stop);

@@ -123,6 +123,28 @@ TEST(MessageLog, TakesTwoMessagesAtOnce) {
     EXPECT_EQ(taken.outcome.time, at(9));
 }
 
+TEST(MessageLog, TakesAnExecutionAsAWhole) {
+    const auto move = moveOf("m-1", at(3));
+    const auto end = halted(at(9), "axis 2");
+    const Transition begin{.time = at(3), .from = "Ready", .to = "Running"};
+    MessageLog log;
+    for (Recorder::Key key = 1; key <= 2; ++key) {
+        log.put(key, WholeExecution{move, begin, stopping(), end});
+    }
+    EXPECT_EQ(log.count(), 4U);
+    Taken taken;
+    log.giveTo(taken);
+    EXPECT_THAT(taken.order, ::testing::ElementsAre("begin 1", "transition 1", "transition 1",
+                                                    "end 1", "begin 2", "transition 2",
+                                                    "transition 2", "end 2"));
+    EXPECT_EQ(taken.begun.id, "m-1");
+    EXPECT_EQ(taken.begun.started, at(3));
+    EXPECT_EQ(taken.begun.parameters, move.parameters);
+    EXPECT_EQ(taken.transition.step, "approach");
+    EXPECT_EQ(taken.outcome.reason_text, "axis 2");
+    EXPECT_EQ(taken.outcome.time, at(9));
+}
+
 TEST(MessageLog, HoldsMessagesOfAnySizeAndNothingOnceItIsCleared) {
     MessageLog log;
     auto large = moveOf("m-2");

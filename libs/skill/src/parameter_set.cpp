@@ -34,7 +34,15 @@ void ParameterSet::bind(std::string_view session) {
     bound_ = true;
 }
 
+const std::shared_ptr<const ValueMap>& ParameterSet::snapshot() {
+    if (!snapshot_) {
+        snapshot_ = std::make_shared<const ValueMap>(values_);
+    }
+    return snapshot_;
+}
+
 const Value& ParameterSet::write(const Field& field, Value value) {
+    snapshot_.reset();
     auto& held = values_.find(field.name)->second;
     if (isNull(value)) {
         held = field.default_value;
@@ -97,6 +105,9 @@ ValueMap ParameterSet::written() const {
 
 std::vector<std::string_view> ParameterSet::release() {
     std::vector<std::string_view> changed;
+    if (!written_.empty()) {
+        snapshot_.reset();
+    }
     for (const Field* field : written_) {
         auto& held = values_.find(field->name)->second;
         if (held != field->default_value) {

@@ -35,7 +35,7 @@ Result<void> Program::startNow(const Caller& caller) {
     if (auto complete = parameters_.checkComplete(); !complete) {
         return complete;
     }
-    return begin(caller, parameters_.values(), {});
+    return begin(caller, parameters_.snapshot(), {});
 }
 
 Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) {
@@ -65,7 +65,7 @@ Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) 
     if (!snapshot) {
         return metier::fail(std::move(snapshot.error()));
     }
-    if (auto begun = begin(caller, std::move(*snapshot),
+    if (auto begun = begin(caller, std::make_shared<const ValueMap>(std::move(*snapshot)),
                            {.id = request.execution_id,
                             .on_owner_loss = request.on_owner_loss,
                             .parent = std::move(request.parent)});
@@ -85,8 +85,9 @@ Result<void> Program::checkEpoch(const Caller& caller, std::uint64_t epoch) cons
 }
 
 /// Running, with the body that the skill prepares for `snapshot`.
-Result<void> Program::begin(const Caller& caller, ValueMap snapshot, Order order) {
-    auto body = guarded([&] { return skill_->prepare(snapshot); });
+Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap> snapshot,
+                            Order order) {
+    auto body = guarded([&] { return skill_->prepare(*snapshot); });
     if (!body) {
         return metier::fail(std::move(body.error()));
     }
@@ -111,7 +112,7 @@ Result<void> Program::begin(const Caller& caller, ValueMap snapshot, Order order
     history_.add({.id = execution_id_,
                   .client = caller,
                   .parent = std::move(order.parent),
-                  .parameters = std::make_shared<const ValueMap>(std::move(snapshot)),
+                  .parameters = std::move(snapshot),
                   .start_time = clock_.utcNow()});
     notify([this](ProgramObserver& observer) { observer.onBegin(history_.last()); });
     commit(TransitionNumber::ready_to_running, {});

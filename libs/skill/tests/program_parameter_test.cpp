@@ -58,6 +58,25 @@ TEST(ParameterRead, OfAnUnknownNameIsRefused) {
     EXPECT_EQ(bench.program->read("Sped").error().code, Errc::not_found);
 }
 
+/// The parameters of an execution that has just ended.
+std::shared_ptr<const ValueMap> parametersOfOne(ProgramBench& bench) {
+    EXPECT_TRUE(bench.program->start(kAlice));
+    bench.script->execution.finish();
+    bench.executor->run();
+    return bench.program->recentExecution(0)->parameters;
+}
+
+TEST(ParameterSnapshot, IsSharedByExecutionsOfTheSameValues) {
+    ProgramBench bench;
+    const auto first = parametersOfOne(bench);
+    EXPECT_EQ(parametersOfOne(bench), first);
+    ASSERT_TRUE(bench.program->write(kAlice, "Speed", 1.0));
+    const auto other = parametersOfOne(bench);
+    EXPECT_EQ(other->at("Speed"), Value(1.0));
+    EXPECT_EQ(first->at("Speed"), Value(0.5));
+    EXPECT_EQ(parametersOfOne(bench)->at("Speed"), Value(0.5));
+}
+
 TEST(Binding, BeginsWithTheFirstWriteAndLocksOthersOut) {
     ProgramBench bench;
     ASSERT_TRUE(bench.program->write(kAlice, "Speed", 1.0));

@@ -135,6 +135,14 @@ struct BasicOutcome {
 using Outcome = BasicOutcome<std::string>;
 using OutcomeView = BasicOutcome<std::string_view>;
 
+/// An execution with nothing between its begin and its end.
+struct WholeExecution {
+    const ExecutionView& execution;
+    const TransitionView& first;
+    const TransitionView& last;
+    const OutcomeView& outcome;
+};
+
 /// Up to kMost numbers in place: never allocates.
 class SampleValues {
 public:

@@ -109,6 +109,8 @@ public:
     void end(Key key, const OutcomeView& outcome);
     /// The same, and its last transition before.
     void end(Key key, const OutcomeView& outcome, const TransitionView& last);
+    /// begin() and end() of an execution that is over.
+    void record(const WholeExecution& whole);
 
     /// Waits until readers see all that was told before; false at the deadline. For tests and
     /// tools, not for servers.

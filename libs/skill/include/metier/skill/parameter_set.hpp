@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ public:
     Result<const Field*> field(std::string_view name) const;
     /// The present value of each parameter; Null if it has neither a value nor a default.
     const ValueMap& values() const noexcept { return values_; }
+    /// The same, to be shared: does not change, and is the same one while the values are.
+    const std::shared_ptr<const ValueMap>& snapshot();
 
     /// The session that the set is bound to; empty if to none.
     const std::string& boundSession() const noexcept { return session_; }
@@ -55,6 +58,7 @@ private:
 
     const Fields fields_;
     ValueMap values_;
+    std::shared_ptr<const ValueMap> snapshot_;  // null: not of these values
     std::vector<const Field*> written_;
     std::string session_;
     bool bound_ = false;

@@ -133,6 +133,8 @@ public:
     /// runs learns it from its motion.
     void deviceNotReady(std::string text);
 
+    /// Of the Program's thread.
+    Executor& executor() const { return *executor_; }
     const SkillDescription& description() const { return description_; }
     State state() const noexcept { return state_; }
     SubState subState() const noexcept { return sub_state_; }
@@ -195,7 +197,7 @@ private:
         OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
         ParentExecution parent{};
     };
-    Result<void> begin(const Caller& caller, ValueMap snapshot, Order order);
+    Result<void> begin(const Caller& caller, std::shared_ptr<const ValueMap> snapshot, Order order);
     void startBody();
     Result<CheckReport> checkNow(const Caller& caller, const ValueMap& parameters);
     Result<void> suspendNow(Cause cause);
