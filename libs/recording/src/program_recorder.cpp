@@ -104,9 +104,8 @@ void ProgramRecorder::tellBegin(const skill::ExecutionRecord& execution, const s
 
 /// Of an execution that went from Ready to Running and out of it.
 void ProgramRecorder::tellWhole(const skill::ExecutionRecord& execution) {
-    const auto sub_state = execution.state == State::halted
-                               ? skill::haltedBecause(execution.reason)
-                               : skill::SubState::ready_not_configured;
+    const auto sub_state = execution.state == State::halted ? skill::haltedBecause(execution.reason)
+                                                            : skill::SubState::ready_not_configured;
     recorder_.record({.execution = viewOf(execution, nullptr),
                       .first = beginOf(execution),
                       .last = {.time = execution.end_time,

@@ -286,8 +286,8 @@ TEST_F(ArmlessProgram, IsToldOfAtOnceIfThereIsMoreToTell) {
     ASSERT_TRUE(program->reset(kAlice));
     EXPECT_THAT(ways(all()[0].number),
                 ElementsAre("Ready>Running Executing", "Running>Running at approach Executing",
-                            "Running>Running at approach Stopping",
-                            "Running>Suspended", "Suspended>Ready ReadyNotConfigured"));
+                            "Running>Running at approach Stopping", "Running>Suspended",
+                            "Suspended>Ready ReadyNotConfigured"));
 }
 
 TEST_F(ArmlessProgram, IsToldOfWithItsServersEnd) {

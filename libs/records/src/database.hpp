@@ -21,6 +21,9 @@ using Cell = std::variant<std::int64_t, std::string, Bytes>;
 /// A parameter of a statement; refers to what outlives its execution.
 using Argument = std::variant<std::int64_t, std::string_view, std::span<const std::uint8_t>>;
 
+/// That a server is there; what it is differs between databases.
+using Presence = std::shared_ptr<const void>;
+
 /// A row of an answer. Columns are read as what the query made them.
 class Row {
 public:
@@ -62,9 +65,10 @@ public:
     virtual Result<void> commit() = 0;
     /// Also after an error; does nothing without a transaction.
     virtual void rollBack() noexcept = 0;
-    /// Tells others, until the connection ends, that this process records for that server.
-    virtual Result<void> attend(const std::string& server) = 0;
-    /// Whether another connection does.
+    /// Tells others that this process records for that server: as long as what is returned lives,
+    /// and, unless that is said otherwise, the connection.
+    virtual Result<Presence> attend(const std::string& server) = 0;
+    /// Whether another Presence does.
     virtual Result<bool> isAttendedByOthers(const std::string& server) = 0;
     /// Whether that table is there.
     virtual Result<bool> hasTable(std::string_view name) = 0;
@@ -90,6 +94,7 @@ Result<void> checkUrl(const std::string& url);
 template <typename Work>
 Result<void> inTransaction(Database& database, Work work) {
     if (auto begun = database.begin(); !begun) {
+        database.rollBack();
         return begun;
     }
     auto done = work();

@@ -24,13 +24,21 @@ constexpr std::size_t kMostKept = 64;
 // counts.
 
 template <typename Message>
-concept AnExecution = requires(Message& m) { m.thumbprint; };
+concept AnExecution = requires(Message& m) {
+    m.thumbprint;
+};
 template <typename Message>
-concept ATransition = requires(Message& m) { m.sub_state; };
+concept ATransition = requires(Message& m) {
+    m.sub_state;
+};
 template <typename Message>
-concept AnIntermediate = requires(Message& m) { m.value; };
+concept AnIntermediate = requires(Message& m) {
+    m.value;
+};
 template <typename Message>
-concept AnOutcome = requires(Message& m) { m.result, m.time; };
+concept AnOutcome = requires(Message& m) {
+    m.result, m.time;
+};
 
 auto namesOf(AnExecution auto& e) {
     return std::tie(e.server_name, e.skill, e.controller, e.device, e.parent_server, e.session,
@@ -98,9 +106,8 @@ struct Recent {
 /// Of tuples, one after the other.
 template <typename T, typename... Tuples>
 auto arrayOf(const Tuples&... tuples) {
-    return std::apply(
-        [](const auto&... one) { return std::array<T, sizeof...(one)>{T(one)...}; },
-        std::tuple_cat(tuples...));
+    return std::apply([](const auto&... one) { return std::array<T, sizeof...(one)>{T(one)...}; },
+                      std::tuple_cat(tuples...));
 }
 
 // Names as one text: the length of each in a byte, or kLong and then in four, and the name.
@@ -233,20 +240,23 @@ struct MessageLog::Before {
         }
         return {joined.data(), static_cast<std::size_t>(at - joined.data())};
     }
-    /// \return false if they are damaged
-    bool giveAll(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
+    /// Up to what is damaged.
+    /// \return how many messages
+    std::size_t giveAll(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
+        std::size_t count = 0;
         Unpacker unpacker(bytes, integers);
         while (!unpacker.isAtEnd()) {
-            if (!giveNext(unpacker, taker)) {
-                return false;
+            const auto kind = static_cast<Kind>(unpacker.byte());
+            if (!giveNext(kind, unpacker, taker)) {
+                return count;
             }
+            count += kind == Kind::whole ? 2 : 1;
         }
-        return true;
+        return count;
     }
 
 private:
-    bool giveNext(Unpacker& unpacker, MessageTaker& taker) {
-        const auto kind = static_cast<Kind>(unpacker.byte());
+    bool giveNext(Kind kind, Unpacker& unpacker, MessageTaker& taker) {
         const auto key = unpacker.key();
         switch (kind) {
             case Kind::begun:
@@ -370,7 +380,7 @@ void MessageLog::giveTo(MessageTaker& taker) const {
     }
 }
 
-bool MessageLog::give(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
+std::size_t MessageLog::give(std::span<const std::uint8_t> bytes, MessageTaker& taker) {
     Before before;
     return before.giveAll(bytes, taker);
 }

@@ -60,15 +60,23 @@ public:
     void appendTo(Bytes& bytes) const;
     /// What appendTo() appends [byte].
     std::size_t size() const noexcept;
-    /// Gives what appendTo() has appended.
-    /// \return false if it is damaged: what came before that was given
-    static bool give(std::span<const std::uint8_t> bytes, MessageTaker& taker);
+    /// Gives what appendTo() has appended, up to what is damaged.
+    /// \return how many, as count() counts them
+    static std::size_t give(std::span<const std::uint8_t> bytes, MessageTaker& taker);
     /// Keeps its memory, unless that is more than a lively second takes.
     void clear();
 
 private:
     struct Before;
-    enum class Kind : std::uint8_t { begun, transition, intermediate, outcome, started, ended, whole };
+    enum class Kind : std::uint8_t {
+        begun,
+        transition,
+        intermediate,
+        outcome,
+        started,
+        ended,
+        whole
+    };
     struct Fields;
     template <typename Recent, typename... Messages>
     void append(Kind kind, Key key, Recent& recent, const Messages&... messages);

@@ -104,6 +104,13 @@ Rows toRows(const pqxx::result& result) {
     return rows;
 }
 
+/// Whether others held it up; the connection is as good as before.
+bool isTimeout(std::string_view state) {
+    constexpr std::string_view kLockNotAvailable = "55P03";
+    constexpr std::string_view kQueryCanceled = "57014";
+    return state == kLockNotAvailable || state == kQueryCanceled;
+}
+
 /// The first line of what libpqxx says, which ends with the statement.
 std::string firstLine(const std::exception& error) {
     const std::string_view text(error.what());
@@ -121,7 +128,8 @@ auto PostgresDatabase::guarded(Work work) -> decltype(work()) {
     } catch (const pqxx::broken_connection& error) {
         return fail(Errc::connection_lost, fmt::format("{}: {}", name_, firstLine(error)));
     } catch (const pqxx::sql_error& error) {
-        return fail(Errc::resource_unavailable, fmt::format("{}: {}", name_, firstLine(error)));
+        return fail(isTimeout(error.sqlstate()) ? Errc::timeout : Errc::resource_unavailable,
+                    fmt::format("{}: {}", name_, firstLine(error)));
     } catch (const std::exception& error) {
         return fail(Errc::internal, fmt::format("{}: {}", name_, firstLine(error)));
     }
@@ -141,7 +149,7 @@ Result<std::unique_ptr<Database>> PostgresDatabase::open(const std::string& url,
     database->longest_call_ = access == Store::Access::write ? kLongestWrite : kLongestRead;
     auto done = database->script(fmt::format(
         "SET client_min_messages = warning; SET client_encoding = 'UTF8'; SET search_path TO "
-        "metier; SET lock_timeout = '5s'; SET statement_timeout = '{}s'",
+        "metier; SET bytea_output = 'hex'; SET lock_timeout = '5s'; SET statement_timeout = '{}s'",
         database->longest_call_.count()));
     if (done && access == Store::Access::write) {
         auto& made = *database;
@@ -224,11 +232,11 @@ void PostgresDatabase::rollBack() noexcept {
     transaction_.reset();  // aborts; logs nothing and throws nothing
 }
 
-Result<void> PostgresDatabase::attend(const std::string& server) {
+Result<Presence> PostgresDatabase::attend(const std::string& server) {
     const auto held = query(fmt::format("SELECT pg_advisory_lock_shared({}, {})", kServerLocks,
                                         static_cast<std::int32_t>(stableHash(server))),
                             {});
-    return held ? Result<void>() : fail(held.error());
+    return held ? Result<Presence>(Presence()) : Result<Presence>(fail(held.error()));
 }
 
 Result<bool> PostgresDatabase::isAttendedByOthers(const std::string& server) {

@@ -27,7 +27,7 @@ public:
     Result<void> begin() override;
     Result<void> commit() override;
     void rollBack() noexcept override;
-    Result<void> attend(const std::string& server) override;
+    Result<Presence> attend(const std::string& server) override;
     Result<bool> isAttendedByOthers(const std::string& server) override;
     Result<bool> hasTable(std::string_view name) override;
     Result<bool> isEmpty() override;

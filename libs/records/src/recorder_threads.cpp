@@ -36,8 +36,11 @@ constexpr double kFloodRate = 4'000;
 constexpr std::size_t kFloodLeast = 500;
 /// Later than this it is made rows of however fast more comes.
 constexpr auto kMostBehind = 10s;
-/// A backlog of that size takes no more; what comes then waits in the queue [byte].
-constexpr std::size_t kMostBacklog = 256'000'000;
+/// A backlog of so many messages takes no more; what comes then waits in the queue.
+constexpr std::uint64_t kMostBacklog = 2'000'000;
+/// How long rows are made of a backlog when the recorder ends; of the rest the next start makes
+/// them.
+constexpr auto kLongestEnd = 2s;
 
 constexpr int kNice = 15;
 
@@ -174,11 +177,15 @@ Dropped Recorder::Impl::dropped() const {
 
 void Recorder::Impl::write(const std::stop_token& stop) {
     yieldToOthers();
+    std::optional<SteadyTime> end;
     while (true) {
         const bool go_on = waitForWork(stop);
+        if (!go_on && !end) {
+            end = now() + kLongestEnd;
+        }
         const auto done = writeRound(!go_on);
         finishRound(done);
-        if (!go_on && (!done || !somethingWaits())) {
+        if (!go_on && (!done || !somethingWaits(now() < *end))) {
             return;
         }
         if (!done) {
@@ -221,8 +228,10 @@ Result<void> Recorder::Impl::writeRound(bool everything) {
     if (done) {
         done = trim();
     }
+    if (!done && done.error().code != Errc::timeout) {
+        database_.reset();  // after a timeout it is as good as before, and tells that this is there
+    }
     if (!done) {
-        database_.reset();
         trimming_.reset();
     }
     return done;
@@ -236,16 +245,18 @@ bool Recorder::Impl::isTaken() const {
 
 void Recorder::Impl::takeWaiting(bool everything) {
     const auto passed = now() - taken_at_;
+    bool newly_asked = false;
     {
         const std::lock_guard lock(mutex_);
         // While a backlog is worked off, what comes is added to it in few pieces.
-        const bool early = !backlog_.isEmpty() && passed < kGather && !everything &&
+        const bool early = !backlog_.isEmpty() && passed < kGather &&
                            waiting_.count() <= options_.most_waiting / 2;
-        if (early || backlog_.bytes() > kMostBacklog) {
+        if (early || backlog_.messages() > kMostBacklog) {
             return;
         }
         std::swap(waiting_, taken_);
-        asked_then_ = asked_;
+        newly_asked = answered_ == asked_then_;
+        asked_then_ = newly_asked ? asked_ : asked_then_;
     }
     taken_at_ = now();
     const auto count = taken_.count();
@@ -259,6 +270,9 @@ void Recorder::Impl::takeWaiting(bool everything) {
         makeTold(taken_, samples, for_backlog_);
         adds_ = true;
     }
+    if (newly_asked) {
+        asked_piece_ = backlog_.next() - (adds_ ? 0 : 1);
+    }
     taken_.clear();
 }
 
@@ -268,20 +282,37 @@ Result<void> Recorder::Impl::writeTaken() {
         adds_ = !added;
         return added;
     }
-    if (!works_off_) {
-        return writer_.write(*database_);
+    return works_off_ ? makeRowsOfOldest() : writer_.write(*database_);
+}
+
+Result<void> Recorder::Impl::makeRowsOfOldest() {
+    bool there = true;
+    auto done = inTransaction(*database_, [&]() -> Result<void> {
+        const auto removed = backlog_.removeOldest(*database_);
+        if (!removed) {
+            return fail(removed.error());
+        }
+        there = *removed;
+        if (!there) {
+            return writer_.goOnWithStore(*database_);
+        }
+        auto written = writer_.writeWithin(*database_);
+        return written ? backlog_.noteUnderWay(*database_, writer_.underWay()) : written;
+    });
+    if (!done) {
+        writer_.undone();
+        return done;
     }
-    auto done = writer_.write(
-        *database_, [this] { return backlog_.removeOldest(*database_, writer_.underWay()); });
-    if (done) {
-        backlog_.oldestRemoved();
-        works_off_ = false;
+    if (there) {
+        writer_.kept();
     }
-    return done;
+    backlog_.oldestRemoved();
+    works_off_ = false;
+    return {};
 }
 
 bool Recorder::Impl::isBacklogDue(bool everything) const {
-    return !backlog_.isEmpty() && (everything || !flooded_ || backlog_.bytes() > kMostBacklog ||
+    return !backlog_.isEmpty() && (everything || !flooded_ || backlog_.messages() > kMostBacklog ||
                                    now() - backlog_.oldest() > kMostBehind);
 }
 
@@ -293,6 +324,9 @@ Result<void> Recorder::Impl::workOffBacklog() {
     }
     if (*told) {
         lose(writer_.take(**told));
+    }
+    if (backlog_.isOldestInDoubt()) {
+        writer_.doubt();
     }
     works_off_ = true;
     return writeTaken();
@@ -316,9 +350,10 @@ std::vector<KeyedSample> Recorder::Impl::takeSamples() {
     return taken;
 }
 
-bool Recorder::Impl::somethingWaits() const {
+/// For the store, or, if that is asked for, for its rows as well.
+bool Recorder::Impl::somethingWaits(bool for_rows) const {
     const std::lock_guard lock(mutex_);
-    return waiting_.count() > 0 || !backlog_.isEmpty();
+    return waiting_.count() > 0 || isTaken() || (for_rows && !backlog_.isEmpty());
 }
 
 Result<void> Recorder::Impl::openStore() {
@@ -327,11 +362,12 @@ Result<void> Recorder::Impl::openStore() {
         return fail(opened.error());
     }
     const auto opening = opened_ ? Opening::again : Opening::first;
-    const auto lost = attend(**opened, options_.server, opening, options_.to_json);
-    if (!lost) {
-        return fail(lost.error());
+    auto attended = attend(**opened, options_.server, opening, options_.to_json);
+    if (!attended) {
+        return fail(attended.error());
     }
-    lose(*lost);
+    presence_ = std::move(attended->presence);
+    lose(attended->lost);
     opened_ = true;
     database_ = std::move(*opened);
     return {};
@@ -365,7 +401,9 @@ void Recorder::Impl::finishRound(const Result<void>& done) {
     {
         const std::lock_guard lock(mutex_);
         error_ = done ? std::string() : done.error().message;
-        answered_ = done && backlog_.isEmpty() ? asked_then_ : answered_;
+        if (done && (backlog_.isEmpty() || backlog_.first() > asked_piece_)) {
+            answered_ = asked_then_;
+        }
         written_ = writer_.written();
         behind_ = backlog_.messages() + (adds_ ? for_backlog_.messages : 0);
         writer_busy_ = isTaken() || writer_.isBusy() || !backlog_.isEmpty();

@@ -42,7 +42,7 @@ public:
 private:
     void wakeWriter(std::size_t before);
     void write(const std::stop_token& stop);
-    bool somethingWaits() const;
+    bool somethingWaits(bool for_rows) const;
     bool waitForWork(const std::stop_token& stop);
     Result<void> writeRound(bool everything);
     void takeWaiting(bool everything);
@@ -51,6 +51,7 @@ private:
     Result<void> writeTaken();
     bool isBacklogDue(bool everything) const;
     Result<void> workOffBacklog();
+    Result<void> makeRowsOfOldest();
     void lose(const Dropped& lost);
     Result<void> openStore();
     Result<void> trim();
@@ -81,6 +82,7 @@ private:
     std::uint64_t told_dropped_ = 0;
     // ---- of the writer's thread alone
     std::unique_ptr<Database> database_;
+    Presence presence_;
     MessageLog taken_;     // changes places with what is waiting
     bool opened_ = false;  // once
     Writer writer_;
@@ -90,7 +92,8 @@ private:
     bool works_off_ = false;  // the writer has the oldest of the backlog
     bool flooded_ = false;    // more came last than rows are made of at once
     SteadyTime taken_at_{};
-    std::uint64_t asked_then_ = 0;  // flushes, when something was taken last
+    std::uint64_t asked_then_ = 0;  // flushes that what was taken by then answers
+    std::int64_t asked_piece_ = 0;  // of the backlog, that holds the last of it
     std::optional<RetentionRun> trimming_;
     std::optional<SteadyTime> trimmed_;
     // ----

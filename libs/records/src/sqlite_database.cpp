@@ -286,26 +286,19 @@ Result<std::int64_t> SqliteDatabase::number(std::string_view sql) {
     return rows->empty() ? 0 : rows->front().integer(0);
 }
 
-Result<void> SqliteDatabase::openLocks() {
-    if (locks_) {
-        return {};
-    }
+Result<Presence> SqliteDatabase::attend(const std::string& server) {
     auto locks = ServerLocks::open(name_ + "-servers");
     if (!locks) {
         return fail(locks.error());
     }
-    locks_ = std::move(*locks);
-    return {};
-}
-
-Result<void> SqliteDatabase::attend(const std::string& server) {
-    auto opened = openLocks();
-    return opened ? locks_->hold(server) : opened;
+    auto presence = std::make_shared<ServerLocks>(std::move(*locks));
+    const auto held = presence->hold(server);
+    return held ? Result<Presence>(std::move(presence)) : Result<Presence>(fail(held.error()));
 }
 
 Result<bool> SqliteDatabase::isAttendedByOthers(const std::string& server) {
-    const auto opened = openLocks();
-    return opened ? locks_->isHeldByOthers(server) : Result<bool>(fail(opened.error()));
+    const auto locks = ServerLocks::open(name_ + "-servers");
+    return locks ? locks->isHeldByOthers(server) : Result<bool>(fail(locks.error()));
 }
 
 Result<bool> SqliteDatabase::hasTable(std::string_view name) {
@@ -325,17 +318,12 @@ Result<std::uint64_t> SqliteDatabase::bytes() {
     if (!has_backlog) {
         return fail(has_backlog.error());
     }
-    const auto pages = number("PRAGMA page_count");
-    const auto unused = number("PRAGMA freelist_count");
-    const auto page_size = number("PRAGMA page_size");
-    const auto backlog =
-        *has_backlog ? number("SELECT coalesce(sum(length(content)), 0) FROM backlog") : 0;
-    for (const auto* one : {&pages, &unused, &page_size, &backlog}) {
-        if (!*one) {
-            return fail(one->error());
-        }
-    }
-    return static_cast<std::uint64_t>((*pages - *unused) * *page_size - *backlog);
+    const auto bytes = number(fmt::format(
+        "SELECT max(0, (page_count - freelist_count) * page_size - {}) FROM pragma_page_count(), "
+        "pragma_freelist_count(), pragma_page_size()",
+        *has_backlog ? "(SELECT coalesce(sum(length(content)), 0) FROM backlog)" : "0"));
+    return bytes ? Result<std::uint64_t>(static_cast<std::uint64_t>(*bytes))
+                 : Result<std::uint64_t>(fail(bytes.error()));
 }
 
 Result<void> SqliteDatabase::shrink() {

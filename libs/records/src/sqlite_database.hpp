@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +32,8 @@ public:
     Result<void> begin() override { return script("BEGIN IMMEDIATE"); }
     Result<void> commit() override { return script("COMMIT"); }
     void rollBack() noexcept override;
-    Result<void> attend(const std::string& server) override;
+    /// Ends with what is returned alone.
+    Result<Presence> attend(const std::string& server) override;
     Result<bool> isAttendedByOthers(const std::string& server) override;
     Result<bool> hasTable(std::string_view name) override;
     Result<bool> isEmpty() override;
@@ -56,11 +56,9 @@ private:
     Result<void> setUp(Store::Access access);
     Result<const Statement*> prepared(std::string_view sql);
     Result<std::int64_t> number(std::string_view sql);
-    Result<void> openLocks();
     tl::unexpected<Error> failed() const;
 
     std::string name_;
-    std::optional<ServerLocks> locks_;
     std::unique_ptr<sqlite3, Close> connection_;
     std::map<std::string, Statement, std::less<>> statements_;  // end before the connection
 };

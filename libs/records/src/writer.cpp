@@ -24,6 +24,15 @@ void cut(std::size_t longest, Texts&... texts) {
     (cut_one(texts), ...);
 }
 
+/// How many it has.
+Result<std::int64_t> partsOf(Database& database, std::int64_t execution) {
+    const auto rows = database.query(
+        "SELECT coalesce(max(part) + 1 - $1, 0) FROM parts WHERE part >= $1 AND part < $2",
+        std::array<Cell, 2>{execution * kMostParts, (execution + 1) * kMostParts});
+    return rows ? Result<std::int64_t>(rows->front().integer(0))
+                : Result<std::int64_t>(fail(rows.error()));
+}
+
 /// The latest time that is known of an execution under way.
 Result<UtcTime> lastHeardOf(Database& database, const Execution& execution) {
     const auto rows = database.query(
@@ -66,9 +75,7 @@ Dropped Writer::take(const MessageLog& messages, const std::vector<KeyedSample>&
 Dropped Writer::take(std::span<const std::uint8_t> told) {
     dropped_ = {};
     std::vector<KeyedSample> samples;
-    if (!giveTold(told, *this, samples)) {
-        ++dropped_.events;
-    }
+    dropped_.events += giveTold(told, *this, samples);
     const auto early = std::exchange(early_, {});
     takeSamples(early);
     takeSamples(samples);
@@ -128,6 +135,7 @@ void Writer::take(Recorder::Key key, Intermediate&& intermediate) {
 void Writer::take(Recorder::Key key, Outcome&& o) {
     auto* active = find(key);
     if (active == nullptr) {
+        ++dropped_.events;  // another server made rows of its begin, and closed it
         return;
     }
     makeJson(o.result);
@@ -186,14 +194,11 @@ void Writer::note(Recorder::Key key, Active& active) {
     }
 }
 
-Result<void> Writer::write(Database& database, const std::function<Result<void>()>& also) {
-    if (changed_.empty() && !also) {
+Result<void> Writer::write(Database& database) {
+    if (changed_.empty()) {
         return {};
     }
-    auto done = inTransaction(database, [&] {
-        auto written = writeAll(database);
-        return written && also ? also() : written;
-    });
+    auto done = inTransaction(database, [&] { return writeWithin(database); });
     if (done) {
         kept();
     } else {
@@ -203,14 +208,6 @@ Result<void> Writer::write(Database& database, const std::function<Result<void>(
 }
 
 Result<void> Writer::writeWithin(Database& database) {
-    auto done = writeAll(database);
-    if (done) {
-        kept();
-    }
-    return done;
-}
-
-Result<void> Writer::writeAll(Database& database) {
     if (changed_.empty()) {
         return {};
     }
@@ -248,7 +245,6 @@ Result<void> Writer::writeOne(RowWriter& rows, Recorder::Key key, Active& active
                         active.samples);
 }
 
-/// All that was written is in the store.
 void Writer::kept() {
     for (const auto key : changed_) {
         auto& active = active_.at(key);
@@ -268,7 +264,6 @@ void Writer::kept() {
     in_doubt_ = false;
 }
 
-/// Nothing of it is, unless the answer to the commit was lost.
 void Writer::undone() {
     for (const auto key : numbered_) {
         active_.at(key).execution.number = 0;
@@ -308,6 +303,12 @@ Result<void> Writer::goOnWith(Database& database, std::string_view under_way) {
             return fail(found.error());
         }
         if (*found) {
+            const auto parts = partsOf(database, active.execution.number);
+            if (!parts) {
+                return fail(parts.error());
+            }
+            active.parts = std::max(active.parts, *parts);
+            active.execution.ended = {};  // others may have closed it
             const Recorder::Key key = one[0];
             newest_ = std::max(newest_, key);
             active_[key] = std::move(active);
@@ -316,7 +317,7 @@ Result<void> Writer::goOnWith(Database& database, std::string_view under_way) {
     return {};
 }
 
-/// The row of its number as one under way; false if there is none of this server.
+/// The row of its number; false if there is none of this server.
 Result<bool> Writer::readRow(Database& database, Execution& execution) const {
     const auto rows = database.query(std::string("SELECT ") + std::string(kExecutionColumns) +
                                          " FROM history WHERE number = $1 AND server = $2",
@@ -326,9 +327,60 @@ Result<bool> Writer::readRow(Database& database, Execution& execution) const {
     }
     if (!rows->empty()) {
         execution = toExecution(rows->front());
-        execution.ended = {};  // others may have closed it
     }
     return !rows->empty();
+}
+
+Result<void> Writer::goOnWithStore(Database& database) {
+    RowWriter rows(database, kinds_);
+    changed_.clear();
+    numbered_.clear();
+    for (auto it = active_.begin(); it != active_.end();) {
+        auto& active = it->second;
+        active.events.clear();
+        active.samples.clear();
+        active.changed = false;
+        // The other one has the end from the same message.
+        const auto over =
+            active.execution.isOver() ? Result<bool>(true) : isOverInStore(rows, database, active);
+        if (!over) {
+            return fail(over.error());
+        }
+        if (*over) {
+            it = active_.erase(it);
+            continue;
+        }
+        active.row_changed = true;  // the other one has closed it
+        note(it->first, active);
+        ++it;
+    }
+    return {};
+}
+
+/// Takes over what its row, if it has one, tells.
+Result<bool> Writer::isOverInStore(RowWriter& rows, Database& database, Active& active) {
+    auto stored = active.execution;
+    const auto number =
+        stored.number == 0 ? rows.numberOf(stored) : Result<std::int64_t>(stored.number);
+    if (!number) {
+        return fail(number.error());
+    }
+    stored.number = *number;
+    const auto found = readRow(database, stored);
+    if (!found) {
+        return fail(found.error());
+    }
+    const auto parts = partsOf(database, *number);
+    if (!parts) {
+        return fail(parts.error());
+    }
+    active.parts = *parts;
+    if (*found && stored.state != kLost) {
+        active.execution = std::move(stored);
+        return active.execution.isOver();
+    }
+    active.execution.number = *found ? *number : 0;
+    return false;
 }
 
 Result<void> Writer::closeLost(Database& database, const std::string& server) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,16 +27,24 @@ public:
     /// Takes the messages in their order, then the samples; nothing is written yet.
     /// \return how much was too much for its execution
     Dropped take(const MessageLog& messages, const std::vector<KeyedSample>& samples);
-    /// The same of Told::content. What is damaged counts as one event.
+    /// The same of Told::content. Messages that are damaged count as events.
     Dropped take(std::span<const std::uint8_t> told);
     /// Writes what was taken, all of it or nothing; may be called again after an error, also with
     /// another connection to the same store.
-    /// \param also done in the same transaction; may be empty
-    Result<void> write(Database& database, const std::function<Result<void>()>& also = {});
-    /// The same within a transaction that is rolled back after an error, as the end of this.
+    Result<void> write(Database& database);
+    /// The same within a transaction; kept() or undone() tells how that ended.
     Result<void> writeWithin(Database& database);
+    /// All that was written is in the store.
+    void kept();
+    /// Nothing of it is, unless the answer to the commit was lost.
+    void undone();
+    /// What is written next may be in the store already.
+    void doubt() noexcept { in_doubt_ = true; }
     /// The executions under way, once what was taken is in the store.
     std::string underWay() const;
+    /// Another server, which took this one for dead, has made rows of what was taken last: goes on
+    /// with what is in the store.
+    Result<void> goOnWithStore(Database& database);
     /// Takes over from another writer of this server.
     /// \param under_way of that one
     Result<void> goOnWith(Database& database, std::string_view under_way);
@@ -72,10 +79,8 @@ private:
     Active* find(Recorder::Key key);
     Active* findForEvent(Recorder::Key key);
     void note(Recorder::Key key, Active& active);
-    Result<void> writeAll(Database& database);
     Result<void> writeOne(RowWriter& rows, Recorder::Key key, Active& active);
-    void kept();
-    void undone();
+    Result<bool> isOverInStore(RowWriter& rows, Database& database, Active& active);
 
     /// A value that was made JSON; the next one is often the same.
     struct Made {

@@ -1,15 +1,19 @@
 // What comes faster than rows are made of it: in the store as it was told, whatever happens next.
 #include "backlog.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <functional>
 #include <map>
+#include <thread>
+#include <utility>
 
 #include "lateness.hpp"
 #include "metier/process/child_process.hpp"
 #include "metier/records/recorder.hpp"
 #include "recorded.hpp"
 #include "temporary_postgres.hpp"
+#include "writer.hpp"
 
 namespace metier::records {
 namespace {
@@ -44,7 +48,7 @@ TEST(ToldContent, ComesBackAsItWasTold) {
     EXPECT_EQ(told.messages, 6U);
     Ids taken;
     std::vector<KeyedSample> samples;
-    ASSERT_TRUE(giveTold(told.content, taken, samples));
+    ASSERT_EQ(giveTold(told.content, taken, samples), 0U);
     EXPECT_THAT(taken.ids, ::testing::ElementsAre("m-1", "m-2", "m-3"));
     EXPECT_EQ(taken.ended, 3);
     ASSERT_EQ(samples.size(), 2U);
@@ -61,26 +65,81 @@ TEST(ToldContent, MayBeAnyBytes) {
             damaged[i] = static_cast<std::uint8_t>(damaged[i] ^ bit);
             Ids taken;
             std::vector<KeyedSample> samples;
-            whole += giveTold(damaged, taken, samples) ? 1 : 0;
+            whole += giveTold(damaged, taken, samples) == 0 ? 1 : 0;
             EXPECT_LE(taken.ids.size(), 6U);
         }
         Ids taken;
         std::vector<KeyedSample> samples;
         const auto cut = std::span(told.content).first(i);
-        EXPECT_FALSE(giveTold(cut, taken, samples) && samples.size() == 2);
+        EXPECT_FALSE(giveTold(cut, taken, samples) == 0 && samples.size() == 2);
         EXPECT_LE(taken.ids.size(), 3U);
     }
     EXPECT_LT(whole, 3 * told.content.size());
 }
 
-TEST(ToldContent, OfAnotherVersionIsLeftAlone) {
-    auto told = toldOfThree();
-    ++told.content.front();
+TEST(ToldContent, TellsHowManyMessagesAreMissing) {
+    const auto told = toldOfThree();
+    MessageLog log;
+    log.put(1, moveOf("m-1"));
+    Told shorter;
+    makeTold(log, {}, shorter);
+    auto content = told.content;
+    content.resize(shorter.content.size() + 1);  // the first message, and the size of all
+    std::copy(shorter.content.begin() + 12, shorter.content.begin() + 20, content.begin() + 12);
     Ids taken;
     std::vector<KeyedSample> samples;
-    EXPECT_FALSE(giveTold(told.content, taken, samples));
-    EXPECT_TRUE(taken.ids.empty());
+    EXPECT_EQ(giveTold(content, taken, samples), 5U) << "of " << told.messages;
+    EXPECT_THAT(taken.ids, ::testing::ElementsAre("m-1"));
 }
+
+TEST(ToldContent, OfAnotherVersionIsLeftAlone) {
+    auto told = toldOfThree();
+    EXPECT_FALSE(isOfAnotherVersion(told.content));
+    ++told.content.front();
+    EXPECT_TRUE(isOfAnotherVersion(told.content));
+    Ids taken;
+    std::vector<KeyedSample> samples;
+    EXPECT_NE(giveTold(told.content, taken, samples), 0U);
+    EXPECT_TRUE(taken.ids.empty());
+    EXPECT_FALSE(isOfAnotherVersion(Bytes{1, 2, 3})) << "that is damaged";
+    EXPECT_FALSE(isOfAnotherVersion(Bytes{1, 2, 3, 4}));
+}
+
+/// Commits and does not hear that it did, once.
+class DeafDatabase final : public Database {
+public:
+    explicit DeafDatabase(Database& database) : database_(database) {}
+
+    const Dialect& dialect() const noexcept override { return database_.dialect(); }
+    Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) override {
+        return database_.execute(sql, parameters);
+    }
+    Result<std::int64_t> insert(std::string_view sql, std::string_view key,
+                                std::span<const Argument> parameters) override {
+        return database_.insert(sql, key, parameters);
+    }
+    Result<void> script(const std::string& sql) override { return database_.script(sql); }
+    Result<void> begin() override { return database_.begin(); }
+    Result<void> commit() override {
+        auto done = database_.commit();
+        return std::exchange(heard_, false) ? Result<void>(fail(Errc::connection_lost, "deaf"))
+                                            : done;
+    }
+    void rollBack() noexcept override { database_.rollBack(); }
+    Result<Presence> attend(const std::string& server) override { return database_.attend(server); }
+    Result<bool> isAttendedByOthers(const std::string& server) override {
+        return database_.isAttendedByOthers(server);
+    }
+    Result<bool> hasTable(std::string_view name) override { return database_.hasTable(name); }
+    Result<bool> isEmpty() override { return database_.isEmpty(); }
+    Result<std::uint64_t> bytes() override { return database_.bytes(); }
+    Result<void> shrink() override { return database_.shrink(); }
+    const std::string& name() const noexcept override { return database_.name(); }
+
+private:
+    Database& database_;
+    bool heard_ = true;
+};
 
 /// More than rows are made of at once, less than a recorder takes.
 constexpr int kFlood = 20'000;
@@ -99,8 +158,8 @@ protected:
     std::unique_ptr<Recorder> recorder(const std::string& server) const {
         return recorderOf(url_, server, 100'000);
     }
-    static void flood(Recorder& recorder, const std::string& name) {
-        for (int i = 1; i <= kFlood; ++i) {
+    static void flood(Recorder& recorder, const std::string& name, int count = kFlood) {
+        for (int i = 1; i <= count; ++i) {
             const auto key = recorder.begin(moveOf(name + "-" + std::to_string(i)),
                                             {.time = at(1), .from = "Ready", .to = "Running"});
             recorder.end(key, finished(at(2)), {.time = at(2), .from = "Running", .to = "Ready"});
@@ -252,6 +311,137 @@ TEST_P(EitherBacklog, ThatIsDamagedIsToldAndKeepsNobodyFromRecording) {
     EXPECT_GE(recorder->status().dropped.events, 1U) << "one of " << before;
     EXPECT_EQ(pieces(), 0);
     EXPECT_TRUE(Store::open(url_).value()->find("next"));
+}
+
+TEST_P(EitherBacklog, OfAnotherVersionStaysForThat) {
+    UtcTime killed;
+    killWhen([this] { return pieces() > 2; }, "flood", killed);
+    const auto before = pieces();
+    const auto rows_before = rows();
+    const auto first = database_->query("SELECT content FROM backlog WHERE number = 0", {});
+    auto content = first.value().front().bytes(0);
+    ++content.front();
+    ASSERT_TRUE(database_->query("UPDATE backlog SET content = $1 WHERE number = 0",
+                                 std::array<Cell, 1>{content}));
+    const auto recorder = this->recorder("dying");
+    recordOne(*recorder, moveOf("next"), finished(at(3)));
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_FALSE(recorder->status().dropped.any());
+    EXPECT_EQ(pieces(), before);
+    EXPECT_EQ(rows(), rows_before + 1);
+}
+
+TEST_P(EitherBacklog, IsMadeRowsOfPieceByPieceByWhoeverComes) {
+    UtcTime killed;
+    const auto told = killWhen([this] { return pieces() > 6; }, "flood", killed);
+    std::array<std::unique_ptr<Recovery>, 2> others;
+    bool more = true;
+    for (std::size_t i = 0; more; ++i) {
+        // Both know only some pieces; one begins anew.
+        auto& other = others.at(i % 3 == 0 ? 0 : 1);
+        if (!other || i == 4) {
+            other = std::make_unique<Recovery>("dying", nullptr);
+        }
+        const auto before = pieces();
+        ASSERT_TRUE(inTransaction(*database_, [&]() -> Result<void> {
+            more = other->step(*database_).value();
+            return {};
+        }));
+        EXPECT_EQ(pieces(), before - (more ? 1 : 0));
+        EXPECT_FALSE(other->lost().any());
+    }
+    ASSERT_TRUE(
+        inTransaction(*database_, [this] { return Writer::closeLost(*database_, "dying"); }));
+    expectAllOf(told, killed);
+}
+
+/// Another server took this one for dead while its store held it up.
+TEST_P(EitherBacklog, OfALivingServerMayBeMadeRowsOfByAnother) {
+    const auto living = recorder("living");
+    const auto long_one = living->begin(moveOf("long"));
+    living->transition(long_one, {.time = at(1), .from = "Running", .to = "Running"});
+    ASSERT_TRUE(living->flush(soon()));
+    constexpr int kShort = 5'000;
+    flood(*living, "short", kShort);
+    living->transition(long_one, {.time = at(2), .from = "Running", .to = "Running"});
+    await([this] { return pieces() > 0; });
+    ASSERT_TRUE(inTransaction(*database_, [&]() -> Result<void> {
+        await([&] { return living->status().health == Health::failing; });
+        EXPECT_TRUE(database_->isAttendedByOthers("living").value());
+        Recovery other("living", nullptr);
+        while (other.step(*database_).value()) {
+        }
+        return Writer::closeLost(*database_, "living");
+    }));
+    living->transition(long_one, {.time = at(3), .from = "Running", .to = "Running"});
+    living->end(long_one, halted(at(6), "axis 2"));
+    ASSERT_TRUE(living->flush(soon()));
+    EXPECT_EQ(pieces(), 0);
+    EXPECT_EQ(rows(), kShort + 1);
+    EXPECT_EQ(number("SELECT count(DISTINCT id) FROM executions"), kShort + 1);
+    EXPECT_EQ(number("SELECT count(*) FROM executions WHERE ended = 0"), 0);
+    // The one whose begin and end are in different pieces, of which one was the other's.
+    const auto lost = number("SELECT count(*) FROM history WHERE state = 'Lost'");
+    EXPECT_LE(lost, 1);
+    EXPECT_EQ(living->status().dropped.events, static_cast<std::uint64_t>(lost));
+    const auto store = Store::open(url_).value();
+    const auto ended = store->find("long").value();
+    EXPECT_EQ(ended.reason_text, "axis 2");
+    EXPECT_EQ(store->transitions(ended.number)->size(), 3U);
+}
+
+TEST_P(EitherBacklog, IsFlushedWhileTheFloodGoesOn) {
+    const auto recorder = recorderOf(url_, "one", 2'000);
+    const std::jthread flood([&](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            recordOne(*recorder, moveOf("short"), finished(at(2)));
+        }
+    });
+    await([this] { return pieces() > 1; });
+    Recorder::Key key = 0;
+    await([&] { return (key = recorder->begin(moveOf("long"))) != 0; });  // unless it was dropped
+    recorder->end(key, finished(at(2)));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto found = Store::open(url_).value()->find("long");
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->state, "Ready");
+}
+
+TEST_P(EitherBacklog, IsNotMadeRowsOfTwiceIfAnAnswerWasLost) {
+    static_cast<void>(recorder("one")->flush(soon()));
+    ASSERT_EQ(pieces(), 0);
+    Backlog backlog("one");
+    MessageLog log;
+    log.put(1, moveOf("m-1"), {.time = at(1), .from = "Ready", .to = "Running"});
+    log.put(1, {.time = at(2), .from = "Running", .to = "Ready"}, finished(at(2)));
+    Told told;
+    makeTold(log, {}, told);
+    DeafDatabase deaf(*database_);
+    EXPECT_FALSE(backlog.add(deaf, told, "[]"));
+    ASSERT_EQ(pieces(), 1);
+    ASSERT_TRUE(recorder("another")->flush(soon()));
+    ASSERT_EQ(pieces(), 0);
+    ASSERT_TRUE(backlog.add(*database_, told, "[]"));
+    ASSERT_TRUE(backlog.isOldestInDoubt());
+    Writer writer("one", nullptr);
+    EXPECT_FALSE(writer.take(backlog.readOldest(*database_).value().value()).any());
+    writer.doubt();
+    ASSERT_TRUE(writer.write(*database_));
+    EXPECT_EQ(rows(), 1);
+    EXPECT_EQ(number("SELECT count(*) FROM parts"), 1);
+}
+
+TEST_P(EitherBacklog, IsReadWhateverFormBytesHaveByDefault) {
+    ASSERT_EQ(number("SELECT 1"), 1);
+    if (GetParam() == std::string("Postgres")) {
+        const auto name = database_->query("SELECT current_database()::text", {})->front().text(0);
+        ASSERT_TRUE(database_->script("ALTER DATABASE " + name + " SET bytea_output = 'escape'"));
+    }
+    const auto recorder = this->recorder("one");
+    flood(*recorder, "short");
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(rows(), kFlood);
+    EXPECT_FALSE(recorder->status().dropped.any());
 }
 
 TEST_P(EitherBacklog, TakesNoRoomFromTheRowsThatAreKept) {

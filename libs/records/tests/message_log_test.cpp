@@ -134,9 +134,9 @@ TEST(MessageLog, TakesAnExecutionAsAWhole) {
     EXPECT_EQ(log.count(), 4U);
     Taken taken;
     log.giveTo(taken);
-    EXPECT_THAT(taken.order, ::testing::ElementsAre("begin 1", "transition 1", "transition 1",
-                                                    "end 1", "begin 2", "transition 2",
-                                                    "transition 2", "end 2"));
+    EXPECT_THAT(taken.order,
+                ::testing::ElementsAre("begin 1", "transition 1", "transition 1", "end 1",
+                                       "begin 2", "transition 2", "transition 2", "end 2"));
     EXPECT_EQ(taken.begun.id, "m-1");
     EXPECT_EQ(taken.begun.started, at(3));
     EXPECT_EQ(taken.begun.parameters, move.parameters);

@@ -81,7 +81,7 @@ private:
     bool begun_ = false;              ///< one of which nothing was told yet
     std::size_t untold_ = 0;          ///< executions before it that ended; the history has them
     std::optional<skill::Timer> later_;
-    skill::State state_;              ///< that was told last
+    skill::State state_;  ///< that was told last
     skill::SubState sub_state_ = skill::SubState::none;
     std::string step_;
     /// What a session asked last before it starts.
