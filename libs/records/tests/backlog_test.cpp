@@ -141,9 +141,6 @@ private:
     bool heard_ = true;
 };
 
-/// More than rows are made of at once, less than a recorder takes.
-constexpr int kFlood = 20'000;
-
 class EitherBacklog : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
@@ -151,6 +148,7 @@ protected:
             url_ = (testFolder() / "records.db").string();
         } else if (auto* postgres = TemporaryPostgres::instance()) {
             url_ = postgres->freshDatabase();
+            flood_ = 5'000;
         } else {
             GTEST_SKIP() << "PostgreSQL is not installed";
         }
@@ -158,8 +156,8 @@ protected:
     std::unique_ptr<Recorder> recorder(const std::string& server) const {
         return recorderOf(url_, server, 100'000);
     }
-    static void flood(Recorder& recorder, const std::string& name, int count = kFlood) {
-        for (int i = 1; i <= count; ++i) {
+    void flood(Recorder& recorder, const std::string& name) const {
+        for (int i = 1; i <= flood_; ++i) {
             const auto key = recorder.begin(moveOf(name + "-" + std::to_string(i)),
                                             {.time = at(1), .from = "Ready", .to = "Running"});
             recorder.end(key, finished(at(2)), {.time = at(2), .from = "Running", .to = "Ready"});
@@ -219,6 +217,8 @@ protected:
     }
 
     std::string url_;
+    /// Executions: more than rows are made of at once, less than a recorder takes.
+    int flood_ = 20'000;
     std::unique_ptr<Database> database_;
     Lateness lateness_;
 };
@@ -238,16 +238,16 @@ TEST_P(EitherBacklog, HoldsAFloodAndBecomesRowsOnceItIsOver) {
     recorder->end(long_one, halted(at(6), "axis 2"));
     ASSERT_TRUE(recorder->flush(soon()));
     EXPECT_EQ(pieces(), 0);
-    EXPECT_EQ(rows(), kFlood + 1);
+    EXPECT_EQ(rows(), flood_ + 1);
     EXPECT_EQ(recorder->status().waiting, 0U);
-    EXPECT_EQ(recorder->status().written, kFlood + 1U);
+    EXPECT_EQ(recorder->status().written, flood_ + 1U);
     EXPECT_FALSE(recorder->status().dropped.any());
     const auto store = Store::open(url_).value();
     const auto ended = store->find("long").value();
     EXPECT_EQ(ended.reason_text, "axis 2");
     EXPECT_EQ(store->path(ended.number)->size(), 1U);
     EXPECT_EQ(store->transitions(ended.number)->size(), 1U);
-    const auto last = store->find("short-" + std::to_string(kFlood)).value();
+    const auto last = store->find("short-" + std::to_string(flood_)).value();
     EXPECT_EQ(last.parameters, moveOf("").parameters);
     EXPECT_EQ(last.missed_cycles, 2U);
     EXPECT_EQ(store->transitions(last.number)->back().to, "Ready");
@@ -257,7 +257,7 @@ TEST_P(EitherBacklog, BecomesRowsWithoutAnybodyWhoAsks) {
     const auto recorder = this->recorder("one");
     flood(*recorder, "short");
     await([this] { return pieces() > 0; });
-    await([this] { return rows() == kFlood && pieces() == 0; });
+    await([this] { return rows() == flood_ && pieces() == 0; });
 }
 
 TEST_P(EitherBacklog, OfAServerThatWasKilledIsThereOnceItIsStartedAgain) {
@@ -295,8 +295,8 @@ TEST_P(EitherBacklog, OfALivingServerIsLeftToIt) {
     flood(*second, "second");
     ASSERT_TRUE(second->flush(soon()));
     ASSERT_TRUE(first->flush(soon()));
-    EXPECT_EQ(rows(), 2 * kFlood);
-    EXPECT_EQ(number("SELECT count(DISTINCT id) FROM executions WHERE ended <> 0"), 2 * kFlood);
+    EXPECT_EQ(rows(), 2 * flood_);
+    EXPECT_EQ(number("SELECT count(DISTINCT id) FROM executions WHERE ended <> 0"), 2 * flood_);
 }
 
 TEST_P(EitherBacklog, ThatIsDamagedIsToldAndKeepsNobodyFromRecording) {
@@ -361,8 +361,7 @@ TEST_P(EitherBacklog, OfALivingServerMayBeMadeRowsOfByAnother) {
     const auto long_one = living->begin(moveOf("long"));
     living->transition(long_one, {.time = at(1), .from = "Running", .to = "Running"});
     ASSERT_TRUE(living->flush(soon()));
-    constexpr int kShort = 5'000;
-    flood(*living, "short", kShort);
+    flood(*living, "short");
     living->transition(long_one, {.time = at(2), .from = "Running", .to = "Running"});
     await([this] { return pieces() > 0; });
     ASSERT_TRUE(inTransaction(*database_, [&]() -> Result<void> {
@@ -377,8 +376,8 @@ TEST_P(EitherBacklog, OfALivingServerMayBeMadeRowsOfByAnother) {
     living->end(long_one, halted(at(6), "axis 2"));
     ASSERT_TRUE(living->flush(soon()));
     EXPECT_EQ(pieces(), 0);
-    EXPECT_EQ(rows(), kShort + 1);
-    EXPECT_EQ(number("SELECT count(DISTINCT id) FROM executions"), kShort + 1);
+    EXPECT_EQ(rows(), flood_ + 1);
+    EXPECT_EQ(number("SELECT count(DISTINCT id) FROM executions"), flood_ + 1);
     EXPECT_EQ(number("SELECT count(*) FROM executions WHERE ended = 0"), 0);
     // The one whose begin and end are in different pieces, of which one was the other's.
     const auto lost = number("SELECT count(*) FROM history WHERE state = 'Lost'");
@@ -440,7 +439,7 @@ TEST_P(EitherBacklog, IsReadWhateverFormBytesHaveByDefault) {
     const auto recorder = this->recorder("one");
     flood(*recorder, "short");
     ASSERT_TRUE(recorder->flush(soon()));
-    EXPECT_EQ(rows(), kFlood);
+    EXPECT_EQ(rows(), flood_);
     EXPECT_FALSE(recorder->status().dropped.any());
 }
 
