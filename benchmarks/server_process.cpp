@@ -12,10 +12,14 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace metier::benchmarks {
 namespace {
+
+using namespace std::chrono_literals;
 
 /// What the child tells once it serves.
 struct Report {
@@ -73,6 +77,35 @@ Served serveAndReport(const std::function<Served()>& serve, int output) {
     _exit(EXIT_SUCCESS);
 }
 
+std::vector<std::filesystem::path> tasksOf(pid_t process) {
+    std::vector<std::filesystem::path> tasks;
+    for (const auto& task :
+         std::filesystem::directory_iterator(fmt::format("/proc/{}/task", process))) {
+        tasks.push_back(task.path());
+    }
+    return tasks;
+}
+
+std::chrono::nanoseconds cpuTimeOf(const std::filesystem::path& task) {
+    std::ifstream file(task / "schedstat");
+    std::int64_t nanoseconds = 0;
+    file >> nanoseconds;
+    return std::chrono::nanoseconds(nanoseconds);
+}
+
+/// Field 19 of proc(5), the 17th after the name in brackets.
+int niceOf(const std::filesystem::path& task) {
+    std::ifstream file(task / "stat");
+    std::string text;
+    std::getline(file, text);
+    std::istringstream fields(text.substr(text.rfind(')') + 1));
+    std::string field;
+    for (int i = 0; i < 17; ++i) {
+        fields >> field;
+    }
+    return std::atoi(field.c_str());
+}
+
 }  // namespace
 
 ServerProcess::ServerProcess(const std::function<Served()>& serve) {
@@ -113,15 +146,19 @@ std::chrono::nanoseconds ServerProcess::cpuTime() const {
 }
 
 std::chrono::nanoseconds ServerProcess::busiestThreadTime() const {
-    std::int64_t most = 0;
-    for (const auto& task :
-         std::filesystem::directory_iterator(fmt::format("/proc/{}/task", pid_))) {
-        std::ifstream file(task.path() / "schedstat");
-        std::int64_t nanoseconds = 0;
-        file >> nanoseconds;
-        most = std::max(most, nanoseconds);
+    std::chrono::nanoseconds most{0};
+    for (const auto& task : tasksOf(pid_)) {
+        most = std::max(most, cpuTimeOf(task));
     }
-    return std::chrono::nanoseconds(most);
+    return most;
+}
+
+std::chrono::nanoseconds ServerProcess::yieldingThreadsTime() const {
+    std::chrono::nanoseconds sum{0};
+    for (const auto& task : tasksOf(pid_)) {
+        sum += niceOf(task) > 0 ? cpuTimeOf(task) : 0ns;
+    }
+    return sum;
 }
 
 }  // namespace metier::benchmarks

@@ -38,6 +38,8 @@ public:
     std::chrono::nanoseconds cpuTime() const;
     /// CPU time of the thread that used most: of a server that is busy, the one that owns it.
     std::chrono::nanoseconds busiestThreadTime() const;
+    /// CPU time of the threads that yield to others: those with a nice value above 0.
+    std::chrono::nanoseconds yieldingThreadsTime() const;
 
 private:
     pid_t pid_ = -1;

@@ -24,13 +24,19 @@ constexpr std::string_view kLock = "SELECT pg_advisory_xact_lock(5641903277)";
 /// As well; the second number is a server's.
 constexpr int kServerLocks = 564190;
 /// Of a column, as pg_type has them.
-enum TypeOid : unsigned { kBytea = 17, kInt8 = 20, kInt2 = 21, kInt4 = 23 };
+enum TypeOid : unsigned { type_bytea = 17, type_int8 = 20, type_int2 = 21, type_int4 = 23 };
 
-/// The URL with deadlines for whatever its user did not set: the network may hang.
+/// What a connection waits for at most, unless its URL says otherwise: the network may hang.
+constexpr std::array kDeadlines{std::pair{"connect_timeout", "5"},
+                                std::pair{"tcp_user_timeout", "10000"},
+                                std::pair{"keepalives_idle", "10"}};
+
+// SQLSTATEs.
+constexpr std::string_view kLockNotAvailable = "55P03";
+constexpr std::string_view kQueryCanceled = "57014";
+
+/// The URL with deadlines for whatever its user did not set.
 std::string withDeadlines(std::string url) {
-    constexpr std::array kDeadlines{std::pair{"connect_timeout", "5"},
-                                    std::pair{"tcp_user_timeout", "10000"},
-                                    std::pair{"keepalives_idle", "10"}};
     for (const auto& [name, value] : kDeadlines) {
         if (url.find(name) == std::string::npos) {
             url +=
@@ -80,10 +86,10 @@ Bytes fromHex(std::string_view text) {
 
 Cell toCell(const pqxx::field& field, unsigned type) {
     const std::string_view text(field.c_str(), field.size());
-    if (type == kBytea) {
+    if (type == type_bytea) {
         return fromHex(text);
     }
-    if (type != kInt8 && type != kInt4 && type != kInt2) {
+    if (type != type_int8 && type != type_int4 && type != type_int2) {
         return std::string(text);
     }
     std::int64_t number = 0;
@@ -106,8 +112,6 @@ Rows toRows(const pqxx::result& result) {
 
 /// Whether others held it up; the connection is as good as before.
 bool isTimeout(std::string_view state) {
-    constexpr std::string_view kLockNotAvailable = "55P03";
-    constexpr std::string_view kQueryCanceled = "57014";
     return state == kLockNotAvailable || state == kQueryCanceled;
 }
 

@@ -79,7 +79,7 @@ Result<Dropped> closeLostOfOthers(Database& database, const std::string& own,
         const auto closed =
             closeIfDead(database, row.text(0), to_json, [] { return Result<void>(); });
         if (!closed) {
-            return closed;
+            return fail(closed.error());
         }
         lost += *closed;
     }

@@ -7,7 +7,7 @@
 
 namespace metier::skill {
 
-ParameterSet::ParameterSet(const Fields& fields) : fields_(fields) {
+ParameterSet::ParameterSet(Fields fields) : fields_(std::move(fields)) {
     for (const auto& field : fields_) {
         values_.emplace(field.name, field.default_value);
     }

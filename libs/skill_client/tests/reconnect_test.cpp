@@ -343,6 +343,8 @@ TEST_F(SurvivingClient, SaysAtItsDeadlineThatItCouldNotEvenHalt) {
         return skill_.runWith(request(), std::chrono::steady_clock::now() + 8s);
     });
     ASSERT_TRUE(bystanding_.awaitState(State::running, soon()));
+    // Answers come in their order: that of the start is there.
+    ASSERT_TRUE(client_->read(skill_.address().node, opcua::AttributeId::browse_name));
     cut();
     const auto result = outcome.get();
     ASSERT_FALSE(result);

@@ -17,7 +17,7 @@ namespace metier::skill {
 class ParameterSet {
 public:
     /// \param fields as declared
-    explicit ParameterSet(const Fields& fields);
+    explicit ParameterSet(Fields fields);
 
     /// The field of that name.
     /// Errors: not_found.
