@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace metier::device {
@@ -76,6 +78,43 @@ TEST_F(Core, StopsTheSourceThatWasActiveWhenItWasAskedTo) {
     core.dispatch();
     ASSERT_TRUE(core.attach(source));
     EXPECT_FALSE(core.stopRequested());
+}
+
+TEST_F(Core, ForgetsAStopThatItsMotionEndedBefore) {
+    ASSERT_TRUE(core.attach(source));
+    core.stop();
+    core.end(EndCause::done);  // before the cycle thread looked
+    core.dispatch();
+    ASSERT_TRUE(core.attach(source)) << "the same source once more";
+    EXPECT_FALSE(core.stopRequested());
+}
+
+// A text so long that the system gets its memory back at once holds attach() up, first while it
+// copies the safety state and then, for a millisecond, between its look at that and the motion's
+// begin.
+TEST(ArmCore, NeverMovesAnArmThatWasStoppedMeanwhile) {
+    const std::string long_text(40'000'000, 'x');
+    for (int round = 0; round < 3; ++round) {
+        ArmCore core({"robot", {"one"}, std::chrono::milliseconds(8)});
+        core.setSafety({SafetyState::normal, long_text});
+        const auto source = std::make_shared<Source>();
+        std::atomic<bool> attaching{false};
+        std::jthread client([&] {
+            attaching.store(true);
+            static_cast<void>(core.attach(source));
+        });
+        while (!attaching.load()) {
+            std::this_thread::yield();
+        }
+        const auto copying = std::chrono::steady_clock::now() + 200us;
+        while (std::chrono::steady_clock::now() < copying) {
+        }
+        core.setSafety({SafetyState::protective_stop, "robot: hit something"});
+        core.end(EndCause::safety);
+        client.join();
+        ASSERT_EQ(core.active(), nullptr) << "round " << round;
+        core.dispatch();
+    }
 }
 
 TEST_F(Core, TellsSafetyOnEachChangeOfState) {
