@@ -1,7 +1,9 @@
 #include "metier/skill/execution_names.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -58,6 +60,46 @@ TEST_F(KeptNames, AreWrittenWholeAfterALineThatACrashHasCutOff) {
     EXPECT_TRUE(names->knows("Weld", "whole"));
     EXPECT_TRUE(names->knows("Weld", "next"));
     EXPECT_FALSE(names->knows("Weld", "cut o")) << "its execution has not begun";
+}
+
+/// No file of this process grows beyond that size, until the end of the block.
+class FullDisk {
+public:
+    explicit FullDisk(std::uintmax_t size) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{size, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+
+private:
+    rlimit before_{};
+    void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+};
+
+TEST_F(KeptNames, AreWrittenWholeAfterALineForWhichTheDiskHadNoRoom) {
+    {
+        const auto names = open();
+        ASSERT_TRUE(names->note("Weld", "whole"));
+        Result<void> refused;
+        {
+            const FullDisk disk(std::filesystem::file_size(file_) + 8);
+            refused = names->note("Weld", "too long for what is left");
+        }
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
+        EXPECT_FALSE(names->knows("Weld", "too long for what is left"));
+        ASSERT_TRUE(names->note("Weld", "next"));
+    }
+    const auto names = open();
+    EXPECT_TRUE(names->knows("Weld", "whole"));
+    EXPECT_TRUE(names->knows("Weld", "next"));
+    EXPECT_FALSE(names->knows("Weld", "too long for what is left")) << "it has not begun";
 }
 
 TEST_F(KeptNames, BelongToOneServer) {
