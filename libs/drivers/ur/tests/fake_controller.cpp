@@ -352,6 +352,7 @@ void FakeController::step() {
         velocity_[i] = (before[i] - actual_[i]) / 0.008;
         actual_[i] = before[i];
     }
+    velocity_[0] += knobs_.coasting;
 }
 
 void FakeController::runScript() {

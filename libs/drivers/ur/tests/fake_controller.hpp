@@ -36,6 +36,7 @@ public:
         bool obeys = true;          ///< the script ends when its token is gone
         bool pause_on_stop = true;  ///< a safety stop pauses the program
         std::int32_t runtime = 1;   ///< runtime_state
+        double coasting = 0.0;      ///< of axis 1, whatever the script says [rad/s]
         // RTDE
         bool accepts_version = true;
         bool accepts_start = true;

@@ -37,6 +37,33 @@ TEST_F(ArmTest, ResetUnlocksAProtectiveStopAndEndsThePausedProgram) {
     EXPECT_EQ(fake_.uploads(), 2);
 }
 
+TEST_F(ArmTest, ResetUnlocksNoArmThatStillMoves) {
+    openReady();
+    fake_.set([](auto& k) {
+        k.safety_mode = 3;
+        k.coasting = 0.3;
+    });
+    ASSERT_TRUE(becomes(SafetyState::protective_stop));
+    ASSERT_TRUE(fake_.await([&] { return !arm().state().standstill; }));
+    EXPECT_THAT(resetUntilDone(), HasSubstr("ur5: the arm still moves"));
+    EXPECT_THAT(fake_.commands(), testing::IsEmpty());
+    fake_.set([](auto& k) { k.coasting = 0.0; });
+    ASSERT_TRUE(fake_.await([&] { return arm().state().standstill; }));
+    EXPECT_EQ(resetUntilDone(), "");
+}
+
+TEST_F(ArmTest, ResetPowersNoArmOnThatStillMoves) {
+    fake_.set([](auto& k) {
+        k.robot_mode = 3;
+        k.coasting = 0.3;
+    });
+    open({{"power_on", true}});
+    ASSERT_TRUE(becomes(SafetyState::fault));
+    ASSERT_TRUE(fake_.await([&] { return !arm().state().standstill; }));
+    EXPECT_THAT(resetUntilDone(), HasSubstr("ur5: the arm still moves"));
+    EXPECT_THAT(fake_.commands(), testing::IsEmpty());
+}
+
 TEST_F(ArmTest, ResetTellsHowLongAProtectiveStopIsLocked) {
     openReady({{"unlock_delay", 5.0}});
     fake_.set([](auto& k) { k.safety_mode = 3; });
