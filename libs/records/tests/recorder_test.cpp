@@ -155,6 +155,28 @@ TEST_F(TroubledRecorder, DelaysNobodyWhileTheDiskHangsAndDropsTheOldestSamples) 
     EXPECT_EQ(path.back().time, kSamples - 1) << "the newest one is kept";
 }
 
+TEST_F(TroubledRecorder, TakesNothingOutOfItsQueueWhileSomethingIsUnwritten) {
+    auto few = options();
+    few.most_waiting = 6;
+    const auto recorder = make(std::move(few));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto others = SqliteDatabase::open(file_, Store::Access::write).value();
+    ASSERT_TRUE(
+        others->script("CREATE TRIGGER refusal BEFORE INSERT ON executions "
+                       "BEGIN SELECT RAISE(ABORT, 'refused by the test'); END"));
+    recordOne(*recorder, moveOf("m-0"), finished(at(1)));
+    EXPECT_THAT(alarms_.await(0).text, HasSubstr("refused by the test"));
+    for (int i = 1; i <= 5; ++i) {  // two messages each, of which six fit
+        recordOne(*recorder, moveOf("m-" + std::to_string(i)), finished(at(1)));
+    }
+    EXPECT_FALSE(recorder->flush(std::chrono::steady_clock::now() + 3s)) << "it tries each second";
+    EXPECT_EQ(recorder->status().waiting, 6U);
+    EXPECT_EQ(recorder->status().dropped.executions, 2U);
+    ASSERT_TRUE(others->script("DROP TRIGGER refusal"));
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(store()->list({}, {})->executions.size(), 4U);
+}
+
 TEST_F(TroubledRecorder, DoesNotAnswerAFlushThatCannotBeDone) {
     const auto recorder = make(options());
     ASSERT_TRUE(recorder->flush(soon()));
