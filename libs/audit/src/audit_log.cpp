@@ -36,7 +36,7 @@ Result<std::unique_ptr<AuditLog>> AuditLog::open(Options options) {
 }
 
 AuditLog::AuditLog(Options options, std::unique_ptr<File> file)
-    : options_(std::move(options)), file_(std::move(file)) {
+    : options_(std::move(options)), file_(std::move(file)), anchor_(file_->chain()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -69,6 +69,11 @@ bool AuditLog::flush(SteadyTime deadline) {
     return changed_.wait_until(lock, deadline, [&] { return written_ >= all; });
 }
 
+std::string AuditLog::anchor() const {
+    const std::lock_guard lock(mutex_);
+    return anchor_;
+}
+
 void AuditLog::run(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (true) {
@@ -85,6 +90,7 @@ void AuditLog::run(const std::stop_token& stop) {
             waiting_.erase(waiting_.begin(),
                            waiting_.begin() + static_cast<std::ptrdiff_t>(batch.size()));
             written_ += batch.size();
+            anchor_ = file_->chain();
             lost_ -= lost;
             changed_.notify_all();
         } else if (stop.stop_requested()) {

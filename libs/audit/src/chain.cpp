@@ -46,6 +46,19 @@ std::optional<std::string> textIn(const nlohmann::ordered_json& json, std::strin
                                                      : std::nullopt;
 }
 
+/// Where the chain value of a line begins behind its text: `,"chain":"`, 64 digits, `"}` and no
+/// more. Nothing, if the line ends otherwise.
+std::optional<std::size_t> endOfBody(std::string_view text) {
+    const auto tail = kChainKey.size() + kNoChain.size() + kEnd.size();
+    if (text.size() < tail || !text.ends_with(kEnd) ||
+        text.substr(text.size() - tail, kChainKey.size()) != kChainKey) {
+        return {};
+    }
+    const auto digits = text.substr(text.size() - kEnd.size() - kNoChain.size(), kNoChain.size());
+    const bool hexadecimal = digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    return hexadecimal ? std::optional(text.size() - tail) : std::nullopt;
+}
+
 }  // namespace
 
 ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view chain_before) {
@@ -63,30 +76,35 @@ ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view
 }
 
 std::optional<ReadLine> readLastLine(std::string_view text) {
-    const auto at = text.rfind(kChainKey);
-    if (at == std::string_view::npos || !text.ends_with(kEnd)) {
+    const auto end = endOfBody(text);
+    if (!end) {
         return {};
     }
-    const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-    if (!json.is_object() || !json.contains("n") || !json["n"].is_number_unsigned()) {
+    // Without the chain value: among members of one name the last would be taken.
+    const auto json =
+        nlohmann::ordered_json::parse(fmt::format("{}}}", text.substr(0, *end)), nullptr, false);
+    if (!json.is_object() || !json.contains("n") || !json["n"].is_number_unsigned() ||
+        json.contains("chain")) {
         return {};
     }
     const auto time = textIn(json, "time");
-    const auto chain = textIn(json, "chain");
-    if (!time || !chain) {
+    if (!time) {
         return {};
     }
-    ReadLine line{json["n"].get<std::uint64_t>(), *time, *chain, {}};
+    ReadLine line{json["n"].get<std::uint64_t>(),
+                  *time,
+                  std::string(text.substr(*end + kChainKey.size(), kNoChain.size())),
+                  {}};
     if (textIn(json, "event") == kContinued) {
         line.after = textIn(json, kAfter).value_or("");
     }
-    return line.chain.size() == kNoChain.size() ? std::optional(std::move(line)) : std::nullopt;
+    return line;
 }
 
 std::optional<ReadLine> readLine(std::string_view text, std::string_view chain_before) {
     auto line = readLastLine(text);
     const bool right =
-        line && line->chain == chainOf(text.substr(0, text.rfind(kChainKey)), chain_before);
+        line && line->chain == chainOf(text.substr(0, *endOfBody(text)), chain_before);
     return right ? line : std::nullopt;
 }
 

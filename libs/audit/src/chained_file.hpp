@@ -44,6 +44,8 @@ public:
     /// All of them, or none.
     /// Errors: resource_unavailable, with the system's reason.
     Result<void> write(const std::vector<Entry>& entries);
+    /// Chain value of the newest line.
+    const std::string& chain() const noexcept { return chain_; }
 
 private:
     File(std::filesystem::path log, std::uintmax_t part_size) noexcept

@@ -13,6 +13,10 @@ namespace {
 /// Follows the chain from line to line.
 class Chain {
 public:
+    explicit Chain(const std::set<std::string>& anchors) : anchors_(anchors) {
+        note(verified_.last_chain);
+    }
+
     Result<void> take(std::istream& lines, const std::filesystem::path& file) {
         std::uint64_t number = 0;
         for (std::string text; std::getline(lines, text);) {
@@ -20,8 +24,9 @@ public:
             if (std::exchange(at_begin_, false)) {
                 begin(text);
             }
+            const bool whole = !lines.eof();  // the end of the line was read, too
             const auto line = readLine(text, verified_.last_chain);
-            if (!line || line->number != verified_.first_number + verified_.entries) {
+            if (!whole || !line || line->number != verified_.first_number + verified_.entries) {
                 return fail(Errc::invalid_argument,
                             fmt::format("{}:{}: is not as it was written, or the line before is "
                                         "missing",
@@ -41,16 +46,24 @@ private:
         const bool continued = line && !line->after.empty();
         verified_.first_number = continued ? line->number : 1;
         verified_.last_chain = continued ? line->after : std::string(kNoChain);
+        note(verified_.last_chain);
+    }
+    void note(const std::string& chain) {
+        if (anchors_.contains(chain)) {
+            verified_.anchors.insert(chain);
+        }
     }
     void add(const ReadLine& line) {
         ++verified_.entries;
         verified_.last_chain = line.chain;
         verified_.last_time = line.time;
+        note(line.chain);
         if (verified_.first_time.empty()) {
             verified_.first_time = line.time;
         }
     }
 
+    const std::set<std::string>& anchors_;
     bool at_begin_ = true;
     Verified verified_{.entries = 0,
                        .first_number = 1,
@@ -70,8 +83,8 @@ std::vector<std::filesystem::path> partsOf(const std::filesystem::path& file) {
     return parts;
 }
 
-Result<Verified> verify(const std::filesystem::path& file) {
-    Chain chain;
+Result<Verified> verify(const std::filesystem::path& file, const std::set<std::string>& anchors) {
+    Chain chain(anchors);
     for (const auto& part : partsOf(file)) {
         std::ifstream lines(part);
         if (!lines) {

@@ -104,6 +104,45 @@ TEST_F(AuditFile, TellsWhichLineWasTamperedWith) {
     EXPECT_TRUE(verify(file_));
 }
 
+TEST_F(AuditFile, ShowsTextThatWasPutBehindAChainValue) {
+    {
+        const auto log = open();
+        log->append(entry("Start"));
+        log->append(entry("Halt"));
+    }
+    const auto whole = text();
+    auto changed = whole;
+    changed.insert(changed.find("}\n"), R"(,"user":"bert")");
+    put(changed);
+    EXPECT_THAT(verify(file_).error().message, HasSubstr("audit.jsonl:1: is not as it was"));
+    put(whole.substr(0, whole.size() - 1));
+    EXPECT_THAT(verify(file_).error().message, HasSubstr("audit.jsonl:2: is not as it was"))
+        << "the end of the line is missing";
+}
+
+TEST_F(AuditFile, ShowsThatItsEndWasCutOffToWhoeverKeptTheAnchor) {
+    std::string early;
+    std::string late;
+    {
+        const auto log = open();
+        EXPECT_EQ(log->anchor(), std::string(64, '0'));
+        log->append(entry("Start"));
+        ASSERT_TRUE(log->flush(soon()));
+        early = log->anchor();
+        log->append(entry("Halt"));
+        ASSERT_TRUE(log->flush(soon()));
+        late = log->anchor();
+    }
+    EXPECT_EQ(verify(file_)->last_chain, late);
+    EXPECT_EQ(open()->anchor(), late) << "after a restart";
+    EXPECT_EQ(verify(file_, {early, late})->anchors, (std::set<std::string>{early, late}));
+    const auto whole = text();
+    put(whole.substr(0, whole.find('\n') + 1));
+    const auto cut = verify(file_, {early, late});
+    ASSERT_TRUE(cut) << "each line that is left is as it was";
+    EXPECT_EQ(cut->anchors, std::set<std::string>{early});
+}
+
 TEST_F(AuditFile, DropsALastLineThatIsNotWholeAndSaysSo) {
     open()->append(entry("Start"));
     put(text() + R"({"n":2,"time":"20)");

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 
 namespace metier::audit {
@@ -50,6 +52,27 @@ TEST(Chain, IsNoneInADamagedLine) {
     auto numbered = line.text;
     numbered.replace(numbered.find("\"Start\""), 7, "7");
     EXPECT_TRUE(readLastLine(numbered)) << "an event that is no text is not a continuation";
+}
+
+TEST(Chain, EndsWithTheLine) {
+    const auto line = chainLine(entryOf("Start"), 1, kNoChain);
+    const auto inner = line.text.substr(0, line.text.size() - 1);  // without the brace
+    for (const std::string more :
+         {R"(,"user":"bert"})", R"(,"event":"Reset","user":"bert","x":"1"})", R"( })",
+          R"(,"a":""})"}) {
+        EXPECT_FALSE(readLine(inner + more, kNoChain)) << more << " is not hashed";
+        EXPECT_FALSE(readLastLine(inner + more)) << more;
+    }
+    auto upper = line.text;
+    std::transform(upper.end() - 66, upper.end() - 2, upper.end() - 66,
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    EXPECT_FALSE(readLastLine(upper)) << "another writing of the same value";
+    auto shorter = line.text;
+    shorter.erase(shorter.size() - 3, 1);
+    EXPECT_FALSE(readLastLine(shorter));
+    auto longer = line.text;
+    longer.insert(longer.size() - 2, "0");
+    EXPECT_FALSE(readLastLine(longer));
 }
 
 TEST(Chain, HoldsWhateverAPeerIsCalled) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -38,8 +39,8 @@ enum class Health {
 /// Beyond `part_size` it goes on in another one: "a.log", "a.2.log", "a.3.log", ..., the chain too.
 /// No part is ever removed.
 ///
-/// Whoever changes, removes or inserts a line breaks the chain, which verify() tells. Only lines
-/// cut off at the end do not show, unless the last chain value is known from elsewhere. What is
+/// Whoever changes, removes or inserts a line breaks the chain, which verify() tells. Lines
+/// cut off at the end show to those who kept a chain value, see anchor(). What is
 /// appended is in the file a second later at most; a slow or full disk delays nobody but the log's
 /// own thread. Beyond 10,000 waiting entries new ones are lost, and their number is written once
 /// that is possible. Threading: any thread may append.
@@ -69,6 +70,9 @@ public:
     std::size_t waiting() const;
     /// Waits until all that was appended before is in the file; false at the deadline.
     bool flush(SteadyTime deadline);
+    /// Chain value of the newest line in the file, 64 hexadecimal digits; zeros: there is none.
+    /// Kept elsewhere it shows later whether lines were cut off, see verify().
+    std::string anchor() const;
 
 private:
     class File;
@@ -86,6 +90,7 @@ private:
     std::uint64_t lost_ = 0;
     std::uint64_t appended_ = 0;
     std::uint64_t written_ = 0;
+    std::string anchor_;
     std::jthread thread_;
 };
 
@@ -96,12 +101,16 @@ struct Verified {
     std::string first_time;          ///< empty if there is no entry
     std::string last_time;
     std::string last_chain;  ///< 64 hexadecimal digits
+    /// Those of the given anchors that are chain values of this log.
+    std::set<std::string> anchors{};
 };
 
 /// Reads the whole file and the parts that follow it.
+/// \param anchors chain values that were newest once, see AuditLog::anchor()
 /// Errors: not_found, naming the part; invalid_argument, naming the first line that is not as it
 ///         was written.
-Result<Verified> verify(const std::filesystem::path& file);
+Result<Verified> verify(const std::filesystem::path& file,
+                        const std::set<std::string>& anchors = {});
 
 /// The file and the parts that follow it, in their order.
 std::vector<std::filesystem::path> partsOf(const std::filesystem::path& file);
