@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace metier::trust {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kFreeAttempts = 5;
-constexpr int kFreeAttemptsOfAnApplication = 20;
+constexpr int kManyAttempts = 20;  // of one application
 constexpr auto kMemory = 10min;
 constexpr auto kFirstPause = 1s;
 constexpr auto kLongestPause = 60s;
@@ -63,18 +64,15 @@ Result<Role> LoginGuard::check(const std::string& user, const std::string& passw
                                const std::string& thumbprint) {
     reload();
     const Who who{user.substr(0, kLongestName), thumbprint};
-    const Who application{"", thumbprint};  // no user has that name
-    forgetOld(application);
-    for (const auto& one : {who, application}) {
-        if (auto free = checkBar(one); !free) {
-            return fail(free.error());
-        }
+    if (auto free = checkBar(who); !free) {
+        return fail(free.error());
     }
     const auto* known = users_.find(user);
     const bool right = isPassword(password, known ? known->password_hash : hashOfNobody());
     if (known == nullptr || !right) {
-        noteFailure(who, kFreeAttempts);
-        noteFailure(application, kFreeAttemptsOfAnApplication);
+        const Who application{"", thumbprint};  // no user has that name
+        noteFailure(who, freeAttempts(application));
+        noteFailure(application, std::numeric_limits<int>::max());
         return fail(Errc::access_denied, "unknown user or wrong password");
     }
     failures_.erase(who);
@@ -98,20 +96,34 @@ Result<void> LoginGuard::checkBar(const Who& who) const {
                 fmt::format("too many wrong passwords: wait {:.0f} s", std::ceil(wait.count())));
 }
 
-/// Nothing else does: whoever knows one password could guess others in between.
-void LoginGuard::forgetOld(const Who& application) {
+/// A name that nobody has goes first: guesses at others stay counted whatever is made up.
+void LoginGuard::forgetOne() {
+    const auto isLess = [this](const auto& left, const auto& right) {
+        const auto isKept = [this](const std::string& user) {
+            return user.empty() || users_.find(user) != nullptr;
+        };
+        const bool known_left = isKept(left.first.first);
+        const bool known_right = isKept(right.first.first);
+        return std::pair(known_left, left.second.barred_until) <
+               std::pair(known_right, right.second.barred_until);
+    };
+    failures_.erase(std::min_element(failures_.begin(), failures_.end(), isLess));
+}
+
+/// An application that tries many names gets few attempts at each, and no name is barred by others.
+int LoginGuard::freeAttempts(const Who& application) {
     const auto failures = failures_.find(application);
     if (failures != failures_.end() && clock_->now() - failures->second.last > kMemory) {
         failures_.erase(failures);
+        return kFreeAttempts;
     }
+    return failures == failures_.end() || failures->second.count < kManyAttempts ? kFreeAttempts
+                                                                                 : 1;
 }
 
 void LoginGuard::noteFailure(const Who& who, int free_attempts) {
     if (failures_.size() >= kMostRemembered && failures_.find(who) == failures_.end()) {
-        failures_.erase(
-            std::min_element(failures_.begin(), failures_.end(), [](const auto& a, const auto& b) {
-                return a.second.barred_until < b.second.barred_until;
-            }));
+        forgetOne();
     }
     auto& failures = failures_[who];
     ++failures.count;

@@ -14,11 +14,12 @@ namespace metier::trust {
 
 /// Lets users in by name and password, and makes whoever guesses wait.
 ///
-/// After five wrong passwords for one user from one application, or twenty from it for whatever
-/// users within ten minutes, each further attempt is refused for a while, which doubles from one
-/// second to a minute, without a look at the password: that look takes some ten milliseconds of the
-/// server's thread. Counted for each application by itself: somebody who guesses cannot lock out
-/// those who use others.
+/// After five wrong passwords for one user from one application each further attempt is refused for
+/// a while, which doubles from one second to a minute, without a look at the password: that look
+/// takes some ten milliseconds of the server's thread. Counted for each user and each application
+/// by itself: somebody who guesses cannot lock out other users of the same application, such as of
+/// the page of a cell, nor those who use others. After twenty wrong passwords from one application
+/// for whatever users, the last within ten minutes, the first wrong one for a user is enough.
 /// The file of users is read again when it has changed.
 /// Threading: one thread.
 class LoginGuard {
@@ -47,8 +48,9 @@ private:
     LoginGuard(std::filesystem::path file, const Clock& clock, UserTable users);
     void reload();
     void noteFailure(const Who& who, int free_attempts);
+    int freeAttempts(const Who& application);
+    void forgetOne();
     Result<void> checkBar(const Who& who) const;
-    void forgetOld(const Who& application);
 
     std::filesystem::path file_;
     const Clock* clock_;

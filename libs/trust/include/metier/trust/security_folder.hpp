@@ -10,6 +10,7 @@
 #include "metier/base/error.hpp"
 #include "metier/trust/certificate.hpp"
 #include "metier/trust/identity.hpp"
+#include "metier/trust/known_servers.hpp"
 #include "metier/trust/trust_store.hpp"
 #include "metier/trust/users.hpp"
 
@@ -21,6 +22,7 @@ namespace metier::trust {
 ///   trust/                 whom they trust, a TrustStore
 ///   roles/THUMBPRINT       what an application may do that logs in without a user
 ///   users                  who may log in, a UserTable
+///   closed/                addresses at which servers proved who they are, KnownServers
 /// What is made here trusts each other, and may act as Operator: whoever writes to this folder
 /// could decide that anyway.
 /// Threading: any thread, one at a time; several processes may use one folder.
@@ -55,6 +57,10 @@ public:
     std::filesystem::path identityFolder(const std::string& name) const;
     std::filesystem::path trustFolder() const { return folder_ / "trust"; }
     std::filesystem::path usersFile() const { return folder_ / "users"; }
+    /// \param folder a security folder, which need not be there
+    static KnownServers knownServers(const std::filesystem::path& folder) {
+        return KnownServers(folder / "closed");
+    }
 
 private:
     explicit SecurityFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
