@@ -33,6 +33,20 @@ EventLoopOptions loopOptions(const ServerOptions& options, const UA_Logger* logg
 
 /// What the stack calls about nodes and monitored items.
 struct ServerCore::Callbacks {
+    /// The stack makes an Object for each session, by the session's id.
+    static UA_StatusCode nodeMade(UA_Server* server, const UA_NodeId* /*session_id*/,
+                                  void* /*session_context*/, const UA_NodeId* id,
+                                  void** /*context*/) noexcept {
+        if (id->namespaceIndex != 1 || id->identifierType != UA_NODEIDTYPE_GUID) {
+            return UA_STATUSCODE_GOOD;
+        }
+        return guarded([&]() -> UA_StatusCode {
+            auto& core = ServerCore::of(server);
+            core.sessions_.created(server, fromNative(*id), core.loop_.currentConnection());
+            return UA_STATUSCODE_GOOD;
+        });
+    }
+
     static void nodeDeleted(UA_Server* server, const UA_NodeId* /*session_id*/,
                             void* /*session_context*/, const UA_NodeId* /*id*/,
                             void* context) noexcept {
@@ -123,6 +137,7 @@ Result<> ServerCore::build() {
     }
     sessions_.install(config);
     config.accessControl.getUserExecutable = userExecutable;
+    config.nodeLifecycle.constructor = Callbacks::nodeMade;
     config.nodeLifecycle.destructor = Callbacks::nodeDeleted;
     config.nodeLifecycle.generateChildNodeId = Callbacks::nameChild;
     config.monitoredItemRegisterCallback = Callbacks::monitored;
@@ -142,6 +157,13 @@ Result<> ServerCore::build() {
     if (auto guarded = stack_methods_.guard(native()); !guarded) {
         return guarded;
     }
+    // Certificates of others, and who they are.
+    UA_Server_setNodeContext(
+        native(),
+        UA_NODEID_NUMERIC(
+            0,
+            UA_NS0ID_SERVER_SERVERDIAGNOSTICS_SESSIONSDIAGNOSTICSSUMMARY_SESSIONSECURITYDIAGNOSTICSARRAY),
+        auditorsOnly());
     // The stack's own source says false.
     return nodes_.setDataSource(ids::kServerAuditing,
                                 {.read =

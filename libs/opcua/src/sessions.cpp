@@ -1,6 +1,7 @@
 #include "sessions.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "convert.hpp"
 #include "guard.hpp"
@@ -153,7 +154,38 @@ bool Sessions::mayCreate(const ApplicationSessions::Application& application) {
     return by_application_.create(application, std::chrono::steady_clock::now());
 }
 
+void Sessions::created(UA_Server* server, const NodeId& id, std::uintptr_t connection) {
+    unused_.created(id, connection);
+    limitStack(*UA_Server_getConfig(server));
+    if (sessions_.size() + unused_.count() > options_.limits.sessions) {
+        ServerCore::of(server).post([this, server] { makeRoom(server); });
+    }
+}
+
+void Sessions::makeRoom(UA_Server* server) {
+    while (sessions_.size() + unused_.count() > options_.limits.sessions) {
+        const auto surplus = unused_.surplus();
+        if (!surplus) {
+            return;
+        }
+        const UA_NodeId native = viewOf(*surplus);
+        UA_Server_closeSession(server, &native);
+        unused_.gone(*surplus);
+    }
+}
+
+/// The stack would refuse a new session for the sake of those that are not activated. While there
+/// is room for one that is, it makes some more, and others go once it has.
+void Sessions::limitStack(UA_ServerConfig& config) const {
+    constexpr std::uint32_t kInOneTurn = 32;
+    const std::uint32_t most = options_.limits.sessions;
+    const auto with_unused =
+        std::min<std::uint32_t>(2 * most + kInOneTurn, std::numeric_limits<UA_UInt16>::max());
+    config.maxSessions = static_cast<UA_UInt16>(sessions_.size() < most ? with_unused : most);
+}
+
 void Sessions::install(UA_ServerConfig& config) {
+    limitStack(config);
     UA_AccessControl& control = config.accessControl;
     control.context = this;
     control.clear = Callbacks::clear;
@@ -226,6 +258,11 @@ void Sessions::closeUnused(UA_Server* server, const NodeId& id) const {
 
 StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                               void** context) {
+    const bool is_new = sessions_.find(fromNative(id)) == sessions_.end();
+    if (is_new && sessions_.size() >= options_.limits.sessions) {
+        closeUnused(server, fromNative(id));
+        return status::kBadTooManySessions;
+    }
     const auto admission = admit(presented);
     if (!admission) {
         tellRefusal(server, fromNative(id), presented, admission.error());
@@ -237,6 +274,8 @@ StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Pres
         session = std::make_unique<Session>();
         session->id = fromNative(id);
         by_application_.activated(presented.thumbprint);
+        unused_.gone(session->id);
+        limitStack(*UA_Server_getConfig(server));
     }
     describe(server, *session);
     session->user = admission->user;
@@ -266,6 +305,8 @@ void Sessions::tellRefusal(UA_Server* server, const NodeId& id, const Presented&
 
 void Sessions::close(UA_Server* server, const UA_NodeId& id) {
     const auto node = sessions_.extract(fromNative(id));
+    unused_.gone(fromNative(id));
+    limitStack(*UA_Server_getConfig(server));
     if (node.empty()) {
         Session unused{fromNative(id), {}, {}, {}, {}};
         describe(server, unused);

@@ -9,6 +9,7 @@
 
 #include "application_sessions.hpp"
 #include "metier/opcua/server.hpp"
+#include "unused_sessions.hpp"
 
 namespace metier::opcua {
 
@@ -39,6 +40,9 @@ public:
     std::size_t count() const noexcept { return sessions_.size(); }
     /// Whether an application may create one more, which it is then about to do.
     bool mayCreate(const ApplicationSessions::Application& application);
+    /// The stack has made a session, which is not activated yet. Some other such one is closed soon
+    /// if there are too many.
+    void created(UA_Server* server, const NodeId& id, std::uintptr_t connection);
     void closeIf(UA_Server* server, const std::function<bool(const Session&)>& which);
 
 private:
@@ -53,6 +57,8 @@ private:
     StatusCode activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
                         void** context);
     void close(UA_Server* server, const UA_NodeId& id);
+    void makeRoom(UA_Server* server);
+    void limitStack(UA_ServerConfig& config) const;
     void closeUnused(UA_Server* server, const NodeId& id) const;
     void tellRefusal(UA_Server* server, const NodeId& id, const Presented& presented,
                      const Error& error);
@@ -61,6 +67,7 @@ private:
 
     const ServerOptions& options_;
     std::unordered_map<NodeId, std::unique_ptr<Session>> sessions_;
+    UnusedSessions unused_;
     ApplicationSessions by_application_;
     Session server_session_{{}, "server", {}, {}, {}};
     Handler activated_;

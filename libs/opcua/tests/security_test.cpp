@@ -192,6 +192,21 @@ TEST_P(ClosedServerFor, AllowsWhatARoleMayDo) {
     }
 }
 
+TEST_P(ClosedServerFor, ShowsTheCertificatesOfOthersToThoseAloneWhoAudit) {
+    auto mine = options();
+    mine.user->name = GetParam().user;
+    const auto client = connect(mine);
+    ASSERT_TRUE(client) << client.error().message;
+    const NodeId session_security_diagnostics_array(0, 3708U);
+    const auto read = (*client)->read(session_security_diagnostics_array);
+    const std::string_view user = GetParam().user;
+    const bool audits = user == "engineer" || user == "admin";
+    EXPECT_EQ(read.has_value(), audits);
+    if (!audits) {
+        EXPECT_EQ(read.error().status, status::kBadUserAccessDenied);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Roles, ClosedServerFor,
                          ::testing::Values(Allowed{"observer", false}, Allowed{"operator", true},
                                            Allowed{"engineer", true}, Allowed{"admin", false}),
