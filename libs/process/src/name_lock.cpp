@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "metier/base/stable_hash.hpp"
@@ -47,8 +48,8 @@ int newSocket() {
     return socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 }
 
-/// Of the process that listens there, without its help; 0 if it does not tell.
-pid_t holderOf(const Address& address) {
+/// The process that listens there, without its help; nothing if it does not tell.
+std::optional<ucred> holderOf(const Address& address) {
     const int asking = newSocket();
     ucred peer{};
     socklen_t size = sizeof peer;
@@ -57,19 +58,24 @@ pid_t holderOf(const Address& address) {
     if (asking >= 0) {
         close(asking);
     }
-    return told ? peer.pid : 0;
+    return told && peer.pid > 0 ? std::optional(peer) : std::nullopt;
 }
 
-Error heldError(const Address& address, const std::string& what) {
+Error heldError(const Address& address, const std::string& what, uid_t own) {
     const auto holder = holderOf(address);
-    return {Errc::already_exists, holder > 0
-                                      ? fmt::format("{} is in use by process {}", what, holder)
-                                      : fmt::format("{} is in use by another process", what)};
+    if (!holder) {
+        return {Errc::already_exists, fmt::format("{} is in use by another process", what)};
+    }
+    if (holder->uid == own || holder->uid == 0) {
+        return {Errc::already_exists, fmt::format("{} is in use by process {}", what, holder->pid)};
+    }
+    return {Errc::access_denied, fmt::format("{} is in use by process {} of the user {}", what,
+                                             holder->pid, holder->uid)};
 }
 
 }  // namespace
 
-Result<NameLock> NameLock::take(const std::string& name, const std::string& what) {
+Result<NameLock> NameLock::take(const std::string& name, const std::string& what, uid_t own) {
     const auto address = addressOf(name);
     NameLock lock(newSocket());
     if (lock.socket_ >= 0 && bind(lock.socket_, address.get(), address.size) == 0 &&
@@ -77,7 +83,7 @@ Result<NameLock> NameLock::take(const std::string& name, const std::string& what
         return lock;
     }
     if (errno == EADDRINUSE) {
-        return fail(heldError(address, what));
+        return fail(heldError(address, what, own));
     }
     return fail(Errc::resource_unavailable,
                 fmt::format("{}: no lock: {}", what, std::strerror(errno)));

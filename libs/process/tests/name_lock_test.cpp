@@ -20,13 +20,14 @@ std::string nameOf(const std::string& test) {
 /// A process that has a name until it is killed, and nothing else.
 class Holder {
 public:
-    explicit Holder(const std::string& name) {
+    explicit Holder(const std::string& name, uid_t user = geteuid()) {
         int ready[2];
         EXPECT_EQ(pipe(ready), 0);
         pid_ = fork();
         if (pid_ == 0) {
+            const bool is_user = user == geteuid() || seteuid(user) == 0;
             const auto lock = NameLock::take(name, "a robot");
-            const char taken = lock ? 'y' : 'n';
+            const char taken = lock && is_user ? 'y' : 'n';
             [[maybe_unused]] const auto told = write(ready[1], &taken, 1);
             for (;;) {
                 pause();
@@ -77,6 +78,18 @@ TEST(NameLock, NamesTheProcessThatHasItEachTime) {
         EXPECT_THAT(refused.error().message, HasSubstr("the arm at 10.0.0.5 is in use by process " +
                                                        std::to_string(holder.pid())));
     }
+}
+
+TEST(NameLock, SaysThatAnotherUserHasIt) {
+    constexpr uid_t kNobody = 65534;
+    const auto name = nameOf("squatted");
+    const bool is_root = geteuid() == 0;  // which everybody believes
+    const Holder holder(name, is_root ? kNobody : geteuid());
+    const auto refused = NameLock::take(name, "a robot", is_root ? geteuid() : geteuid() + 1);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::access_denied);
+    EXPECT_THAT(refused.error().message, HasSubstr(std::to_string(holder.pid()) + " of the user " +
+                                                   std::to_string(is_root ? kNobody : geteuid())));
 }
 
 TEST(NameLock, StaysWithAProcessThatIsStopped) {
