@@ -81,6 +81,33 @@ TEST_F(MovingArm, IsHaltedAtStandstillOnItsPath) {
     EXPECT_TRUE(bench.start(kCartesianLinear, kUp));
 }
 
+/// Cycles from a request in the cycle `when` of a line of 40 cm, which speeds up by 0.3 m/s2, to
+/// its standstill.
+int cyclesToRest(Result<void> (skill::Program::*request)(const skill::Caller&), int when) {
+    const ValueMap fast{{"TargetPosition", Frame{0, 0, 0.4}},
+                        {"Relative", std::int32_t{1}},
+                        {"MaxAcceleration", std::vector<double>{0.3, 0.3, 0.3, 1, 1, 1}}};
+    Bench bench;
+    EXPECT_TRUE(bench.start(kCartesianLinear, fast));
+    bench.steps(when);
+    EXPECT_TRUE((bench.program(kCartesianLinear).*request)(bench.caller()));
+    int cycles = 0;
+    EXPECT_TRUE(bench.stepUntil([&] {
+        ++cycles;
+        return bench.arm().state().standstill;
+    }));
+    return cycles;
+}
+
+// To lose its speed within the limits of the move takes as long as it took to gain it.
+TEST(HaltedArm, BrakesHarderThanItsMoveSpeedsUpAndNoLaterThanForSuspend) {
+    for (const int when : {50, 75}) {
+        const int halted = cyclesToRest(&skill::Program::halt, when);
+        EXPECT_LE(halted, cyclesToRest(&skill::Program::suspend, when)) << "cycle " << when;
+        EXPECT_LT(halted, when);
+    }
+}
+
 TEST_F(MovingArm, CanBeHaltedWhileItComesToRestForASuspend) {
     ASSERT_TRUE(line.suspend(bench.caller()));
     bench.step();
