@@ -172,5 +172,31 @@ TEST(Watchdog, LooksByItself) {
     EXPECT_GT(told.get_future().get(), 20ms);
 }
 
+TEST(Watchdog, WaitsBetweenItsLooks) {
+    constexpr int kLooks = 20;
+    constexpr auto kShort = 80ms;
+    const SystemClock clock;
+    int stops = 0;
+    std::promise<SteadyTime> first;
+    std::promise<SteadyTime> last;
+    Watchdog watchdog({.stop =
+                           [&] {
+                               ++stops;
+                               if (stops == 1) {
+                                   first.set_value(clock.now());
+                               } else if (stops == kLooks) {
+                                   last.set_value(clock.now());
+                               }
+                           },
+                       .post = [](const std::function<void()>&) {},
+                       .tell = [](std::chrono::nanoseconds) {},
+                       .noticed = [](std::chrono::nanoseconds) {}},
+                      kShort, clock);
+    watchdog.tick();
+    auto end = last.get_future();
+    ASSERT_EQ(end.wait_for(60s), std::future_status::ready);
+    EXPECT_GE(end.get() - first.get_future().get(), (kLooks - 1) * Watchdog::tickPeriod(kShort));
+}
+
 }  // namespace
 }  // namespace metier::device

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <set>
 
@@ -47,6 +48,40 @@ TEST_F(Controlled, KeepsOthersOutWhileTheLeaseLasts) {
     EXPECT_FALSE(control.acquire(kBob, 0ms, OwnerLossAction::halt));
     EXPECT_FALSE(control.lock(kBob));
     EXPECT_FALSE(control.checkEpoch(kBob, *epoch)) << "an epoch is the session's own";
+}
+
+TEST_F(Controlled, HasNothingLeftOfALeaseOrLockWhoseTimerIsLate) {
+    ManualClock clock;
+    Control late(executor, clock);
+    ASSERT_TRUE(late.acquire(kAlice, 500ms, OwnerLossAction::halt));
+    ASSERT_TRUE(late.lock(kAlice));
+    clock.advance(300ms);
+    EXPECT_EQ(late.leaseRemaining(), 200ms);
+    EXPECT_EQ(late.lockRemaining(), Control::kLockTime - 300ms);
+    clock.advance(Control::kLockTime);
+    EXPECT_EQ(late.leaseRemaining(), 0ms);
+    EXPECT_EQ(late.lockRemaining(), 0ms);
+}
+
+TEST_F(Controlled, TellsNoListenerThatHasDetachedItself) {
+    Losses gone;
+    control.attach(gone);
+    control.detach(gone);
+    ASSERT_TRUE(control.acquire(kAlice, 500ms, OwnerLossAction::halt));
+    control.sessionClosed(kAlice.session_id);
+    EXPECT_THAT(gone.told, IsEmpty());
+    EXPECT_EQ(losses.told.size(), 1U);
+}
+
+// Memory that is given back is overwritten, so that whoever still calls something there fails.
+TEST_F(Controlled, TellsNoProgramThatIsGone) {
+    ::mallopt(M_PERTURB, 0xA5);
+    const auto shared = std::make_shared<Control>(executor, executor->clock());
+    { const ProgramBench gone({.control = shared}, weldDescription(), executor); }
+    ::mallopt(M_PERTURB, 0);
+    ASSERT_TRUE(shared->acquire(kAlice, 500ms, OwnerLossAction::halt));
+    shared->sessionClosed(kAlice.session_id);
+    EXPECT_EQ(shared->losses(), 1U);
 }
 
 TEST_F(Controlled, LetsASkillOfTheServerRunOthersForWhoeverStartedIt) {
