@@ -7,23 +7,13 @@
 #include <asio/error.hpp>
 #include <utility>
 
+#include "metier/link/host_addresses.hpp"
 #include "poll_until.hpp"
 
 namespace metier::link {
 namespace {
 
 using asio::ip::tcp;
-
-Result<tcp::resolver::results_type> resolve(asio::io_context& context, const std::string& host,
-                                            std::uint16_t port) {
-    asio::error_code error;
-    auto found = tcp::resolver(context).resolve(host, std::to_string(port),
-                                                tcp::resolver::numeric_service, error);
-    if (error) {
-        return fail(Errc::connection_lost, fmt::format("{}: {}", host, error.message()));
-    }
-    return found;
-}
 
 /// Errors: timeout; connection_lost.
 Result<void> connectTo(tcp::socket& socket, const tcp::endpoint& endpoint, SteadyTime deadline,
@@ -68,16 +58,16 @@ TcpLink& TcpLink::operator=(TcpLink&& other) noexcept {
 }
 
 Result<TcpLink> TcpLink::connect(const std::string& host, std::uint16_t port, SteadyTime deadline) {
-    auto context = std::make_unique<asio::io_context>();
-    const auto found = resolve(*context, host, port);
-    if (!found) {
-        return fail(found.error());
-    }
     auto name = fmt::format("{}:{}", host, port);
+    const auto found = addressesOf(host, deadline);
+    if (!found) {
+        return fail(found.error().code, fmt::format("{}: {}", name, found.error().message));
+    }
+    auto context = std::make_unique<asio::io_context>();
     Error last{Errc::connection_lost, name + ": no such host"};
-    for (const auto& entry : *found) {
+    for (const auto& address : *found) {
         tcp::socket socket(*context);
-        const auto connected = connectTo(socket, entry.endpoint(), deadline, name);
+        const auto connected = connectTo(socket, {address, port}, deadline, name);
         if (connected) {
             return TcpLink(std::move(context), std::move(socket), std::move(name));
         }

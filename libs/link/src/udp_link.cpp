@@ -7,6 +7,7 @@
 #include <asio/error.hpp>
 #include <utility>
 
+#include "metier/link/host_addresses.hpp"
 #include "poll_until.hpp"
 
 namespace metier::link {
@@ -23,17 +24,16 @@ UdpLink& UdpLink::operator=(UdpLink&& other) noexcept {
     return *this;
 }
 
-Result<UdpLink> UdpLink::connect(const std::string& host, std::uint16_t port) {
+Result<UdpLink> UdpLink::connect(const std::string& host, std::uint16_t port, SteadyTime deadline) {
     auto name = fmt::format("{}:{}", host, port);
+    const auto found = addressesOf(host, deadline);
+    if (!found) {
+        return fail(found.error().code, fmt::format("{}: {}", name, found.error().message));
+    }
     auto context = std::make_unique<asio::io_context>();
     asio::error_code error;
-    const auto found = udp::resolver(*context).resolve(host, std::to_string(port),
-                                                       udp::resolver::numeric_service, error);
-    if (error || found.empty()) {
-        return fail(Errc::connection_lost, fmt::format("{}: {}", name, error.message()));
-    }
     udp::socket socket(*context);
-    const auto endpoint = found.begin()->endpoint();
+    const udp::endpoint endpoint(found->front(), port);
     socket.open(endpoint.protocol(), error);
     if (!error) {
         socket.connect(endpoint, error);

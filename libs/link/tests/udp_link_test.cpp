@@ -43,7 +43,7 @@ struct Peer {
 
 TEST(UdpLink, CarriesDatagramsBothWays) {
     Peer peer;
-    auto link = UdpLink::connect("127.0.0.1", peer.port()).value();
+    auto link = UdpLink::connect("127.0.0.1", peer.port(), in(5s)).value();
     ASSERT_TRUE(link.send(bytesOf("ping")));
     EXPECT_EQ(peer.hear(), "ping");
     peer.say("pong");
@@ -55,7 +55,7 @@ TEST(UdpLink, CarriesDatagramsBothWays) {
 
 TEST(UdpLink, CutsADatagramThatIsTooLong) {
     Peer peer;
-    auto link = UdpLink::connect("127.0.0.1", peer.port()).value();
+    auto link = UdpLink::connect("127.0.0.1", peer.port(), in(5s)).value();
     ASSERT_TRUE(link.send(bytesOf("ping")));
     peer.hear();
     peer.say("much too long");
@@ -65,7 +65,7 @@ TEST(UdpLink, CutsADatagramThatIsTooLong) {
 
 TEST(UdpLink, TellsWhoDidNotAnswerInTime) {
     Peer peer;
-    auto link = UdpLink::connect("127.0.0.1", peer.port()).value();
+    auto link = UdpLink::connect("127.0.0.1", peer.port(), in(5s)).value();
     std::array<std::byte, 4> buffer{};
     const auto silent = link.receive(buffer, in(20ms));
     ASSERT_FALSE(silent);
@@ -76,7 +76,7 @@ TEST(UdpLink, TellsWhoDidNotAnswerInTime) {
 TEST(UdpLink, HearsNobodyElse) {
     Peer peer;
     Peer other;
-    auto link = UdpLink::connect("127.0.0.1", peer.port()).value();
+    auto link = UdpLink::connect("127.0.0.1", peer.port(), in(5s)).value();
     ASSERT_TRUE(link.send(bytesOf("ping")));
     peer.hear();
     other.from = peer.from;
@@ -89,7 +89,7 @@ TEST(UdpLink, HearsNobodyElse) {
 TEST(UdpLink, TellsThatNobodyListens) {
     std::uint16_t port = 0;
     { port = Peer().port(); }
-    auto link = UdpLink::connect("127.0.0.1", port).value();
+    auto link = UdpLink::connect("127.0.0.1", port, in(5s)).value();
     ASSERT_TRUE(link.send(bytesOf("ping")));
     std::array<std::byte, 4> buffer{};
     const auto refused = link.receive(buffer, in(5s));
@@ -98,7 +98,7 @@ TEST(UdpLink, TellsThatNobodyListens) {
 }
 
 TEST(UdpLink, RefusesAHostThatIsNone) {
-    const auto link = UdpLink::connect("300.0.0.1", 1);
+    const auto link = UdpLink::connect("300.0.0.1", 1, in(5s));
     ASSERT_FALSE(link);
     EXPECT_EQ(link.error().code, Errc::connection_lost);
     EXPECT_THAT(link.error().message, HasSubstr("300.0.0.1:1"));
@@ -106,7 +106,7 @@ TEST(UdpLink, RefusesAHostThatIsNone) {
 
 TEST(UdpLink, DoesNotAllocateWithoutAnError) {
     Peer peer;
-    auto link = UdpLink::connect("127.0.0.1", peer.port()).value();
+    auto link = UdpLink::connect("127.0.0.1", peer.port(), in(5s)).value();
     ASSERT_TRUE(link.send(bytesOf("ping")));
     peer.hear();
     for (int i = 0; i < 100; ++i) {

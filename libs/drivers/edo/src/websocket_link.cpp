@@ -14,6 +14,9 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <cstddef>
 #include <utility>
+#include <vector>
+
+#include "metier/link/host_addresses.hpp"
 
 namespace metier::edo_driver {
 namespace {
@@ -138,7 +141,7 @@ struct WebSocketLink::Impl {
                                                         : error.message();
     }
 
-    Result<void> open(const Tcp::resolver::results_type& endpoints, SteadyTime deadline) {
+    Result<void> open(const std::vector<Tcp::endpoint>& endpoints, SteadyTime deadline) {
         boost::asio::async_connect(stream.next_layer(), endpoints, begin(writer));
         if (auto connected = finish(writer, deadline); !connected) {
             return connected;
@@ -172,12 +175,13 @@ WebSocketLink::~WebSocketLink() = default;
 Result<WebSocketLink> WebSocketLink::connect(const std::string& host, std::uint16_t port,
                                              SteadyTime deadline) {
     auto impl = std::make_unique<Impl>(fmt::format("{}:{}", host, port));
-    error_code error;
-    const auto endpoints =
-        Tcp::resolver(impl->context)
-            .resolve(host, std::to_string(port), Tcp::resolver::numeric_service, error);
-    if (error) {
-        return fail(Errc::connection_lost, fmt::format("{}: {}", impl->peer, error.message()));
+    const auto found = link::addressesOf(host, deadline);
+    if (!found) {
+        return fail(found.error().code, fmt::format("{}: {}", impl->peer, found.error().message));
+    }
+    std::vector<Tcp::endpoint> endpoints;
+    for (const auto& address : *found) {
+        endpoints.emplace_back(boost::asio::ip::make_address(address.to_string()), port);
     }
     if (auto opened = impl->open(endpoints, deadline); !opened) {
         return fail(opened.error());

@@ -17,6 +17,7 @@ using device::SafetyState;
 using device::WrenchSample;
 
 constexpr auto kPageTimeout = 1s;
+constexpr auto kConnectTimeout = 1s;
 constexpr auto kFirstRecordTimeout = 100ms;
 constexpr int kStartAttempts = 10;
 constexpr auto kTareWait = 1s;
@@ -94,7 +95,7 @@ Result<void> NetftSensor::Session::connection(const std::stop_token& stop) {
     if (!scale) {
         return fail(scale.error());
     }
-    auto link = link::UdpLink::connect(options_.host, options_.port);
+    auto link = link::UdpLink::connect(options_.host, options_.port, now() + kConnectTimeout);
     if (!link) {
         return fail(link.error());
     }

@@ -21,8 +21,10 @@ class UdpLink {
 public:
     /// Nothing is sent yet, so whether anybody is there is not known.
     /// \param host a name or an address
-    /// Errors: connection_lost if there is no such host.
-    static Result<UdpLink> connect(const std::string& host, std::uint16_t port);
+    /// Errors: connection_lost if there is no such host; timeout if its name is not resolved in
+    /// time.
+    static Result<UdpLink> connect(const std::string& host, std::uint16_t port,
+                                   SteadyTime deadline);
 
     UdpLink(UdpLink&& other) noexcept = default;
     UdpLink& operator=(UdpLink&& other) noexcept;
