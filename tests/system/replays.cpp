@@ -70,11 +70,13 @@ public:
     /// The StatusCode's name.
     std::string startWith(opcua::Client& client, const Start& start) {
         const std::vector<opcua::KeyValue> pairs{{{0, "TargetJointPosition"}, target()}};
-        return statusOf(
-            client.call(bench_.node(kSkill), bench_.node(kSkill, "StartWith"),
-                        {opcua::Value::of(start.name), opcua::Value::of(pairs),
-                         opcua::Value::of(std::int32_t{0}), opcua::Value::of(start.epoch),
-                         opcua::Value::of(start.deadline)}));
+        const auto status =
+            statusOf(client.call(bench_.node(kSkill), bench_.node(kSkill, "StartWith"),
+                                 {opcua::Value::of(start.name), opcua::Value::of(pairs),
+                                  opcua::Value::of(std::int32_t{0}), opcua::Value::of(start.epoch),
+                                  opcua::Value::of(start.deadline)}));
+        awaitReady();  // a named one begins once its name is on disk
+        return status;
     }
     std::string start(opcua::Client& client) {
         return statusOf(client.call(bench_.node(kSkill), bench_.node(kSkill, "Start")));
@@ -103,11 +105,24 @@ public:
     }
     /// How often the skill was started, once all that was sent is done; Ready again.
     std::uint64_t starts() {
+        awaitReady();
         bench_.onServer([] {});
         return starts_;
     }
 
 private:
+    /// Until nothing runs, for 10 s at most.
+    void awaitReady() {
+        constexpr std::uint32_t kReady = 12;
+        const auto deadline = steady_clock::now() + 10s;
+        const auto node = bench_.node(kSkill, "CurrentState/Number");
+        while (steady_clock::now() < deadline) {
+            const auto number = direct_->read(node);
+            if (number && number->as<std::uint32_t>() == kReady) {
+                return;
+            }
+        }
+    }
     static opcua::Value target() { return opcua::Value::of(std::vector{0.5, 0.5}); }
     static std::string statusOf(const opcua::Answer<opcua::CallResult>& answer) {
         return answer ? "Good" : answer.error().status.name();

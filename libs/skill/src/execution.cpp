@@ -10,20 +10,6 @@ namespace {
 
 const std::string kNoId;
 
-/// Has `tell` called with the sink on the owner's thread, if the execution still goes on then.
-template <typename Tell>
-void post(const std::shared_ptr<ExecutionCore>& core, Tell tell) {
-    const auto executor = core ? core->executor.lock() : nullptr;
-    if (!executor) {
-        return;
-    }
-    executor->post([core, tell = std::move(tell)]() mutable {
-        if (core->sink != nullptr) {
-            tell(*core->sink);
-        }
-    });
-}
-
 }  // namespace
 
 Execution::Execution(std::shared_ptr<ExecutionCore> core) : core_(std::move(core)) {}

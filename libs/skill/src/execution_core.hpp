@@ -26,4 +26,19 @@ struct ExecutionCore {
     ExecutionSink* sink;
 };
 
+/// Has `tell` called with the sink on the owner's thread, if the execution still goes on then. Any
+/// thread.
+template <typename Tell>
+void post(const std::shared_ptr<ExecutionCore>& core, Tell tell) {
+    const auto executor = core ? core->executor.lock() : nullptr;
+    if (!executor) {
+        return;
+    }
+    executor->post([core, tell = std::move(tell)]() mutable {
+        if (core->sink != nullptr) {
+            tell(*core->sink);
+        }
+    });
+}
+
 }  // namespace metier::skill

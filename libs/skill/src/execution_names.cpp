@@ -1,20 +1,15 @@
 #include "metier/skill/execution_names.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <utility>
+
+#include "disk_names.hpp"
+#include "name_writer.hpp"
 
 namespace metier::skill {
 
 namespace {
-
-constexpr int kPrivate = 0600;
 
 /// One line without its end, whatever the client's name holds.
 std::string entryOf(std::string_view skill, std::string_view name) {
@@ -30,76 +25,27 @@ std::string entryOf(std::string_view skill, std::string_view name) {
     return entry;
 }
 
-std::filesystem::path oldOf(const std::filesystem::path& file) {
-    return file.string() + ".old";
-}
-
-Result<void> refusedBySystem(const std::filesystem::path& file, std::string_view doing) {
-    return fail(Errc::resource_unavailable,
-                fmt::format("{}: cannot {}: {}", file.string(), doing, std::strerror(errno)));
-}
-
-struct Lines {
-    std::unordered_set<std::string> whole;
-    std::uintmax_t size = 0;  ///< of the whole lines [byte]
-};
-
-/// A line without end was cut off by a crash: its execution has not begun.
-Lines readLines(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    Lines lines;
-    std::string line;
-    while (std::getline(stream, line) && !stream.eof()) {
-        lines.size += line.size() + 1;
-        lines.whole.insert(line);
-    }
-    return lines;
-}
-
 }  // namespace
+
+ExecutionNames::ExecutionNames(std::size_t least) : least_(least) {}
+
+ExecutionNames::ExecutionNames(std::unique_ptr<NameFile> file, const Options& options)
+    : least_(options.least),
+      writer_(std::make_unique<NameWriter>(std::move(file), options.longest_write)) {}
+
+ExecutionNames::~ExecutionNames() = default;
 
 Result<std::unique_ptr<ExecutionNames>> ExecutionNames::open(const std::filesystem::path& file,
                                                              std::size_t least) {
-    std::error_code error;
-    if (file.has_parent_path()) {
-        std::filesystem::create_directories(file.parent_path(), error);
-    }
-    auto names = std::make_unique<ExecutionNames>(least);
-    names->file_ = file;
-    if (auto opened = names->openFile(); !opened) {
+    DiskNames::Known known;
+    auto opened = DiskNames::open(file, known);
+    if (!opened) {
         return fail(std::move(opened.error()));
     }
-    auto lines = readLines(file);
-    names->newer_ = std::move(lines.whole);
-    names->older_ = readLines(oldOf(file)).whole;
-    names->size_ = lines.size;
-    if (::ftruncate(names->descriptor_, static_cast<off_t>(lines.size)) != 0) {
-        return fail(refusedBySystem(file, "mend it").error());
-    }
+    auto names = std::make_unique<ExecutionNames>(std::move(*opened), Options{.least = least});
+    names->newer_ = std::move(known.newer);
+    names->older_ = std::move(known.older);
     return names;
-}
-
-ExecutionNames::~ExecutionNames() {
-    closeFile();
-}
-
-void ExecutionNames::closeFile() {
-    if (descriptor_ >= 0) {
-        ::close(std::exchange(descriptor_, -1));
-    }
-    size_ = 0;
-}
-
-/// The lock ends with the process, however that ends.
-Result<void> ExecutionNames::openFile() {
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kPrivate);
-    if (descriptor_ < 0) {
-        return refusedBySystem(file_, "open it");
-    }
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-        return refusedBySystem(file_, "have it alone");
-    }
-    return {};
 }
 
 bool ExecutionNames::knows(std::string_view skill, std::string_view name) const {
@@ -107,53 +53,27 @@ bool ExecutionNames::knows(std::string_view skill, std::string_view name) const 
     return newer_.contains(entry) || older_.contains(entry);
 }
 
-Result<void> ExecutionNames::note(std::string_view skill, std::string_view name) {
+Result<ExecutionNames::Keeping> ExecutionNames::note(std::string_view skill, std::string_view name,
+                                                     OnKept on_kept) {
     auto entry = entryOf(skill, name);
-    if (newer_.size() >= least_) {
-        if (auto begun = beginAnew(); !begun) {
-            return begun;
+    const bool full = newer_.size() >= least_;
+    if (writer_) {
+        auto added = writer_->add({entry + "\n", full, std::move(on_kept)});
+        if (!added) {
+            return fail(std::move(added.error()));
         }
     }
-    if (!file_.empty()) {
-        if (auto written = append(entry + "\n"); !written) {
-            return written;
-        }
+    if (full) {
+        older_ = std::exchange(newer_, {});
     }
     newer_.insert(std::move(entry));
-    return {};
+    return writer_ ? Keeping::under_way : Keeping::kept;
 }
 
-Result<void> ExecutionNames::append(const std::string& line) {
-    const auto written = ::write(descriptor_, line.data(), line.size());
-    if (written == static_cast<ssize_t>(line.size())) {
-        size_ += line.size();
-        return {};
-    }
-    auto refused = refusedBySystem(file_, "note a start");
-    // Part of a line would swallow the next one. If this fails, too, no execution has begun.
-    if (written > 0 && ::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) {
-        return refusedBySystem(file_, "take back a part of a line");
-    }
-    return refused;
-}
-
-Result<void> ExecutionNames::beginAnew() {
-    if (!file_.empty()) {
-        std::error_code error;
-        if (std::filesystem::exists(file_)) {
-            std::filesystem::rename(file_, oldOf(file_), error);
-        }
-        if (error) {
-            return fail(Errc::resource_unavailable, fmt::format("{}: cannot begin it anew: {}",
-                                                                file_.string(), error.message()));
-        }
-        closeFile();
-        if (auto opened = openFile(); !opened) {
-            return opened;
-        }
-    }
-    older_ = std::exchange(newer_, {});
-    return {};
+void ExecutionNames::forget(std::string_view skill, std::string_view name) {
+    const auto entry = entryOf(skill, name);
+    newer_.erase(entry);
+    older_.erase(entry);
 }
 
 std::string forgottenText(std::string_view name) {

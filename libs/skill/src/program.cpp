@@ -107,7 +107,7 @@ Program::~Program() {
         options_.control->detach(*this);
     }
     busy_ = true;
-    if (body_ && state_ == State::running) {
+    if (body_started_ && state_ == State::running) {
         body_->forceStop();
     }
     endExecution();

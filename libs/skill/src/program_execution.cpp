@@ -94,8 +94,12 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
     if (!*body) {
         return metier::fail(Errc::internal, "the skill made no body");
     }
-    if (!order.id.empty()) {
-        if (auto noted = options_.names->note(description_.name, order.id); !noted) {
+    const bool named = !order.id.empty();
+    auto core = std::make_shared<ExecutionCore>(
+        executor_, named ? std::move(order.id) : fmt::format("{}-{}", boot_id_, ++execution_count_),
+        static_cast<ExecutionSink&>(*this));
+    if (named) {
+        if (auto noted = noteName(core); !noted) {
             return noted;
         }
     }
@@ -103,10 +107,8 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
         options_.resource->acquire(description_.name);
     }
     body_ = std::move(*body);
-    execution_id_ =
-        order.id.empty() ? fmt::format("{}-{}", boot_id_, ++execution_count_) : std::move(order.id);
-    execution_ = std::make_shared<ExecutionCore>(executor_, execution_id_,
-                                                 static_cast<ExecutionSink&>(*this));
+    execution_ = std::move(core);
+    execution_id_ = execution_->id;
     owner_session_ = caller.session_id;
     on_owner_loss_ = order.on_owner_loss;
     history_.add({.id = execution_id_,
@@ -117,8 +119,53 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
     notify([this](ProgramObserver& observer) { observer.onBegin(history_.last()); });
     commit(TransitionNumber::ready_to_running, {});
     releaseParameters();
-    startBody();
+    if (name_kept_) {
+        startBody();
+    } else {
+        name_timer_ = executor_->after(options_.name_deadline,
+                                       [this] { inTurn([this] { nameDeadlinePassed(); }); });
+    }
     return {};
+}
+
+/// Has the name written. The body starts when it is there: an execution of which nobody knows after
+/// the death of the process has moved nothing.
+Result<void> Program::noteName(const std::shared_ptr<ExecutionCore>& core) {
+    const auto noted =
+        options_.names->note(description_.name, core->id, [core](const Result<void>& kept) {
+            post(core, [kept](ExecutionSink& sink) { sink.onNameKept(kept); });
+        });
+    if (!noted) {
+        return metier::fail(noted.error());
+    }
+    name_kept_ = *noted == ExecutionNames::Keeping::kept;
+    return {};
+}
+
+void Program::onNameKept(Result<void> kept) {
+    inTurn([this, kept = std::move(kept)] {
+        if (!body_ || name_kept_) {
+            return;
+        }
+        name_timer_.cancel();
+        if (!kept) {
+            options_.names->forget(description_.name, execution_->id);
+            halted({Reason::error, kept.error().message + "; nothing has moved"});
+            return;
+        }
+        name_kept_ = true;
+        if (state_ == State::running) {
+            startBody();
+        }
+    });
+}
+
+void Program::nameDeadlinePassed() {
+    if (body_ && !name_kept_) {
+        halted({Reason::error, fmt::format("the name of the execution is not on disk after {} ms; "
+                                           "nothing has moved",
+                                           options_.name_deadline.count())});
+    }
 }
 
 CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
@@ -155,6 +202,7 @@ Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& para
 }
 
 void Program::startBody() {
+    body_started_ = true;
     const auto begun = guarded([this] { body_->start(Execution(execution_)); });
     if (!begun) {
         forceHalted({Reason::error, begun.error().message});
@@ -222,6 +270,9 @@ std::string Program::whyHalting() const {
 /// Lets go of body and device; the execution's handles go nowhere from here on.
 void Program::endExecution() {
     rest_timer_.cancel();
+    name_timer_.cancel();
+    name_kept_ = true;
+    body_started_ = false;
     halting_.reset();
     suspending_.reset();
     finished_while_suspended_.reset();
@@ -249,7 +300,9 @@ void Program::halted(Cause cause) {
 }
 
 void Program::forceHalted(Cause cause) {
-    body_->forceStop();
+    if (body_started_) {
+        body_->forceStop();
+    }
     halted(std::move(cause));
 }
 
@@ -257,6 +310,10 @@ Result<void> Program::suspendNow(Cause cause) {
     if (!description_.suspendable) {
         return metier::fail(Errc::not_supported,
                             fmt::format("{} cannot be suspended", description_.name));
+    }
+    if (!body_started_) {
+        commit(TransitionNumber::running_to_suspended, std::move(cause));
+        return {};
     }
     ++execution_->stop_request;
     if (auto asked = guarded([this] { return body_->suspend(); }); !asked) {
@@ -276,13 +333,18 @@ Result<void> Program::resumeNow(const Caller& caller) {
         finished(std::move(result));
         return {};
     }
-    if (auto resumed = guarded([this] { return body_->resume(); }); !resumed) {
-        return resumed;
+    if (body_started_) {
+        if (auto resumed = guarded([this] { return body_->resume(); }); !resumed) {
+            return resumed;
+        }
     }
     if (owner_session_.empty()) {
         owner_session_ = caller.session_id;
     }
     commit(TransitionNumber::suspended_to_running, {});
+    if (!body_started_ && name_kept_) {
+        startBody();
+    }
     return {};
 }
 
@@ -300,6 +362,10 @@ Result<void> Program::haltNow() {
 
 /// Has a running body brake; Halted with `cause` follows at standstill.
 void Program::brake(Cause cause) {
+    if (!body_started_) {
+        halted(std::move(cause));
+        return;
+    }
     halting_ = std::move(cause);
     if (sub_state_ != SubState::stopping) {
         ++execution_->stop_request;
@@ -341,7 +407,7 @@ void Program::onAtRest(std::uint32_t stop_request) {
 }
 
 void Program::giveUpSuspended() {
-    if (!guarded([this] { body_->halt(); })) {
+    if (body_started_ && !guarded([this] { body_->halt(); })) {
         body_->forceStop();
     }
 }

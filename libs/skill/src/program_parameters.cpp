@@ -65,20 +65,34 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
     if (auto allowed = checkControl(caller); !allowed) {
         return allowed;
     }
+    if (!body_started_) {
+        return metier::fail(Errc::invalid_state,
+                            "the execution has not begun: its name is not on disk yet");
+    }
+    auto taken = takeLive(field, live);
+    if (!taken) {
+        static_cast<void>(guarded([&] { body_->inputRefused(field.name, taken.error()); }));
+        return metier::fail(std::move(taken.error()));
+    }
+    const Value& held = parameters_.write(field, std::move(*taken));
+    notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
+    return {};
+}
+
+/// \return the value that the body has taken
+Result<Value> Program::takeLive(const Field& field, const LiveValue& live) {
     if (auto checked = checkValue(field, live.value); !checked) {
-        return checked;
+        return metier::fail(std::move(checked.error()));
     }
     auto used = valueOrDefault(field, live.value);
     if (!used) {
-        return metier::fail(std::move(used.error()));
+        return used;
     }
     LiveValue given{std::move(*used), live.meant_for};
     if (auto taken = guarded([&] { return body_->input(field.name, given); }); !taken) {
-        return taken;
+        return metier::fail(std::move(taken.error()));
     }
-    const Value& held = parameters_.write(field, std::move(given.value));
-    notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
-    return {};
+    return std::move(given.value);
 }
 
 void Program::armConfigurationTimeout(std::chrono::nanoseconds delay) {

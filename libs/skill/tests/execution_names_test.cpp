@@ -6,6 +6,8 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <future>
+#include <memory>
 #include <string>
 
 #include "program_bench.hpp"
@@ -29,6 +31,19 @@ protected:
         return std::move(names.value());
     }
 
+    /// Notes a name and waits until it is in the file; it is forgotten if it is not.
+    static Result<void> keep(ExecutionNames& names, std::string_view skill, std::string_view name) {
+        const auto kept = std::make_shared<std::promise<Result<void>>>();
+        auto outcome = kept->get_future();
+        const auto noted = names.note(
+            skill, name, [kept](Result<void> result) { kept->set_value(std::move(result)); });
+        auto result = noted ? outcome.get() : metier::fail(noted.error());
+        if (!result) {
+            names.forget(skill, name);
+        }
+        return result;
+    }
+
     const std::filesystem::path folder_ =
         std::filesystem::path(::testing::TempDir()) /
         (std::string("names_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
@@ -36,7 +51,7 @@ protected:
 };
 
 TEST_F(KeptNames, OutliveTheServerThatNotedThem) {
-    ASSERT_TRUE(open()->note("Weld", "order 66"));
+    ASSERT_TRUE(keep(*open(), "Weld", "order 66"));
     const auto names = open();
     EXPECT_TRUE(names->knows("Weld", "order 66"));
     EXPECT_FALSE(names->knows("Weld", "order 67"));
@@ -45,7 +60,7 @@ TEST_F(KeptNames, OutliveTheServerThatNotedThem) {
 
 TEST_F(KeptNames, MayHoldAnyCharacter) {
     const std::string strange = std::string("a\nb\tc%0ad\\") + '\0' + "ß";
-    ASSERT_TRUE(open()->note("Weld", strange));
+    ASSERT_TRUE(keep(*open(), "Weld", strange));
     const auto names = open();
     EXPECT_TRUE(names->knows("Weld", strange));
     EXPECT_FALSE(names->knows("Weld", "b"));
@@ -53,9 +68,9 @@ TEST_F(KeptNames, MayHoldAnyCharacter) {
 }
 
 TEST_F(KeptNames, AreWrittenWholeAfterALineThatACrashHasCutOff) {
-    ASSERT_TRUE(open()->note("Weld", "whole"));
+    ASSERT_TRUE(keep(*open(), "Weld", "whole"));
     std::ofstream(file_, std::ios::app) << "Weld\tcut o";
-    ASSERT_TRUE(open()->note("Weld", "next"));
+    ASSERT_TRUE(keep(*open(), "Weld", "next"));
     const auto names = open();
     EXPECT_TRUE(names->knows("Weld", "whole"));
     EXPECT_TRUE(names->knows("Weld", "next"));
@@ -85,16 +100,16 @@ private:
 TEST_F(KeptNames, AreWrittenWholeAfterALineForWhichTheDiskHadNoRoom) {
     {
         const auto names = open();
-        ASSERT_TRUE(names->note("Weld", "whole"));
+        ASSERT_TRUE(keep(*names, "Weld", "whole"));
         Result<void> refused;
         {
             const FullDisk disk(std::filesystem::file_size(file_) + 8);
-            refused = names->note("Weld", "too long for what is left");
+            refused = keep(*names, "Weld", "too long for what is left");
         }
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
         EXPECT_FALSE(names->knows("Weld", "too long for what is left"));
-        ASSERT_TRUE(names->note("Weld", "next"));
+        ASSERT_TRUE(keep(*names, "Weld", "next"));
     }
     const auto names = open();
     EXPECT_TRUE(names->knows("Weld", "whole"));
@@ -120,7 +135,7 @@ TEST_F(KeptNames, AreAtLeastTheLatestAndNotAll) {
     constexpr int least = 10;
     auto names = open(least);
     for (int i = 1; i <= 35; ++i) {
-        ASSERT_TRUE(names->note("Weld", std::to_string(i)));
+        ASSERT_TRUE(keep(*names, "Weld", std::to_string(i)));
         for (int earlier = std::max(1, i - least + 1); earlier <= i; ++earlier) {
             ASSERT_TRUE(names->knows("Weld", std::to_string(earlier))) << earlier << " of " << i;
         }

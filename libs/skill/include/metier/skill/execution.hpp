@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "metier/base/error.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/parent_execution.hpp"
 #include "metier/skill/state.hpp"
@@ -22,6 +23,8 @@ public:
     virtual void onProgress(Value intermediate) = 0;
     virtual void onStep(std::string name) = 0;
     virtual void onStarted(StartedExecution child) = 0;
+    /// The name of the execution is on disk, or why it is not.
+    virtual void onNameKept(Result<void> kept) = 0;
 };
 
 struct ExecutionCore;

@@ -36,6 +36,8 @@ struct ProgramOptions {
     std::chrono::milliseconds configuration_timeout{10'000};
     /// How long a body may take to come to rest before the device's own stop is used.
     std::chrono::milliseconds rest_deadline{5'000};
+    /// How long the name of an execution may take to be on disk before the execution is given up.
+    std::chrono::milliseconds name_deadline{1'000};
     /// Who made the Program; empty: the server itself.
     Caller creator{};
 };
@@ -167,6 +169,7 @@ private:
     void onProgress(Value intermediate) override;
     void onStep(std::string name) override;
     void onStarted(StartedExecution child) override;
+    void onNameKept(Result<void> kept) override;
     void onControlLost(std::string_view session, OwnerLossAction action,
                        const std::string& text) override;
 
@@ -187,6 +190,7 @@ private:
 
     Result<void> writeReady(const Caller& caller, const Field& field, Value value);
     Result<void> writeLive(const Caller& caller, const Field& field, const LiveValue& live);
+    Result<Value> takeLive(const Field& field, const LiveValue& live);
     Result<void> startNow(const Caller& caller);
     Result<void> startWithNow(const Caller& caller, StartRequest& request);
     Result<void> checkFree(const Caller& caller) const;
@@ -198,7 +202,9 @@ private:
         ParentExecution parent{};
     };
     Result<void> begin(const Caller& caller, std::shared_ptr<const ValueMap> snapshot, Order order);
+    Result<void> noteName(const std::shared_ptr<ExecutionCore>& core);
     void startBody();
+    void nameDeadlinePassed();
     Result<CheckReport> checkNow(const Caller& caller, const ValueMap& parameters);
     Result<void> suspendNow(Cause cause);
     void actOnOwnerLoss(OwnerLossAction action, std::string text);
@@ -256,6 +262,8 @@ private:
     // Shared with the body's handles; the Program takes itself out when the execution ends.
     std::shared_ptr<ExecutionCore> execution_;
     std::unique_ptr<Body> body_;
+    bool name_kept_ = true;      ///< of the execution under way: its body may start
+    bool body_started_ = false;  ///< nothing moves before
     std::optional<Cause> halting_;
     std::optional<Cause> suspending_;
     std::optional<ValueMap> finished_while_suspended_;
@@ -263,6 +271,7 @@ private:
     SteadyTime last_write_;
     Timer configuration_timer_;
     Timer rest_timer_;
+    Timer name_timer_;
     bool busy_ = false;
     bool diagnostic_told_ = true;
     std::vector<std::function<void()>> deferred_;

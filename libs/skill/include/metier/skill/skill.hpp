@@ -76,6 +76,11 @@ public:
         static_cast<void>(live);
         return fail(Errc::not_supported, std::string(parameter) + " is not taken while Running");
     }
+    /// A live value was refused, by a check of its field or by input(). The client got the error.
+    virtual void inputRefused(std::string_view parameter, const Error& why) {
+        static_cast<void>(parameter);
+        static_cast<void>(why);
+    }
 };
 
 /// A skill: what it is, and how to begin. Owned by its Program.
@@ -97,8 +102,9 @@ public:
         const auto body = prepare(snapshot);
         return body ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(body.error()));
     }
-    /// Clears a fault, as far as the device agrees that it is gone.
-    /// Errors: why not; the Program stays Halted and tells it.
+    /// Clears a fault, as far as the device agrees that it is gone. Does not wait for the device.
+    /// Errors: timeout: the device has begun and is not done, the next call gives its outcome; else
+    /// why not. The Program stays Halted and tells it.
     virtual Result<void> reset() { return {}; }
 };
 
