@@ -9,15 +9,15 @@
 
 #include <array>
 #include <cmath>
-#include <condition_variable>
 #include <cstdlib>
-#include <mutex>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <thread>
 
 #include "metier/device/arm_core.hpp"
 #include "metier/device/notifier.hpp"
+#include "metier/device/reset_desk.hpp"
 #include "metier/driver/driver.hpp"
 #include "metier/link/back_off.hpp"
 #include "metier/link/tcp_link.hpp"
@@ -134,14 +134,13 @@ public:
         if (core_.safetyState() == SafetyState::disconnected) {
             return fail(Errc::connection_lost, core_.safety().text);
         }
-        reset_requested_.store(true);
-        std::unique_lock lock(safety_mutex_);
-        safety_changed_.wait_for(lock, kResetAnswer,
-                                 [this] { return core_.safetyState() == SafetyState::normal; });
-        if (core_.safetyState() != SafetyState::normal) {
-            return fail(Errc::device_fault, core_.safety().text);
+        if (core_.safetyState() == SafetyState::normal) {
+            return {};
         }
-        return {};
+        if (auto outcome = resets_.ask()) {
+            return std::move(*outcome);
+        }
+        return fail(Errc::timeout, info().name + ": the reset goes on, ask again");
     }
     device::Registration onSafetyChange(SafetyCallback callback) override {
         return core_.onSafetyChange(std::move(callback));
@@ -154,6 +153,7 @@ private:
                 link::TcpLink::connect(address_, port_, std::chrono::steady_clock::now() + 1s);
             auto why = link ? converse(*link, stop) : link.error();
             core_.setSafety({SafetyState::disconnected, info().name + ": " + why.message});
+            endReset(fail(Errc::connection_lost, core_.safety().text));
             core_.end(EndCause::disconnected);
             notifier_.signal();
             link::waitFor(stop, kPauseBeforeRetry);
@@ -183,9 +183,11 @@ private:
     /// Once per state of the controller. Neither allocates nor locks while nothing is wrong.
     Result<void> cycle(const State& state, link::TcpLink& link) {
         noteSafety(state);
+        noteReset(state);
         publish(state);
         const auto deadline = std::chrono::steady_clock::now() + kCycle;
-        if (reset_requested_.exchange(false)) {
+        if (resets_.taken()) {
+            reset_deadline_ = std::chrono::steady_clock::now() + kResetAnswer;
             constexpr std::string_view kReset = "RESET\n";
             return link.send(std::as_bytes(std::span(kReset)), deadline);
         }
@@ -223,10 +225,21 @@ private:
         if (now == core_.safetyState()) {
             return;
         }
-        const std::lock_guard lock(safety_mutex_);
         core_.setSafety({now, state.running ? "" : info().name + ": the controller is in STOP"});
-        safety_changed_.notify_all();
         notifier_.signal();
+    }
+
+    void noteReset(const State& state) {
+        if (reset_deadline_ && state.running) {
+            endReset({});
+        } else if (reset_deadline_ && std::chrono::steady_clock::now() > *reset_deadline_) {
+            endReset(fail(Errc::device_fault, core_.safety().text));
+        }
+    }
+
+    void endReset(Result<void> outcome) {
+        reset_deadline_.reset();
+        resets_.answer(std::move(outcome));
     }
 
     void publish(const State& state) {
@@ -250,9 +263,8 @@ private:
     const std::uint16_t port_;
     const std::chrono::nanoseconds longest_silence_;
     ArmState state_{JointArray(kAxes), JointArray(kAxes), JointArray(kAxes)};  // of the thread
-    std::atomic<bool> reset_requested_{false};
-    std::mutex safety_mutex_;  // of the wait for a reset
-    std::condition_variable safety_changed_;
+    std::optional<SteadyTime> reset_deadline_;  // of the reset that was sent
+    device::ResetDesk resets_;
     device::Notifier notifier_;
     std::jthread thread_;
 };

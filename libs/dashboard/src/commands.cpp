@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <future>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "metier/opcua/text.hpp"
@@ -75,6 +77,24 @@ Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person&
         return fail(skill.error());
     }
     return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
+}
+
+opcua::Answer<> callOnce(const skill_client::AsyncSkill& skill, skill::Method method) {
+    return awaitAnswer<void>([&](auto done) { return skill.call(method, std::move(done)); });
+}
+
+/// Asks again while the device takes its time, for a second at most.
+opcua::Answer<> resetUntilDone(const skill_client::AsyncSkill& skill) {
+    constexpr std::chrono::milliseconds kPause{20};
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    auto asked = callOnce(skill, skill::Method::reset);
+    while (!asked && asked.error().code == Errc::timeout &&
+           asked.error().delivery == opcua::Failure::Delivery::answered &&
+           std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(kPause);
+        asked = callOnce(skill, skill::Method::reset);
+    }
+    return asked;
 }
 
 }  // namespace
@@ -172,8 +192,8 @@ Reply Commands::call(skill::Method method, const json& body,
     if (!named) {
         return errorReply(named.error());
     }
-    const auto called =
-        awaitAnswer<void>([&](auto done) { return named->skill->call(method, std::move(done)); });
+    const auto called = method == skill::Method::reset ? resetUntilDone(*named->skill)
+                                                       : callOnce(*named->skill, method);
     return called ? Reply{}
                   : errorReply(explained(called.error(), *named->skill, toString(method)));
 }

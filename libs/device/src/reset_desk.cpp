@@ -14,8 +14,8 @@ SteadyTime now() {
 
 }  // namespace
 
-std::optional<Result<void>> ResetDesk::ask(std::chrono::nanoseconds longest) {
-    std::unique_lock lock(mutex_);
+std::optional<Result<void>> ResetDesk::ask() {
+    const std::lock_guard lock(mutex_);
     if (!under_way_ && now() < std::exchange(unread_until_, {})) {
         return outcome_;
     }
@@ -23,11 +23,7 @@ std::optional<Result<void>> ResetDesk::ask(std::chrono::nanoseconds longest) {
         under_way_ = true;
         wanted_.store(true);
     }
-    const auto before = answers_;
-    ++waiting_;
-    const bool answered = answered_.wait_for(lock, longest, [&] { return answers_ != before; });
-    --waiting_;
-    return answered ? std::optional(outcome_) : std::nullopt;
+    return std::nullopt;
 }
 
 bool ResetDesk::underWay() const {
@@ -36,19 +32,15 @@ bool ResetDesk::underWay() const {
 }
 
 void ResetDesk::answer(Result<void> outcome) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (!under_way_) {
-            return;
-        }
-        wanted_.store(false);
-        under_way_ = false;
-        ++answers_;
-        outcome_ = std::move(outcome);
-        // A success shows in the safety state, and must not be taken for the end of a later fault.
-        unread_until_ = waiting_ == 0 && !outcome_ ? now() + kKept : SteadyTime{};
+    const std::lock_guard lock(mutex_);
+    if (!under_way_) {
+        return;
     }
-    answered_.notify_all();
+    wanted_.store(false);
+    under_way_ = false;
+    outcome_ = std::move(outcome);
+    // A success shows in the safety state, and must not be taken for the end of a later fault.
+    unread_until_ = outcome_ ? SteadyTime{} : now() + kKept;
 }
 
 }  // namespace metier::device

@@ -14,7 +14,8 @@ using device::Safety;
 using device::SafetyState;
 
 constexpr auto kIdlePause = 100ms;
-constexpr auto kResetWait = 250ms;
+// How long the server's safety state may take to follow its Reset.
+constexpr auto kResetWait = 2s;
 // How long a stream goes on at rest after a motion, so that the next one finds it.
 constexpr auto kLinger = 500ms;
 // How long a silent stream may take to be Ready again.
@@ -109,22 +110,19 @@ void RemoteArm::Worker::stop() noexcept {
 }
 
 Result<void> RemoteArm::Worker::resetFault() {
-    std::promise<Result<void>> promise;
-    auto answer = promise.get_future();
-    {
-        const std::lock_guard lock(mutex_);
-        if (safety_.state == SafetyState::disconnected) {
-            return fail(Errc::connection_lost, safety_.text);
-        }
-        asked_reset_ =
-            PendingReset{std::move(promise), std::chrono::steady_clock::now() + kResetWait};
+    const auto now = safety();
+    if (now.state == SafetyState::disconnected) {
+        return fail(Errc::connection_lost, now.text);
+    }
+    if (now.state == SafetyState::normal) {
+        return {};
+    }
+    if (auto outcome = resets_.ask()) {
+        return std::move(*outcome);
     }
     bell_->ring();
-    if (answer.wait_for(2 * kResetWait) != std::future_status::ready) {
-        return fail(Errc::timeout, fmt::format("{}: {} did not answer Reset within {} ms",
-                                               info_.name, options_.url, 2 * kResetWait.count()));
-    }
-    return answer.get();
+    return fail(Errc::timeout, fmt::format("{}: the reset goes on at {}, ask again ({})",
+                                           info_.name, options_.url, now.text));
 }
 
 device::Registration RemoteArm::Worker::onSafetyChange(device::Arm::SafetyCallback callback) {
@@ -205,6 +203,9 @@ void RemoteArm::Worker::observe() {
         noteAbsence(Absence{std::chrono::steady_clock::now()});
         letGo(EndCause::disconnected);
         session_.reset();
+        if (reset_deadline_) {
+            endReset(fail(Errc::connection_lost, safety().text));
+        }
         return;
     }
     if (state_.safety != SafetyState::normal) {
@@ -306,18 +307,15 @@ void RemoteArm::Worker::publish() {
 
 void RemoteArm::Worker::takeRequests() {
     bool stop_asked = false;
-    std::optional<PendingReset> asked;
     {
         const std::lock_guard lock(mutex_);
         stop_asked = std::exchange(stop_asked_, false);
-        asked = std::exchange(asked_reset_, std::nullopt);
         if (pending_ != nullptr) {
             source_ = std::exchange(pending_, nullptr);
             settled_ = false;
         }
     }
-    if (asked) {
-        reset_ = std::move(asked);
+    if (resets_.taken()) {
         beginReset();
     }
     if (stop_asked && source_ != nullptr) {
@@ -326,8 +324,10 @@ void RemoteArm::Worker::takeRequests() {
 }
 
 void RemoteArm::Worker::beginReset() {
+    reset_deadline_ = std::chrono::steady_clock::now() + kResetWait;
     if (session_ == nullptr) {
-        return;  // answered at the deadline or once connected
+        endReset(fail(Errc::connection_lost, safety().text));
+        return;
     }
     const auto state = session_->streamState();
     // A skill that is Ready while its arm is stopped resets the arm by way of Halted.
@@ -338,8 +338,7 @@ void RemoteArm::Worker::beginReset() {
         reset = session_->resetStream();
     }
     if (!state || !reset) {
-        reset_->answer.set_value(fail(state ? reset.error() : state.error()));
-        reset_.reset();
+        endReset(fail(state ? reset.error() : state.error()));
         return;
     }
     fault_.clear();
@@ -348,17 +347,19 @@ void RemoteArm::Worker::beginReset() {
 
 /// The server's safety state follows its Reset a moment later: only then the fault is gone.
 void RemoteArm::Worker::answerReset() {
-    if (!reset_) {
+    if (!reset_deadline_) {
         return;
     }
     if (state_.safety == SafetyState::normal) {
-        reset_->answer.set_value({});
-    } else if (std::chrono::steady_clock::now() > reset_->deadline) {
-        reset_->answer.set_value(fail(Errc::device_fault, safety().text));
-    } else {
-        return;
+        endReset({});
+    } else if (std::chrono::steady_clock::now() > *reset_deadline_) {
+        endReset(fail(Errc::device_fault, safety().text));
     }
-    reset_.reset();
+}
+
+void RemoteArm::Worker::endReset(Result<void> outcome) {
+    reset_deadline_.reset();
+    resets_.answer(std::move(outcome));
 }
 
 void RemoteArm::Worker::stopNow() {
@@ -409,7 +410,7 @@ SteadyTime RemoteArm::Worker::nextWake() const {
         return stream_start_ + sent_ * info_.cycle;
     }
     // What is under way is looked at often, so that its end and its deadline are seen in time.
-    const bool busy = source_ != nullptr || reset_ || state_.safety != SafetyState::normal;
+    const bool busy = source_ != nullptr || state_.safety != SafetyState::normal;
     return std::chrono::steady_clock::now() + (busy ? 10ms : kIdlePause);
 }
 

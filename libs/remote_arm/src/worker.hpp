@@ -1,6 +1,5 @@
 #pragma once
 
-#include <future>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -10,6 +9,7 @@
 
 #include "doorbell.hpp"
 #include "metier/device/arm.hpp"
+#include "metier/device/reset_desk.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/remote_arm/remote_arm.hpp"
 #include "stream_session.hpp"
@@ -42,11 +42,6 @@ private:
         running,
         ending,  ///< silent; the skill is Ready soon
     };
-    struct PendingReset {
-        std::promise<Result<void>> answer;
-        SteadyTime deadline;
-    };
-
     void run(const std::stop_token& stop);
     void reconnect(const std::stop_token& stop);
     /// Empty, or in which way what a server tells now is not the arm that it was.
@@ -62,6 +57,7 @@ private:
     void serveSource();
     void beginReset();
     void answerReset();
+    void endReset(Result<void> outcome);
     void stopNow();
 
     void startStream();
@@ -80,12 +76,12 @@ private:
     const device::ArmInfo info_;
     device::SharedValue<device::ArmState> published_;
 
+    device::ResetDesk resets_;
     mutable std::mutex mutex_;
     std::string owner_;  // ApplicationUri of the server whose motions these are
     bool stop_asked_ = false;
     bool taken_ = false;  // a source is attached or about to be
     std::shared_ptr<device::SetPointSource> pending_;
-    std::optional<PendingReset> asked_reset_;
     device::Safety safety_;
     std::optional<Absence> absence_;
     struct Listener {
@@ -99,7 +95,7 @@ private:
     device::ArmState state_;
     SteadyTime sampled_;  // when its position was measured
     std::shared_ptr<device::SetPointSource> source_;
-    std::optional<PendingReset> reset_;
+    std::optional<SteadyTime> reset_deadline_;  // of the reset that has begun
     Stream stream_ = Stream::none;
     bool settled_ = false;  // the last source came to its end, where the arm stands
     bool halted_by_stop_ = false;

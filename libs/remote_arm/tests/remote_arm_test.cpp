@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 
 #include "served_arm.hpp"
 
@@ -109,6 +111,18 @@ bool awaitText(RemoteArm& arm, const std::string& part) {
         arm, [&](const device::Safety& said) { return said.text.find(part) != std::string::npos; });
 }
 
+/// Asks for a reset until its outcome is there, at most 10 s.
+Result<void> resetUntilDone(RemoteArm& arm) {
+    const auto deadline = soon();
+    auto reset = arm.resetFault();
+    while (!reset && reset.error().code == Errc::timeout &&
+           std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::yield();
+        reset = arm.resetFault();
+    }
+    return reset;
+}
+
 TEST(RemoteArm, ReadsWhatTheArmIsLikeFromItsServer) {
     const ServedArm served;
     const auto arm = RemoteArm::connect({.url = served.url()});
@@ -180,11 +194,30 @@ TEST(RemoteArm, EndsTheMotionAtAProtectiveStopAndMovesAgainAfterReset) {
     EXPECT_NE(arm->safety().state, SafetyState::normal);
     EXPECT_FALSE(arm->safety().text.empty());
     EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 60)));
-    const auto reset = arm->resetFault();
+    const auto reset = resetUntilDone(*arm);
     ASSERT_TRUE(reset) << reset.error().message;
     const auto again = std::make_shared<SmoothMove>(0.1, 60);
     ASSERT_TRUE(arm->attach(again));
     EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+TEST(RemoteArm, HoldsUpNobodyWhoAsksForAResetThatItsServerDoesNotAnswer) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    served.arm().protectiveStop("a hand in the light curtain");
+    ASSERT_TRUE(awaitSafety(*arm, SafetyState::protective_stop));
+    auto shortest = std::chrono::nanoseconds::max();
+    {
+        const auto busy = served.keepBusy();
+        for (int i = 0; i < 5; ++i) {  // one of them is not held up by other work of the machine
+            const auto before = std::chrono::steady_clock::now();
+            EXPECT_EQ(arm->resetFault().error().code, Errc::timeout);
+            shortest = std::min(shortest, std::chrono::steady_clock::now() - before);
+        }
+    }
+    EXPECT_LT(shortest, 20ms) << "a server's thread asks";
+    const auto reset = resetUntilDone(*arm);
+    EXPECT_TRUE(reset) << reset.error().message;
 }
 
 TEST(RemoteArm, TellsThatItsServerIsGoneAndFindsItAgain) {

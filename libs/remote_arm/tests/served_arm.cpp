@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <future>
 
 #include "metier/geometry/frame.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
@@ -92,6 +93,18 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
 
 ServedArm::~ServedArm() {
     skills_.reset();
+}
+
+std::shared_ptr<void> ServedArm::keepBusy() {
+    // Shared by the server's thread, which waits for its end.
+    const auto ends = std::make_shared<std::promise<void>>();
+    const auto begun = std::make_shared<std::promise<void>>();
+    server_->post([begun, ended = std::make_shared<std::future<void>>(ends->get_future())] {
+        begun->set_value();
+        ended->wait_for(10s);
+    });
+    begun->get_future().wait();
+    return {nullptr, [ends](void*) { ends->set_value(); }};
 }
 
 void ServedArm::onTransition(const skill::TransitionEvent& event) {

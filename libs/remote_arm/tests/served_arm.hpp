@@ -33,6 +33,9 @@ public:
     bool awaitStreamStart() { return awaitRunning(true); }
     bool awaitStreamEnd() { return awaitRunning(false); }
 
+    /// Holds up the server's thread until the result goes, at most 10 s.
+    std::shared_ptr<void> keepBusy();
+
 private:
     bool awaitRunning(bool wanted);
     void onTransition(const skill::TransitionEvent& event) override;

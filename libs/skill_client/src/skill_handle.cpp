@@ -20,6 +20,10 @@ using skill::Method;
 using skill::State;
 using skill::TransitionEvent;
 
+// How long a device that takes its time for a Reset is asked for the outcome, and the pause
+// between.
+constexpr auto kResetTime = std::chrono::seconds(1);
+constexpr auto kResetPause = std::chrono::milliseconds(10);
 constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes) {
@@ -315,7 +319,16 @@ Answer<> SkillHandle::halt() {
     return call(Method::halt);
 }
 Answer<> SkillHandle::reset() {
-    return call(Method::reset);
+    const auto deadline = std::chrono::steady_clock::now() + kResetTime;
+    for (;;) {
+        auto asked = call(Method::reset);
+        const bool goes_on = !asked && asked.error().code == Errc::timeout &&
+                             asked.error().delivery == Failure::Delivery::answered;
+        const auto now = std::chrono::steady_clock::now();
+        if (!goes_on || now >= deadline || awaitState(State::ready, now + kResetPause)) {
+            return goes_on && now < deadline ? Answer<>() : asked;
+        }
+    }
 }
 
 Answer<bool> SkillHandle::executable(Method method) {

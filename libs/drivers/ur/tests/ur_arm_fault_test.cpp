@@ -132,7 +132,7 @@ TEST_F(ArmTest, AResetThatTakesLongTellsSoAndGoesOn) {
     EXPECT_EQ(resetUntilDone(), "");
 }
 
-TEST_F(ArmTest, AResetThatTakesLongHoldsUpWhoAskedForAMomentOnly) {
+TEST_F(ArmTest, AResetHoldsUpNobodyWhoAsksForIt) {
     fake_.set([](auto& k) {
         k.robot_mode = 3;
         k.powers_on = false;
@@ -145,7 +145,7 @@ TEST_F(ArmTest, AResetThatTakesLongHoldsUpWhoAskedForAMomentOnly) {
         EXPECT_EQ(arm().resetFault().error().code, Errc::timeout);
         shortest = std::min(shortest, std::chrono::steady_clock::now() - before);
     }
-    EXPECT_LT(shortest, 5 * device::kResetWait);
+    EXPECT_LT(shortest, std::chrono::milliseconds(20)) << "a server's thread asks";
 }
 
 TEST_F(ArmTest, ASuccessThatNobodyHeardIsNotTheEndOfTheNextFault) {

@@ -146,8 +146,10 @@ public:
     /// source. Does nothing to an arm that stands.
     virtual void stop() noexcept = 0;
 
-    /// Asks the controller to leave a stop or fault.
-    /// Errors: device_fault, connection_lost: the text says what is still wrong.
+    /// Asks the controller to leave a stop or fault. Does not wait for it: it is called on the
+    /// thread of a server. Errors: timeout: the reset has begun or goes on, ask again for its
+    /// outcome; device_fault,
+    ///         connection_lost: the text says what is still wrong.
     virtual Result<void> resetFault() = 0;
 
     /// Calls `callback` on the arm's notifying thread after each change of the safety state.

@@ -72,7 +72,9 @@ public:
     /// Stops the motion; the jaws keep holding. Nothing happens if none runs.
     virtual void stop() noexcept = 0;
 
-    /// Asks the gripper to leave a fault. Errors: device_fault, connection_lost.
+    /// Asks the gripper to leave a fault. Does not wait for it: it is called on the thread of a
+    /// server. Errors: timeout: the reset has begun or goes on, ask again for its outcome;
+    /// device_fault, connection_lost.
     virtual Result<void> resetFault() = 0;
     /// Calls `callback` on the notifying thread after each change of the safety state.
     /// A part that is lost is such a change for nobody: see state().

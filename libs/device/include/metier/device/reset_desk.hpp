@@ -1,8 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -12,16 +10,13 @@
 
 namespace metier::device {
 
-/// Longest that resetFault() of a driver waits: it is called on the thread of a server.
-inline constexpr std::chrono::milliseconds kResetWait{40};
-
-/// Where any thread asks a driver's own thread for a reset.
+/// Place where any thread asks a driver's own thread for a reset. Nobody waits.
 class ResetDesk {
 public:
-    /// Waits for the end of a reset that begins now or already runs. If one failed a moment ago and
-    /// nobody waited for it any more, that failure is the answer.
-    /// \return nothing if it is still under way after `longest`
-    std::optional<Result<void>> ask(std::chrono::nanoseconds longest = kResetWait);
+    /// Begins a reset, unless one runs already. If one failed a moment ago and nobody has heard of
+    /// it, nothing begins, and that failure is the answer; a success shows in the safety state.
+    /// \return nothing while it is under way: ask again
+    std::optional<Result<void>> ask();
     /// Whether a reset that somebody asked for has not ended.
     bool underWay() const;
 
@@ -34,12 +29,9 @@ public:
 private:
     std::atomic<bool> wanted_{false};
     mutable std::mutex mutex_;
-    std::condition_variable answered_;
     bool under_way_ = false;
-    int waiting_ = 0;
-    std::uint64_t answers_ = 0;
     Result<void> outcome_;
-    SteadyTime unread_until_{};  // a failure that nobody heard is told to who asks next
+    SteadyTime unread_until_{};  // a failure is the answer to whoever asks next
 };
 
 }  // namespace metier::device

@@ -29,7 +29,7 @@ struct RemoteArmOptions {
 /// arm stays disconnected: whoever has planned for the former must begin anew.
 ///
 /// Threading: as device::Arm. One thread of its own is the cycle; it sends messages, so unlike
-/// that of a driver it may allocate. resetFault() waits, at most 500 ms.
+/// that of a driver it may allocate, and a request that its server answers late delays the next.
 class RemoteArm final : public device::Arm {
 public:
     /// Connects and reads what the arm is like.

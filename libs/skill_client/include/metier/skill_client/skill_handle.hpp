@@ -76,6 +76,8 @@ public:
     opcua::Answer<> suspend();
     opcua::Answer<> resume();
     opcua::Answer<> halt();
+    /// Asks again for up to 1 s while the device takes its time.
+    /// Errors: timeout, if it is not done then: it goes on, and another reset() gives its outcome.
     opcua::Answer<> reset();
     opcua::Answer<> call(skill::Method method);
     /// Whether this session may call the method now.

@@ -38,8 +38,7 @@ public:
     void stopJaws() noexcept { session_.gripperDesk().askToStop(); }
     device::GripperState gripperState() const noexcept;
 
-    /// Waits for the robot, at most device::kResetWait.
-    /// Errors: device_fault, connection_lost; timeout if it is still under way: ask again.
+    /// As device::Arm::resetFault().
     Result<void> resetFault();
 
 private:
@@ -59,7 +58,7 @@ private:
     std::jthread thread_;
 };
 
-/// The arm of an e.DO. resetFault() waits, see EdoConnection.
+/// The arm of an e.DO.
 class EdoArm final : public device::Arm {
 public:
     /// \param connection must outlive this

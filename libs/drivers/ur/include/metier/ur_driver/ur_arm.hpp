@@ -34,8 +34,7 @@ struct UrArmOptions {
 /// the driver uploads when a source is attached, over RTDE.
 ///
 /// Its cycle is driven by the controller's data packages. It connects, and connects again, by
-/// itself; it never moves by itself. resetFault() waits, at most device::kResetWait: what takes
-/// longer goes on, and the next resetFault() tells its outcome.
+/// itself; it never moves by itself.
 ///
 /// Metier observes the controller's safety and obeys it; it is not safety-rated.
 /// Source: docs/protocols/ur.md.

@@ -50,8 +50,6 @@ public:
     Result<void> release(const device::GripperRequest& request, Done done) override;
     Result<void> move(const device::GripperRequest& request, Done done) override;
     void stop() noexcept override;
-    /// Waits for the gripper, at most device::kResetWait. Errors also: timeout while it still
-    /// homes.
     Result<void> resetFault() override;
     device::Registration onSafetyChange(SafetyCallback callback) override;
 
