@@ -12,6 +12,8 @@ namespace {
 
 /// Times that differ by less are the same [s].
 constexpr double kTimeRounding = 1e-9;
+/// Joint positions that differ by less are the same [rad].
+constexpr double kSamePlace = 1e-6;
 /// Without delay: how fast the time that is played goes to that of the newest set-points: share of
 /// the difference and most in a cycle, in cycles; and from how many cycles on it goes at once.
 constexpr double kPull = 0.02;
@@ -164,6 +166,37 @@ void StreamFollower::waitFor(double time, double now) noexcept {
     const double earliest =
         now - options_.cycle.count() * (options_.playout_delay_cycles - 1) - time;
     offset_ = std::max(offset_, earliest);
+}
+
+Seconds StreamFollower::lagOf(Seconds intended_time, Seconds now) const noexcept {
+    return knot_count_ == 0 || withoutDelay() ? Seconds(0) : intended_time + Seconds(offset_) - now;
+}
+
+void StreamFollower::skipRest(Seconds intended_time, Seconds now) noexcept {
+    if (lagOf(intended_time, now).count() <= 0 || state_ != State::following) {
+        return;
+    }
+    const double delay = options_.cycle.count() * options_.playout_delay_cycles;
+    const double played = now.count() - delay - offset_;
+    if (onlyRestIsLeft(played)) {
+        const double to = std::min(intended_time.count() - delay, knot(0).time);
+        offset_ -= std::max(0.0, to - played);
+    }
+}
+
+bool StreamFollower::onlyRestIsLeft(double played) const noexcept {
+    if (!atRest()) {
+        return false;
+    }
+    for (std::size_t age = 0; age < knot_count_; ++age) {
+        if (maxDifference(knot(age).position, now_.position) > kSamePlace) {
+            return false;
+        }
+        if (knot(age).time <= played) {
+            break;  // the older ones are behind
+        }
+    }
+    return true;
 }
 
 double StreamFollower::longestBridge() const noexcept {

@@ -70,6 +70,7 @@ Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel&
         return fail(std::move(position_stream.error()));
     }
     skills.position_stream = std::move(*position_stream);
+    skills.stream_report = stream.report;
     return skills;
 }
 

@@ -48,6 +48,9 @@ Result<void> checkBounds(const std::vector<Range>& bounds, std::size_t axis_coun
     return {};
 }
 
+// What the NodeSet says of joint positions [rad].
+constexpr Range kUsualJointRange{-6.5, 6.5};
+
 struct Maximum {
     std::string name;
     std::size_t count;
@@ -234,6 +237,15 @@ void addCartesianFields(skill::FieldList<Parameters>& fields, const motion::Robo
 
 }  // namespace
 
+Range jointRangeOf(const motion::RobotModel& model) {
+    Range range = kUsualJointRange;
+    for (std::size_t axis = 0; axis < model.axisCount(); ++axis) {
+        range.low = std::min(range.low, model.limits(axis).lower);
+        range.high = std::max(range.high, model.limits(axis).upper);
+    }
+    return range;
+}
+
 skill::FieldList<CartesianMoveParameters> cartesianMoveFields(const motion::RobotModel& model,
                                                               MoveKind kind) {
     skill::FieldList<CartesianMoveParameters> fields;
@@ -286,6 +298,7 @@ skill::FieldList<JointMoveParameters> jointMoveFields(const motion::RobotModel& 
                Field{.name = "TargetJointPosition",
                      .description = "Joint position to move to, axis 1 first",
                      .unit = skill::kRadian,
+                     .range = jointRangeOf(model),
                      .length = skill::LengthLimit{axes, axes}});
     addMoveFields(fields, model, kind);
     add(fields, &MoveParameters::relative, relativeField(Relative::base));

@@ -6,6 +6,7 @@
 
 #include "arm_skill.hpp"
 #include "conversions.hpp"
+#include "metier/robot_skills/move_parameters.hpp"
 #include "metier/robot_skills/stream_input.hpp"
 #include "metier/skill/typed_skill.hpp"
 #include "source_body.hpp"
@@ -43,12 +44,14 @@ public:
         std::shared_ptr<StreamSource> source;  // shared with the arm while it moves
         StreamTimes times;
         std::optional<std::vector<double>> first;
+        std::shared_ptr<StreamReport> report;  // shared with whoever shows it
     };
 
     StreamBody(device::Arm& arm, Stream stream, ToolDistance tool_distance)
         : SourceBody(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
 
     void start(skill::Execution execution) override {
+        stream_.report->restart();
         stream_.times.restart();
         const auto begun = stream_.first ? push(*stream_.first, {}) : Result<void>{};
         if (!begun) {
@@ -71,13 +74,19 @@ public:
         return push(*values, live.meant_for);
     }
 
+    void inputRefused(std::string_view /*parameter*/, const Error& why) override {
+        stream_.report->noteRefused(why.message);
+    }
+
 private:
     Result<void> push(const std::vector<double>& values, std::optional<UtcTime> meant_for = {}) {
         auto position = JointVector::from(values);
         if (!position) {
             return fail(std::move(position.error()));
         }
-        if (!stream_.source->queue().tryPush({*position, stream_.times.next(meant_for)})) {
+        const auto time = stream_.times.next(meant_for);
+        stream_.report->noteClockStep(stream_.times.clockStep().count());
+        if (!stream_.source->queue().tryPush({*position, time})) {
             return fail(Errc::resource_unavailable,
                         fmt::format("{}: {} set-points wait already, more than the arm can take",
                                     kTarget, StreamQueue::kCapacity));
@@ -112,7 +121,8 @@ protected:
         }
         auto source = StreamSource::create(
             model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position),
-                     options_.longest_silence, given.play_out_delay});
+                     options_.longest_silence, given.play_out_delay, options_.largest_lag,
+                     options_.report});
         if (!source) {
             return fail(std::move(source.error()));
         }
@@ -123,7 +133,7 @@ protected:
             arm_,
             StreamBody::Stream{std::move(*source),
                                StreamTimes(clock_, arm_.info().cycle, arrivalsFor(given)),
-                               given.target_joint_position},
+                               given.target_joint_position, options_.report},
             toolDistance());
     }
 
@@ -165,6 +175,7 @@ skill::FieldList<PositionStreamParameters> positionStreamFields(const RobotModel
                Field{.name = std::string(kTarget),
                      .description = "Joint position to follow, axis 1 first",
                      .unit = skill::kRadian,
+                     .range = jointRangeOf(model),
                      .length = skill::LengthLimit{axes, axes},
                      .input = skill::Input::live,
                      .extra_check = [&model](const Value& value) {

@@ -35,6 +35,8 @@ int cyclesIn(double time, double cycle) noexcept {
     return static_cast<int>(std::ceil(time / cycle - rounding));
 }
 
+// A smaller step of the client's clock is rather a delay on the way [s].
+constexpr double kClockStep = 0.05;
 // Room for following a stream that was planned with the axes' full jerk.
 constexpr double kJerkFactor = 4.0;
 
@@ -98,6 +100,7 @@ void StreamSource::goOnFrom(const device::JointArray& from) {
     silence_ = 0.0;
     set_points_ = 0;
     missed_cycles_ = 0;
+    dropped_ = 0;
 }
 
 device::SetPointSource::Next StreamSource::next(const device::ArmState& state,
@@ -143,9 +146,15 @@ void StreamSource::dropAllButNewest() noexcept {
 
 void StreamSource::take(const StreamedPosition& set_point) noexcept {
     const motion::Seconds now(static_cast<double>(cycles_) * setup_.cycle);
+    if (isLate(set_point, now)) {
+        endBecause(End::late);
+        return;
+    }
     const auto refused = follower_.accept(set_point.position, set_point.intended_time, now);
     if (refused && refused->reason == StreamRefusal::Reason::not_later) {
-        return;  // overtaken by a newer one on the way
+        ++dropped_;  // overtaken by a newer one on the way, or the sender's clock went back
+        setup_.report->noteDropped();
+        return;
     }
     if (refused) {
         refusal_ = refused;
@@ -155,8 +164,26 @@ void StreamSource::take(const StreamedPosition& set_point) noexcept {
     speed_ = last_ ? fastestAxis(*last_, set_point) : 0.0;
     last_ = set_point;
     silence_ = 0.0;
+    dropped_ = 0;
     ++set_points_;
+    setup_.report->noteLag(std::max(0.0, follower_.lagOf(set_point.intended_time, now).count()));
     missed_cycles_ = follower_.missedCycles();
+}
+
+/// A set-point in advance waits for its time, and with it all that follow: the arm stays behind.
+bool StreamSource::isLate(const StreamedPosition& set_point, motion::Seconds now) noexcept {
+    follower_.skipRest(set_point.intended_time, now);
+    const double lag = follower_.lagOf(set_point.intended_time, now).count();
+    if (lag <= largestLag()) {
+        return false;
+    }
+    setup_.report->noteLag(lag);
+    return true;
+}
+
+/// No less than what a pause of the stream may cause.
+double StreamSource::largestLag() const noexcept {
+    return std::max(setup_.largest_lag, longestSilence());
 }
 
 double StreamSource::longestSilence() const noexcept {
@@ -173,7 +200,7 @@ void StreamSource::watchSilence() noexcept {
         hold();
     }
     if (end_ == End::none && silence_ > (last_ ? kFinishedAfter : kLongestWait)) {
-        end_ = End::silent;
+        end_ = dropped_ > 0 ? End::went_back : End::silent;
     }
 }
 
@@ -205,6 +232,24 @@ PositionStreamResults StreamSource::results() const noexcept {
     return results;
 }
 
+std::string StreamSource::reported() const {
+    const auto figures = setup_.report->figures();
+    std::string text;
+    if (std::abs(figures.clock_step) > kClockStep) {
+        text +=
+            fmt::format("; the client's clock went {} by {:.3f} s",
+                        figures.clock_step > 0 ? "ahead" : "back", std::abs(figures.clock_step));
+    }
+    if (figures.dropped > 0) {
+        text += fmt::format("; {} set-points were dropped for their times", figures.dropped);
+    }
+    if (figures.refused > 0) {
+        text += fmt::format("; {} were refused, the last one: {}", figures.refused,
+                            setup_.report->lastRefusal());
+    }
+    return text;
+}
+
 void StreamSource::tellDone(const skill::Execution& tell) {
     const auto counted = results();
     tell.progress(counted.set_points);
@@ -219,8 +264,18 @@ void StreamSource::tellDone(const skill::Execution& tell) {
         case End::silent_moving:
             tell.fail(skill::Reason::error,
                       fmt::format("the stream fell silent while it moved at {:.3f} rad/s: no "
-                                  "set-point for {:.0f} ms after {} of them",
-                                  speed_, 1e3 * longestSilence(), counted.set_points));
+                                  "set-point for {:.0f} ms after {} of them{}",
+                                  speed_, 1e3 * longestSilence(), counted.set_points, reported()));
+            return;
+        case End::went_back:
+            tell.fail(skill::Reason::error,
+                      fmt::format("no set-point for {:.0f} ms whose time is after the last one's{}",
+                                  1e3 * kFinishedAfter, reported()));
+            return;
+        case End::late:
+            tell.fail(skill::Reason::limit_violated,
+                      fmt::format("the arm would be {:.3f} s behind its client, limit {:.3f} s{}",
+                                  setup_.report->figures().lag, largestLag(), reported()));
             return;
         case End::refused:
             tell.fail(skill::Reason::limit_violated, motion::toError(*refusal_).message);

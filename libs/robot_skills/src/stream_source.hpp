@@ -1,11 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "execution_source.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "metier/robot_skills/position_stream_skill.hpp"
 #include "metier/robot_skills/stream_input.hpp"
+#include "metier/robot_skills/stream_report.hpp"
 #include "settling.hpp"
 
 namespace metier::robot_skills {
@@ -18,6 +21,9 @@ public:
         motion::JointVector start;  ///< where the arm is commanded to stand [rad]
         double longest_silence = PositionStreamOptions{}.longest_silence;  ///< [s]
         std::optional<double> play_out_delay{};  ///< [s], PositionStreamParameters
+        double largest_lag = PositionStreamOptions{}.largest_lag;  ///< [s]
+        /// Shared with whoever shows it, and with the stream after this one.
+        std::shared_ptr<StreamReport> report = std::make_shared<StreamReport>();
     };
 
     /// \param model must outlive the source
@@ -39,7 +45,16 @@ public:
 
 private:
     /// Why the stream comes to rest.
-    enum class End : std::uint8_t { none, asked, silent, silent_moving, refused, off_target };
+    enum class End : std::uint8_t {
+        none,
+        asked,
+        silent,
+        silent_moving,
+        went_back,  ///< silent, but for set-points whose times are not after the last one's
+        late,
+        refused,
+        off_target
+    };
 
     void goOnFrom(const device::JointArray& from) override;
     void tellDone(const skill::Execution& tell) override;
@@ -47,6 +62,11 @@ private:
     void takeSetPoints() noexcept;
     void dropAllButNewest() noexcept;
     void take(const StreamedPosition& set_point) noexcept;
+    /// Whether the arm would be too far behind its client with the set-point.
+    bool isLate(const StreamedPosition& set_point, motion::Seconds now) noexcept;
+    double largestLag() const noexcept;
+    /// What the report has of it, to be put behind another text.
+    std::string reported() const;
     void watchSilence() noexcept;
     /// Silence of a moving stream that ends it [s].
     double longestSilence() const noexcept;
@@ -71,6 +91,7 @@ private:
     double silence_ = 0.0;  ///< since the last set-point [s]
     std::uint64_t set_points_ = 0;
     std::uint64_t missed_cycles_ = 0;
+    std::uint64_t dropped_ = 0;  ///< since the last set-point that was followed
     std::optional<motion::StreamRefusal> refusal_;
 
     PositionStreamResults before_rest_;

@@ -61,6 +61,7 @@ public:
                                     executor_->clock())
                           .value();
         resource_ = skills.resource;
+        stream_report_ = skills.stream_report;
         for (auto& move : skills.moves) {
             add(std::move(move));
         }
@@ -74,6 +75,7 @@ public:
     skill::Program& program(const std::string& name) { return *programs_.at(name); }
     void destroyProgram(const std::string& name) { programs_.erase(name); }
     const skill::Caller& caller() const { return caller_; }
+    StreamReport::Figures streamFigures() const { return stream_report_->figures(); }
 
     Result<void> write(const std::string& skill, const skill::ValueMap& values) {
         for (const auto& [name, value] : values) {
@@ -135,6 +137,7 @@ private:
     std::shared_ptr<skill::testing::ManualExecutor> executor_;
     std::unique_ptr<virtual_robots::JointSimulator> arm_;
     std::shared_ptr<skill::Resource> resource_;
+    std::shared_ptr<const StreamReport> stream_report_;  // shared with the skill that fills it
     std::map<std::string, std::unique_ptr<skill::Program>> programs_;
     skill::Caller caller_{"session", "client", "user"};
 };

@@ -72,6 +72,13 @@ public:
     std::optional<StreamRefusal> accept(const JointVector& position, Seconds intended_time,
                                         Seconds now) noexcept;
 
+    /// How much longer than the play-out delay a set-point meant for that time would wait if it
+    /// came now [s]; negative: it would be late. 0 without a delay, and before the first set-point.
+    Seconds lagOf(Seconds intended_time, Seconds now) const noexcept;
+    /// Skips what is left to play if that is nothing but standing still where the arm rests, as far
+    /// as it delays a set-point meant for that time.
+    void skipRest(Seconds intended_time, Seconds now) noexcept;
+
     /// The set-point of this cycle. \param now one cycle later than at the call before
     SetPoint next(Seconds now) noexcept;
 
@@ -110,6 +117,7 @@ private:
     double longestBridge() const noexcept;
     bool standing() const noexcept;
     void waitFor(double time, double now) noexcept;
+    bool onlyRestIsLeft(double played) const noexcept;
     /// The target of this cycle and of the three before.
     using Targets = std::array<JointVector, 4>;
     void follow(const Targets& targets) noexcept;

@@ -22,6 +22,8 @@ struct ArmSkills {
     /// or a sensor of force, CartesianLinearForceMoveSkill; CartesianPathMoveSkill.
     std::vector<std::unique_ptr<skill::Skill>> moves;
     std::unique_ptr<skill::Skill> position_stream;
+    /// How well the set-points of position_stream come; shared with the skill.
+    std::shared_ptr<const StreamReport> stream_report;
 };
 
 /// What there is of an arm; all must outlive its skills.

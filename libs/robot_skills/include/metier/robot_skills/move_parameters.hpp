@@ -88,6 +88,10 @@ enum class MoveKind : std::uint8_t {
     linear,  ///< x, y, z, then rotation about x, y, z, of the tool frame
 };
 
+/// What joint positions may be written, of whichever axis [rad]: as the NodeSet has it, wider if
+/// the model's own ranges are. A relative target is no wider either.
+Range jointRangeOf(const motion::RobotModel& model);
+
 /// The parameters as a server offers them for `model`, with all checks that need no other
 /// parameter. `model` must outlive the lists.
 ///

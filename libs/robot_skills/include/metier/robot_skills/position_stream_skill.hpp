@@ -8,6 +8,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "metier/robot_skills/stream_report.hpp"
 #include "metier/skill/field_list.hpp"
 #include "metier/skill/skill.hpp"
 
@@ -25,6 +26,11 @@ struct PositionStreamOptions {
     /// on to its last set-points meanwhile. A busy computer without a real-time kernel delays a
     /// thread by some 50 ms.
     double longest_silence = 0.15;
+    /// Most that the arm may be behind its client, besides PlayOutDelay [s]; at least
+    /// longest_silence.
+    double largest_lag = 0.25;
+    /// Where the skill reports how the set-points come; shared with whoever shows it.
+    std::shared_ptr<StreamReport> report = std::make_shared<StreamReport>();
 };
 
 struct PositionStreamResults {
@@ -49,8 +55,14 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 ///   0.02 rad/s: the arm goes to the last one, and after 0.5 s it is finished, with its results;
 /// - by silence of over PositionStreamOptions::longest_silence while it moves: brakes, then Halted
 /// with an error;
+/// - by a lag of over PositionStreamOptions::largest_lag, as when the client's clock steps ahead:
+///   brakes, then Halted, limit_violated. A smaller lag is shown in the report, and ends when the
+///   arm rests;
+/// - by set-points whose times are not after the last one's, as when the client's clock steps back:
+///   as silence, but always an error;
 /// - by a set-point that no axis could follow (a jump): brakes, then Halted, limit_violated.
-///   A single set-point outside the axes' ranges is refused when it is written.
+///   A single set-point that is not finite or outside the axes' ranges is refused when it is
+///   written, and counted in the report.
 /// A stream that never begins is finished after 10 s.
 ///
 /// \param arm, model, clock must outlive the skill

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "metier/base/clock.hpp"
 #include "metier/motion/joint_vector.hpp"
@@ -81,11 +82,18 @@ public:
 
     /// A new stream begins with the next set-point.
     void restart() noexcept;
-    /// The time of the set-point that arrives now, since the first of its stream.
-    /// \param meant_for by the sender's clock
+    /// The time of the set-point that arrives now, since the first of its stream; any time is
+    /// taken, at most some years from the first. \param meant_for by the sender's clock; the least
+    /// that there is stands for none
     motion::Seconds next(std::optional<UtcTime> meant_for) noexcept;
+    /// How far the sender's clock went ahead of ours from the set-point before to the last one, or
+    /// back by itself; 0 without times.
+    motion::Seconds clockStep() const noexcept { return clock_step_; }
 
 private:
+    /// The time of a set-point that tells one. \param first whether it is the first of its stream
+    std::chrono::nanoseconds bySender(UtcTime meant_for, std::chrono::nanoseconds arrival,
+                                      bool first) noexcept;
     /// When the set-point would be expected, a little corrected by when it came.
     std::chrono::nanoseconds inRhythm(std::chrono::nanoseconds arrival) noexcept;
 
@@ -95,7 +103,11 @@ private:
     const Arrivals arrivals_;
     std::chrono::nanoseconds interval_;  ///< between two set-points, if in rhythm
     std::chrono::nanoseconds last_{};
-    std::optional<UtcTime> sender_start_;
+    /// The first time that the sender told, and what it stands for since the first set-point.
+    std::optional<std::pair<UtcTime, std::chrono::nanoseconds>> sender_start_;
+    std::optional<std::chrono::nanoseconds> sender_before_;  ///< of the set-point before
+    std::chrono::nanoseconds sender_arrival_{};              ///< when that one came
+    motion::Seconds clock_step_{};
     std::optional<SteadyTime> arrival_start_;
     std::chrono::nanoseconds last_arrival_{};
 };

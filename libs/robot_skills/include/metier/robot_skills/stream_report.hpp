@@ -1,0 +1,81 @@
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace metier::robot_skills {
+
+/// How well the set-points of a stream come, for its client: of the stream that runs, or else of
+/// the last one.
+///
+/// Threading: figures() and lastRefusal() on any thread. The cycle thread notes lag and dropped
+/// set-points, without a lock; the owner's thread notes all else.
+class StreamReport {
+public:
+    struct Figures {
+        /// How much longer than PlayOutDelay the newest set-point waits until the arm is sent it
+        /// [s]; at least 0.
+        double lag = 0.0;
+        double largest_lag = 0.0;  ///< since the start [s]
+        /// Largest step of the client's clock against this one between two set-points [s]; below 0:
+        /// back. One way that the network may delay set-points looks the same: after a pause.
+        double clock_step = 0.0;
+        std::uint64_t refused = 0;  ///< when they were written: not finite, out of range, too many
+        std::uint64_t dropped = 0;  ///< for a time that was not after that of the one before
+    };
+
+    Figures figures() const noexcept {
+        return {lag_.load(), largest_lag_.load(), clock_step_.load(), refused_.load(),
+                dropped_.load()};
+    }
+    /// Why a set-point was refused last; empty if none was.
+    std::string lastRefusal() const {
+        const std::lock_guard lock(mutex_);
+        return last_refusal_;
+    }
+
+    /// A stream starts. Owner's thread, while no arm has it.
+    void restart() {
+        lag_.store(0.0);
+        largest_lag_.store(0.0);
+        clock_step_.store(0.0);
+        refused_.store(0);
+        dropped_.store(0);
+        const std::lock_guard lock(mutex_);
+        last_refusal_.clear();
+    }
+    void noteClockStep(double step) noexcept {
+        if (std::abs(step) > std::abs(clock_step_.load())) {
+            clock_step_.store(step);
+        }
+    }
+    void noteRefused(std::string why) {
+        ++refused_;
+        const std::lock_guard lock(mutex_);
+        last_refusal_ = std::move(why);
+    }
+    /// Cycle thread.
+    void noteLag(double lag) noexcept {
+        lag_.store(lag);
+        if (lag > largest_lag_.load()) {
+            largest_lag_.store(lag);
+        }
+    }
+    /// Cycle thread.
+    void noteDropped() noexcept { ++dropped_; }
+
+private:
+    std::atomic<double> lag_{0.0};
+    std::atomic<double> largest_lag_{0.0};
+    std::atomic<double> clock_step_{0.0};
+    std::atomic<std::uint64_t> refused_{0};
+    std::atomic<std::uint64_t> dropped_{0};
+    mutable std::mutex mutex_;
+    std::string last_refusal_;
+};
+
+}  // namespace metier::robot_skills
