@@ -139,8 +139,9 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
     }
     // A controller that measures the wrench itself needs no sensor in the cell file.
     return host_->publishArm(
-        *system, {*device_.arm, model_, config.arm.payload,
-                  sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor});
+        *system,
+        {*device_.arm, model_, config.arm.payload,
+         sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor, stream_report_});
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
@@ -153,6 +154,7 @@ Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& syste
     if (!arm) {
         return fail(arm.error());
     }
+    stream_report_ = arm->stream_report;
     auto skills = std::move(arm->moves);
     skills.push_back(std::move(arm->position_stream));
     if (device_.gripper != nullptr) {

@@ -10,6 +10,7 @@
 #include "kinematics_conversion.hpp"
 #include "metier/base/recent_mean.hpp"
 #include "metier/geometry/frame.hpp"
+#include "metier/opcua_skill/base_placement.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
 #include "server_limits.hpp"
@@ -47,8 +48,13 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::Robot
     return result;
 }
 
-opcua_skill::ArmFigures figuresOf(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
-                                  const Clock& clock) {
+opcua_skill::StreamFigures toStreamFigures(const robot_skills::StreamReport& report) {
+    const auto now = report.figures();
+    return {now.lag, now.largest_lag, now.clock_step, now.refused, now.dropped};
+}
+
+opcua_skill::ArmFigures figuresOf(const SkillHost::ShownArm& shown, const Clock& clock) {
+    const auto& arm = shown.arm;
     opcua_skill::ArmFigures figures;
     figures.commanded_joint_position = [&arm]() -> std::optional<std::vector<double>> {
         const auto state = arm.state();
@@ -63,7 +69,10 @@ opcua_skill::ArmFigures figuresOf(const device::Arm& arm, const device::ForceTor
             std::make_shared<RecentMean>(*jitter, clock, std::chrono::milliseconds(100));
         figures.cycle_jitter = [mean] { return mean->read(); };
     }
-    if (sensor != nullptr) {
+    if (shown.stream) {
+        figures.stream = [report = shown.stream] { return toStreamFigures(*report); };
+    }
+    if (const auto* sensor = shown.sensor) {
         figures.flange_wrench = [sensor]() -> std::optional<opcua_skill::FlangeWrench> {
             const auto sample = sensor->sample();
             if (sample.health != device::SafetyState::normal) {
@@ -282,9 +291,14 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
     auto published = opcua_skill::publishKinematics(
         server_->nodes(), system, data,
         [&arm = shown.arm, &model = shown.model] { return stateOf(arm, model); });
-    return published ? opcua_skill::publishArmFigures(server_->nodes(), system.kinematics,
-                                                      figuresOf(shown.arm, shown.sensor, clock_))
-                     : published;
+    if (!published) {
+        return published;
+    }
+    if (auto served = opcua_skill::serveBasePlacement(*server_, system); !served) {
+        return served;
+    }
+    return opcua_skill::publishArmFigures(server_->nodes(), system.kinematics,
+                                          figuresOf(shown, clock_));
 }
 
 Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,

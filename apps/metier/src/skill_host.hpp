@@ -65,6 +65,8 @@ public:
         const motion::RobotModel& model;
         double payload = 0;                                 ///< [kg]; 0: unknown
         const device::ForceTorqueSensor* sensor = nullptr;  ///< at its flange; must outlive this
+        /// Shared with the arm's stream skill; null: it has none.
+        std::shared_ptr<const robot_skills::StreamReport> stream{};
     };
     /// Shows what is known of the arm, and its live state.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const ShownArm& shown);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "frame_parts.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/values.hpp"
 #include "model_ids.hpp"
@@ -17,46 +18,6 @@ using opcua::NodeId;
 using opcua::QualifiedName;
 using opcua::Value;
 using ReadState = std::function<KinematicsState()>;
-
-/// A part of a 3DFrame that is a Variable of its own.
-struct FramePart {
-    const char* group;
-    const char* name;  ///< null: the group itself
-    Part part;
-};
-
-constexpr std::array kFrameParts{
-    FramePart{"CartesianCoordinates", nullptr, Part::position},
-    FramePart{"CartesianCoordinates", "X", Part::x},
-    FramePart{"CartesianCoordinates", "Y", Part::y},
-    FramePart{"CartesianCoordinates", "Z", Part::z},
-    FramePart{"Orientation", nullptr, Part::orientation},
-    FramePart{"Orientation", "A", Part::a},
-    FramePart{"Orientation", "B", Part::b},
-    FramePart{"Orientation", "C", Part::c},
-};
-
-/// Runs `work` for the Variable of a 3DFrame and for each Variable of its parts.
-template <typename Work>
-Result<void> forEachPart(AddressSpace& nodes, const NodeId& frame, Work work) {
-    if (auto done = work(frame, Part::whole); !done) {
-        return done;
-    }
-    for (const auto& row : kFrameParts) {
-        std::vector<QualifiedName> path{{0, row.group}};
-        if (row.name != nullptr) {
-            path.push_back({0, row.name});
-        }
-        const auto node = nodes.find(frame, path);
-        if (!node) {
-            return fail(node.error());
-        }
-        if (auto done = work(*node, row.part); !done) {
-            return done;
-        }
-    }
-    return {};
-}
 
 /// Sets and wires the Variables below one Kinematics object.
 class KinematicsNodes {

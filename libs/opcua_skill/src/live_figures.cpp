@@ -97,6 +97,32 @@ Value valueOf(const std::optional<T>& value) {
     return value ? Value::of(*value) : Value();
 }
 
+void publishStream(FigureMaker& maker, const std::function<StreamFigures()>& read) {
+    using skill::ValueType;
+    const auto part = [read](auto StreamFigures::*of) {
+        return [read, of] { return Value::of(read().*of); };
+    };
+    maker.live(
+        "StreamLag",
+        "How much longer than PlayOutDelay the newest set-point of the position stream waits "
+        "until the arm is sent it [s].",
+        &skill::kSecond, ValueType::number, part(&StreamFigures::lag));
+    maker.live("LargestStreamLag", "Largest StreamLag since the stream's start [s].",
+               &skill::kSecond, ValueType::number, part(&StreamFigures::largest_lag));
+    maker.live(
+        "StreamClockStep",
+        "Largest step of the streaming client's clock since the stream's start; below 0: back "
+        "[s].",
+        &skill::kSecond, ValueType::number, part(&StreamFigures::clock_step));
+    maker.live("RefusedSetPoints",
+               "Set-points that were refused when they were written, since the stream's start.",
+               nullptr, ValueType::uint64, part(&StreamFigures::refused));
+    maker.live("DroppedSetPoints",
+               "Set-points whose time was not after that of the one before, since the stream's "
+               "start.",
+               nullptr, ValueType::uint64, part(&StreamFigures::dropped));
+}
+
 std::vector<double> listOf(const std::array<double, 3>& vector) {
     return {vector.begin(), vector.end()};
 }
@@ -132,6 +158,9 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
                    &skill::kNewton, ValueType::numbers, part(&FlangeWrench::force));
         maker.live("FlangeTorque", "Torque on the flange about x, y, z of its sensor [N m].",
                    &skill::kNewtonMetre, ValueType::numbers, part(&FlangeWrench::torque));
+    }
+    if (figures.stream) {
+        publishStream(maker, figures.stream);
     }
     return maker.outcome();
 }

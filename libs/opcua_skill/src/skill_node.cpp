@@ -121,6 +121,9 @@ Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
         case Role::result_range:
             return nodes.write(node, rangeOf(fieldOf(*program_, purpose)));
         default:
+            if (purpose.role == Role::parameter && !fieldOf(*program_, purpose).range) {
+                limits_.add(nodes, node, purpose);
+            }
             slots_.push_back({this, tagOf(purpose)});
             return nodes.setHandler(node, slots_.back());
     }
@@ -257,8 +260,9 @@ Result<void> SkillNode::write(const opcua::WriteContext& writer, std::uint32_t t
     const auto& field = fieldOf(*program_, purpose);
     auto old = program_->read(field.name);
     auto taken = withPart(field, old.value_or(skill::Value()), partIn(purpose), value);
-    if (!taken) {
-        return remember(session, fail(taken.error()));
+    auto within = taken ? limits_.check(purpose.field, field, *taken) : fail(taken.error());
+    if (!within) {
+        return remember(session, std::move(within));
     }
     return remember(session, program_->write(callerOf(session), field.name, std::move(*taken),
                                              writer.source_time));
@@ -296,6 +300,12 @@ Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) con
     auto taken = fromOpcua(given.value, is_field ? field->type : skill::ValueType::text);
     if (!taken) {
         return fail(taken.error().code, fmt::format("{}: {}", name, taken.error().message));
+    }
+    if (is_field) {
+        const auto index = static_cast<std::uint16_t>(field - fields.begin());
+        if (auto within = limits_.check(index, *field, *taken); !within) {
+            return within;
+        }
     }
     if (!into.parameters.emplace(name, std::move(*taken)).second) {
         return fail(Errc::invalid_argument, fmt::format("{} is given twice", name));

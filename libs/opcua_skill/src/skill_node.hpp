@@ -12,6 +12,7 @@
 #include "metier/opcua/server.hpp"
 #include "metier/skill/program.hpp"
 #include "model_ids.hpp"
+#include "node_limits.hpp"
 #include "purpose.hpp"
 #include "skill_factory.hpp"
 
@@ -109,6 +110,7 @@ private:
     opcua::NodeId id_;
     SkillContext& context_;
     std::unique_ptr<skill::Program> program_;
+    NodeLimits limits_;
     std::vector<opcua::VariableSlot> slots_;  ///< of all Variables; never moves
 };
 

@@ -124,6 +124,26 @@ TEST_F(Parameters, AFrameAndItsPartsAreOneValue) {
               (opcua::ThreeDFrame{-1.0, 0.2, 0.3, 0.0, 0.0, 0.0}));
 }
 
+TEST_F(Parameters, NoPartOfAFrameIsOutsideTheRangeOfItsNode) {
+    const auto line = [&](std::string_view path, const Value& value) {
+        return testing::write(*client_, line_, path, value);
+    };
+    const std::string target = "ParameterSet/TargetPosition";
+    const opcua::ThreeDFrame near{0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+    ASSERT_EQ(line(target, Value::of(near)), "Good");
+    EXPECT_EQ(line(target, Value::of(opcua::ThreeDFrame{0.1, 10.5, 0.3, 0, 0, 0})),
+              "BadOutOfRange");
+    EXPECT_EQ(read(*client_, line_, "ReasonText"), "TargetPosition.y: 10.5 is outside -10 to 10 m");
+    EXPECT_EQ(line(target + "/CartesianCoordinates/X", Value::of(1e300)), "BadOutOfRange");
+    EXPECT_EQ(line(target + "/CartesianCoordinates",
+                   Value::of(opcua::ThreeDCartesianCoordinates{0, 0, -11})),
+              "BadOutOfRange");
+    EXPECT_EQ(line(target + "/Orientation/C", Value::of(7.0)), "BadOutOfRange");
+    EXPECT_THAT(read(*client_, line_, "ReasonText"), HasSubstr("TargetPosition.c: 7 is outside"));
+    EXPECT_EQ((readAs<opcua::ThreeDFrame>(*client_, line_, target)), near);
+    EXPECT_EQ(line(target + "/CartesianCoordinates/X", Value::of(-10.0)), "Good");
+}
+
 TEST_F(Parameters, BoundsTravelAsRanges) {
     const std::vector bounds{opcua::Range{-1.0, 1.0}, opcua::Range{-2.0, 0.5}};
     EXPECT_EQ(testing::write(*client_, line_, "ParameterSet/AxisBounds", Value::of(bounds)),

@@ -220,6 +220,9 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
                                    [=] { return known(25e-6); },
                                    [=] {
                                        return known(FlangeWrench{{1, 2, 3}, {4, 5, 6}});
+                                   },
+                                   [] {
+                                       return StreamFigures{0.1, 0.2, -0.3, 4, 5};
                                    }}));
     serve();
     const auto client = connect();
@@ -238,6 +241,12 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
     EXPECT_EQ(value({{metier, "CycleJitter"}}).value(), opcua::Value::of(25e-6));
     EXPECT_EQ(value({{metier, "FlangeForce"}}).value(), opcua::Value::of(std::vector{1., 2., 3.}));
     EXPECT_EQ(value({{metier, "FlangeTorque"}}).value(), opcua::Value::of(std::vector{4., 5., 6.}));
+    EXPECT_EQ(value({{metier, "StreamLag"}}).value(), opcua::Value::of(0.1));
+    EXPECT_EQ(value({{metier, "LargestStreamLag"}}).value(), opcua::Value::of(0.2));
+    EXPECT_EQ(value({{metier, "StreamClockStep"}}).value(), opcua::Value::of(-0.3));
+    EXPECT_EQ(value({{metier, "RefusedSetPoints"}}).value(), opcua::Value::of(std::uint64_t{4}));
+    EXPECT_EQ(value({{metier, "DroppedSetPoints"}}).value(), opcua::Value::of(std::uint64_t{5}));
+    EXPECT_EQ(unit("StreamLag"), "s");
     EXPECT_EQ(unit("CommandedJointPosition"), "rad");
     EXPECT_EQ(unit("CycleJitter"), "s");
     EXPECT_EQ(unit("FlangeForce"), "N");
@@ -248,7 +257,7 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
 
 TEST_F(Publishing, AnArmWithoutASensorHasNoVariablesOfOne) {
     ASSERT_TRUE(publishArmFigures(server().nodes(), system().kinematics,
-                                  {[] { return std::optional(std::vector{0.5}); }, {}, {}}));
+                                  {[] { return std::optional(std::vector{0.5}); }, {}, {}, {}}));
     serve();
     const auto client = connect();
     const auto metier = client->namespaceIndex("urn:metier:skills").value();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -22,6 +23,15 @@ struct FlangeWrench {
     std::array<double, 3> torque{};  ///< [N m]
 };
 
+/// How well the set-points of a position stream come, of the one that runs or else of the last.
+struct StreamFigures {
+    double lag = 0.0;           ///< how much longer than PlayOutDelay the newest one waits [s]
+    double largest_lag = 0.0;   ///< since the stream's start [s]
+    double clock_step = 0.0;    ///< largest step of the client's clock; below 0: back [s]
+    std::uint64_t refused = 0;  ///< when they were written
+    std::uint64_t dropped = 0;  ///< for a time that was not after that of the one before
+};
+
 /// An arm besides its KinematicsState. An empty function: the arm does not have it, and there is no
 /// Variable.
 struct ArmFigures {
@@ -31,6 +41,8 @@ struct ArmFigures {
     std::function<std::optional<double>()> cycle_jitter{};
     /// FlangeForce, FlangeTorque.
     std::function<std::optional<FlangeWrench>()> flange_wrench{};
+    /// StreamLag, LargestStreamLag, StreamClockStep, RefusedSetPoints, DroppedSetPoints.
+    std::function<StreamFigures()> stream{};
 };
 
 /// \param kinematics of the arm's motion device

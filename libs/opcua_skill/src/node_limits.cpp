@@ -1,0 +1,87 @@
+#include "node_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+
+#include "value_part.hpp"
+
+namespace metier::opcua_skill {
+
+namespace {
+
+const char* nameOf(Part part) {
+    switch (part) {
+        case Part::x:
+            return ".x";
+        case Part::y:
+            return ".y";
+        case Part::z:
+            return ".z";
+        case Part::a:
+            return ".a";
+        case Part::b:
+            return ".b";
+        case Part::c:
+            return ".c";
+        default:
+            return "";
+    }
+}
+
+/// Every number of that part.
+std::vector<double> numbersOf(const skill::Value& value, Part part) {
+    if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+        return *numbers;
+    }
+    if (const auto* ranges = std::get_if<std::vector<Range>>(&value)) {
+        std::vector<double> numbers;
+        for (const auto& range : *ranges) {
+            numbers.insert(numbers.end(), {range.low, range.high});
+        }
+        return numbers;
+    }
+    const auto number = partOf(value, part).as<double>();
+    return number ? std::vector{*number} : std::vector<double>();
+}
+
+bool isAngle(Part part) {
+    return part == Part::a || part == Part::b || part == Part::c;
+}
+
+}  // namespace
+
+void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose) {
+    const auto limit = nodes.find(node, opcua::QualifiedName{0, "EURange"});
+    if (!limit) {
+        return;
+    }
+    const auto value = nodes.read(*limit);
+    const auto range = value ? value->value.as<Range>() : Result<Range>(fail(value.error()));
+    if (range && range->low < range->high) {
+        limits_.push_back({purpose.field, static_cast<Part>(purpose.detail), *range});
+    }
+}
+
+Result<void> NodeLimits::check(std::uint16_t index, const skill::Field& field,
+                               const skill::Value& value) const {
+    for (const auto& limit : limits_) {
+        if (limit.field != index) {
+            continue;
+        }
+        for (const double number : numbersOf(value, limit.part)) {
+            if (!(number < limit.range.low || number > limit.range.high)) {
+                continue;  // or is none, which the field's own check refuses
+            }
+            const auto& unit = isAngle(limit.part) ? skill::kRadian : field.unit;
+            return fail(Errc::out_of_range,
+                        fmt::format("{}{}: {} is outside {} to {}{}{}", field.name,
+                                    nameOf(limit.part), number, limit.range.low, limit.range.high,
+                                    unit.symbol.empty() ? "" : " ", unit.symbol));
+        }
+    }
+    return {};
+}
+
+}  // namespace metier::opcua_skill
