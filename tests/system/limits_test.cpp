@@ -87,6 +87,21 @@ TEST_F(Limits, OfSessions) {
     EXPECT_EQ(members.front().statusOf(request::kRead, readOf(1)), kGood);
 }
 
+TEST_F(Limits, OfSessionsThatAreNeverActivatedTakeNoPlace) {
+    auto hoarder = stranger();
+    ASSERT_TRUE(hoarder.hello() && hoarder.openChannel());
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(hoarder.statusOf(request::kCreateSession, sessionOf(1h)), kGood) << i;
+    }
+    std::vector<RawPeer> members;
+    for (int i = 0; i < 3; ++i) {
+        members.push_back(member());
+        EXPECT_EQ(members.back().statusOf(request::kRead, readOf(1)), kGood) << i;
+    }
+    EXPECT_EQ(hoarder.statusOf(request::kCreateSession, sessionOf(1h)), kBadTooManySessions)
+        << "all places are taken by sessions that are used";
+}
+
 TEST_F(Limits, OfTheSessionTimeout) {
     auto peer = stranger();
     ASSERT_TRUE(peer.hello() && peer.openChannel());

@@ -3,11 +3,15 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 namespace metier::dashboard {
 namespace {
+
+constexpr std::uint8_t kLoopbackNet = 127;
 
 /// Without the port: "127.0.0.1", "::1", "localhost".
 std::string hostOf(const std::string& header) {
@@ -24,7 +28,38 @@ bool isAddress(const std::string& host) {
            inet_pton(AF_INET6, host.c_str(), address.data()) == 1;
 }
 
+/// ::ffff:127.0.0.1, as a socket for both kinds of addresses shows an IPv4 peer.
+bool isMappedLoopback(const in6_addr& six) {
+    constexpr std::size_t kFirstOfFour = 12;
+    return IN6_IS_ADDR_V4MAPPED(&six) && six.s6_addr[kFirstOfFour] == kLoopbackNet;
+}
+
 }  // namespace
+
+bool isLoopback(const std::string& address) {
+    in6_addr six{};
+    if (inet_pton(AF_INET6, address.c_str(), &six) == 1) {
+        return IN6_IS_ADDR_LOOPBACK(&six) != 0 || isMappedLoopback(six);
+    }
+    in_addr four{};
+    return address == "localhost" || (inet_pton(AF_INET, address.c_str(), &four) == 1 &&
+                                      ntohl(four.s_addr) >> 24U == kLoopbackNet);
+}
+
+Result<void> checkLocal(const httplib::Request& request) {
+    constexpr std::array kOfProxies{"Forwarded",         "X-Forwarded-For", "X-Forwarded-Host",
+                                    "X-Forwarded-Proto", "X-Real-IP",       "Via"};
+    const bool passed_on =
+        std::any_of(kOfProxies.begin(), kOfProxies.end(),
+                    [&](const char* header) { return request.has_header(header); });
+    if (passed_on || !isLoopback(request.remote_addr) ||
+        !isLoopback(hostOf(request.get_header_value("Host")))) {
+        return fail(Errc::access_denied,
+                    "nobody logs in here, so the page is for browsers of this machine alone, "
+                    "without a proxy");
+    }
+    return {};
+}
 
 Result<void> checkOrigin(const httplib::Request& request, const std::string& host_name) {
     const auto header = request.get_header_value("Host");

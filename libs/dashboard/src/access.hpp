@@ -16,6 +16,14 @@ namespace metier::dashboard {
 /// access_denied, saying what is wrong.
 Result<void> checkOrigin(const httplib::Request& request, const std::string& host_name);
 
+/// Whether it is an address of this machine that no other machine reaches: 127.0.0.0/8, ::1,
+/// "localhost".
+bool isLoopback(const std::string& address);
+
+/// Whether a request comes from this machine, and not through a proxy that passes on others'.
+/// Errors: access_denied.
+Result<void> checkLocal(const httplib::Request& request);
+
 /// Whether a request that changes something says that it comes from the page's own program: header
 /// `X-Metier: 1`, which no other page can make a browser send, and a body of JSON.
 /// Errors: access_denied; invalid_argument.

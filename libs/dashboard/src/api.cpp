@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "access.hpp"
+#include "files.hpp"
 #include "random_name.hpp"
 
 namespace metier::dashboard {
@@ -23,6 +24,14 @@ Reply notLoggedIn() {
 
 std::string tokenOf(const Request& request) {
     return cookie(request, sessionCookieName(request));
+}
+
+/// Whether a path is that of a file which is only linked to in the folder.
+bool leadsElsewhere(const std::filesystem::path& folder, const std::string& path) {
+    std::error_code error;
+    const auto name = path.ends_with('/') ? path + "index.html" : path;
+    const auto file = folder / std::filesystem::path(name).relative_path();
+    return std::filesystem::is_regular_file(file, error) && !fileBelow(folder, name);
 }
 
 void setToken(const Request& request, const std::string& token, Response& response) {
@@ -94,7 +103,7 @@ void Api::bindLogin(http::HttpServer& server) {
         if (!password) {
             return write(errorReply(password.error()), response);
         }
-        const auto token = people_.login(*user, *password, request.remote_addr);
+        const auto token = people_.login(*user, *password);
         if (!token) {
             const bool wait = token.error().code == Errc::resource_unavailable;
             const bool denied = token.error().code == Errc::access_denied;
@@ -160,7 +169,12 @@ void Api::bindMeshes(http::HttpServer& server) {
     if (options_.meshes.empty()) {
         return;
     }
-    server.set_mount_point("/meshes", options_.meshes.string());
+    server.Get("/meshes/(.+)", [this](const Request& request, Response& response) {
+        if (!personOf(request)) {
+            return write(notLoggedIn(), response);
+        }
+        serveFile(fileBelow(options_.meshes, request.matches[1]), response);
+    });
     get(server, "/api/meshes", [this](const Request& /*request*/, const auto& /*person*/) {
         namespace fs = std::filesystem;
         constexpr std::size_t kMost = 1'000;
@@ -169,8 +183,9 @@ void Api::bindMeshes(http::HttpServer& server) {
         for (auto entry = fs::recursive_directory_iterator(options_.meshes, error);
              !error && entry != fs::recursive_directory_iterator() && files.size() < kMost;
              entry.increment(error)) {
-            if (entry->path().extension() == ".urdf") {
-                files.push_back(entry->path().lexically_relative(options_.meshes).string());
+            const auto name = entry->path().lexically_relative(options_.meshes).string();
+            if (entry->path().extension() == ".urdf" && fileBelow(options_.meshes, name)) {
+                files.push_back(name);
             }
         }
         return Reply{200, {{"files", std::move(files)}}};
@@ -178,13 +193,8 @@ void Api::bindMeshes(http::HttpServer& server) {
 }
 
 void Api::bindFiles(http::HttpServer& server) {
-    for (const auto& [extension, type] : {std::pair{"stl", "model/stl"},
-                                          {"dae", "model/vnd.collada+xml"},
-                                          {"obj", "model/obj"},
-                                          {"glb", "model/gltf-binary"},
-                                          {"urdf", "application/xml"},
-                                          {"js", "text/javascript"},
-                                          {"webmanifest", "application/manifest+json"}}) {
+    for (const auto& [extension, type] :
+         {std::pair{"js", "text/javascript"}, {"webmanifest", "application/manifest+json"}}) {
         server.set_file_extension_and_mimetype_mapping(extension, type);
     }
     if (!server.set_mount_point("/", options_.web.string(), {{"Cache-Control", "no-cache"}})) {
@@ -202,13 +212,16 @@ void Api::bindFiles(http::HttpServer& server) {
 void Api::bind(http::HttpServer& server) {
     server.set_default_headers(protectiveHeaders());
     server.set_pre_routing_handler([this](const Request& request, Response& response) {
-        const auto own = checkOrigin(request, options_.host_name);
-        const bool open = !request.path.starts_with("/meshes/") || personOf(request) != nullptr;
-        if (!own || !open) {
-            write(own ? notLoggedIn() : errorReply(own.error()), response);
+        auto own = checkOrigin(request, options_.host_name);
+        own = own && people_.isLab() ? checkLocal(request) : own;
+        if (!own) {
+            write(errorReply(own.error()), response);
+        } else if (leadsElsewhere(options_.web, request.path)) {
+            write(errorReply(404, "http", "no such file"), response);
+        } else {
+            return httplib::Server::HandlerResponse::Unhandled;
         }
-        return own && open ? httplib::Server::HandlerResponse::Unhandled
-                           : httplib::Server::HandlerResponse::Handled;
+        return httplib::Server::HandlerResponse::Handled;
     });
     server.set_exception_handler(
         [](const Request& /*request*/, Response& response, std::exception_ptr /*thrown*/) {

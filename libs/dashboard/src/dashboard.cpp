@@ -1,9 +1,12 @@
 #include "metier/dashboard/dashboard.hpp"
 
+#include <fmt/format.h>
+
 #include <stop_token>
 #include <thread>
 #include <utility>
 
+#include "access.hpp"
 #include "api.hpp"
 #include "board.hpp"
 #include "metier/http/http_server.hpp"
@@ -32,7 +35,7 @@ struct Dashboard::Impl {
         : options(std::move(chosen)),
           board(fixedPart(options.cell), clock),
           watches(board, options.connector, options.models),
-          people(options.connector, watches, options.lab, clock),
+          people(options.connector, watches, options.lab ? Access::lab : Access::log_in, clock),
           tabs(board, watches),
           records(options.records, board),
           api({options, board, watches, people, tabs, records}),
@@ -52,6 +55,17 @@ struct Dashboard::Impl {
 };
 
 Result<std::unique_ptr<Dashboard>> Dashboard::start(Options options, const Clock& clock) {
+    if (options.lab && !isLoopback(options.address)) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("an insecure lab is for this machine alone: {} is not a loopback "
+                                "address",
+                                options.address));
+    }
+    if (options.lab && !options.host_name.empty()) {
+        return fail(Errc::invalid_argument,
+                    "an insecure lab is for this machine alone: other machines would reach the "
+                    "page by a host name");
+    }
     auto impl = std::make_unique<Impl>(std::move(options), clock);
     auto& own = *impl;
     if (own.options.cell.world) {

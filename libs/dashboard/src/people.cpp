@@ -22,8 +22,8 @@ constexpr std::size_t kMostLoginsOfUser = 20;
 constexpr std::size_t kMostFailures = 1'000;
 constexpr auto kLongestLogin = 12h;
 constexpr auto kLongestRest = 1h;
-constexpr int kFreeOfUser = 3;   // wrong passwords for one name before waiting begins
-constexpr int kFreeOfPeer = 10;  // from one address, for whatever names
+constexpr int kFreeAttempts = 3;  // wrong passwords for one name before waiting begins
+constexpr auto kLongestQueue = 20s;
 constexpr auto kConnect = 5'000ms;
 
 bool isDenial(const opcua::Failure& failure) {
@@ -70,7 +70,11 @@ Result<std::unique_ptr<opcua::Client>> Person::connect(const std::string& server
     }
     options->application_name = name;
     options->connect_timeout = kConnect;
-    if (!isOfLab() && options->security) {
+    if (!isOfLab() && !options->security) {
+        return fail(Errc::connection_lost,
+                    fmt::format("{}: without security it knows nobody's password", server));
+    }
+    if (!isOfLab()) {
         options->user = opcua::UserName{user_, password_};
     }
     auto client = opcua::Client::connect(*url, *options);
@@ -111,62 +115,54 @@ void Person::openSessions() {
     }
 }
 
-People::People(const Connector& connector, Watches& watches, bool lab, const Clock& clock)
+People::People(const Connector& connector, Watches& watches, Access access, const Clock& clock)
     : connector_(connector),
       watches_(watches),
-      lab_(lab),
+      access_(access),
       clock_(clock),
       anybody_(std::make_shared<Person>(connector, watches, "", "")) {
     anybody_->setRole("operator");
 }
 
-bool People::isLab() const {
-    return lab_ || !watches_.wantLogin();
-}
-
-Result<void> People::beginAttempt(const std::string& user, const std::string& peer) {
-    const std::lock_guard lock(mutex_);
-    for (const auto& who : {"user " + user, "peer " + peer}) {
-        const auto found = failures_.find(who);
-        const auto left = found == failures_.end() ? std::chrono::nanoseconds(0)
-                                                   : found->second.barred_until - clock_.now();
-        if (left > 0ns) {
-            return fail(Errc::resource_unavailable,
-                        fmt::format("too many wrong passwords: wait {} s",
-                                    std::chrono::ceil<std::chrono::seconds>(left).count()));
-        }
-    }
-    count("user " + user, kFreeOfUser);
-    count("peer " + peer, kFreeOfPeer);
-    return {};
-}
-
-/// With the lock.
-void People::count(const std::string& who, int free_attempts) {
+Result<void> People::beginAttempt(const std::string& user) {
     constexpr int kMostDoublings = 6;
     constexpr std::chrono::seconds kLongest{60};
-    if (failures_.size() >= kMostFailures && !failures_.contains(who)) {
-        failures_.erase(std::min_element(
-            failures_.begin(), failures_.end(), [](const auto& left, const auto& right) {
-                return left.second.barred_until < right.second.barred_until;
-            }));
+    const std::lock_guard lock(mutex_);
+    const auto found = failures_.find(user);
+    const auto left = found == failures_.end() ? std::chrono::nanoseconds(0)
+                                               : found->second.barred_until - clock_.now();
+    if (left > 0ns) {
+        return fail(Errc::resource_unavailable,
+                    fmt::format("too many wrong passwords: wait {} s",
+                                std::chrono::ceil<std::chrono::seconds>(left).count()));
     }
-    auto& failures = failures_[who];
+    if (found == failures_.end() && failures_.size() >= kMostFailures) {
+        forgetLeast();
+    }
+    auto& failures = failures_[user];
     ++failures.count;
-    if (failures.count >= free_attempts) {
-        const int doublings = std::min(failures.count - free_attempts, kMostDoublings);
+    if (failures.count >= kFreeAttempts) {
+        const int doublings = std::min(failures.count - kFreeAttempts, kMostDoublings);
         failures.barred_until =
             clock_.now() + std::min(std::chrono::seconds(1LL << doublings), kLongest);
     }
+    return {};
 }
 
-void People::takeBack(const std::string& user, const std::string& peer) {
+/// With the lock. A name that was tried once goes before one that somebody guesses at.
+void People::forgetLeast() {
+    failures_.erase(std::min_element(
+        failures_.begin(), failures_.end(), [](const auto& left, const auto& right) {
+            return std::pair(left.second.count, left.second.barred_until) <
+                   std::pair(right.second.count, right.second.barred_until);
+        }));
+}
+
+void People::takeBack(const std::string& user) {
     const std::lock_guard lock(mutex_);
-    for (const auto& who : {"user " + user, "peer " + peer}) {
-        if (const auto found = failures_.find(who); found != failures_.end()) {
-            --found->second.count;
-            found->second.barred_until = {};  // nobody is let try while it is in the future
-        }
+    if (const auto found = failures_.find(user); found != failures_.end()) {
+        --found->second.count;
+        found->second.barred_until = {};  // nobody is let try while it is in the future
     }
 }
 
@@ -192,19 +188,26 @@ Result<std::shared_ptr<Person>> People::ask(const std::string& user, const std::
     return fail(outcome.error());
 }
 
-Result<std::string> People::login(const std::string& user, const std::string& password,
-                                  const std::string& peer) {
+Result<std::string> People::login(const std::string& user, const std::string& password) {
+    if (isLab()) {
+        return fail(Errc::access_denied, "nobody logs in to an insecure lab");
+    }
     if (user.empty() || password.empty()) {
         return fail(Errc::access_denied, "a name and a password are needed");
     }
-    if (auto free = beginAttempt(user, peer); !free) {
+    if (auto free = beginAttempt(user); !free) {
         return fail(free.error());
+    }
+    const auto turn = queue_.await(kLongestQueue);
+    if (!turn) {
+        takeBack(user);
+        return fail(Errc::resource_unavailable, "too many people log in at a time: wait a little");
     }
     auto person = ask(user, password);
     if (!person && person.error().code == Errc::access_denied) {
         return fail(Errc::access_denied, "wrong name or password");
     }
-    takeBack(user, peer);
+    takeBack(user);
     return person ? keep(std::move(*person)) : fail(person.error());
 }
 
@@ -214,7 +217,7 @@ Result<std::string> People::keep(std::shared_ptr<Person> person) {
     std::vector<std::shared_ptr<Person>> gone;  // destroyed after the lock is
     const std::lock_guard lock(mutex_);
     gone = forgetOld(now);
-    failures_.erase("user " + person->user());
+    failures_.erase(person->user());
     if (auto surplus = surplusOf(person->user()); surplus != logins_.end()) {
         gone.push_back(std::move(surplus->second.person));
         logins_.erase(surplus);

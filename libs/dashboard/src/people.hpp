@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "login_queue.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/dashboard/connector.hpp"
 #include "metier/opcua/client.hpp"
@@ -14,6 +15,12 @@
 #include "watches.hpp"
 
 namespace metier::dashboard {
+
+/// Whether people are to log in. The same as long as a page is served, whatever servers answer.
+enum class Access {
+    log_in,
+    lab,  ///< nobody logs in, and everybody on this machine may command
+};
 
 /// Somebody who has logged in; in a lab, whoever reaches the page.
 ///
@@ -58,23 +65,21 @@ private:
 /// Who is logged in.
 ///
 /// A name and password are good if a server lets them in. Wrong ones make the next attempt for that
-/// name wait, and that from the same address, from one second up to a minute, without asking a
-/// server again: who guesses here does not lock this program out there.
+/// name wait, from one second up to a minute, without asking a server again: who guesses here does
+/// not lock this program out there. Other names are not held up, whatever address they come from;
+/// four attempts are made at a time, and others wait for their turn.
 /// Threading: any.
 class People {
 public:
     /// What it is given must outlive this.
-    People(const Connector& connector, Watches& watches, bool lab, const Clock& clock);
+    People(const Connector& connector, Watches& watches, Access access, const Clock& clock);
 
-    /// Nobody needs to log in: an insecure lab, or open servers of this machine.
-    bool isLab() const;
-    /// \param peer address from which somebody asks
+    bool isLab() const noexcept { return access_ == Access::lab; }
     /// \return a token that stands for the person until logout(), twelve hours, or an hour without
     ///         a request
-    /// Errors: access_denied; resource_unavailable, how long to wait; connection_lost, no server
-    ///         could be asked.
-    Result<std::string> login(const std::string& user, const std::string& password,
-                              const std::string& peer);
+    /// Errors: access_denied, also in a lab; resource_unavailable, how long to wait;
+    ///         connection_lost, no server could be asked.
+    Result<std::string> login(const std::string& user, const std::string& password);
     void logout(const std::string& token);
     /// Whose token it is, which counts as a request of theirs; nullptr: nobody's. Nobody needs a
     /// token in a lab.
@@ -86,6 +91,7 @@ private:
         SteadyTime begun{};
         SteadyTime used{};
     };
+    static constexpr std::size_t kMostAsking = 4;
     using Logins = std::map<std::string, Login>;
     struct Failures {
         int count = 0;
@@ -93,10 +99,10 @@ private:
     };
 
     /// Counts an attempt as wrong before it is made: many at a time are not free.
-    Result<void> beginAttempt(const std::string& user, const std::string& peer);
+    Result<void> beginAttempt(const std::string& user);
     /// It was not wrong.
-    void takeBack(const std::string& user, const std::string& peer);
-    void count(const std::string& who, int free_attempts);
+    void takeBack(const std::string& user);
+    void forgetLeast();
     Logins::iterator surplusOf(const std::string& user);
     Result<std::string> keep(std::shared_ptr<Person> person);
     Result<std::shared_ptr<Person>> ask(const std::string& user, const std::string& password);
@@ -105,12 +111,13 @@ private:
 
     const Connector& connector_;
     Watches& watches_;
-    const bool lab_;
+    const Access access_;
     const Clock& clock_;
     const std::shared_ptr<Person> anybody_;  // of the lab
     std::mutex mutex_;
     Logins logins_;
-    std::map<std::string, Failures> failures_;
+    std::map<std::string, Failures> failures_;  // by user
+    LoginQueue queue_{kMostAsking};
 };
 
 }  // namespace metier::dashboard

@@ -25,11 +25,6 @@ std::shared_ptr<ServerLink> ServerWatch::link() const {
     return link_;
 }
 
-std::optional<bool> ServerWatch::isClosed() const {
-    const std::lock_guard lock(mutex_);
-    return closed_;
-}
-
 void ServerWatch::showLive(bool shown) {
     {
         const std::lock_guard lock(news_->mutex);
@@ -50,31 +45,31 @@ std::shared_ptr<ServerLink> ServerWatch::connect() {
                                        opcua::sanitise(options.error().message));
         return nullptr;
     }
-    const bool closed = options->security.has_value();
     std::uint64_t number = 0;
     {
         const std::lock_guard lock(news_->mutex);
         number = ++news_->link;
         news_->lost.reset();
     }
-    auto link = ServerLink::open(context_, std::move(*options),
-                                 [news = news_, number](const opcua::Failure& failure) {
-                                     {
-                                         const std::lock_guard lock(news->mutex);
-                                         if (news->link == number) {
-                                             news->lost = failure.message;
-                                         }
-                                     }
-                                     news->changed.notify_all();
-                                 });
+    auto link =
+        ServerLink::open(context_, *options, [news = news_, number](const opcua::Failure& failure) {
+            {
+                const std::lock_guard lock(news->mutex);
+                if (news->link == number) {
+                    news->lost = failure.message;
+                }
+            }
+            news->changed.notify_all();
+        });
     if (!link) {
         context_.board.setDisconnected(
             context_.server.name,
             opcua::sanitise(link.error().message + connector_.advice(link.error())));
         return nullptr;
     }
-    const std::lock_guard lock(mutex_);
-    closed_ = closed;
+    if (connector_.connected) {
+        connector_.connected(*options, context_.server.url);
+    }
     return std::move(*link);
 }
 

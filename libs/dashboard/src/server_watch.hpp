@@ -28,8 +28,6 @@ public:
     const CellServer& server() const noexcept { return context_.server; }
     /// The present link; nullptr while there is none.
     std::shared_ptr<ServerLink> link() const;
-    /// Whether the server wants users to log in; nothing before it was reached.
-    std::optional<bool> isClosed() const;
     /// Whether what changes all the time is to be shown.
     void showLive(bool shown);
 
@@ -52,10 +50,9 @@ private:
     const LinkContext context_;
     const Connector& connector_;
     const std::shared_ptr<News> news_ = std::make_shared<News>();  // with a client's callback
-    mutable std::mutex mutex_;                                     // of the next two
+    mutable std::mutex mutex_;                                     // of the next
     std::shared_ptr<ServerLink> link_;  // with whoever uses it at this moment
-    std::optional<bool> closed_;
-    std::jthread thread_;  // last: it uses everything above
+    std::jthread thread_;               // last: it uses everything above
 };
 
 }  // namespace metier::dashboard

@@ -107,18 +107,4 @@ std::map<std::string, std::string> Watches::usedServers() const {
     return used;
 }
 
-bool Watches::wantLogin() const {
-    const std::lock_guard lock(mutex_);
-    bool reached = false;
-    for (const auto& watch : watches_) {
-        if (const auto closed = watch->isClosed()) {
-            reached = true;
-            if (*closed) {
-                return true;
-            }
-        }
-    }
-    return !reached;
-}
-
 }  // namespace metier::dashboard

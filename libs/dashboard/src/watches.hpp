@@ -42,8 +42,6 @@ public:
     Result<ReachedSkill> skill(const std::string& key) const;
     /// Servers whose skills those of another one use, each with the name of one that does.
     std::map<std::string, std::string> usedServers() const;
-    /// Whether people are to log in: a server that was reached asks for it, or none was yet.
-    bool wantLogin() const;
 
 private:
     std::string serverAt(const std::string& url) const;

@@ -3,15 +3,19 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "metier/dashboard/dashboard.hpp"
 #include "metier/http/httplib.hpp"
+#include "metier/opcua/server.hpp"
 #include "raw_browser.hpp"
 
 namespace metier::dashboard {
@@ -105,6 +109,37 @@ TEST_F(Page, ServesNothingOutsideOfItsFolder) {
     }
 }
 
+TEST_F(Page, FollowsNoLinkOutOfItsFolders) {
+    std::ofstream(folder_ / "index.html") << "for nobody";
+    fs::create_symlink(folder_ / "secret.txt", folder_ / "meshes" / "ur5" / "linked.stl");
+    fs::create_symlink(folder_ / "secret.txt", folder_ / "meshes" / "linked.urdf");
+    fs::create_directory_symlink(folder_, folder_ / "meshes" / "out");
+    fs::create_symlink(folder_ / "secret.txt", folder_ / "web" / "linked.txt");
+    fs::create_directory_symlink(folder_, folder_ / "web" / "out");
+    fs::create_symlink(folder_ / "meshes" / "ur5" / "ur5.urdf", folder_ / "meshes" / "same.urdf");
+    for (const std::string path :
+         {"/meshes/ur5/linked.stl", "/meshes/linked.urdf", "/meshes/out/secret.txt", "/linked.txt",
+          "/out/secret.txt", "/meshes/out/web/index.html", "/out/"}) {
+        EXPECT_EQ(client_->Get(path)->status, 404) << path;
+    }
+    EXPECT_EQ(client_->Get("/meshes/same.urdf")->body, "<robot/>") << "a link within the folder";
+    auto files = json::parse(client_->Get("/api/meshes")->body).at("files");
+    std::sort(files.begin(), files.end());
+    EXPECT_EQ(files, json::array({"same.urdf", "ur5/ur5.urdf"}));
+}
+
+TEST_F(Page, ServesPartsOfMeshes) {
+    std::ofstream(folder_ / "meshes" / "long.stl") << std::string(100'000, 'a') << "end";
+    std::ofstream(folder_ / "meshes" / "empty.obj");
+    const auto whole = client_->Get("/meshes/long.stl");
+    EXPECT_EQ(whole->body.size(), 100'003U);
+    EXPECT_THAT(whole->body, ::testing::EndsWith("aend"));
+    EXPECT_EQ(whole->get_header_value("Content-Type"), "model/stl");
+    EXPECT_EQ(client_->Get("/meshes/empty.obj")->body, "");
+    EXPECT_EQ(client_->Get("/meshes/ur5")->status, 404);
+    EXPECT_EQ(client_->Get("/meshes/")->status, 404);
+}
+
 TEST_F(Page, NamesTheCellAndWhoLooks) {
     const auto cell = json::parse(client_->Get("/api/cell")->body);
     EXPECT_EQ(cell.at("name"), "test");
@@ -146,6 +181,40 @@ TEST_F(Page, IsNotReachedByAForeignName) {
     EXPECT_THAT(answerTo("GET /api/cell HTTP/1.1\r\nHost: localhost:8080\r\n"
                          "Connection: close\r\n\r\n"),
                 StartsWith("HTTP/1.1 200"));
+}
+
+TEST_F(Page, OfALabIsServedToThisMachineAlone) {
+    Options options;
+    options.lab = true;
+    for (const std::string address : {"0.0.0.0", "::", "192.0.2.1", "127.0.0.1.example", ""}) {
+        options.address = address;
+        const auto refused = Dashboard::start(options, clock_);
+        ASSERT_FALSE(refused) << address;
+        EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+        EXPECT_THAT(refused.error().message, HasSubstr("is not a loopback address"));
+    }
+    options.address = "127.0.0.1";
+    options.host_name = "cell.example";
+    const auto named = Dashboard::start(options, clock_);
+    ASSERT_FALSE(named);
+    EXPECT_EQ(named.error().code, Errc::invalid_argument);
+}
+
+TEST_F(Page, OfALabAnswersNoProxy) {
+    for (const auto& [name, value] : {std::pair{"X-Forwarded-For", "192.0.2.7"},
+                                      {"Forwarded", "for=192.0.2.7"},
+                                      {"X-Real-IP", "192.0.2.7"},
+                                      {"Via", "1.1 proxy"},
+                                      {"Host", "192.0.2.1:8080"}}) {
+        EXPECT_EQ(client_->Get("/api/cell", {{name, value}})->status, 403) << name;
+        EXPECT_EQ(post("/api/halt", "{}", {{"X-Metier", "1"}, {name, value}})->status, 403) << name;
+    }
+    EXPECT_EQ(client_->Get("/api/cell", {{"Host", "localhost:8080"}})->status, 200);
+    EXPECT_EQ(client_->Get("/api/cell", {{"Host", "[::1]:8080"}})->status, 200);
+}
+
+TEST_F(Page, OfALabTakesNoLogIn) {
+    EXPECT_EQ(post("/api/login", R"({"user":"anna","password":"x"})")->status, 401);
 }
 
 TEST_F(Page, TakesNothingFromAnotherPage) {
@@ -267,6 +336,11 @@ TEST_F(Page, IsNotReachedWithoutLogInWhereServersWantIt) {
     options.meshes = folder_ / "meshes";
     const auto closed = Dashboard::start(std::move(options), clock_).value();
     httplib::Client stranger("127.0.0.1", closed->port());
+    for (const std::string path :
+         {"/meshesur5/ur5.urdf", "//meshes/ur5/ur5.urdf", "/meshes%2fur5/ur5.urdf",
+          "/./meshes/ur5/ur5.urdf", "/meshes//ur5/ur5.urdf"}) {
+        EXPECT_NE(stranger.Get(path)->status, 200) << path;
+    }
     for (const std::string path : {"/api/cell", "/api/stream", "/api/records", "/api/records/1",
                                    "/api/meshes", "/meshes/ur5/ur5.urdf"}) {
         const auto answer = stranger.Get(path);
@@ -281,6 +355,51 @@ TEST_F(Page, IsNotReachedWithoutLogInWhereServersWantIt) {
             .Post("/api/login", kIntent, R"({"user":"anna","password":"x"})", "application/json")
             ->status,
         502);
+}
+
+/// A page that logs people in, of one server.
+class ClosedPage : public Page {
+protected:
+    std::unique_ptr<Dashboard> pageOf(const std::string& url) {
+        Options options;
+        options.cell.servers = {{.name = "arm", .url = url}};
+        options.connector = {[](const std::string&) -> Result<opcua::ClientOptions> {
+                                 return opcua::ClientOptions();
+                             },
+                             [](const opcua::Failure&) { return std::string(); },
+                             [this](const opcua::ClientOptions&, const std::string&) {
+                                 std::call_once(once_, [this] { connected_.set_value(); });
+                             }};
+        options.web = folder_ / "web";
+        return Dashboard::start(std::move(options), clock_).value();
+    }
+
+    std::once_flag once_;
+    std::promise<void> connected_;
+};
+
+TEST_F(ClosedPage, WantsALogInAlsoIfAServerIsOpen) {
+    opcua::ServerOptions options;
+    options.port = 0;
+    options.nodesets = {"device", "robotics", "metier"};
+    const auto server = opcua::Server::create(std::move(options)).value();
+    ASSERT_TRUE(server->start());
+    const auto page = pageOf(server->endpointUrl());
+    ASSERT_EQ(connected_.get_future().wait_for(std::chrono::seconds(60)),
+              std::future_status::ready);
+    httplib::Client stranger("127.0.0.1", page->port());
+    for (const std::string path : {"/api/cell", "/api/records", "/api/stream"}) {
+        EXPECT_EQ(stranger.Get(path)->status, 401) << path;
+    }
+    for (const std::string path : {"/api/halt", "/api/control", "/api/skills/start"}) {
+        EXPECT_EQ(stranger.Post(path, kIntent, "{}", "application/json")->status, 401) << path;
+    }
+    const auto me = json::parse(stranger.Get("/api/me")->body);
+    EXPECT_EQ(me.at("login_required"), true);
+    EXPECT_EQ(me.at("role"), "");
+    const auto login = stranger.Post("/api/login", kIntent, R"({"user":"anna","password":"x"})",
+                                     "application/json");
+    EXPECT_EQ(login->status, 502) << "an open server lets everybody in";
 }
 
 }  // namespace

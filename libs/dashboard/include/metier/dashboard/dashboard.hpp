@@ -18,7 +18,8 @@ namespace metier::dashboard {
 struct Options {
     Cell cell;
     Connector connector;
-    /// Nobody logs in: whoever reaches the page may do what this program may.
+    /// Nobody logs in: everybody on this machine may do what this program may. Such a page is
+    /// served at a loopback address alone, and answers no request that a proxy passes on.
     bool lab = false;
     std::string address = "127.0.0.1";
     std::uint16_t port = 0;  ///< 0: a free one
@@ -39,7 +40,8 @@ struct Options {
 class Dashboard {
 public:
     /// Serves once this returns; servers are connected to in the background.
-    /// Errors: invalid_argument (the address); already_exists (the port is taken).
+    /// Errors: invalid_argument (the address; that or a host name of a lab); already_exists (the
+    /// port is taken).
     static Result<std::unique_ptr<Dashboard>> start(Options options, const Clock& clock);
     /// Ends all connections within a few seconds; control that tabs hold is given back.
     ~Dashboard();
