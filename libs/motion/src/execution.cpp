@@ -6,13 +6,15 @@ namespace metier::motion {
 
 namespace {
 constexpr double kHaltFactor = 2.0;
+// A stop along the path is planned anew where this part of its time is enough [1].
+constexpr double kWorthwhile = 0.97;
 }  // namespace
 
 MotionExecution::MotionExecution(Trajectory trajectory, const LateCyclePolicy& late) noexcept
     : trajectory_(std::move(trajectory)),
       late_(late),
       profile_(trajectory_.profile()),
-      current_(trajectory_.sampleAt(clock_)) {}
+      current_(trajectory_.sampleAt(state_)) {}
 
 bool MotionExecution::tooLate(Seconds step) const noexcept {
     return late_.cycle.count() > 0 && step > (late_.most_skipped + 1.5) * late_.cycle;
@@ -24,49 +26,108 @@ SetPoint MotionExecution::next(Seconds step) noexcept {
         stop();
         step = late_.cycle;
     }
+    brakeHarder();
     profile_time_ += std::max(step.count(), 0.0);
-    clock_ = profile_.at(profile_time_);
-    current_ = trajectory_.sampleAt(clock_);
+    state_ = profile_.at(profile_time_);
+    current_ =
+        along_ == Along::clock ? trajectory_.sampleAt(state_) : trajectory_.sampleOnPath(state_);
     return current_;
 }
 
-void MotionExecution::replan(double limit_factor) noexcept {
-    ScalarLimits limits = trajectory_.clockLimits();
-    limits.acceleration *= limit_factor;
-    limits.jerk *= limit_factor;
-    if (mode_ == Mode::stopping || override_ <= 0) {
-        profile_ = Profile::brake(clock_, limits);
-    } else {
-        limits.velocity *= override_;
-        profile_ = Profile::toRest(clock_, trajectory_.clockEnd(), limits);
+ScalarState MotionExecution::onPath() const noexcept {
+    return along_ == Along::path ? state_ : trajectory_.pathParameter(state_);
+}
+
+ScalarState MotionExecution::onClock() const noexcept {
+    return along_ == Along::clock ? state_ : trajectory_.clockAt(state_);
+}
+
+/// The slower it gets the less of the limits goes into the bends of the path: the more is left.
+void MotionExecution::brakeHarder() noexcept {
+    const bool lets_go = profile_.jerkAt(profile_time_) > 0;
+    if (mode_ != Mode::stopping || brake_factor_ == 0 || atRest() || lets_go) {
+        return;
     }
+    const ScalarState now = onPath();
+    const Profile harder = trajectory_.brake(now, brake_factor_);
+    if (harder.end() <= 1.0 && harder.jerkAt(0) <= 0 &&
+        harder.duration() < kWorthwhile * (profile_.duration() - profile_time_)) {
+        follow(harder, Along::path, now);
+    }
+}
+
+/// The stop that the plan's own limits allow, `factor` of them; never beyond the end of the path.
+Profile MotionExecution::brakeByPlan(double factor) const noexcept {
+    ScalarLimits limits = trajectory_.clockLimits();
+    limits.acceleration *= factor;
+    limits.jerk *= factor;
+    return Profile::brake(onClock(), limits);
+}
+
+void MotionExecution::follow(const Profile& profile, Along along, const ScalarState& now) noexcept {
+    profile_ = profile;
+    along_ = along;
+    state_ = now;
     profile_time_ = 0;
 }
 
+/// Stops with `factor` of the robot's own limits; by the plan's where the path is too short.
+void MotionExecution::brake(double factor) noexcept {
+    brake_factor_ = factor;
+    const ScalarState now = onPath();
+    const Profile own = trajectory_.brake(now, factor);
+    if (own.end() <= 1.0) {
+        follow(own, Along::path, now);
+    } else {
+        follow(brakeByPlan(factor), Along::clock, onClock());
+    }
+}
+
+/// Runs to the end of the path, from whatever state.
+void MotionExecution::goOn() noexcept {
+    const ScalarState now = onClock();
+    if (override_ <= 0) {
+        follow(brakeByPlan(1.0), Along::clock, now);
+        return;
+    }
+    ScalarLimits limits = trajectory_.clockLimits();
+    limits.velocity *= override_;
+    follow(Profile::toRest(now, trajectory_.clockEnd(), limits), Along::clock, now);
+}
+
 void MotionExecution::stop() noexcept {
-    if (mode_ == Mode::running) {
-        mode_ = Mode::stopping;
-        replan(1.0);
+    if (mode_ != Mode::running) {
+        return;
+    }
+    mode_ = Mode::stopping;
+    const Profile gentle = brakeByPlan(1.0);
+    if (gentle.duration() > kGentleStop.count()) {
+        brake(1.0);
+    } else {
+        brake_factor_ = 0;
+        follow(gentle, Along::clock, state_);
     }
 }
 
 void MotionExecution::halt() noexcept {
     mode_ = Mode::stopping;
-    replan(kHaltFactor);
+    if (!atRest()) {
+        brake(kHaltFactor);
+    }
 }
 
 void MotionExecution::resume() noexcept {
     if (mode_ == Mode::stopping) {
         mode_ = Mode::running;
         stopped_late_ = false;
-        replan(1.0);
+        goOn();
     }
 }
 
 void MotionExecution::setOverride(double factor) noexcept {
     override_ = std::clamp(factor, 0.0, 1.0);
     if (mode_ == Mode::running && !finished()) {
-        replan(1.0);
+        goOn();
     }
 }
 
@@ -75,15 +136,28 @@ bool MotionExecution::atRest() const noexcept {
 }
 
 bool MotionExecution::finished() const noexcept {
-    return atRest() && clock_.position >= trajectory_.clockEnd();
+    const double end = along_ == Along::clock ? trajectory_.clockEnd() : 1.0;
+    return atRest() && state_.position >= end;
 }
 
 double MotionExecution::pathParameter() const noexcept {
-    return trajectory_.pathParameter(clock_).position;
+    return onPath().position;
 }
 
 Seconds MotionExecution::remaining() const noexcept {
     return Seconds(std::max(profile_.duration() - profile_time_, 0.0));
+}
+
+StoppingWay MotionExecution::stoppingWay() const noexcept {
+    if (atRest()) {
+        return {};
+    }
+    const ScalarState now = onPath();
+    const Profile halt = trajectory_.brake(now, kHaltFactor);
+    const Seconds time = std::min(Seconds(halt.duration()), remaining());
+    const SetPoint end = trajectory_.sampleOnPath({std::min(halt.end(), 1.0), 0.0, 0.0});
+    return {time, geometry::distanceBetween(trajectory_.toolPose(current_.position),
+                                            trajectory_.toolPose(end.position))};
 }
 
 }  // namespace metier::motion

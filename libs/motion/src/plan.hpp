@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "braking_bounds.hpp"
 #include "metier/motion/kinematics.hpp"
 #include "metier/motion/trajectory.hpp"
 #include "path.hpp"
@@ -12,10 +13,11 @@ namespace metier::motion {
 /// Everything a trajectory is: path, speed along it, and the profile of the clock.
 class Trajectory::Plan {
 public:
-    Plan(Kinematics kinematics, std::variant<JointLine, JointPath> path, SpeedPlan speed,
+    Plan(const RobotModel& model, std::variant<JointLine, JointPath> path, SpeedPlan speed,
          geometry::Pose flange_from_tool)
-        : kinematics_(std::move(kinematics)),
+        : kinematics_(model.kinematics()),
           path_(std::move(path)),
+          braking_(std::visit([&](const auto& of) { return BrakingBounds::of(model, of); }, path_)),
           speed_(std::move(speed)),
           flange_from_tool_(std::move(flange_from_tool)),
           profile_(Profile::toRest({}, speed_.map.end(), speed_.limits)) {}
@@ -32,6 +34,7 @@ public:
 
     const Kinematics& kinematics() const noexcept { return kinematics_; }
     const SpeedPlan& speed() const noexcept { return speed_; }
+    const BrakingBounds& braking() const noexcept { return braking_; }
     const Profile& profile() const noexcept { return profile_; }
     const geometry::Pose& flangeFromTool() const noexcept { return flange_from_tool_; }
     const ToolPath* toolPath() const noexcept {
@@ -46,6 +49,7 @@ public:
 private:
     Kinematics kinematics_;
     std::variant<JointLine, JointPath> path_;
+    BrakingBounds braking_;
     SpeedPlan speed_;
     geometry::Pose flange_from_tool_;
     Profile profile_;

@@ -45,7 +45,7 @@ ScalarLimits limitsOfJointLine(const RobotModel& model, const PtpRequest& reques
 
 Trajectory makeTrajectory(const RobotModel& model, std::variant<JointLine, JointPath> path,
                           SpeedPlan speed, const Pose& flange_from_tool) {
-    return Trajectory(std::make_shared<const Trajectory::Plan>(model.kinematics(), std::move(path),
+    return Trajectory(std::make_shared<const Trajectory::Plan>(model, std::move(path),
                                                                std::move(speed), flange_from_tool));
 }
 

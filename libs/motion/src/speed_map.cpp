@@ -271,6 +271,17 @@ ScalarState SpeedMap::at(double clock) const noexcept {
             (a0 + u * (6 * c3 + u * (12 * c4 + u * 20 * c5))) / (h * h)};
 }
 
+double SpeedMap::clockAt(double s) const noexcept {
+    double low = 0;
+    double high = end_;
+    constexpr int halvings = 60;  // to the last bit
+    for (int i = 0; i < halvings && low < high; ++i) {
+        const double middle = low + (high - low) / 2;
+        (at(middle).position < s ? low : high) = middle;
+    }
+    return high;
+}
+
 std::vector<SpeedBounds> axisBounds(const RobotModel& model,
                                     const std::vector<JointVector>& knots) {
     SpeedBounds empty;

@@ -21,6 +21,8 @@ public:
     double end() const noexcept { return end_; }
     /// s, ds/dclock and d2s/dclock2.
     ScalarState at(double clock) const noexcept;
+    /// The clock where the path parameter is `s`, 0 to 1.
+    double clockAt(double s) const noexcept;
 
 private:
     struct Node {

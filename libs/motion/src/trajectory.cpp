@@ -39,8 +39,27 @@ ScalarState Trajectory::pathParameter(const ScalarState& clock) const noexcept {
             s.velocity * clock.acceleration + s.acceleration * clock.velocity * clock.velocity};
 }
 
+ScalarState Trajectory::clockAt(const ScalarState& path) const noexcept {
+    const SpeedMap& map = plan_->speed().map;
+    if (path.position >= 1.0) {
+        return {map.end(), 0.0, 0.0};
+    }
+    const double clock = map.clockAt(std::max(path.position, 0.0));
+    const ScalarState s = map.at(clock);
+    const double velocity = path.velocity / s.velocity;
+    return {clock, velocity,
+            (path.acceleration - s.acceleration * velocity * velocity) / s.velocity};
+}
+
+Profile Trajectory::brake(const ScalarState& path, double factor) const noexcept {
+    return plan_->braking().brake(path, factor);
+}
+
 SetPoint Trajectory::sampleAt(const ScalarState& clock) const noexcept {
-    const ScalarState s = pathParameter(clock);
+    return sampleOnPath(pathParameter(clock));
+}
+
+SetPoint Trajectory::sampleOnPath(const ScalarState& s) const noexcept {
     const PathPoint path = plan_->pathAt(s.position);
     SetPoint point{path.q, path.first, path.first};
     point.velocity.view() = s.velocity * path.first.view();

@@ -31,8 +31,11 @@ TEST_P(AllocationOf, ASampledMotionDoesNotAllocate) {
             execution.stop();
         } else if (i == 500) {
             execution.resume();
+        } else if (i == 600) {
+            execution.halt();
         }
         execution.next(Seconds(0.001));
+        EXPECT_GE(execution.stoppingWay().time.count(), 0.0);
     }
     EXPECT_EQ(allocationCount() - before, 0U);
 }

@@ -6,13 +6,18 @@ namespace metier::robot_skills {
 
 namespace {
 
-void tell(const std::vector<skill::Program*>& programs, const device::Safety& safety) {
-    const bool lost = safety.state == device::SafetyState::disconnected;
+void pass(const std::vector<skill::Program*>& programs, const device::Safety& safety) {
     for (auto* program : programs) {
-        if (lost) {
-            program->deviceLost(safety.text);
-        } else {
-            program->deviceNotReady(safety.text);
+        switch (safety.state) {
+            case device::SafetyState::normal:
+                program->deviceReady();
+                break;
+            case device::SafetyState::disconnected:
+                program->deviceLost(safety.text);
+                break;
+            default:
+                program->deviceNotReady(safety.text);
+                break;
         }
     }
 }
@@ -35,18 +40,15 @@ template <typename Device>
 void DeviceWatch::watch(Device& device, std::shared_ptr<skill::Executor> executor) {
     const auto notice = [executor = std::move(executor),
                          watched = std::weak_ptr(programs_)](const device::Safety& safety) {
-        if (safety.state == device::SafetyState::normal) {
-            return;
-        }
         executor->post([watched, safety] {
             if (const auto alive = watched.lock()) {
-                tell(*alive, safety);
+                pass(*alive, safety);
             }
         });
     };
     registration_ = device.onSafetyChange(notice);
     if (const auto now = device.safety(); now.state != device::SafetyState::normal) {
-        tell(*programs_, now);
+        pass(*programs_, now);
     }
 }
 

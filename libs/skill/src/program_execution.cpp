@@ -255,16 +255,22 @@ Result<void> Program::takeResult(ValueMap& result) {
 void Program::onFail(Reason reason, std::string text) {
     inTurn([this, cause = Cause{faultReason(reason), std::move(text)}]() mutable {
         if (body_) {
-            cause.text += whyHalting();
+            cause.text += whyStopping();
             halted(std::move(cause));
         }
     });
 }
 
-/// What a Halt that is under way was for, to be put behind another text; empty if there is none.
-std::string Program::whyHalting() const {
-    return halting_ && !halting_->text.empty() ? fmt::format(" ({})", halting_->text)
-                                               : std::string();
+/// The cause of a Halt or Suspend that is under way; that of the Halt if it is both.
+const Program::Cause* Program::stopCause() const {
+    return halting_ ? &*halting_ : suspending_ ? &*suspending_ : nullptr;
+}
+
+/// The text of that cause in brackets, to be put behind another text; empty if there is none.
+std::string Program::whyStopping() const {
+    const auto* cause = stopCause();
+    return cause != nullptr && !cause->text.empty() ? fmt::format(" ({})", cause->text)
+                                                    : std::string();
 }
 
 /// Lets go of body and device; the execution's handles go nowhere from here on.
@@ -285,11 +291,16 @@ void Program::endExecution() {
     body_.reset();
 }
 
-/// Goes where no execution is; device and parameters are free then.
+/// Goes where no execution is; device and parameters are free then. Ready becomes Halted if the
+/// device needs a Reset since the execution was under way.
 void Program::end(TransitionNumber transition, Cause cause) {
     endExecution();
     commit(transition, std::move(cause));
     releaseParameters();
+    auto not_ready = std::exchange(not_ready_, std::nullopt);
+    if (not_ready && state_ == State::ready) {
+        end(TransitionNumber::ready_to_halted, std::move(*not_ready));
+    }
 }
 
 /// Running or Suspended becomes Halted; the device stands still.
@@ -383,10 +394,11 @@ void Program::armRestDeadline() {
 }
 
 void Program::restDeadlinePassed() {
-    const auto reason = halting_ ? faultReason(halting_->reason) : Reason::error;
+    const auto* cause = stopCause();
+    const auto reason = cause != nullptr ? faultReason(cause->reason) : Reason::error;
     auto text = fmt::format("not at rest within {} ms, the device's own stop was used",
                             options_.rest_deadline.count());
-    text += whyHalting();
+    text += whyStopping();
     forceHalted({reason, std::move(text)});
 }
 
@@ -494,10 +506,16 @@ void Program::deviceStopped(std::string text) {
 
 void Program::deviceNotReady(std::string text) {
     inTurn([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
-        if (!body_ && state_ == State::ready) {
+        if (body_) {
+            not_ready_ = std::move(cause);
+        } else if (state_ == State::ready) {
             end(TransitionNumber::ready_to_halted, std::move(cause));
         }
     });
+}
+
+void Program::deviceReady() {
+    inTurn([this] { not_ready_.reset(); });
 }
 
 void Program::onProgress(Value intermediate) {

@@ -118,6 +118,48 @@ TEST(DeviceNotReady, HaltsWhatIsReadyAndLeavesWhatRunsToItsMotion) {
     EXPECT_EQ(bench.program->state(), State::running);
 }
 
+TEST(DeviceNotReady, WhileSomethingRunsHaltsItOnceItIsReady) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.program->deviceNotReady("protective stop");
+    EXPECT_EQ(bench.program->state(), State::running);
+    bench.script->execution.finish();
+    bench.run();
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToReady", "ReadyToHalted"));
+    EXPECT_EQ(bench.program->subState(), SubState::halted_error);
+    EXPECT_EQ(bench.program->reasonText(), "protective stop");
+    EXPECT_TRUE(bench.program->reset(kAlice));
+    EXPECT_EQ(bench.program->state(), State::ready);
+}
+
+TEST(DeviceNotReady, WhileSuspendedHaltsItOnceItIsGivenUp) {
+    ProgramBench bench;
+    bench.enter(State::suspended);
+    bench.program->deviceNotReady("protective stop");
+    ASSERT_TRUE(bench.program->reset(kAlice));
+    EXPECT_THAT(bench.observer.transitions(), ElementsAre("SuspendedToReady", "ReadyToHalted"));
+}
+
+TEST(DeviceNotReady, IsOverOnceTheDeviceIsReadyAgain) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.program->deviceNotReady("protective stop");
+    bench.program->deviceReady();
+    bench.script->execution.finish();
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::ready);
+}
+
+TEST(DeviceNotReady, IsForgottenWithTheHaltThatFollows) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.program->deviceNotReady("protective stop");
+    bench.script->execution.fail(Reason::error, "protective stop");
+    bench.run();
+    ASSERT_TRUE(bench.program->reset(kAlice));
+    EXPECT_EQ(bench.program->state(), State::ready);
+}
+
 TEST(DeviceLost, WhileHaltedChangesTheSubStateWithoutATransition) {
     ProgramBench bench;
     bench.enter(State::halted);

@@ -157,6 +157,24 @@ TEST(ComingToRest, PastItsDeadlineStillTellsThatTheOwnerWasLost) {
     EXPECT_THAT(bench.program->reasonText(), HasSubstr("lease ran out"));
 }
 
+TEST(ComingToRest, PastItsDeadlineNamesTheLostOwnerAlsoIfItWasToBeSuspended) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::running);
+    bench.program->ownerLost("lease of alice ran out", OwnerLossAction::suspend);
+    bench.executor->advance(200ms);
+    EXPECT_EQ(bench.program->subState(), SubState::halted_owner_lost);
+    EXPECT_THAT(bench.program->reasonText(), HasSubstr("lease of alice ran out"));
+}
+
+TEST(ComingToRest, AnErrorWhileItIsSuspendedNamesTheLostOwner) {
+    ProgramBench bench(quickRest());
+    bench.enter(State::running);
+    bench.program->ownerLost("lease of alice ran out", OwnerLossAction::suspend);
+    bench.script->execution.fail(Reason::error, "off its set-point");
+    bench.run();
+    EXPECT_EQ(bench.program->reasonText(), "off its set-point (lease of alice ran out)");
+}
+
 TEST(ComingToRest, HasNoDeadlineLeftOnceAtRest) {
     ProgramBench bench(quickRest());
     bench.enter(State::suspended);

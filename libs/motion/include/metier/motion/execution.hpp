@@ -10,13 +10,23 @@ struct LateCyclePolicy {
     int most_skipped = 4;  ///< cycles one step may skip; when more are missing the motion stops
 };
 
+/// Time and way that a motion needs to stand.
+struct StoppingWay {
+    Seconds time{0};
+    double distance = 0;  ///< between where the tool frame's origin is and where it will stand [m]
+};
+
 /// A trajectory while it runs: gives the set-point of each cycle, brakes and goes on along the
 /// path.
 ///
-/// Stop, resume and override act on the clock along the path only: the arm never leaves it.
+/// Stop, halt, resume and override act along the path only: the arm never leaves it. How soon it
+/// stands after halt() depends on the robot's own limits, never on those of the plan.
 /// Threading: one thread, the control cycle. Nothing allocates, locks or throws.
 class MotionExecution {
 public:
+    /// Longest stop for which stop() keeps the plan's limits.
+    static constexpr Seconds kGentleStop{0.5};
+
     /// Starts at rest at the beginning of the path, moving with the first next().
     explicit MotionExecution(Trajectory trajectory, const LateCyclePolicy& late = {}) noexcept;
 
@@ -28,9 +38,10 @@ public:
     /// The set-point last given; the start of the path before the first next().
     const SetPoint& current() const noexcept { return current_; }
 
-    /// Brakes on the path to rest within the motion's limits: Suspend. Takes effect at next().
+    /// Brakes on the path to rest: Suspend. Keeps the plan's limits if the motion stands within
+    /// kGentleStop by them, else takes the robot's own. Takes effect at next().
     void stop() noexcept;
-    /// As stop() with twice the acceleration and jerk: Halt.
+    /// Brakes on the path with twice the robot's own acceleration and jerk: Halt.
     void halt() noexcept;
     /// Goes on to the end of the path, from rest or while still braking.
     void resume() noexcept;
@@ -46,22 +57,35 @@ public:
     double pathParameter() const noexcept;
     /// Until rest at the end; while stopped or braking for a stop, until rest.
     Seconds remaining() const noexcept;
+    /// What halt() would need from here to rest; zero at rest.
+    StoppingWay stoppingWay() const noexcept;
     const Trajectory& trajectory() const noexcept { return trajectory_; }
 
 private:
     enum class Mode { running, stopping };
 
+    /// What the profile is a motion of.
+    enum class Along { clock, path };
+
     bool tooLate(Seconds step) const noexcept;
-    void replan(double limit_factor) noexcept;
+    ScalarState onPath() const noexcept;
+    ScalarState onClock() const noexcept;
+    Profile brakeByPlan(double factor) const noexcept;
+    void brake(double factor) noexcept;
+    void brakeHarder() noexcept;
+    void follow(const Profile& profile, Along along, const ScalarState& now) noexcept;
+    void goOn() noexcept;
 
     Trajectory trajectory_;
     LateCyclePolicy late_;
     bool stopped_late_ = false;
     Mode mode_ = Mode::running;
     double override_ = 1.0;
-    ScalarState clock_;
+    Along along_ = Along::clock;
+    ScalarState state_;  ///< of the clock or of the path parameter, as along_ says
     Profile profile_;
     double profile_time_ = 0;
+    double brake_factor_ = 0;  ///< part of the robot's limits that a stop uses; 0: the plan's
     SetPoint current_;
 };
 

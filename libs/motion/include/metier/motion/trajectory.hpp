@@ -45,6 +45,15 @@ public:
     SetPoint sampleAt(const ScalarState& clock) const noexcept;
     /// Path parameter at a clock position, 0 start to 1 end; its derivatives by time.
     ScalarState pathParameter(const ScalarState& clock) const noexcept;
+    /// The inverse of pathParameter(): the clock's state for one of the path parameter.
+    ScalarState clockAt(const ScalarState& path) const noexcept;
+    /// Set-point for a state of the path parameter.
+    SetPoint sampleOnPath(const ScalarState& path) const noexcept;
+    /// The path parameter's quickest way to rest that the robot's own limits allow, whatever the
+    /// motion was planned with.
+    /// \param factor part of these limits that may be used, > 0; above 1 for a Halt
+    /// \return may end beyond 1 near the end of the path
+    Profile brake(const ScalarState& path, double factor) const noexcept;
 
     JointVector start() const noexcept;
     JointVector end() const noexcept;

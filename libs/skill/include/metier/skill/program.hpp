@@ -132,8 +132,10 @@ public:
     /// Somebody else has told the device to stop: what runs is Halted for an error once it rests.
     void deviceStopped(std::string text);
     /// The device does nothing until it is reset: a Ready Program is Halted for an error. One that
-    /// runs learns it from its motion.
+    /// runs learns it from its motion; if that still ends Ready, it is Halted right after.
     void deviceNotReady(std::string text);
+    /// The device may be used again, without a Reset of this Program.
+    void deviceReady();
 
     /// Of the Program's thread.
     Executor& executor() const { return *executor_; }
@@ -222,7 +224,8 @@ private:
     void forceHalted(Cause cause);
     void halted(Cause cause);
     void giveUpSuspended();
-    std::string whyHalting() const;
+    const Cause* stopCause() const;
+    std::string whyStopping() const;
     void end(TransitionNumber transition, Cause cause);
     void endExecution();
 
@@ -266,6 +269,7 @@ private:
     bool body_started_ = false;  ///< nothing moves before
     std::optional<Cause> halting_;
     std::optional<Cause> suspending_;
+    std::optional<Cause> not_ready_;  ///< why the device needs a Reset, once the execution is over
     std::optional<ValueMap> finished_while_suspended_;
 
     SteadyTime last_write_;
