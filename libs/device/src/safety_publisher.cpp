@@ -1,5 +1,7 @@
 #include "metier/device/safety_publisher.hpp"
 
+#include <algorithm>
+
 namespace metier::device {
 
 SafetyPublisher::SafetyPublisher(Safety initial)
@@ -50,8 +52,14 @@ Registration SafetyPublisher::onChange(Callback callback) {
     listeners_->callbacks.emplace_back(id, std::move(callback));
     return Registration([listeners = std::weak_ptr(listeners_), id] {
         if (const auto alive = listeners.lock()) {
+            Callback gone;  // dropped without the lock: it may own another registration here
             const std::lock_guard inner(alive->mutex);
-            std::erase_if(alive->callbacks, [id](const auto& entry) { return entry.first == id; });
+            const auto entry =
+                std::ranges::find(alive->callbacks, id, &std::pair<std::uint64_t, Callback>::first);
+            if (entry != alive->callbacks.end()) {
+                gone = std::move(entry->second);
+                alive->callbacks.erase(entry);
+            }
         }
     });
 }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,17 @@ TEST(SafetyPublisher, TellsNobodyWhoseRegistrationEnded) {
     heard.publisher.set({SafetyState::normal, "", false});
     heard.publisher.dispatch();
     EXPECT_THAT(heard.texts, ElementsAre());
+}
+
+TEST(SafetyPublisher, LetsAListenerOwnAnotherRegistration) {
+    Heard heard;
+    auto owned = std::make_shared<Registration>(heard.publisher.onChange([](const Safety&) {}));
+    auto outer = heard.publisher.onChange([owned](const Safety&) {});
+    owned.reset();
+    outer = {};  // would wait for itself for ever if the listener were dropped with its lock held
+    heard.publisher.set({SafetyState::normal, "", false});
+    heard.publisher.dispatch();
+    EXPECT_EQ(heard.texts.size(), 1U);
 }
 
 }  // namespace
