@@ -8,17 +8,14 @@ namespace metier::iiwa_driver {
 
 namespace {
 
-// A sample is too old after so many cycles.
-constexpr int kStaleCycles = 5;
-
 bool allFinite(const std::array<double, 3>& values) noexcept {
     return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
 }  // namespace
 
-FlangeForce::FlangeForce(device::ArmCore& core)
-    : core_(core), name_(core.info().name + " flange") {}
+FlangeForce::FlangeForce(device::ArmCore& core, std::chrono::nanoseconds longest)
+    : core_(core), longest_(longest), name_(core.info().name + " flange") {}
 
 void FlangeForce::take(const CabinetState& answer, SteadyTime now) noexcept {
     device::WrenchSample sample;
@@ -39,7 +36,7 @@ device::WrenchSample FlangeForce::sample() const noexcept {
         sample.torque[i] -= zero.torque[i];
     }
     const auto age = std::chrono::steady_clock::now() - sample.stamp;
-    if (age > kStaleCycles * core_.info().cycle) {
+    if (age > longest_) {
         sample.health = device::SafetyState::disconnected;
     }
     return sample;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <mutex>
 #include <string>
 
@@ -14,8 +15,9 @@ namespace metier::iiwa_driver {
 /// in the axes of the flange frame, once per cycle.
 class FlangeForce final : public device::ForceTorqueSensor {
 public:
-    /// \param core of the arm; must outlive this
-    explicit FlangeForce(device::ArmCore& core);
+    /// \param core    of the arm; must outlive this
+    /// \param longest silence of the cabinet after which a sample is no longer valid, > 0
+    FlangeForce(device::ArmCore& core, std::chrono::nanoseconds longest);
 
     /// The cycle thread: neither locks nor allocates.
     void take(const CabinetState& answer, SteadyTime now) noexcept;
@@ -30,6 +32,7 @@ public:
 
 private:
     device::ArmCore& core_;
+    const std::chrono::nanoseconds longest_;
     const std::string name_;
     device::SharedValue<device::WrenchSample> newest_;  ///< as the cabinet gave it
     device::SharedValue<device::WrenchSample> zero_;

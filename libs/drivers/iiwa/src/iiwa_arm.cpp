@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -21,6 +22,11 @@ device::ArmInfo infoOf(const IiwaOptions& options, const motion::RobotModel& mod
         info.axis_names.push_back(joint.name);
     }
     return info;
+}
+
+/// As long as a connected cabinet may be silent, and 5 cycles at least.
+std::chrono::nanoseconds longestSilence(const IiwaOptions& options) {
+    return std::max(5 * options.cycle, options.cycle + options.answer_timeout);
 }
 
 Result<void> check(const IiwaOptions& options, const motion::RobotModel& model) {
@@ -43,7 +49,7 @@ class IiwaArm::Machine {
 public:
     Machine(const IiwaOptions& options, const motion::RobotModel& model, Session::Links links)
         : pilot_(infoOf(options, model), model, {options.force_tolerance, options.tool}),
-          force_(pilot_.core()),
+          force_(pilot_.core(), longestSilence(options)),
           notifier_([this] { pilot_.dispatch(); }),
           session_(std::move(links), {pilot_, force_, [this] { notifier_.signal(); }},
                    {options.precision, options.cycle, options.answer_timeout}),

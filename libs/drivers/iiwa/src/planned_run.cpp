@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "commands.hpp"
 #include "metier/geometry/frame.hpp"
@@ -21,11 +22,16 @@ namespace {
 constexpr double kAxisTolerance = 2e-3;      // [rad]
 constexpr double kPositionTolerance = 1e-3;  // [m]
 constexpr double kRotationTolerance = 5e-3;  // [rad]
+// What the robot application begins with: docs/protocols/iiwa.md#commands.
+constexpr double kOwnLineVelocity = 1.0;      // [m/s]
+constexpr double kOwnLineAcceleration = 1.0;  // [m/s2]
 // How long a motion may take to begin after it was accepted [s].
 constexpr double kLongestStart = 0.3;
 // How long the arm may take to settle after the cabinet has ended the motion [s].
 constexpr double kLongestSettling = 0.1;
-// How long a motion may stand still before it is given up [s].
+// A motion is given up when no axis got so far [rad] in so long [s]. Its speed says nothing: a slow
+// motion is slower than the noise of the cabinet's differences.
+constexpr double kLeastProgress = 1e-4;
 constexpr double kLongestStall = 3.0;
 // How long braking may take [s], and when it is asked for again.
 constexpr double kLongestBraking = 4.0;
@@ -81,6 +87,7 @@ void PlannedRun::begin(const Request& request, const CabinetState& now,
                        const CabinetSettings& settings) noexcept {
     *this = PlannedRun();
     start_ = now.position;
+    progress_ = now.position;
     error_before_ = now.last_error;
     condition_new_ = !now.force_condition_met;
     const auto move = moveCommand(request);
@@ -104,14 +111,15 @@ void PlannedRun::requireSettings(const Request& request, const CabinetSettings& 
     require(chooseInterface(Interface::standard));
     require(jointVelocity(motion.velocity_share));
     require(jointAcceleration(motion.acceleration_share));
-    if (motion.line_velocity > 0.0) {
-        require(lineVelocity(motion.line_velocity));
-    }
-    if (motion.line_acceleration > 0.0) {
-        require(lineAcceleration(motion.line_acceleration));
+    const bool line = motion.path == PlannedMotion::Path::line;
+    if (line) {
+        // Also where the motion has none of its own: that of another one may still be in force.
+        const auto [velocity, acceleration] =
+            std::pair(motion.line_velocity, motion.line_acceleration);
+        require(lineVelocity(velocity > 0.0 ? velocity : kOwnLineVelocity));
+        require(lineAcceleration(acceleration > 0.0 ? acceleration : kOwnLineAcceleration));
     }
     if (!by_joints_) {
-        const bool line = motion.path == PlannedMotion::Path::line;
         require(chooseMotionType(line ? MotionType::line : MotionType::ptp));
     }
     require(motion.until ? forceCondition(*motion.until, request.force_tolerance)
@@ -190,8 +198,7 @@ bool PlannedRun::watch(const CabinetState& answer, double step) noexcept {
     // The flag of the motion before may still stand in the answers until this one has begun.
     condition_new_ = condition_new_ || answer.active || !answer.force_condition_met;
     idle_ = answer.active ? 0.0 : idle_ + step;
-    stalled_ = answer.active && stands(answer) ? stalled_ + step : 0.0;
-    if (stalled_ > kLongestStall) {
+    if (stalls(answer, step)) {
         stop(Cause::stalled);
         return false;
     }
@@ -209,6 +216,17 @@ bool PlannedRun::watch(const CabinetState& answer, double step) noexcept {
         return overAs(answer.ready ? Cause::off_target : Cause::not_ready);
     }
     return false;
+}
+
+bool PlannedRun::stalls(const CabinetState& answer, double step) noexcept {
+    const bool progress = device::largestDifference(answer.position, progress_) > kLeastProgress;
+    if (progress || !answer.active) {
+        progress_ = answer.position;
+        stalled_ = 0.0;
+        return false;
+    }
+    stalled_ += step;
+    return stalled_ > kLongestStall;
 }
 
 bool PlannedRun::brake(const CabinetState& answer, double step) noexcept {

@@ -81,6 +81,7 @@ private:
     void requireSettings(const Request& request, const CabinetSettings& settings) noexcept;
     bool told(const Command& sent, const CabinetState& answer, CabinetSettings& settings) noexcept;
     bool watch(const CabinetState& answer, double step) noexcept;
+    bool stalls(const CabinetState& answer, double step) noexcept;
     bool brake(const CabinetState& answer, double step) noexcept;
     void note(const CabinetState& answer) noexcept;
     bool overAs(RunEnd::Cause cause) noexcept;
@@ -93,12 +94,13 @@ private:
     geometry::Pose target_;  ///< of the cabinet's tool
     device::JointArray start_;
     int error_before_ = 0;
-    bool started_ = false;        ///< seen to move
-    bool condition_new_ = false;  ///< a force condition that is met belongs to this motion
-    double idle_ = 0.0;           ///< without a motion [s]
-    double stalled_ = 0.0;        ///< with one, at standstill [s]
-    double braking_ = 0.0;        ///< [s]
-    double since_cancel_ = 0.0;   ///< [s]
+    bool started_ = false;         ///< seen to move
+    bool condition_new_ = false;   ///< a force condition that is met belongs to this motion
+    double idle_ = 0.0;            ///< without a motion [s]
+    device::JointArray progress_;  ///< where the arm was when it last got on [rad]
+    double stalled_ = 0.0;         ///< with a motion, since then [s]
+    double braking_ = 0.0;         ///< [s]
+    double since_cancel_ = 0.0;    ///< [s]
     bool cancelled_ = false;
     RunEnd::Cause stop_cause_ = RunEnd::Cause::stopped;
     RunEnd end_;

@@ -4,6 +4,7 @@
 
 #include "arm_bench.hpp"
 #include "metier/geometry/frame.hpp"
+#include "planned_run.hpp"
 
 namespace metier::iiwa_driver {
 namespace {
@@ -90,6 +91,17 @@ TEST_F(PlannedMoves, ALineIsTheFlangesPoseInTheCabinetsUnits) {
     EXPECT_NEAR(pose[1], 1000 * motion.target_flange->x, 1e-3);
     EXPECT_NEAR(pose[4], motion.target_flange->c, 1e-6);
     EXPECT_NEAR(pose[6], motion.target_flange->a, 1e-6);
+}
+
+TEST_F(PlannedMoves, ALineWithoutASpeedOfItsOwnDoesNotTakeThatOfTheLineBefore) {
+    auto slow = line(0.1);
+    slow.line_velocity = 0.02;
+    slow.line_acceleration = 0.1;
+    ASSERT_TRUE(run(slow));
+    const auto before = bench.cabinet->codes().size();
+    ASSERT_TRUE(run(line(0.2)));
+    ASSERT_THAT(codesSince(before), ElementsAre(204, 205, 103));
+    EXPECT_EQ(bench.cabinet->commands()[before][1], 1000) << "as the robot application begins";
 }
 
 TEST_F(PlannedMoves, APoseCanBeReachedByPtpToo) {
@@ -229,6 +241,58 @@ TEST_F(PlannedMoves, AnObserverSeesTheArmInEveryCycle) {
     ASSERT_TRUE(run(motion));
     EXPECT_GT(counter->count.load(), 10);
     EXPECT_NEAR(counter->last.load(), 0.5, kNear);
+}
+
+/// A motion whose cabinet is asked by hand, every 10 ms of its time.
+class RunByHand {
+public:
+    explicit RunByHand(double target) : motion_(ArmBench::toJoints(target)) {
+        state_.executed = state_.ready = true;
+        state_.position = ArmBench::toJoints(0.0).target_joints;
+        state_.velocity = device::JointArray(kAxes);
+        run_.begin({motion_, {}}, state_, settings_);
+    }
+
+    /// The cabinet moves axis 1 with this speed; whether nothing ends the motion in `seconds`.
+    bool movesFor(double seconds, double speed) {
+        constexpr double kStep = 0.01;
+        state_.active = true;
+        state_.velocity[0] = speed;
+        for (double time = 0.0; time < seconds; time += kStep) {
+            const auto command = run_.command();
+            state_.position[0] += kStep * speed;
+            if (run_.take(command, state_, kStep, settings_) || command.code == Code::cancel) {
+                return false;
+            }
+        }
+        return true;
+    }
+    RunEnd::Cause arrives() {
+        state_.active = false;
+        state_.velocity[0] = 0.0;
+        while (!run_.take(run_.command(), state_, 0.01, settings_)) {
+        }
+        return run_.end().cause;
+    }
+
+private:
+    device::PlannedMotion motion_;
+    CabinetState state_;
+    CabinetSettings settings_;
+    PlannedRun run_;
+};
+
+TEST(SlowPlannedMove, IsNoStandstillHoweverSlow) {
+    RunByHand run(0.12);
+    EXPECT_TRUE(run.movesFor(120.0, 1e-3)) << "[s], [rad/s]";
+    EXPECT_EQ(run.arrives(), RunEnd::Cause::at_target);
+}
+
+TEST(SlowPlannedMove, ThatStopsOnItsWayIsGivenUp) {
+    RunByHand run(0.12);
+    ASSERT_TRUE(run.movesFor(10.0, 1e-3));
+    EXPECT_TRUE(run.movesFor(2.9, 0.0));
+    EXPECT_FALSE(run.movesFor(0.3, 0.0));
 }
 
 TEST(PlannedMovesOfASlowCabinet, AreDoneToo) {
