@@ -146,10 +146,12 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
                                     const configuration::ArmServer& config) {
+    // What a controller that plans cannot stop by itself, its own measurement can.
+    auto* const own_sensor = device_.planner != nullptr ? device_.force_torque_sensor : nullptr;
     auto arm = robot_skills::makeArmSkills(
         {.arm = *device_.arm,
          .planner = device_.planner,
-         .sensor = sensor_ ? sensor_->force_torque_sensor : nullptr},
+         .sensor = sensor_ ? sensor_->force_torque_sensor : own_sensor},
         model_, host_->clock(), {.longest_silence = config.stream_silence});
     if (!arm) {
         return fail(arm.error());

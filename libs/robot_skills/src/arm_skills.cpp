@@ -42,7 +42,7 @@ Result<Skills> makeMoves(const ArmFaces& faces, const StreamedArm& streamed) {
         }
         return moves;
     }
-    const PlanningArm planning{arm, *faces.planner, model, clock};
+    const PlanningArm planning{arm, *faces.planner, model, clock, faces.sensor};
     auto moves = makePlannedMoveSkills(planning);
     if (!moves) {
         return moves;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSamples = 20;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSameAxis = 3.0 * kDegree;
+constexpr double kSameAxis = 1.0 * kDegree;
 
 Eigen::Matrix3d baseFromFlange(const motion::RobotModel& model, const motion::JointVector& joints) {
     return model.kinematics().forward(joints).rotation.toRotationMatrix();

@@ -8,11 +8,10 @@
 #include "force_report.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "move_skill.hpp"
-#include "move_source.hpp"
 #include "planned_body.hpp"
 #include "planned_motion.hpp"
 #include "sensor_failure.hpp"
-#include "source_body.hpp"
+#include "streamed_move.hpp"
 
 namespace metier::robot_skills {
 
@@ -51,33 +50,6 @@ MetForce metForce(const RobotModel& model, const MoveResults& results,
     return {{rotation * toEigen(outcome.force), rotation * toEigen(outcome.torque)},
             rotation.toRotationMatrix().cwiseAbs() * toEigen(outcome.largest_force),
             outcome.end == MotionOutcome::End::force};
-}
-
-Result<std::unique_ptr<skill::Body>> plannedForceBody(const PlanningArm& arm,
-                                                      const Trajectory& trajectory,
-                                                      const ForceMoveParameters& parameters) {
-    if (auto at_once = checkNoStartTime(arm.arm, parameters.start_time); !at_once) {
-        return fail(std::move(at_once.error()));
-    }
-    auto motion = plannedMotion(arm.model, trajectory, Path::cartesian_line);
-    if (!motion) {
-        return fail(std::move(motion.error()));
-    }
-    auto condition = flangeCondition(arm.model, trajectory, parameters.max_force);
-    if (!condition) {
-        return fail(std::move(condition.error()));
-    }
-    motion->until = *condition;
-    const auto tell = [&model = arm.model, parameters](const skill::Execution& execution,
-                                                       const MoveResults& results,
-                                                       const MotionOutcome& outcome) {
-        tellForceMove(execution, parameters, results, metForce(model, results, outcome));
-    };
-    auto move = std::make_shared<PlannedMove>(PlannedMove::Setup{
-        arm.arm, arm.clock, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
-    return std::make_unique<PlannedBody>(PlannedBody::Faces{arm.arm, arm.planner},
-                                         std::move(*motion), std::move(move),
-                                         toolDistance(trajectory));
 }
 
 // ---- by a sensor --------------------------------------------------------------------------------
@@ -137,11 +109,49 @@ Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
     if (!limit) {
         return fail(std::move(limit.error()));
     }
-    auto source = std::make_shared<MoveSource>(
-        MoveSource::Setup{arm.arm.info(), trajectory, Path::cartesian_line,
-                          Timetable(arm.clock, parameters.start_time),
-                          std::make_unique<SensorWatch>(arm, parameters, *limit)});
-    return std::make_unique<SourceBody>(arm.arm, std::move(source), toolDistance(trajectory));
+    return makeStreamedBody({arm.arm, arm.model, arm.clock},
+                            {trajectory, Path::cartesian_line, parameters.start_time,
+                             std::make_unique<SensorWatch>(arm, parameters, *limit)});
+}
+
+// ---- by either --------------------------------------------------------------------------------
+
+/// What the controller is asked for. Errors: not_supported, where it cannot do just this.
+Result<device::PlannedMotion> plannedForceMotion(const RobotModel& model,
+                                                 const Trajectory& trajectory,
+                                                 const ForceMoveParameters& parameters) {
+    auto motion = plannedMotion({model, trajectory, Path::cartesian_line, parameters});
+    if (!motion) {
+        return motion;
+    }
+    auto condition = flangeCondition(model, trajectory, parameters.max_force);
+    if (!condition) {
+        return fail(std::move(condition.error()));
+    }
+    motion->until = *condition;
+    return motion;
+}
+
+Result<std::unique_ptr<skill::Body>> plannedForceBody(const PlanningArm& arm,
+                                                      const Trajectory& trajectory,
+                                                      const ForceMoveParameters& parameters) {
+    auto motion = plannedForceMotion(arm.model, trajectory, parameters);
+    if (!motion && arm.sensor != nullptr) {
+        return feelingBody({arm.arm, *arm.sensor, arm.model, arm.clock}, trajectory, parameters);
+    }
+    if (!motion) {
+        return fail(std::move(motion.error()));
+    }
+    const auto tell = [&model = arm.model, parameters](const skill::Execution& execution,
+                                                       const MoveResults& results,
+                                                       const MotionOutcome& outcome) {
+        tellForceMove(execution, parameters, results, metForce(model, results, outcome));
+    };
+    auto move = std::make_shared<PlannedMove>(PlannedMove::Setup{
+        arm.arm, arm.clock, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
+    return std::make_unique<PlannedBody>(PlannedBody::Faces{arm.arm, arm.planner},
+                                         std::move(*motion), std::move(move),
+                                         toolDistance(trajectory));
 }
 
 }  // namespace

@@ -3,8 +3,7 @@
 #include <utility>
 
 #include "move_skill.hpp"
-#include "move_source.hpp"
-#include "source_body.hpp"
+#include "streamed_move.hpp"
 
 namespace metier::robot_skills {
 
@@ -20,10 +19,7 @@ Result<std::unique_ptr<skill::Skill>> makeStreamed(const StreamedArm& streamed,
         [streamed, path = variant.path](
             const Trajectory& trajectory,
             const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
-        auto& arm = streamed.arm;
-        auto source = std::make_shared<MoveSource>(MoveSource::Setup{
-            arm.info(), trajectory, path, Timetable(streamed.clock, parameters.start_time)});
-        return std::make_unique<SourceBody>(arm, std::move(source), toolDistance(trajectory));
+        return makeStreamedBody(streamed, {trajectory, path, parameters.start_time});
     };
     return makeMove<Parameters>({streamed.arm, streamed.model, streamed.clock, make_body},
                                 std::move(variant));

@@ -23,67 +23,107 @@ namespace {
 constexpr int kSamples = 50;
 // The tool frame may be this far off its line [m].
 constexpr double kStraight = 1e-4;
-// The elbow may end this far from where it began [rad].
-constexpr double kSameElbow = 0.02;
-// A line shorter than this is a rotation: its speed along the line says nothing [m].
+// An axis may end this far from where it is planned to [rad].
+constexpr double kSameJoints = 1e-3;
+// A line shorter than this is a rotation, which a controller's speed along the line does not bound
+// [m].
 constexpr double kShortLine = 1e-3;
+// The fastest axis must be at least this fast, so that the controller's motion is seen as one
+// [rad/s].
+constexpr double kSlowest = 2e-3;
+
+tl::unexpected<Error> notByController(std::string why) {
+    return fail(Errc::not_supported, "the controller's own motion: " + std::move(why));
+}
 
 double fraction(int sample) noexcept {
     return static_cast<double>(sample) / kSamples;
 }
 
-/// Largest speed and acceleration of the path parameter that the plan may use [1/s], [1/s2].
-struct PathSpeed {
-    double velocity = 0.0;
-    double acceleration = 0.0;
-};
-
-PathSpeed pathSpeed(const Trajectory& trajectory) noexcept {
-    const auto& limits = trajectory.clockLimits();
-    PathSpeed speed;
+/// Largest speed of the path parameter in the plan [1/s].
+double pathSpeed(const Trajectory& trajectory) noexcept {
+    const double clock_speed = trajectory.clockLimits().velocity;
+    double fastest = 0.0;
     for (int i = 0; i <= kSamples; ++i) {
         const double clock = fraction(i) * trajectory.clockEnd();
-        const auto at = trajectory.pathParameter({clock, limits.velocity, 0.0});
-        speed.velocity = std::max(speed.velocity, at.velocity);
+        fastest = std::max(fastest, trajectory.pathParameter({clock, clock_speed, 0.0}).velocity);
     }
-    speed.acceleration = speed.velocity / limits.velocity * limits.acceleration;
-    return speed;
+    return fastest;
 }
 
-/// What the axes may do along the path, as shares of what they can: at most 1.
-void setShares(const RobotModel& model, const Trajectory& trajectory, const PathSpeed& speed,
-               PlannedMotion& motion) {
-    double velocity = 0.0;
-    double acceleration = 0.0;
-    auto before = trajectory.start();
+/// Largest speed of an axis along the path.
+struct AxisSpeed {
+    double absolute = 0.0;  ///< [rad/s]
+    double share = 0.0;     ///< of what the axis can
+};
+
+AxisSpeed fastestAxis(const PlannedRequest& request, double path_speed) {
+    AxisSpeed fastest;
+    auto before = request.trajectory.start();
     for (int i = 1; i <= kSamples; ++i) {
-        const auto now = trajectory.positionAt(fraction(i));
+        const auto now = request.trajectory.positionAt(fraction(i));
         for (std::size_t axis = 0; axis < now.size(); ++axis) {
-            const double slope = std::abs(now[axis] - before[axis]) * kSamples;
-            const auto& limits = model.limits(axis);
-            velocity = std::max(velocity, slope * speed.velocity / limits.velocity);
-            acceleration = std::max(acceleration, slope * speed.acceleration / limits.acceleration);
+            const double speed = std::abs(now[axis] - before[axis]) * kSamples * path_speed;
+            fastest.absolute = std::max(fastest.absolute, speed);
+            fastest.share = std::max(fastest.share, speed / request.model.limits(axis).velocity);
         }
         before = now;
     }
-    // Without any way there is no speed to limit.
-    motion.velocity_share = velocity > 0.0 ? std::min(velocity, 1.0) : 1.0;
-    motion.acceleration_share = acceleration > 0.0 ? std::min(acceleration, 1.0) : 1.0;
+    return fastest;
 }
 
+Result<void> checkTimes(const MoveParameters& parameters) {
+    if (parameters.start_time) {
+        return notByController("it begins at once, not at a StartTime");
+    }
+    if (parameters.duration) {
+        return notByController("it takes as long as it takes, not a Duration");
+    }
+    return {};
+}
+
+/// The robot's own accelerations in the order of MaxAcceleration.
+std::vector<double> ownAccelerations(const PlannedRequest& request) {
+    if (request.path == PathDeviationMeter::Path::cartesian_line) {
+        const auto& limits = request.model.cartesianLimits();
+        const double linear = limits.acceleration;
+        const double angular = limits.angular_acceleration;
+        return {linear, linear, linear, angular, angular, angular};
+    }
+    std::vector<double> own;
+    for (std::size_t axis = 0; axis < request.model.axisCount(); ++axis) {
+        own.push_back(request.model.limits(axis).acceleration);
+    }
+    return own;
+}
+
+/// A controller brakes with the acceleration of its motion: a low one would make Halt slow.
+Result<void> checkAcceleration(const PlannedRequest& request) {
+    const auto& asked = request.parameters.max_acceleration;
+    const auto own = ownAccelerations(request);
+    for (std::size_t i = 0; i < std::min(asked.size(), own.size()); ++i) {
+        if (asked[i] > 0.0 && asked[i] < own[i]) {
+            return notByController(
+                fmt::format("it would brake with MaxAcceleration, {}, where the robot can {}",
+                            asked[i], own[i]));
+        }
+    }
+    return {};
+}
+
+/// A controller's line keeps the elbow where it is.
 Result<void> checkElbow(const RobotModel& model, const Trajectory& trajectory) {
     const auto& kinematics = model.kinematics();
-    const double turned =
-        std::abs(std::remainder(kinematics.redundancyAngle(trajectory.end()) -
-                                    kinematics.redundancyAngle(trajectory.start()),
-                                2.0 * M_PI));
-    if (turned <= kSameElbow) {
+    const auto end = trajectory.end();
+    const auto kept = kinematics.solutionNear(kinematics.forward(end), end,
+                                              kinematics.redundancyAngle(trajectory.start()));
+    if (!kept.empty() && motion::maxDifference(kept, end) <= kSameJoints) {
         return {};
     }
-    return fail(Errc::not_supported,
-                fmt::format("the line ends in another configuration: the elbow {:.4f} rad from "
-                            "where it begins, limit {} rad; the controller's own line keeps it",
-                            turned, kSameElbow));
+    const double turned = std::abs(std::remainder(
+        kinematics.redundancyAngle(end) - kinematics.redundancyAngle(trajectory.start()),
+        2.0 * M_PI));
+    return notByController(fmt::format("a line that turns the elbow {:.4f} rad", turned));
 }
 
 /// The tool frame when the flange is so far along its own straight line.
@@ -105,33 +145,25 @@ Result<void> checkSameLine(const RobotModel& model, const Trajectory& trajectory
     if (worst <= kStraight) {
         return {};
     }
-    return fail(Errc::not_supported,
-                fmt::format("the controller's line is one of the flange: the tool frame would be "
-                            "{:.4f} m off its own, limit {} m; use the flange, or keep the "
-                            "orientation",
-                            worst, kStraight));
+    return notByController(
+        fmt::format("the tool frame would be {:.4f} m off its line, limit {} m", worst, kStraight));
 }
 
-}  // namespace
-
-Result<void> checkNoStartTime(const device::Arm& arm, const std::optional<double>& start_time) {
-    if (!start_time) {
-        return {};
-    }
-    return fail(Errc::not_supported,
-                arm.info().name +
-                    ": StartTime: its controller plans the motion and begins at once; a move over "
-                    "its position stream can wait");
+/// The line's speed is the plan's; its acceleration the robot's own.
+void setLineLimits(const PlannedRequest& request, double path_speed, PlannedMotion& motion) {
+    const auto& own = request.model.cartesianLimits();
+    const double length = request.trajectory.length();
+    const double angle = request.trajectory.angle();
+    motion.line_velocity = path_speed * length;
+    motion.line_acceleration = own.acceleration * angle > own.angular_acceleration * length
+                                   ? own.angular_acceleration * length / angle
+                                   : own.acceleration;
 }
 
-Result<PlannedMotion> plannedMotion(const RobotModel& model, const Trajectory& trajectory,
-                                    PathDeviationMeter::Path path) {
-    PlannedMotion motion;
-    motion.target_joints = toArray(trajectory.end());
-    const auto speed = pathSpeed(trajectory);
-    if (path == PathDeviationMeter::Path::joint_line) {
-        setShares(model, trajectory, speed, motion);
-        return motion;
+Result<PlannedMotion> plannedLine(const PlannedRequest& request, double path_speed) {
+    const auto& [model, trajectory, path, parameters] = request;
+    if (trajectory.length() < kShortLine) {
+        return notByController("its speed bounds no rotation");
     }
     if (auto same = checkElbow(model, trajectory); !same) {
         return fail(std::move(same.error()));
@@ -139,14 +171,38 @@ Result<PlannedMotion> plannedMotion(const RobotModel& model, const Trajectory& t
     if (auto same = checkSameLine(model, trajectory); !same) {
         return fail(std::move(same.error()));
     }
+    PlannedMotion motion;
     motion.path = PlannedMotion::Path::line;
     motion.target_flange = geometry::toFrame(model.kinematics().forward(trajectory.end()));
-    if (trajectory.length() < kShortLine) {
-        setShares(model, trajectory, speed, motion);
-        return motion;
+    setLineLimits(request, path_speed, motion);
+    return motion;
+}
+
+}  // namespace
+
+Result<PlannedMotion> plannedMotion(const PlannedRequest& request) {
+    if (auto timed = checkTimes(request.parameters); !timed) {
+        return fail(std::move(timed.error()));
     }
-    motion.line_velocity = speed.velocity * trajectory.length();
-    motion.line_acceleration = speed.acceleration * trajectory.length();
+    if (auto quick = checkAcceleration(request); !quick) {
+        return fail(std::move(quick.error()));
+    }
+    const double path_speed = pathSpeed(request.trajectory);
+    const auto fastest = fastestAxis(request, path_speed);
+    // Without any way there is no speed.
+    if (fastest.absolute > 0.0 && fastest.absolute < kSlowest) {
+        return notByController(
+            fmt::format("{:.5f} rad/s is too slow to tell from standstill", fastest.absolute));
+    }
+    Result<PlannedMotion> motion;
+    if (request.path == PathDeviationMeter::Path::joint_line) {
+        motion->velocity_share = fastest.share > 0.0 ? std::min(fastest.share, 1.0) : 1.0;
+    } else {
+        motion = plannedLine(request, path_speed);
+    }
+    if (motion) {
+        motion->target_joints = toArray(request.trajectory.end());
+    }
     return motion;
 }
 

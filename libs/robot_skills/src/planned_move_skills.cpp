@@ -5,6 +5,7 @@
 #include "move_skill.hpp"
 #include "planned_body.hpp"
 #include "planned_motion.hpp"
+#include "streamed_move.hpp"
 
 namespace metier::robot_skills {
 
@@ -13,6 +14,7 @@ using Skills = std::vector<std::unique_ptr<skill::Skill>>;
 
 namespace {
 
+/// The controller's motion where it is what was asked, else metier's own set-points.
 template <typename Parameters>
 Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
                                                   MoveVariant<Parameters> variant) {
@@ -20,12 +22,10 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
         [arm, path = variant.path, end = variant.end](
             const Trajectory& trajectory,
             const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
-        if (auto at_once = checkNoStartTime(arm.arm, parameters.start_time); !at_once) {
-            return fail(std::move(at_once.error()));
-        }
-        auto motion = plannedMotion(arm.model, trajectory, path);
+        auto motion = plannedMotion({arm.model, trajectory, path, parameters});
         if (!motion) {
-            return fail(std::move(motion.error()));
+            return makeStreamedBody({arm.arm, arm.model, arm.clock},
+                                    {trajectory, path, parameters.start_time});
         }
         auto move = std::make_shared<PlannedMove>(
             PlannedMove::Setup{arm.arm, arm.clock, trajectory, path, end, tellMoveDone});

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "given_sensor.hpp"
 #include "metier/base/testing/allocation_count.hpp"
 #include "planned_bench.hpp"
 
@@ -79,7 +80,7 @@ TEST_F(PlannedForceMove, IsHaltedByTheForceWhereThatIsAnError) {
     EXPECT_THAT(force.reasonText(), HasSubstr("limit [0.0, 0.0, 20.0] N"));
 }
 
-TEST_F(PlannedForceMove, IsRefusedWhereNoAxisOfTheFlangeIsTheBaseFrames) {
+TEST_F(PlannedForceMove, WithoutASensorIsRefusedWhereNoAxisOfTheFlangeIsTheBaseFrames) {
     ASSERT_TRUE(bench.start(kCartesianLinear, {{"TargetPosition", Frame{0, 0, 0, 0, 0.3, 0}},
                                                {"Relative", std::int32_t{1}}}));
     ASSERT_TRUE(bench.stepUntil(kCartesianLinear, State::ready));
@@ -96,35 +97,6 @@ TEST_F(PlannedForceMove, NeedsALimit) {
 }
 
 // ---- by a sensor --------------------------------------------------------------------------------
-
-/// A sensor whose measurement is given.
-class GivenSensor final : public device::ForceTorqueSensor {
-public:
-    GivenSensor() { now.health = SafetyState::normal; }
-
-    device::WrenchSample now;
-    const std::string& name() const noexcept override { return name_; }
-    device::WrenchSample sample() const noexcept override { return now; }
-    device::Safety safety() const override { return {now.health, text_, false}; }
-    Result<void> tare() override { return {}; }
-    device::Registration onSafetyChange(SafetyCallback callback) override {
-        hear_ = std::move(callback);
-        return device::Registration([this] { hear_ = nullptr; });
-    }
-    /// Changes its state, and says so.
-    void become(SafetyState health, const std::string& text = "") {
-        now.health = health;
-        text_ = text;
-        if (hear_) {
-            hear_(safety());
-        }
-    }
-
-private:
-    const std::string name_ = "netft";
-    std::string text_ = "netft: silent";
-    SafetyCallback hear_;
-};
 
 class ForceMove : public ::testing::Test {
 protected:
@@ -273,6 +245,59 @@ TEST_F(ForceMove, ItsCycleDoesNotAllocate) {
     EXPECT_EQ(allocationCount(), before);
     bench.step();
     EXPECT_EQ(force.state(), State::ready);
+}
+
+// ---- by a planner's arm and its sensor ----------------------------------------------------------
+
+class ForceMoveBesideAPlanner : public ::testing::Test {
+protected:
+    ForceMoveBesideAPlanner() {
+        // Turned by 0.3 rad about y: no axis of the flange is one of the base frame's.
+        EXPECT_TRUE(bench.start(kCartesianLinear, {{"TargetPosition", Frame{0, 0, 0, 0, 0.3, 0}},
+                                                   {"Relative", std::int32_t{1}}}));
+        EXPECT_TRUE(bench.stepUntil(kCartesianLinear, State::ready));
+    }
+    /// Steps against a wall 5 cm below the start, as stiff as 5 N/mm.
+    bool meetsWall(State until) {
+        const double wall = bench.commandedPose().translation.z() - 0.05;
+        return bench.stepUntil([&] {
+            const auto pose = bench.commandedPose();
+            const double depth = std::max(0.0, wall - pose.translation.z());
+            const Eigen::Vector3d in_flange =
+                pose.rotation.inverse() * Eigen::Vector3d(0, 0, 5000.0 * depth);
+            sensor.now.force = {in_flange.x(), in_flange.y(), in_flange.z()};
+            return force.state() == until;
+        });
+    }
+
+    GivenSensor sensor;
+    PlannedBench planned{"iiwa7", &sensor};
+    Bench& bench = planned.bench;
+    skill::Program& force = bench.program(kForceMove);
+};
+
+TEST_F(ForceMoveBesideAPlanner, EndsAtAContactAlongAnyAxis) {
+    const double from = bench.commandedPose().translation.z();
+    ASSERT_TRUE(bench.start(kForceMove, downUntil(20, kSlowly)));
+    ASSERT_TRUE(meetsWall(State::ready));
+    EXPECT_TRUE(planned.planner().asked.empty()) << "the controller watches its flange's axes only";
+    EXPECT_GT(vector(force, "ForcesExceeded").z, 20.0);
+    EXPECT_NEAR(vector(force, "ForcesExceeded").x, 0.0, 1e-3);
+    const auto reached = std::get<Frame>(force.finalResult().at("ReachedPose"));
+    EXPECT_LT(reached.z, from - 0.054) << "20 N at 5 N/mm";
+    EXPECT_GT(reached.z, from - 0.057) << "and not much deeper";
+}
+
+TEST_F(ForceMoveBesideAPlanner, IsHaltedByTheForceWhereThatIsAnError) {
+    ASSERT_TRUE(bench.start(kForceMove, downUntil(20, {{"HaltOnForce", true}})));
+    ASSERT_TRUE(meetsWall(State::halted));
+    EXPECT_EQ(force.subState(), SubState::halted_force);
+}
+
+TEST_F(ForceMoveBesideAPlanner, TakesItsDuration) {
+    ASSERT_TRUE(bench.start(kForceMove, downUntil(20, {{"Duration", 3.0}})));
+    ASSERT_TRUE(bench.stepUntil(kForceMove, State::ready));
+    EXPECT_NEAR(std::get<double>(force.finalResult().at("Duration")), 3.0, 0.002);
 }
 
 TEST(ForceMoveOfABareArm, IsNotThere) {

@@ -8,10 +8,11 @@ namespace metier::robot_skills {
 /// An arm whose skills are run by the planner of its controller.
 class PlannedBench {
 public:
-    explicit PlannedBench(const std::string& robot = "iiwa7")
-        : bench(robot, {}, [this](auto& arm, const auto& model) {
+    explicit PlannedBench(const std::string& robot = "iiwa7",
+                          device::ForceTorqueSensor* sensor = nullptr)
+        : bench(robot, {}, [this, sensor](auto& arm, const auto& model) {
               planner_ = std::make_unique<SimulatedPlanner>(arm, model);
-              return ArmFaces{arm, planner_.get()};
+              return ArmFaces{arm, planner_.get(), sensor};
           }) {}
 
     SimulatedPlanner& planner() { return *planner_; }

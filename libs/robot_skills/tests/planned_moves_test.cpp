@@ -82,22 +82,12 @@ TEST_F(PlannedMove, TheControllerMayBeAsFastAsThePlan) {
     EXPECT_NEAR(planner.asked.back().acceleration_share, 1.0, 1e-9);
 }
 
-TEST_F(PlannedMove, ALinesSpeedIsThatOfTheRequest) {
+TEST_F(PlannedMove, ALinesSpeedIsThatOfTheRequestAndItsAccelerationTheRobotsOwn) {
     ASSERT_TRUE(
         bench.start(kCartesianLinear,
-                    with(kUp, {{"MaxVelocity", std::vector<double>{.05, .05, .05, 1, 1, 1}},
-                               {"MaxAcceleration", std::vector<double>{0.5, 0.5, 0.5, 2, 2, 2}}})));
+                    with(kUp, {{"MaxVelocity", std::vector<double>{.05, .05, .05, 1, 1, 1}}})));
     EXPECT_NEAR(planner.asked.back().line_velocity, 0.05, 1e-4);
-    EXPECT_NEAR(planner.asked.back().line_acceleration, 0.5, 5e-2);
-}
-
-TEST_F(PlannedMove, ATurnOnTheSpotIsLimitedByItsAxes) {
-    ASSERT_TRUE(
-        bench.start(kCartesianLinear, {{"TargetPosition", Frame{0, 0, 0, 0, 0, 0.3}},
-                                       {"Relative", std::int32_t{1}},
-                                       {"MaxVelocity", std::vector<double>{1, 1, 1, .1, .1, .1}}}));
-    EXPECT_EQ(planner.asked.back().line_velocity, 0.0);
-    EXPECT_LT(planner.asked.back().velocity_share, 0.1);
+    EXPECT_EQ(planner.asked.back().line_acceleration, bench.model().cartesianLimits().acceleration);
 }
 
 TEST_F(PlannedMove, WhatMetiersPlannerRefusesIsNotAskedOfTheController) {
@@ -105,15 +95,6 @@ TEST_F(PlannedMove, WhatMetiersPlannerRefusesIsNotAskedOfTheController) {
         kCartesianLinear, {{"TargetPosition", Frame{2, 0, 0}}, {"Relative", std::int32_t{1}}});
     EXPECT_EQ(refused.error().code, Errc::unreachable);
     EXPECT_TRUE(planner.asked.empty());
-}
-
-TEST_F(PlannedMove, ALineOnWhichTheElbowTurnsIsRefused) {
-    const auto refused = bench.start(kCartesianLinear, with(kUp, {{"RedundancyAngle", 0.3}}));
-    EXPECT_EQ(refused.error().code, Errc::not_supported);
-    EXPECT_THAT(refused.error().message, HasSubstr("elbow 0.3000 rad"));
-    const auto report = line().check(bench.caller(), with(kUp, {{"RedundancyAngle", 0.3}}));
-    EXPECT_FALSE(report.possible) << "Check says what Start says";
-    EXPECT_THAT(report.reason, HasSubstr("elbow"));
 }
 
 TEST_F(PlannedMove, AJointLineEndsAtItsJoints) {
@@ -244,8 +225,8 @@ Result<PlannedMotion> askedFor(const motion::RobotModel& model, const Frame& rel
     request.target = geometry::toPose(relative);
     request.reference = motion::TargetReference::relative_tool;
     request.tool_frame = "pen";
-    return plannedMotion(model, motion::planLin(model, request).value(),
-                         PathDeviationMeter::Path::cartesian_line);
+    return plannedMotion({model, motion::planLin(model, request).value(),
+                          PathDeviationMeter::Path::cartesian_line, MoveParameters{}});
 }
 
 TEST(PlannedMoveOfATool, IsALineOfTheFlangeWhileTheOrientationStays) {
@@ -257,11 +238,11 @@ TEST(PlannedMoveOfATool, IsALineOfTheFlangeWhileTheOrientationStays) {
     EXPECT_NEAR(geometry::distanceBetween(start, end), 0.05, 1e-9);
 }
 
-TEST(PlannedMoveOfATool, IsRefusedWhereTheFlangesLineIsNotTheTools) {
+TEST(PlannedMoveOfATool, IsNotTheControllersWhereTheFlangesLineIsNotTheTools) {
     const auto refused = askedFor(withTool(), Frame{0, 0, 0.05, 0, 0.4, 0});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::not_supported);
-    EXPECT_THAT(refused.error().message, HasSubstr("off its own, limit 0.0001 m"));
+    EXPECT_THAT(refused.error().message, HasSubstr("off its line, limit 0.0001 m"));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include "bench.hpp"
-#include "planned_bench.hpp"
 #include "timetable.hpp"
 
 namespace metier::robot_skills {
@@ -119,18 +118,6 @@ TEST(StartTime, LetsTheMoveBeHaltedAndSuspendedWhileItWaits) {
     EXPECT_FALSE(bench.commanded() == from) << "resumed: it begins at once";
     ASSERT_TRUE(bench.program(kJointPtp).halt(bench.caller()));
     ASSERT_TRUE(bench.stepUntil(kJointPtp, State::halted));
-}
-
-TEST(StartTime, IsRefusedWhereTheControllerPlans) {
-    PlannedBench planned;
-    auto& bench = planned.bench;
-    const auto started =
-        bench.start(kJointPtp, {{"TargetJointPosition", std::vector<double>(7, 0.1)},
-                                {"Relative", std::int32_t{1}},
-                                {"StartTime", now(bench) + 1.0}});
-    ASSERT_FALSE(started);
-    EXPECT_EQ(started.error().code, Errc::not_supported);
-    EXPECT_THAT(started.error().message, HasSubstr("begins at once"));
 }
 
 TEST(Timetable, TellsHowLateASetPointIs) {

@@ -29,11 +29,11 @@ struct ArmSkills {
 /// What there is of an arm; all must outlive its skills.
 struct ArmFaces {
     device::Arm& arm;
-    /// Runs the moves but that of several poses, if there is one; else the arm takes the set-points
-    /// of metier's planner.
+    /// Runs those moves that it can run as they were asked for, if there is one; all others are
+    /// set-points of metier's planner.
     device::MotionPlanner* planner = nullptr;
-    /// Ends the force move if there is no planner: the planner's own force condition is nearer to
-    /// the arm.
+    /// Ends the force moves that are set-points. One that the planner runs is ended by the
+    /// controller's own force condition, which is nearer to the arm.
     device::ForceTorqueSensor* sensor = nullptr;
 };
 

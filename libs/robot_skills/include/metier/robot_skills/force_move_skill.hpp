@@ -13,12 +13,14 @@ namespace metier::robot_skills {
 // force that is over its limit at the start ends the motion before it begins.
 // Errors of both: invalid_argument if arm and model differ in their number of axes.
 
-/// By the controller's own planner and force condition: the controller stops the arm by itself,
-/// within its own cycle.
+/// By the controller's own planner and force condition where these do what was asked: the
+/// controller stops the arm by itself, within its own cycle. Else by set-points and
+/// PlanningArm::sensor, as makeForceMoveSkill().
 ///
-/// A controller watches the axes of the flange. Each axis of the base frame that has a limit must
-/// be one of the flange's, within 3 degrees, for the whole motion; else Start is refused with
-/// not_supported and the angle. ForcesMax is measured along the flange's axes, too.
+/// A controller watches the axes of the flange: each axis of the base frame that has a limit must
+/// be one of the flange's, within 1 degree, for the whole motion. ForcesMax is then measured along
+/// the flange's axes, too. What else it cannot do: makePlannedMoveSkills(). Without a sensor Start
+/// refuses with not_supported what the controller cannot do.
 Result<std::unique_ptr<skill::Skill>> makePlannedForceMoveSkill(const PlanningArm& arm);
 
 /// An arm and what measures the force at its flange; all must outlive the skill.

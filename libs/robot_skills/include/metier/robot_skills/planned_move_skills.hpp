@@ -5,32 +5,36 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/device/arm.hpp"
+#include "metier/device/force_torque_sensor.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/skill/skill.hpp"
 
 namespace metier::robot_skills {
 
-/// Whoever moves by its controller's own planner; all must outlive the skills.
+/// An arm whose controller has a planner of its own and takes set-points, too; all must outlive the
+/// skills.
 struct PlanningArm {
     device::Arm& arm;
     device::MotionPlanner& planner;
     const motion::RobotModel& model;
     const Clock& clock;
+    /// Watches the force of force moves that are streamed; nullptr: such moves are refused.
+    device::ForceTorqueSensor* sensor = nullptr;
 };
 
-/// The four moves of makeCartesianPtpMoveSkill() and its like, run by the controller's own planner:
-/// the same names, parameters, checks and results.
+/// The four moves of makeCartesianPtpMoveSkill() and its like: the same names, parameters, checks
+/// and results.
 ///
-/// metier plans each motion, too: what its planner refuses is refused, and the controller may not
-/// be faster than the plan. Refused besides, with not_supported: a line of a tool frame that turns
-/// about anything but the flange, and a line on which the elbow turns. A move to joints must end at
-/// them, else it fails. A Duration is the least that the motion takes; a StartTime is refused with
-/// not_supported.
+/// metier plans each motion. At Start it decides who runs it: the controller's own planner where
+/// its motion is what was asked for, else the arm takes metier's set-points. The latter run a move
+/// with Duration, StartTime, a MaxAcceleration below the robot's own, a line that only turns, on
+/// which the elbow turns or the tool frame would leave its line, and a motion of less than 0.002
+/// rad/s (planned_motion.hpp). The controller may not be faster than the plan; a move to joints
+/// must end at them, else it fails.
 ///
-/// Suspend and Halt stop the motion as the controller does, and are answered at standstill. Resume
-/// asks for the same target again, from where the arm stands; it is refused as that of the other
-/// moves is.
+/// Suspend and Halt brake and are answered at standstill, whoever runs the move. Resume goes on to
+/// the same target, from where the arm stands; it is refused if an axis was moved by over 2 mrad.
 /// Errors: invalid_argument if arm and model differ in their number of axes.
 Result<std::vector<std::unique_ptr<skill::Skill>>> makePlannedMoveSkills(const PlanningArm& arm);
 

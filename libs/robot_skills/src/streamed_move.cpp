@@ -1,0 +1,17 @@
+#include "streamed_move.hpp"
+
+#include <utility>
+
+#include "move_skill.hpp"
+#include "source_body.hpp"
+
+namespace metier::robot_skills {
+
+std::unique_ptr<skill::Body> makeStreamedBody(const StreamedArm& arm, StreamedMove move) {
+    auto source = std::make_shared<MoveSource>(
+        MoveSource::Setup{arm.arm.info(), move.trajectory, move.path,
+                          Timetable(arm.clock, move.start_time), std::move(move.contact)});
+    return std::make_unique<SourceBody>(arm.arm, std::move(source), toolDistance(move.trajectory));
+}
+
+}  // namespace metier::robot_skills
