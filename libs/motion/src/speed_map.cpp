@@ -192,7 +192,9 @@ std::vector<SpeedAt> toSpeeds(const std::vector<double>& z) {
 }
 
 double durationOf(const SpeedPlan& plan) {
-    if (plan.limits.acceleration <= 0 || plan.limits.jerk <= 0) {
+    // Where the speed changes too steeply from knot to knot, its square has no course between them.
+    const bool has_course = std::isfinite(plan.map.end());
+    if (!has_course || plan.limits.acceleration <= 0 || plan.limits.jerk <= 0) {
         return std::numeric_limits<double>::infinity();
     }
     return Profile::toRest({}, plan.map.end(), plan.limits).duration();

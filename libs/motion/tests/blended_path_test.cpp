@@ -199,6 +199,32 @@ TEST(BlendedPath, TellsTheWaypointThatAWayLeadsTo) {
     EXPECT_THAT(plan.error().error.message, testing::StartsWith("on the way to waypoint 2: axis "));
 }
 
+TEST(BlendedPath, WithOneSlowLineIsFiniteAndAsLongAsItSays) {
+    const RobotModel model = loadRobot("ur5e");
+    PathRequest request;
+    request.lin.start = model.home();
+    request.lin.reference = TargetReference::relative_base;
+    geometry::Pose aside;
+    aside.translation = {0, 0.2, 0};
+    geometry::Pose down;
+    down.translation = {0, 0, -0.05};
+    request.waypoints = {{.target = aside, .blend_radius = 0.02, .max_velocity = 0.25},
+                         {.target = down, .blend_radius = 0, .max_velocity = 0.001}};
+    const auto plan = Planner(model).path(request);
+    ASSERT_TRUE(plan) << plan.error().error.message;
+    ASSERT_TRUE(std::isfinite(plan->duration().count()));
+    JointVector before = plan->start();
+    for (int i = 1; i <= 20000; ++i) {
+        const SetPoint point = plan->sample(i / 20000.0 * plan->duration());
+        for (std::size_t axis = 0; axis < model.axisCount(); ++axis) {
+            ASSERT_TRUE(std::isfinite(point.position[axis])) << "sample " << i;
+        }
+        ASSERT_LE(maxDifference(point.position, before), 0.01) << "sample " << i;
+        before = point.position;
+    }
+    EXPECT_LE(maxDifference(before, plan->end()), 1e-9);
+}
+
 TEST(BlendedPath, RefusesTheSamePoseTwiceInARowButMayBeginWhereTheArmStands) {
     const RobotModel model = loadRobot("iiwa7");
     PathRequest request = roundedSquare(model);

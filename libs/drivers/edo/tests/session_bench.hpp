@@ -1,7 +1,6 @@
 #pragma once
 
 #include <deque>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,15 +90,16 @@ public:
         }
         return holds();
     }
-    /// What another thread gets that asks for a reset and waits for its end.
+    /// Asks for a reset, runs cycles until it has ended, and asks how it ended.
     Result<void> reset() {
-        auto answer = std::async(std::launch::async, [this] {
-            return session.resetDesk().ask(std::chrono::seconds(20)).value();
-        });
-        while (answer.wait_for(std::chrono::microseconds(50)) != std::future_status::ready) {
-            cycle();
+        auto& desk = session.resetDesk();
+        auto answer = desk.ask();
+        runUntil([&] { return !desk.underWay(); });
+        if (!answer && safety() == device::SafetyState::normal) {
+            return {};
         }
-        return answer.get();
+        answer = answer ? answer : desk.ask();
+        return answer ? *answer : fail(Errc::timeout, "the reset has not ended");
     }
 
     std::shared_ptr<Stepper> attach(double step, int cycles) {
