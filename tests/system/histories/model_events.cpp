@@ -230,7 +230,7 @@ void Model::fallDue() {
             endConfiguration(skill);
         }
         if (skill.rest_until && *skill.rest_until <= now_) {
-            const bool owner_lost = skill.halting == Reason::owner_lost;
+            const bool owner_lost = skill.halting.value_or(skill.suspending) == Reason::owner_lost;
             go(skill, State::halted, owner_lost ? Reason::owner_lost : Reason::error);
         }
     }
