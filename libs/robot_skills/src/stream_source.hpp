@@ -65,7 +65,7 @@ private:
     /// Whether the arm would be too far behind its client with the set-point.
     bool isLate(const StreamedPosition& set_point, motion::Seconds now) noexcept;
     double largestLag() const noexcept;
-    /// What the report has of it, to be put behind another text.
+    /// The report's text for it, to be put behind another text.
     std::string reported() const;
     void watchSilence() noexcept;
     /// Silence of a moving stream that ends it [s].

@@ -57,14 +57,14 @@ public:
     double pathParameter() const noexcept;
     /// Until rest at the end; while stopped or braking for a stop, until rest.
     Seconds remaining() const noexcept;
-    /// What halt() would need from here to rest; zero at rest.
+    /// Time and way that halt() would need from here to rest; zero at rest.
     StoppingWay stoppingWay() const noexcept;
     const Trajectory& trajectory() const noexcept { return trajectory_; }
 
 private:
     enum class Mode { running, stopping };
 
-    /// What the profile is a motion of.
+    /// Quantity that the profile moves: the clock or the path parameter.
     enum class Along { clock, path };
 
     bool tooLate(Seconds step) const noexcept;
