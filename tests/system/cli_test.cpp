@@ -51,6 +51,18 @@ TEST(Cli, HelpNamesEveryCommand) {
     EXPECT_THAT(help.output, HasSubstr("not safety-rated"));
 }
 
+TEST(Cli, TakesNoPasswordThatEverybodySees) {
+    const std::string url = "postgresql://anna:secret@127.0.0.1:1/records";
+    for (const auto& command : std::vector<std::vector<std::string>>{
+             {"history", "--records", url},
+             {"dashboard", kNobody, "--port", "0", "--records", url},
+             {"serve", simulatedCell().string(), "--server", "iiwa", "--records", url}}) {
+        const auto refused = runMetier(command);
+        EXPECT_EQ(refused.status, kUsage) << command.front();
+        EXPECT_THAT(refused.output, HasSubstr("put it in ~/.pgpass"));
+    }
+}
+
 TEST(Cli, EveryCommandHasHelpOfItsOwn) {
     for (const auto& command : kCommands) {
         const auto help = runMetier({command, "--help"});

@@ -25,12 +25,25 @@ std::string defaultRecords() {
     return folder.empty() ? std::string() : (folder / "records.db").string();
 }
 
+CLI::Validator withoutPassword() {
+    return {[](const std::string& url) {
+                return records::hasPassword(url)
+                           ? std::string(
+                                 "a password on a command line is shown to everybody on "
+                                 "this machine: put it in ~/.pgpass or PGPASSWORD, or the "
+                                 "address in the cell's file")
+                           : std::string();
+            },
+            ""};
+}
+
 void addRecords(CLI::App& command, std::string& url) {
     url = defaultRecords();
     command
         .add_option("--records", url,
                     "Where the records are: a file, sqlite:FILE or "
                     "postgresql://USER@HOST/DATABASE")
+        ->check(withoutPassword())
         ->capture_default_str();
 }
 

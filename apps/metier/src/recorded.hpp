@@ -14,6 +14,8 @@ namespace metier::app {
 
 /// Where this user's servers record: `records.db` in the user's state folder.
 std::string defaultRecords();
+/// Refuses where records are with a password in it: everybody sees the command lines of a machine.
+CLI::Validator withoutPassword();
 /// Adds --records to a command.
 void addRecords(CLI::App& command, std::string& url);
 /// Errors: as Store::open().

@@ -14,6 +14,7 @@
 #include "gripper_server.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
+#include "recorded.hpp"
 #include "security.hpp"
 #include "stop_signal.hpp"
 #include "synchronized_server.hpp"
@@ -241,9 +242,11 @@ void addServe(CLI::App& app, Exit& exit) {
     command->add_option("--state", options->state,
                         "Folder for what outlives the server: the names of executions. Else that "
                         "of the user, and none with --port 0");
-    command->add_option("--records", options->records,
-                        "Where every execution is recorded, instead of the file's: a file, "
-                        "postgresql://..., or off. Else records.db in the state folder");
+    command
+        ->add_option("--records", options->records,
+                     "Where every execution is recorded, instead of the file's: a file, "
+                     "postgresql://..., or off. Else records.db in the state folder")
+        ->check(withoutPassword());
     command->add_option("--metrics", options->metrics,
                         "Tell figures at http://ADDRESS:PORT/metrics and /healthz, instead of the "
                         "file's; PORT alone is one of 127.0.0.1; off");

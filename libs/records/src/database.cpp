@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "postgres_database.hpp"
 #include "schema.hpp"
 #include "sqlite_database.hpp"
@@ -49,6 +51,18 @@ Result<Rows> Database::query(std::string_view sql, std::span<const Cell> paramet
         std::visit([&](const auto& value) { arguments.emplace_back(value); }, cell);
     }
     return execute(sql, arguments);
+}
+
+bool hasPassword(std::string_view url) {
+    if (!isPostgres(url)) {
+        return false;
+    }
+    url.remove_prefix(url.find("://") + 3);
+    const auto options = std::min(url.find('?'), url.size());
+    const auto at = url.substr(0, options).rfind('@');
+    const auto user = url.substr(0, at == std::string_view::npos ? 0 : at);
+    return user.find(':') != std::string_view::npos ||
+           url.find("password=", options) != std::string_view::npos;
 }
 
 Result<void> checkUrl(const std::string& url) {

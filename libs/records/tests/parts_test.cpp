@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "metier/records/store.hpp"
 #include "recorded.hpp"
 #include "text.hpp"
 
@@ -33,6 +34,20 @@ TEST(Samples, ComeBackBitByBit) {
         EXPECT_EQ(read[i].actual, samples[i].actual);
         EXPECT_EQ(read[i].commanded, samples[i].commanded);
         EXPECT_EQ(read[i].force, samples[i].force);
+    }
+}
+
+TEST(RecordsUrl, ShowsItsPassword) {
+    for (const auto* url :
+         {"postgresql://anna:secret@db/records", "postgres://anna:@db", "postgresql://anna:a/b@db",
+          "postgresql://anna@db/records?password=secret", "postgresql:///r?a=b&password=x",
+          "postgresql://anna@db/records?sslpassword=secret"}) {
+        EXPECT_TRUE(hasPassword(url)) << url;
+    }
+    for (const auto* url :
+         {"postgresql://anna@db:5432/records", "postgresql://db:5432/r?sslmode=verify-full",
+          "postgresql://[::1]:5432/records", "sqlite:a:b@c", "records.db", "off", ""}) {
+        EXPECT_FALSE(hasPassword(url)) << url;
     }
 }
 

@@ -58,6 +58,10 @@ struct Retention {
     std::uint64_t bytes = 2'000'000'000;  ///< in use by executions and their paths
 };
 
+/// Whether a URL of Store::open() has a password in it, which a command line would show to every
+/// user of the machine. Threads: any; pure.
+bool hasPassword(std::string_view url);
+
 /// The executions that servers have recorded, in a SQLite file or a PostgreSQL database with the
 /// same schema (docs/guide/history.md).
 ///
