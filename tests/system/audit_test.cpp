@@ -151,6 +151,33 @@ TEST_F(AuditedArm, TellsWhichLineOfItsLogWasChanged) {
     EXPECT_EQ(runMetier({"audit", "verify"}).status, 2);
 }
 
+TEST_F(AuditedArm, ShowsByItsPublishedAnchorThatTheEndOfItsLogWasCutOff) {
+    std::string anchor;
+    {
+        const ServerProcess server("iiwa", serving());
+        EXPECT_EQ(runMetier({"halt", server.url()}).status, 0);
+        const auto log_has_all = [&] {
+            const auto told = runMetier({"audit", "anchor", server.url()});
+            EXPECT_EQ(told.status, 0) << told.output;
+            anchor = told.output.substr(0, told.output.find(' '));
+            return runMetier({"audit", "verify", log().string(), "--anchor", anchor}).status == 0;
+        };
+        EXPECT_TRUE(holdsSoon(log_has_all)) << anchor;
+    }
+    EXPECT_EQ(anchor.size(), 64U);
+    const auto newest = runMetier({"audit", "anchor", "--state", folder_.string()});
+    EXPECT_THAT(newest.output, HasSubstr(" " + log().string()));
+    const auto text = textOf(log());
+    const auto first_end = text.find('\n') + 1;
+    ASSERT_NE(text.find(anchor, first_end), std::string::npos);
+    std::ofstream(log(), std::ios::binary) << text.substr(0, first_end);
+    EXPECT_EQ(verify().status, 0) << "what is left is as it was written";
+    const auto cut = runMetier({"audit", "verify", log().string(), "--anchor", anchor});
+    EXPECT_EQ(cut.status, 1);
+    EXPECT_THAT(cut.output, HasSubstr("lines were cut off at the end"));
+    EXPECT_EQ(runMetier({"audit", "verify", log().string(), "--anchor", "beef"}).status, 2);
+}
+
 // Over a connection as metier makes them unless it is told otherwise.
 TEST_F(AuditedArm, KeepsWhoWasDeniedWhat) {
     const Installation here("here");

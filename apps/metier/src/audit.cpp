@@ -1,16 +1,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "metier/audit/audit_log.hpp"
+#include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
+#include "server_audit.hpp"
+#include "servers.hpp"
 
 namespace metier::app {
 namespace {
@@ -22,6 +28,7 @@ struct AuditOptions {
     std::string state;
     std::string since;
     std::string event;
+    std::vector<std::string> anchors;
     bool json = false;
 };
 
@@ -61,28 +68,116 @@ Result<std::vector<fs::path>> chosenLogs(const AuditOptions& options) {
                                  : logsIn(options.state);
 }
 
+/// The chain values of `--anchor`, in small letters.
+Result<std::set<std::string>> anchorsOf(const AuditOptions& options) {
+    constexpr std::size_t kDigits = 64;
+    std::set<std::string> anchors;
+    for (auto anchor : options.anchors) {
+        std::transform(anchor.begin(), anchor.end(), anchor.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        if (anchor.size() != kDigits ||
+            anchor.find_first_not_of("0123456789abcdef") != std::string::npos) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("--anchor {}: 64 hexadecimal digits expected, as `metier audit "
+                                    "anchor` prints them",
+                                    opcua::sanitise(anchor)));
+        }
+        anchors.insert(std::move(anchor));
+    }
+    return anchors;
+}
+
+Exit reportVerified(const fs::path& log, const audit::Verified& verified, bool whole_logs) {
+    fmt::print("{}: {} entries, {} to {}, last chain value {}\n", log.string(), verified.entries,
+               verified.first_time, verified.last_time, verified.last_chain);
+    if (verified.first_number == 1) {
+        return Exit::success;
+    }
+    fmt::print(stderr, "{}: begins with entry {}; what came before was not looked at\n",
+               log.string(), verified.first_number);
+    return whole_logs ? Exit::failed : Exit::success;
+}
+
 Exit runVerify(const AuditOptions& options) {
     const auto logs = chosenLogs(options);
-    if (!logs) {
-        return reportUsage(logs.error());
+    const auto anchors = logs ? anchorsOf(options) : fail(logs.error());
+    if (!anchors) {
+        return reportUsage(anchors.error());
     }
     auto exit = Exit::success;
+    auto missing = *anchors;
     for (const auto& log : *logs) {
-        const auto verified = audit::verify(log);
+        const auto verified = audit::verify(log, *anchors);
         if (!verified) {
             report(verified.error());
             exit = Exit::failed;
             continue;
         }
-        fmt::print("{}: {} entries, {} to {}, last chain value {}\n", log.string(),
-                   verified->entries, verified->first_time, verified->last_time,
-                   verified->last_chain);
-        if (verified->first_number == 1) {
+        if (reportVerified(log, *verified, !options.state.empty()) != Exit::success) {
+            exit = Exit::failed;
+        }
+        for (const auto& found : verified->anchors) {
+            missing.erase(found);
+        }
+    }
+    for (const auto& anchor : missing) {
+        fmt::print(
+            stderr,
+            "metier: no line has the chain value {}: lines were cut off at the end, or it is "
+            "of another log\n",
+            anchor);
+        exit = Exit::failed;
+    }
+    return exit;
+}
+
+bool isAddress(const std::string& text) {
+    return text.starts_with("opc.tcp://");
+}
+
+/// As the server publishes it.
+Result<std::string> anchorOfServer(const std::string& url) {
+    const auto client = connectTo(url);
+    if (!client) {
+        return fail(client.error());
+    }
+    const auto metier = (*client)->namespaceIndex(opcua_skill::kMetierUri);
+    const auto variable = metier
+                              ? (*client)->translate(opcua::ids::kServer, {{*metier, kAuditAnchor}})
+                              : opcua::Answer<opcua::NodeId>(tl::unexpected(metier.error()));
+    if (!variable) {
+        return fail(Errc::not_found, fmt::format("{}: keeps no audit log", url));
+    }
+    const auto value = (*client)->read(*variable);
+    if (!value) {
+        return fail(value.error().code, fmt::format("{}: {}", url, value.error().message));
+    }
+    const auto text = value->as<std::string>();
+    return text ? Result<std::string>(opcua::sanitise(*text)) : fail(text.error());
+}
+
+Result<std::string> anchorOfFile(const fs::path& log) {
+    const auto verified = audit::verify(log);
+    return verified ? Result<std::string>(verified->last_chain) : fail(verified.error());
+}
+
+Exit runAnchor(const AuditOptions& options) {
+    std::vector<std::string> asked = options.files;
+    if (asked.empty()) {
+        const auto logs = chosenLogs(options);
+        if (!logs) {
+            return reportUsage(logs.error());
+        }
+        asked.assign(logs->begin(), logs->end());
+    }
+    auto exit = Exit::success;
+    for (const auto& one : asked) {
+        const auto anchor = isAddress(one) ? anchorOfServer(one) : anchorOfFile(one);
+        if (!anchor) {
+            exit = report(anchor.error());
             continue;
         }
-        fmt::print(stderr, "{}: begins with entry {}; what came before was not looked at\n",
-                   log.string(), verified->first_number);
-        exit = options.state.empty() ? exit : Exit::failed;
+        fmt::print("{} {}\n", *anchor, one);
     }
     return exit;
 }
@@ -161,7 +256,17 @@ void addAudit(CLI::App& app, Exit& exit) {
         "Tell whether audit logs are as they were written; fails naming the first line "
         "that is not");
     addFiles(*verify, *options);
+    verify->add_option("--anchor", options->anchors,
+                       "A chain value that was newest once: fails unless a line still has it");
     verify->callback([options, &exit] { exit = runVerify(*options); });
+    auto* anchor = command->add_subcommand(
+        "anchor",
+        "Print the newest chain value of audit logs, to be kept elsewhere: as files have it, or as "
+        "servers publish it");
+    anchor->add_option("FILE", options->files, "Audit logs, or servers: opc.tcp://host:port");
+    anchor->add_option("--state", options->state,
+                       "The state folder of servers, for all logs that are there");
+    anchor->callback([options, &exit] { exit = runAnchor(*options); });
     auto* show = command->add_subcommand("show", "Show the entries of audit logs");
     addFiles(*show, *options);
     show->add_option("--since", options->since, "From this time on (UTC), as 2026-11-22T09:30");

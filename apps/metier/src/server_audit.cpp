@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "metier/opcua_skill/namespaces.hpp"
 #include "metier/trust/users.hpp"
 
 namespace metier::app {
@@ -65,7 +66,33 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::Serv
 }
 
 Result<void> ServerAudit::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
+    if (auto published = publishAnchor(server.nodes()); !published) {
+        return published;
+    }
     return alarm_.follow(server, std::move(executor));
+}
+
+Result<void> ServerAudit::publishAnchor(opcua::AddressSpace& nodes) {
+    const auto metier = nodes.namespaceIndex(opcua_skill::kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    const auto variable = nodes.addVariable(
+        {.node = {.id = {},
+                  .parent = opcua::ids::kServer,
+                  .browse_name = {*metier, kAuditAnchor},
+                  .description = {"en", "Chain value of the newest line of the audit log"}},
+         .data_type = opcua::ids::kString,
+         .value = opcua::Value::of(log_->anchor())});
+    if (!variable) {
+        return fail(variable.error());
+    }
+    return nodes.setDataSource(
+        *variable, {.read =
+                        [&log = *log_](const opcua::Session& /*session*/) {
+                            return opcua::DataValue{opcua::Value::of(log.anchor()), {}, {}, {}};
+                        },
+                    .write = {}});
 }
 
 void ServerAudit::tell(audit::Health health, const std::string& why) {

@@ -13,6 +13,9 @@
 
 namespace metier::app {
 
+/// BrowseName of the Variable of the Server object, in metier's namespace.
+constexpr const char* kAuditAnchor = "AuditAnchor";
+
 /// Keeps the audit log of a server, `<state folder>/audit/<name>-<address>-<port>.log`, and says
 /// when it cannot be written: in the program's log, and by an event of the Server object.
 ///
@@ -27,13 +30,15 @@ public:
     ServerAudit(const ServerAudit&) = delete;
     ServerAudit& operator=(const ServerAudit&) = delete;
 
-    /// Raises the events at that server. Before its start.
+    /// Raises the events at that server, and publishes the newest chain value in the file, as
+    /// Variable AuditAnchor of the Server object. Before its start.
     Result<void> follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor);
     /// Entries that are not in the file yet. Any thread.
     std::size_t waiting() const { return log_->waiting(); }
 
 private:
     explicit ServerAudit(const std::string& name) : alarm_(name, "AuditLog") {}
+    Result<void> publishAnchor(opcua::AddressSpace& nodes);
     /// On the log's thread.
     void tell(audit::Health health, const std::string& why);
 
