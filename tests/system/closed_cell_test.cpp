@@ -73,6 +73,56 @@ TEST_F(ClosedCell, RefusesTheLab) {
     EXPECT_THAT(refused.output, HasSubstr("leave out --insecure-lab"));
 }
 
+TEST_F(ClosedCell, SpeaksToNoOpenServerUnlessItIsALab) {
+    const ServerProcess lab("iiwa");
+    const auto refused = here_.run({"list", lab.url()});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.output, AllOf(HasSubstr("has no security"), HasSubstr("--insecure-lab")));
+    EXPECT_EQ(here_.run({"halt", lab.url()}).status, 1);
+    const auto found = here_.run({"find", "JointPtpMoveSkillType", "--at", lab.url()});
+    EXPECT_THAT(found.output, HasSubstr("has no security"));
+    const auto listed = here_.run({"--insecure-lab", "list", lab.url()});
+    EXPECT_EQ(listed.status, 0) << listed.output;
+}
+
+TEST_F(ClosedCell, BelievesNoOpenServerWhereAClosedOneWas) {
+    std::string url;
+    std::string port;
+    {
+        const auto arm = here_.serve("iiwa");
+        url = arm.url();
+        port = arm.port();
+        ASSERT_EQ(here_.run({"list", url}).status, 0);
+    }
+    const ServerProcess impostor("iiwa", {"--port", port});
+    const auto refused = here_.run({"list", url});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.output, HasSubstr("was closed before"));
+    const auto in_a_lab = here_.run({"--insecure-lab", "list", url});
+    EXPECT_EQ(in_a_lab.status, 1);
+    EXPECT_THAT(in_a_lab.output,
+                AllOf(HasSubstr("was closed before"), HasSubstr("metier trust forget " + url)));
+    EXPECT_EQ(there_.run({"--insecure-lab", "list", url}).status, 0) << "who never knew it";
+    EXPECT_EQ(here_.run({"trust", "forget", url}).status, 0);
+    EXPECT_EQ(here_.run({"--insecure-lab", "list", url}).status, 0);
+}
+
+TEST_F(ClosedCell, BecomesALabByTheHandOfItsOwnUser) {
+    std::string url;
+    std::string port;
+    {
+        const auto arm = here_.serve("iiwa");
+        url = arm.url();
+        port = arm.port();
+        ASSERT_EQ(here_.run({"list", url}).status, 0);
+    }
+    const ServerProcess lab(here_.command(
+        {"--insecure-lab", "serve", simulatedCell().string(), "--server", "iiwa", "--port", port}));
+    const auto listed = here_.run({"--insecure-lab", "list", url});
+    EXPECT_EQ(listed.status, 0) << listed.output;
+    EXPECT_EQ(here_.run({"list", url}).status, 1) << "which is to be said each time";
+}
+
 TEST_F(ClosedCell, IsReachedFromElsewhereOnceBothTrustEachOther) {
     const auto arm = here_.serve("iiwa");
     introduce(here_, there_, arm.url(), "Operator");

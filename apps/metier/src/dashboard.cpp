@@ -126,12 +126,6 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
     if (!cell) {
         return reportUsage(cell.error());
     }
-    if (isInsecureLab() && !options.address.starts_with("127.") && options.address != "::1") {
-        return reportUsage({Errc::invalid_argument,
-                            fmt::format("an insecure lab is for this machine alone: {} is not a "
-                                        "loopback address",
-                                        options.address)});
-    }
     auto records = recordsOf(options, *cell);
     auto models = loadAllRobots();
     if (!models) {
@@ -147,7 +141,8 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
                            return secured ? Result<opcua::ClientOptions>(std::move(client))
                                           : fail(secured.error());
                        },
-                       .advice = &adviceOn},
+                       .advice = &adviceOn,
+                       .connected = &noteConnected},
          .lab = isInsecureLab(),
          .address = options.address,
          .port = options.port,
@@ -158,7 +153,8 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
          .models = std::move(*models)},
         clock);
     if (!page) {
-        return fail(page.error());
+        return page.error().code == Errc::invalid_argument ? Result<Exit>(reportUsage(page.error()))
+                                                           : fail(page.error());
     }
     fmt::print("{}\n", readyLine(urlOf(options.address, (*page)->port())));
     std::fflush(stdout);
@@ -208,10 +204,12 @@ void addDashboard(CLI::App& app, Exit& exit) {
     command->add_option("--discovery", options->discovery,
                         "Also show the servers that these discovery servers know");
     command->add_flag("--mdns", options->mdns, "Also show the servers that mDNS tells of");
-    command->add_option("--records", options->records,
-                        "Where servers record what they execute: a file, sqlite:FILE, "
-                        "postgresql://..., or off [as the cell's file says, else records.db in "
-                        "~/.local/state/metier]");
+    command
+        ->add_option("--records", options->records,
+                     "Where servers record what they execute: a file, sqlite:FILE, "
+                     "postgresql://..., or off [as the cell's file says, else records.db in "
+                     "~/.local/state/metier]")
+        ->check(withoutPassword());
     addHttpOptions(*command, *options);
     command->callback([options, &exit] { exit = runDashboard(*options); });
 }

@@ -26,8 +26,10 @@ struct DemoOptions {
 
 void waitForEnter(CellRunner& cell) {
     fmt::print(
-        "\nThe cell stays up: connect UaExpert to an address above, or try `metier list` and\n"
-        "`metier run URL SKILL --fields` in another terminal. Enter or Ctrl-C ends it.\n");
+        "\nThe cell stays up: connect UaExpert to an address above, or try `metier{0} list URL` "
+        "and\n"
+        "`metier{0} run URL SKILL --fields` in another terminal. Enter or Ctrl-C ends it.\n",
+        isInsecureLab() ? " --insecure-lab" : "");
     std::fflush(stdout);
     if (const auto ended = cell.waitForEnd(STDIN_FILENO)) {
         fmt::print(stderr, "metier: '{}' ended with status {}\n", ended->name, ended->status);

@@ -56,6 +56,9 @@ Exit runDiscovery(const DiscoveryOptions& options) {
     if (const auto started = (*server)->start(); !started) {
         return report(started.error());
     }
+    if (*access == nullptr) {
+        noteServedOpen((*server)->endpointUrl());
+    }
     fmt::print("{}\n", readyLine((*server)->endpointUrl()));
     std::fflush(stdout);
     stop.wait();

@@ -1,6 +1,7 @@
 #include "security.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -38,6 +39,34 @@ Process& process() {
     return one;
 }
 
+/// That of `--security`, else of the user.
+Result<std::filesystem::path> securityFolder() {
+    const auto& chosen = process().choice.folder;
+    auto folder = chosen.empty() ? userConfigFolder() : std::filesystem::path(chosen);
+    return folder.empty() ? fail(Errc::resource_unavailable,
+                                 "neither HOME nor XDG_CONFIG_HOME says where certificates are "
+                                 "kept: name a folder with --security")
+                          : Result<std::filesystem::path>(std::move(folder));
+}
+
+bool wasClosed(const std::string& url) {
+    const auto known = knownServers();
+    return known && known->isClosed(url);
+}
+
+Error openServer(const std::string& url) {
+    if (wasClosed(url)) {
+        return {Errc::access_denied,
+                fmt::format("this server was closed before, and now one without security answers "
+                            "there: somebody else may have taken its place. If it was made a lab: "
+                            "metier trust forget {}",
+                            url)};
+    }
+    return {Errc::access_denied,
+            "the server has no security, so anybody could answer in its place: --insecure-lab "
+            "speaks to it all the same"};
+}
+
 Result<opcua::Credentials> credentialsOf(const std::string& name,
                                          const trust::IdentityOptions& options) {
     auto folder = openSecurityFolder();
@@ -50,11 +79,6 @@ Result<opcua::Credentials> credentialsOf(const std::string& name,
     }
     return opcua::Credentials{std::move(*identity), folder->trustFolder(),
                               folder->identityFolder(name)};
-}
-
-bool isOnThisMachine(const std::string& url) {
-    return url.starts_with("opc.tcp://127.") || url.starts_with("opc.tcp://localhost:") ||
-           url.starts_with("opc.tcp://[::1]:");
 }
 
 Result<bool> offersNoSecurity(const std::string& url, std::chrono::milliseconds timeout) {
@@ -143,12 +167,14 @@ bool isInsecureLab() {
 }
 
 Result<trust::SecurityFolder> openSecurityFolder() {
-    const auto& chosen = process().choice.folder;
-    const auto folder = chosen.empty() ? userConfigFolder() : std::filesystem::path(chosen);
-    return folder.empty() ? fail(Errc::resource_unavailable,
-                                 "neither HOME nor XDG_CONFIG_HOME says where certificates are "
-                                 "kept: name a folder with --security")
-                          : trust::SecurityFolder::open(folder);
+    const auto folder = securityFolder();
+    return folder ? trust::SecurityFolder::open(*folder) : fail(folder.error());
+}
+
+Result<trust::KnownServers> knownServers() {
+    const auto folder = securityFolder();
+    return folder ? Result<trust::KnownServers>(trust::SecurityFolder::knownServers(*folder))
+                  : fail(folder.error());
 }
 
 Result<void> becomeApplication(const std::string& name, const trust::IdentityOptions& options) {
@@ -172,17 +198,21 @@ std::optional<opcua::Credentials> ownCredentials() {
 Result<void> secure(opcua::ClientOptions& options, const std::string& url) {
     auto& self = process();
     if (self.choice.insecure_lab) {
-        return {};
+        return wasClosed(url)
+                   ? fail(Errc::access_denied,
+                          fmt::format("this server was closed before, and is not spoken to without "
+                                      "security: leave out --insecure-lab. If it was made a lab: "
+                                      "metier trust forget {}",
+                                      url))
+                   : Result<void>();
     }
     if (auto own = ownCredentials()) {
         options.security = std::move(own);
         return {};
     }
-    if (isOnThisMachine(url)) {
-        const auto open = offersNoSecurity(url, options.connect_timeout);
-        if (!open || *open) {
-            return open ? Result<void>() : fail(open.error());
-        }
+    const auto open = offersNoSecurity(url, options.connect_timeout);
+    if (!open || *open) {
+        return fail(open ? openServer(url) : open.error());
     }
     const std::lock_guard lock(self.mutex);
     if (auto ready = prepareCommand(self); !ready) {
@@ -191,6 +221,24 @@ Result<void> secure(opcua::ClientOptions& options, const std::string& url) {
     options.security = self.command;
     options.user = self.user;
     return {};
+}
+
+void noteConnected(const opcua::ClientOptions& options, const std::string& url) {
+    const auto known = options.security ? knownServers() : fail(Errc::not_found, "");
+    if (!known) {
+        return;
+    }
+    if (const auto noted = known->noteClosed(url); !noted) {
+        spdlog::warn("{} is not remembered as closed: {}", url, noted.error().message);
+    }
+}
+
+void noteServedOpen(const std::string& url) {
+    const auto known = knownServers();
+    const auto forgotten = known ? known->forget(url) : fail(known.error());
+    if (!forgotten) {
+        spdlog::debug("{}: {}", url, forgotten.error().message);
+    }
 }
 
 std::string adviceOn(const opcua::Failure& refusal) {

@@ -36,11 +36,19 @@ Result<void> becomeApplication(const std::string& name, const trust::IdentityOpt
 /// Of what becomeApplication() made this process; none before, and in an insecure lab.
 std::optional<opcua::Credentials> ownCredentials();
 
-/// Makes a connection to that server as secure as it has to be: by the own certificate, as the
-/// user of `--user`. A command connects without security, and without a user, to a server of this
-/// machine that offers nothing else.
-/// Errors: openSecurityFolder(); access_denied (no password); for a command, as getEndpoints().
+/// Makes a connection to that server secure: by the own certificate, as the user of `--user`. In an
+/// insecure lab it is without security, and without a user.
+/// Errors: openSecurityFolder(); access_denied (no password; an open server, and this is no lab; a
+///         lab, and the server there was closed before); for a command, as getEndpoints().
 Result<void> secure(opcua::ClientOptions& options, const std::string& url);
+/// A connection that secure() prepared was made: if it is secure, no open server is believed at
+/// that address from now on. Waits for the disk.
+void noteConnected(const opcua::ClientOptions& options, const std::string& url);
+/// A server of this process serves at that address without security: its user decided so, and
+/// clients of the same folder need not wonder.
+void noteServedOpen(const std::string& url);
+/// Addresses at which servers were closed. Errors: resource_unavailable, as openSecurityFolder().
+Result<trust::KnownServers> knownServers();
 
 /// What is to be done about a connection that was refused; empty if that is not known.
 std::string adviceOn(const opcua::Failure& refusal);

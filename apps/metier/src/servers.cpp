@@ -46,6 +46,7 @@ Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url, OnLoss 
         return fail(client.error().code,
                     fmt::format("{}: {}{}", url, client.error().message, adviceOn(client.error())));
     }
+    noteConnected(options, url);
     return std::move(*client);
 }
 

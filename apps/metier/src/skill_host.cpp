@@ -13,6 +13,8 @@
 #include "metier/opcua_skill/base_placement.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
+#include "port_lock.hpp"
+#include "security.hpp"
 #include "server_limits.hpp"
 
 namespace metier::app {
@@ -96,19 +98,6 @@ Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
         }
     }
     return {};
-}
-
-/// The kernel lets one process have a port anyway; the lock tells which one that is.
-Result<std::optional<process::NameLock>> lockPort(const configuration::ServerConfig& config) {
-    if (config.port == 0) {
-        return std::optional<process::NameLock>();
-    }
-    const auto port = fmt::format("port {} of {}", config.port, config.address);
-    auto lock = process::NameLock::take(port, config.name + ": " + port);
-    if (!lock) {
-        return fail(lock.error());
-    }
-    return std::optional(std::move(*lock));
 }
 
 }  // namespace
@@ -232,6 +221,9 @@ Result<void> SkillHost::start() {
     }
     watchStalls();
     auto started = server_->start();
+    if (started && access_ == nullptr) {
+        noteServedOpen(url());
+    }
     if (started) {
         announcement_.emplace(config_, application_uri_, url());
     }

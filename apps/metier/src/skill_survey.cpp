@@ -121,6 +121,7 @@ public:
         if (!client) {
             return fail(client.error().code, opcua::sanitise(client.error().message));
         }
+        noteConnected(options, url);
         {
             const std::lock_guard lock(mutex_);
             if (cut_) {

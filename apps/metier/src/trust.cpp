@@ -143,6 +143,17 @@ Result<void> renew(Place& place, const TrustOptions& options) {
     return {};
 }
 
+Result<void> forget(Place& /*place*/, const TrustOptions& options) {
+    const auto known = knownServers();
+    const auto forgotten = known ? known->forget(options.what) : fail(known.error());
+    if (!forgotten) {
+        return fail(forgotten.error());
+    }
+    fmt::print("{} {}\n", opcua::sanitise(options.what),
+               *forgotten ? "may be open from now on" : "was not known as closed");
+    return {};
+}
+
 using Action = Result<void> (*)(Place&, const TrustOptions&);
 
 Exit runAction(Action action, const TrustOptions& options) {
@@ -175,6 +186,9 @@ void addTrust(CLI::App& app, Exit& exit) {
         ->check(CLI::IsMember({"Observer", "Operator", "Engineer", "SecurityAdmin"}));
     add("reject", "Trust an application no longer; its sessions are closed", &reject)
         ->add_option("certificate", options->what, "Thumbprint or its beginning")
+        ->required();
+    add("forget", "Believe an open server at an address where a closed one was", &forget)
+        ->add_option("address", options->what, "opc.tcp://host:port")
         ->required();
     add("revoke", "Take an authority's revocation list", &revoke)
         ->add_option("file", options->what, "The list, DER or PEM")

@@ -293,6 +293,50 @@ TEST_F(ClosedDashboard, LetsAnObserverLookAlone) {
     EXPECT_NE(tab.tell("/api/halt").body.at("failed"), json::array());
 }
 
+TEST_F(ClosedDashboard, LetsTheRightOnesInWhateverNamesAreMadeUp) {
+    for (int round = 0; round < 25; ++round) {
+        for (int guess = 0; guess < 2; ++guess) {
+            const auto name = "nobody-" + std::to_string(2 * round + guess);
+            EXPECT_EQ(logIn(name, "a guess").status, 401);
+        }
+        const auto anna = logIn("anna", "correct horse");
+        ASSERT_EQ(anna.status, 200) << round << ": " << anna.error();
+        EXPECT_EQ(tellPage(page_->url(), "/api/halt", json::object(), anna.cookie).status, 200);
+        tellPage(page_->url(), "/api/logout", json::object(), anna.cookie);
+    }
+}
+
+TEST_F(ClosedDashboard, BelievesNoOpenServerInThePlaceOfAClosedOne) {
+    const auto anna = logIn("anna", "correct horse");
+    ASSERT_EQ(anna.status, 200) << anna.error();
+    Tab tab(page_->url(), anna.cookie);
+    const auto port = server_->port();
+    server_->kill();
+    tab.await("server", [](const json& server) { return server.at("connected") == false; });
+    const ServerProcess impostor("iiwa", {"--port", port});
+    const auto shown = tab.await("server", [](const json& server) {
+        const auto& error = server.at("error");
+        return error.is_string() &&
+               error.get<std::string>().find("closed before") != std::string::npos;
+    });
+    EXPECT_EQ(shown.at("connected"), false);
+    for (const auto* path : {"/api/cell", "/api/records", "/api/stream"}) {
+        EXPECT_EQ(askPage(page_->url(), path).status, 401) << path;
+    }
+    EXPECT_EQ(tellPage(page_->url(), "/api/halt", json::object()).status, 401);
+    EXPECT_EQ(tellPage(page_->url(), "/api/skills/start", json::object()).status, 401);
+}
+
+TEST(DashboardOfALab, IsServedToThisMachineAlone) {
+    const ServerProcess arm("iiwa");
+    for (const auto* address : {"0.0.0.0", "127.0.0.1.example"}) {
+        const auto refused =
+            runMetier({"dashboard", arm.url(), "--port", "0", "--address", address});
+        EXPECT_EQ(refused.status, 2) << address;
+        EXPECT_THAT(refused.output, HasSubstr("is not a loopback address"));
+    }
+}
+
 TEST_F(ClosedDashboard, MakesWhoeverGuessesWait) {
     PageAnswer answer;
     for (int attempt = 0; attempt < 4; ++attempt) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <optional>
+
+#include "metier/base/error.hpp"
+#include "metier/configuration/cell.hpp"
+#include "metier/process/name_lock.hpp"
+
+namespace metier::app {
+
+/// The name of a server's port, so that a second server is told at once which process has it. The
+/// kernel lets one process have the port anyway.
+///
+/// Another user who took the name without the port keeps nobody from serving there: that is logged,
+/// and the result empty, as for any free port.
+/// \param own user of this process
+/// Errors: as process::NameLock::take(), while the port is taken.
+Result<std::optional<process::NameLock>> lockPort(const configuration::ServerConfig& config,
+                                                  uid_t own = geteuid());
+
+}  // namespace metier::app

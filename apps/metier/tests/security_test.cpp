@@ -1,0 +1,132 @@
+// Which servers a command speaks to, and what servers publish of their audit log.
+#include "security.hpp"
+
+#include <gmock/gmock.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "metier/opcua/server.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
+#include "metier/opcua_skill/server_executor.hpp"
+#include "metier/trust/security_folder.hpp"
+#include "server_audit.hpp"
+
+namespace metier::app {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+fs::path freshFolder() {
+    auto folder = fs::path(::testing::TempDir()) / "metier_security" /
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder);
+    return folder;
+}
+
+class Connections : public ::testing::Test {
+protected:
+    Connections() {
+        be("--insecure-lab=false");
+        opcua::ServerOptions options;
+        options.port = 0;
+        options.nodesets = {"device", "robotics", "metier"};
+        server_ = opcua::Server::create(std::move(options)).value();
+    }
+    ~Connections() override { be("--insecure-lab=false"); }
+
+    void serve() const { ASSERT_TRUE(server_->start()); }
+    /// As the command line says it.
+    void be(const std::string& lab) const {
+        CLI::App app;
+        addSecurityOptions(app);
+        std::vector<std::string> arguments{lab, folder_.string(), "--security"};  // last first
+        app.parse(arguments);
+    }
+    std::string url() const { return server_->endpointUrl(); }
+    /// As a connection to a closed server was made.
+    opcua::ClientOptions secured() const {
+        auto folder = trust::SecurityFolder::open(folder_).value();
+        opcua::ClientOptions options;
+        options.security = opcua::Credentials{folder
+                                                  .identity("command",
+                                                            {.application_name = "command",
+                                                             .application_uri = "urn:test:command",
+                                                             .hosts = {"localhost"}},
+                                                            std::chrono::system_clock::now())
+                                                  .value(),
+                                              folder.trustFolder()};
+        return options;
+    }
+    Result<void> secureNow() const {
+        opcua::ClientOptions options;
+        return secure(options, url());
+    }
+
+    const fs::path folder_ = freshFolder();
+    std::unique_ptr<opcua::Server> server_;
+};
+
+TEST_F(Connections, AreMadeToNoOpenServerUnlessItIsALab) {
+    serve();
+    const auto refused = secureNow();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::access_denied);
+    EXPECT_THAT(refused.error().message,
+                AllOf(HasSubstr("has no security"), HasSubstr("--insecure-lab")));
+    be("--insecure-lab");
+    EXPECT_TRUE(secureNow());
+    EXPECT_FALSE(fs::exists(folder_)) << "a lab needs no folder";
+}
+
+TEST_F(Connections, AreMadeToNoOpenServerWhereAClosedOneWas) {
+    serve();
+    noteConnected(secured(), url());
+    EXPECT_THAT(secureNow().error().message, HasSubstr("was closed before"));
+    be("--insecure-lab");
+    const auto refused = secureNow();
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message,
+                AllOf(HasSubstr("was closed before"), HasSubstr("metier trust forget " + url())));
+    noteServedOpen(url());
+    EXPECT_TRUE(secureNow()) << "by the hand of its own user";
+    noteConnected(opcua::ClientOptions(), url());
+    EXPECT_TRUE(secureNow()) << "an open connection proves nothing";
+}
+
+TEST_F(Connections, ShowTheNewestChainValueOfTheAuditLog) {
+    configuration::ServerConfig config;
+    config.name = "iiwa";
+    config.address = "127.0.0.1";
+    config.state_folder = folder_;
+    opcua::ServerOptions options;
+    options.port = 0;
+    options.nodesets = {"device", "robotics", "metier"};
+    const auto audit = ServerAudit::open(config, options).value();
+    server_ = opcua::Server::create(std::move(options)).value();
+    ASSERT_TRUE(audit->follow(*server_, std::make_shared<opcua_skill::ServerExecutor>(*server_)));
+    serve();
+    const auto client = opcua::Client::connect(url()).value();  // a log-in, which is noted
+    const auto metier = client->namespaceIndex(opcua_skill::kMetierUri).value();
+    const auto anchor = client->translate(opcua::ids::kServer, {{metier, kAuditAnchor}}).value();
+    const auto log = folder_ / "audit" / "iiwa-127.0.0.1-0.log";
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    std::string shown(64, '0');
+    while (shown == std::string(64, '0') && std::chrono::steady_clock::now() < deadline) {
+        shown = client->read(anchor).value().as<std::string>().value();
+    }
+    const auto verified = audit::verify(log, {shown});
+    ASSERT_TRUE(verified) << verified.error().message;
+    EXPECT_EQ(verified->anchors.size(), 1U);
+    EXPECT_FALSE(client->write(anchor, opcua::Value::of(std::string("mine"))));
+    ASSERT_TRUE(client->close());
+    server_->stop();
+}
+
+}  // namespace
+}  // namespace metier::app
