@@ -79,8 +79,8 @@ TEST(Cell, EndsAllItsServersWhenItIsKilled) {
     }
 }
 
-TEST(Cell, GoesDownAndSaysWhichServerEnded) {
-    RunningCell cell(demoCell());
+TEST(Cell, GoesDownWithAServerIfItIsToldTo) {
+    RunningCell cell(demoCell(), {"--exit-on-failure"});
     const auto first = cell.childPids().front();
     ASSERT_GT(first, 0);
     ASSERT_EQ(kill(first, SIGKILL), 0);

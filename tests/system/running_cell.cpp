@@ -18,10 +18,12 @@ namespace {
 constexpr const char* kUp = "the cell is up; Ctrl-C ends it";
 
 process::ChildProcess startUp(const std::filesystem::path& file,
-                              const std::filesystem::path& endpoints) {
-    return process::ChildProcess::start(metierCommand({"up", file.string(), "--free-ports",
-                                                       "--endpoints", endpoints.string()}))
-        .value();
+                              const std::filesystem::path& endpoints,
+                              const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"up", file.string(), "--free-ports", "--endpoints",
+                                       endpoints.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return process::ChildProcess::start(metierCommand(arguments)).value();
 }
 
 /// One line for one line, without a process for each.
@@ -42,10 +44,10 @@ nlohmann::json askControlPort(const std::string& address, const nlohmann::json& 
 
 }  // namespace
 
-RunningCell::RunningCell(const std::filesystem::path& file)
+RunningCell::RunningCell(const std::filesystem::path& file, const std::vector<std::string>& more)
     : endpoints_(std::filesystem::path(::testing::TempDir()) /
                  ("endpoints_" + std::to_string(getpid()) + ".json")),
-      process_(startUp(file, endpoints_)) {
+      process_(startUp(file, endpoints_, more)) {
     for (std::string line; line != kUp;) {
         line = process_.readLine(inAMinute()).value();
     }

@@ -15,8 +15,10 @@ namespace metier::system_tests {
 /// `metier up` of a cell file with free ports and addresses; every process of it ends with this.
 class RunningCell {
 public:
+    /// \param more options of `metier up`
     /// Throws unless everything is ready within a minute.
-    explicit RunningCell(const std::filesystem::path& file);
+    explicit RunningCell(const std::filesystem::path& file,
+                         const std::vector<std::string>& more = {});
 
     /// Servers by name.
     const std::map<std::string, std::string>& urls() const { return urls_; }

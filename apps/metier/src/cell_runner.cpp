@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <random>
-
-#include "ready_line.hpp"
-#include "security.hpp"
+#include <chrono>
+#include <csignal>
+#include <limits>
 
 namespace metier::app {
 namespace {
@@ -17,162 +16,171 @@ namespace {
 using namespace std::chrono_literals;
 using configuration::ServerKind;
 
-constexpr auto kReadyTimeout = 30s;
+// What uses others may take so long to let go of them before these are told to end, too.
+constexpr auto kLetGo = 500ms;
+// From the begin of the cell's end: servers brake within 2 s.
+constexpr auto kServersEnd = 4s;
+constexpr auto kAllEnd = 6s;
 
-std::string self() {
-    return std::filesystem::read_symlink("/proc/self/exe").string();
+constexpr std::array kStartOrder{ServerKind::arm, ServerKind::gripper, ServerKind::move,
+                                 ServerKind::synchronized, ServerKind::composition};
+constexpr std::array kEndOrder{CellRank::composition, CellRank::synchronized, CellRank::move,
+                               CellRank::device,      CellRank::controller,   CellRank::world};
+
+SteadyTime now() {
+    return std::chrono::steady_clock::now();
 }
 
-/// The driver of a server's device; nullptr for one without.
-const configuration::DriverChoice* driverOf(const configuration::ServerConfig& server) {
-    switch (server.kind) {
-        case ServerKind::arm:
-            return &server.arm.driver;
-        case ServerKind::gripper:
-            return &server.gripper.driver;
-        case ServerKind::move:
-        case ServerKind::composition:
-        case ServerKind::synchronized:
-            break;
+int millisecondsUntil(SteadyTime time) {
+    if (time == SteadyTime::max()) {
+        return -1;
     }
-    return nullptr;
-}
-
-/// Some address of this machine that nobody else is likely to use.
-std::string freeAddress() {
-    std::random_device random;
-    const auto part = [&random](unsigned low, unsigned high) {
-        return std::uniform_int_distribution<unsigned>(low, high)(random);
-    };
-    return fmt::format("127.{}.{}.{}", part(1, 254), part(0, 255), part(1, 254));
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(time - now()).count();
+    return static_cast<int>(std::clamp<std::int64_t>(left, 0, std::numeric_limits<int>::max()));
 }
 
 }  // namespace
 
 Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Ports ports,
-                                     const OnReady& on_ready) {
+                                     int stop_descriptor, const OnReady& on_ready) {
     CellRunner runner;
+    if (auto started = runner.startAll(cell, ports, stop_descriptor, on_ready); !started) {
+        return fail(started.error());
+    }
+    return runner;
+}
+
+Result<void> CellRunner::startAll(const configuration::CellConfig& cell, Ports ports,
+                                  int stop_descriptor, const OnReady& on_ready) {
     for (const bool world : {true, false}) {
         for (const auto& controller : cell.virtual_controllers) {
             if ((&controller == cell.world()) != world) {
                 continue;
             }
-            if (auto started = runner.startVirtual(cell, controller, ports); !started) {
-                return fail(started.error());
+            if (auto started =
+                    startMember(planOf(cell, controller, ports, known_), stop_descriptor);
+                !started) {
+                return started;
             }
+            known_.controllers[controller.name] = members_.back().address();
         }
     }
-    for (const auto kind : {ServerKind::arm, ServerKind::gripper, ServerKind::move,
-                            ServerKind::synchronized, ServerKind::composition}) {
+    for (const auto kind : kStartOrder) {
         for (const auto& server : cell.servers) {
             if (server.kind != kind) {
                 continue;
             }
-            if (auto started = runner.startServer(cell, server, ports); !started) {
-                return fail(started.error());
+            if (auto started = startMember(planOf(cell, server, ports, known_), stop_descriptor);
+                !started) {
+                return started;
             }
-            on_ready(runner.running_.back());
+            const auto& url = members_.back().address();
+            known_.servers[server.name] = url;
+            running_.push_back({server.name, url});
+            on_ready(running_.back());
         }
     }
-    return runner;
-}
-
-Result<void> CellRunner::startVirtual(const configuration::CellConfig& cell,
-                                      const configuration::VirtualController& controller,
-                                      Ports ports) {
-    std::vector<std::string> command{self(), "virtual", "run", cell.file.string(), controller.name};
-    if (ports == Ports::free) {
-        command.insert(command.end(), {"--address", freeAddress()});
-    }
-    const auto* world = cell.world();
-    if (world != nullptr && world != &controller) {
-        command.insert(command.end(), {"--world", virtual_addresses_.at(world->name)});
-    }
-    auto address = startChild(controller.name, command);
-    if (!address) {
-        return fail(address.error());
-    }
-    virtual_addresses_.emplace(controller.name, std::move(*address));
     return {};
 }
 
-Result<void> CellRunner::startServer(const configuration::CellConfig& cell,
-                                     const configuration::ServerConfig& server, Ports ports) {
-    std::vector<std::string> command{self(), "serve", cell.file.string(), "--server", server.name};
-    const auto security = securityArguments();
-    command.insert(command.begin() + 1, security.begin(), security.end());
-    if (ports == Ports::free) {
-        command.insert(command.end(), {"--port", "0", "--metrics", "off"});
+Result<void> CellRunner::startMember(CellMember::Plan plan, int stop_descriptor) {
+    auto& member = members_.emplace_back(std::move(plan));
+    if (auto begun = member.begin(now()); !begun) {
+        return begun;
     }
-    const auto robot = std::find_if(running_.begin(), running_.end(), [&](const Running& other) {
-        return other.name == server.move.robot;
-    });
-    if (server.kind == ServerKind::move && robot != running_.end()) {
-        command.insert(command.end(), {"--robot", robot->url});
-    }
-    for (const auto& used : server.usedServers()) {
-        for (const auto& other : running_) {
-            if (other.name == used.name) {
-                command.insert(command.end(), {"--use", used.name + "=" + other.url});
-            }
+    for (;;) {
+        switch (member.look(now())) {
+            case CellMember::Event::ready:
+                return {};
+            case CellMember::Event::ended:
+                return fail(Errc::connection_lost, fmt::format("'{}' did not become ready: it {}",
+                                                               member.name(), member.howItEnded()));
+            case CellMember::Event::none:
+                break;
+        }
+        if (await(stop_descriptor, SteadyTime::max())) {
+            return fail(Errc::cancelled, fmt::format("stopped before the cell was up: '{}' was not "
+                                                     "ready yet",
+                                                     member.name()));
         }
     }
-    const auto give = [&](const configuration::DriverChoice& driver, const char* option) {
-        const auto found = virtual_addresses_.find(driver.controller);
-        if (found != virtual_addresses_.end()) {
-            command.insert(command.end(), {option, found->second});
-        }
-    };
-    if (const auto* driver = driverOf(server)) {
-        give(*driver, "--controller");
-    }
-    if (server.arm.force_torque_sensor) {
-        give(*server.arm.force_torque_sensor, "--sensor");
-    }
-    auto url = startChild(server.name, command);
-    if (!url) {
-        return fail(url.error());
-    }
-    running_.push_back({server.name, std::move(*url)});
-    return {};
 }
 
-Result<std::string> CellRunner::startChild(const std::string& name,
-                                           const std::vector<std::string>& command) {
-    auto child = process::ChildProcess::start(command);
-    if (!child) {
-        return fail(child.error());
-    }
-    const auto line = child->readLine(std::chrono::steady_clock::now() + kReadyTimeout);
-    if (!line) {
-        return fail(line.error().code,
-                    fmt::format("'{}' did not become ready: {}", name, line.error().message));
-    }
-    auto address = addressOfReadyLine(*line);
-    if (!address) {
-        return fail(Errc::internal, fmt::format("'{}' said: {}", name, *line));
-    }
-    names_.push_back(name);
-    processes_.push_back(std::move(*child));
-    return std::move(*address);
-}
-
-std::optional<CellRunner::Ended> CellRunner::waitForEnd(int wake_descriptor) {
+bool CellRunner::await(int wake_descriptor, SteadyTime deadline) const {
     std::vector<pollfd> requests{{wake_descriptor, POLLIN, 0}};
-    for (const auto& process : processes_) {
-        requests.push_back({process.outputDescriptor(), POLLIN, 0});
+    for (const auto& member : members_) {
+        requests.push_back({member.outputDescriptor(), POLLIN, 0});
+        requests.push_back({member.endDescriptor(), POLLIN, 0});
+        if (const auto again = member.lookAgainAt()) {
+            deadline = std::min(deadline, *again + 1ms);
+        }
     }
-    // A server prints nothing after its ready line: its output becomes readable when it ends.
-    while (poll(requests.data(), requests.size(), -1) < 0 && errno == EINTR) {
-    }
-    for (std::size_t i = 0; i < processes_.size(); ++i) {
-        if (requests[i + 1].revents != 0) {
-            const auto status =
-                processes_[i].waitUntil(std::chrono::steady_clock::now() + kReadyTimeout);
-            return Ended{names_[i], status.value_or(-1)};
+    const int ready = poll(requests.data(), requests.size(), millisecondsUntil(deadline));
+    return ready > 0 && requests.front().revents != 0;
+}
+
+std::optional<CellRunner::Ended> CellRunner::lookAfter(int wake_descriptor, OnFailure on_failure,
+                                                       const OnChange& on_change) {
+    do {
+        if (auto ended = lookAtAll(on_failure, on_change)) {
+            return ended;
+        }
+    } while (!await(wake_descriptor, SteadyTime::max()));
+    return std::nullopt;
+}
+
+std::optional<CellRunner::Ended> CellRunner::lookAtAll(OnFailure on_failure,
+                                                       const OnChange& on_change) {
+    for (auto& member : members_) {
+        const auto event = member.look(now());
+        if (event == CellMember::Event::ready) {
+            on_change(fmt::format("'{}' is back at {}", member.name(), member.address()));
+        } else if (event == CellMember::Event::ended && on_failure == OnFailure::end_cell) {
+            return Ended{member.name(), member.howItEnded()};
+        } else if (event == CellMember::Event::ended) {
+            const std::chrono::duration<double> pause = member.beginLater(now());
+            on_change(fmt::format("'{}' {}; it is started again in {} s", member.name(),
+                                  member.howItEnded(), pause.count()));
         }
     }
     return std::nullopt;
+}
+
+bool CellRunner::anyLeft(CellRank least) const {
+    return std::any_of(members_.begin(), members_.end(), [&](const CellMember& member) {
+        return member.rank() >= least && member.hasProcess();
+    });
+}
+
+void CellRunner::awaitEnds(CellRank least, SteadyTime deadline) {
+    while (anyLeft(least) && now() < deadline) {
+        await(-1, deadline);
+        for (auto& member : members_) {
+            member.look(now());
+        }
+    }
+}
+
+CellRunner::~CellRunner() {
+    const auto begun = now();
+    for (auto& member : members_) {
+        member.stayDown();
+    }
+    for (const auto rank : kEndOrder) {
+        if (rank == CellRank::controller) {
+            awaitEnds(CellRank::device, begun + kServersEnd);
+        }
+        for (auto& member : members_) {
+            if (member.rank() == rank) {
+                member.signal(SIGTERM);
+            }
+        }
+        const bool uses_others = rank > CellRank::device;
+        awaitEnds(rank, std::min(now() + (uses_others ? kLetGo : kServersEnd), begun + kAllEnd));
+    }
+    for (auto& member : members_) {
+        member.signal(SIGKILL);
+    }
 }
 
 }  // namespace metier::app

@@ -1,68 +1,84 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cell_commands.hpp"
+#include "cell_member.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/configuration/cell.hpp"
-#include "metier/process/child_process.hpp"
 
 namespace metier::app {
 
-/// The servers and virtual controllers of a cell as child processes of this one; they end with it.
+/// What becomes of a cell when one of its processes ends by itself.
+enum class OnFailure {
+    restart,   ///< it is started again; the others stay
+    end_cell,  ///< the whole cell ends
+};
+
+/// The servers and virtual controllers of a cell as child processes of this one.
 ///
-/// Threading: one thread.
+/// Threading: one thread, which lives as long as this.
 class CellRunner {
 public:
     struct Running {
         std::string name;
-        std::string url;  ///< opc.tcp://..., as the server told it
+        std::string url;  ///< opc.tcp://..., as the server printed it
     };
     /// Called when a server is ready, for progress on the terminal.
     using OnReady = std::function<void(const Running&)>;
+    /// Called with a line for a person when a process has ended or is back.
+    using OnChange = std::function<void(const std::string& text)>;
 
     /// Starts the virtual controllers, the devices' servers, then what builds on them, and waits
     /// until each is ready.
-    /// \param ports  free: every server takes a free port instead of its configured one, every
-    ///              virtual controller a free address of this machine
-    /// Errors: what the first server that did not become ready in 30 s had to say.
-    enum class Ports { configured, free };
+    /// \param stop_descriptor ends the start when it becomes readable; -1: none
+    /// Errors: what the first server that was not ready in 30 s had to say; cancelled.
     static Result<CellRunner> start(const configuration::CellConfig& cell, Ports ports,
-                                    const OnReady& on_ready);
+                                    int stop_descriptor, const OnReady& on_ready);
+    CellRunner(CellRunner&&) noexcept = default;
+    CellRunner& operator=(CellRunner&&) = delete;
+    /// Ends every process, those first that use others; a virtual controller once the servers are
+    /// gone. Takes 6 s at most; a process that takes longer is killed.
+    ~CellRunner();
 
+    /// The servers, in the order in which they were started. They keep their addresses.
     const std::vector<Running>& servers() const noexcept { return running_; }
     /// Addresses of the virtual controllers, by name.
     const std::map<std::string, std::string>& virtualControllers() const noexcept {
-        return virtual_addresses_;
+        return known_.controllers;
     }
 
-    /// Waits for a server to end or for the descriptor to become readable.
-    /// \return the name and exit status of a server that ended; nothing if it was the descriptor
+    /// A process that ended by itself, while the cell was to end with it.
     struct Ended {
         std::string name;
-        int status = 0;
+        std::string how;  ///< "ended with status 1"
     };
-    std::optional<Ended> waitForEnd(int wake_descriptor);
+    /// Looks after the processes until the descriptor becomes readable.
+    /// \return nothing then; with OnFailure::end_cell the first process that ended
+    std::optional<Ended> lookAfter(int wake_descriptor, OnFailure on_failure,
+                                   const OnChange& on_change);
 
 private:
     CellRunner() = default;
-    Result<void> startServer(const configuration::CellConfig& cell,
-                             const configuration::ServerConfig& server, Ports ports);
-    Result<void> startVirtual(const configuration::CellConfig& cell,
-                              const configuration::VirtualController& controller, Ports ports);
-    /// \return the address that the child tells when it is ready
-    Result<std::string> startChild(const std::string& name,
-                                   const std::vector<std::string>& command);
+    Result<void> startMember(CellMember::Plan plan, int stop_descriptor);
+    Result<void> startAll(const configuration::CellConfig& cell, Ports ports, int stop_descriptor,
+                          const OnReady& on_ready);
+    std::optional<Ended> lookAtAll(OnFailure on_failure, const OnChange& on_change);
+    /// Waits for something to look at, or for the descriptor.
+    /// \return whether it was the descriptor
+    bool await(int wake_descriptor, SteadyTime deadline) const;
+    bool anyLeft(CellRank least) const;
+    void awaitEnds(CellRank least, SteadyTime deadline);
 
     std::vector<Running> running_;
-    std::map<std::string, std::string> virtual_addresses_;  // by name
-    std::vector<std::string> names_;                        // of the processes
-    std::vector<process::ChildProcess> processes_;
+    CellAddresses known_;
+    std::vector<CellMember> members_;  // in the order of their start
 };
 
 }  // namespace metier::app

@@ -19,6 +19,7 @@
 #include "robot_argument.hpp"
 #include "security.hpp"
 #include "servers.hpp"
+#include "start_watch.hpp"
 #include "stop_signal.hpp"
 
 namespace metier::app {
@@ -28,6 +29,9 @@ namespace fs = std::filesystem;
 using dashboard::Cell;
 using dashboard::CellServer;
 using dashboard::Dashboard;
+
+// From the signal to the end of the process.
+constexpr std::chrono::seconds kLongestEnd{10};
 
 struct DashboardOptions {
     ServerChoice servers;
@@ -122,6 +126,7 @@ void watchDiscovery(Dashboard& page, const DashboardOptions& options, const Stop
 }
 
 Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
+    auto starting = std::make_unique<StartWatch>(stop);
     auto cell = cellOf(options);
     if (!cell) {
         return reportUsage(cell.error());
@@ -152,6 +157,7 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
          .records = std::move(records),
          .models = std::move(*models)},
         clock);
+    starting.reset();
     if (!page) {
         return page.error().code == Errc::invalid_argument ? Result<Exit>(reportUsage(page.error()))
                                                            : fail(page.error());
@@ -163,11 +169,13 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
     } else {
         watchDiscovery(**page, options, stop);
     }
+    StopSignal::endWithin(kLongestEnd);
     return Exit::success;
 }
 
 Exit runDashboard(const DashboardOptions& options) {
     const StopSignal stop;
+    StopSignal::outliveOutput();
     if (isInsecureLab()) {
         fmt::print(stderr, "{}\n", kInsecureLab);
     }

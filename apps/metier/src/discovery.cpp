@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "folders.hpp"
+#include "lab_warning.hpp"
 #include "metier/opcua/server.hpp"
 #include "ready_line.hpp"
 #include "security.hpp"
@@ -59,6 +60,7 @@ Exit runDiscovery(const DiscoveryOptions& options) {
     if (*access == nullptr) {
         noteServedOpen((*server)->endpointUrl());
     }
+    warnOfLab("metier discovery", (*server)->endpointUrl());
     fmt::print("{}\n", readyLine((*server)->endpointUrl()));
     std::fflush(stdout);
     stop.wait();

@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "metier/skill_client/skill_handle.hpp"
 #include "pick_place_command.hpp"
+#include "second_try.hpp"
 #include "servers.hpp"
 #include "side_by_side.hpp"
 #include "value_text.hpp"
@@ -18,6 +21,7 @@ namespace {
 using skill_client::SkillHandle;
 
 constexpr const char* kType = "PickPlaceSkillType";
+constexpr std::chrono::seconds kLongestReset{5};
 
 /// One PickPlaceSkill with the connection that it is used over.
 struct Component {
@@ -30,6 +34,7 @@ struct Component {
 struct Tally {
     int placed = 0;
     std::vector<std::string> failures;  // "part 3: why"
+    std::vector<std::string> retried;   // the same of parts that were tried again
     double time = 0.0;                  // of all parts [s]
 };
 
@@ -77,15 +82,19 @@ Frame placeOf(int part, const Frame& first, const PickPlaceSettings& settings) {
 
 class Mover {
 public:
-    Mover(Component& component, const PickPlaceSettings& settings, const TellRow& tell)
-        : component_(component), settings_(settings), tell_(tell) {}
+    /// \param recover resets whatever is Halted, before a part is tried again
+    Mover(Component& component, const PickPlaceSettings& settings, const TellRow& tell,
+          std::function<void()> recover)
+        : component_(component), settings_(settings), tell_(tell), recover_(std::move(recover)) {}
 
     Tally run() {
         const auto begun = std::chrono::steady_clock::now();
         for (int part = 0; part < settings_.parts && !overruled_ && ready(part); ++part) {
             tell_(static_cast<double>(part) / settings_.parts,
                   fmt::format("part {} of {}", part + 1, settings_.parts));
-            move(part);
+            for (int tries_left = settings_.second_tries; !move(part, tries_left); --tries_left) {
+                recover_();
+            }
         }
         tally_.time =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -93,9 +102,10 @@ public:
     }
 
 private:
-    void note(int part, const std::string& why) {
-        tally_.failures.push_back(fmt::format("part {}: {}", part + 1, why));
+    static std::string textOf(int part, const std::string& why) {
+        return fmt::format("part {}: {}", part + 1, why);
     }
+    void note(int part, const std::string& why) { tally_.failures.push_back(textOf(part, why)); }
 
     /// Resets what is Halted. \return whether the skill can begin
     bool ready(int part) {
@@ -111,7 +121,8 @@ private:
         return true;
     }
 
-    void move(int part) {
+    /// \return false if the part is to be tried again
+    bool move(int part, int tries_left) {
         const skill::ValueMap parameters{{"PickPose", placeOf(part, settings_.pick, settings_)},
                                          {"PlacePose", placeOf(part, settings_.place, settings_)},
                                          {"ApproachDistance", settings_.approach},
@@ -120,21 +131,28 @@ private:
         const auto result = component_.skill.runWith({"", parameters}, deadline);
         if (result) {
             ++tally_.placed;
-        } else {
-            note(part, result.error().message);
-            overruled_ = result.error().code == Errc::cancelled;
+            return true;
         }
+        overruled_ = result.error().code == Errc::cancelled;
+        if (!overruled_ && tries_left > 0) {
+            tally_.retried.push_back(textOf(part, result.error().message));
+            return false;
+        }
+        note(part, result.error().message);
+        return true;
     }
 
     Component& component_;
     const PickPlaceSettings& settings_;
     const TellRow& tell_;
+    std::function<void()> recover_;
     Tally tally_;
     bool overruled_ = false;  // somebody else has halted it, so it is not begun again
 };
 
 /// All components at the same time.
-std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSettings& settings) {
+std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSettings& settings,
+                           const std::vector<std::string>& urls) {
     std::vector<std::string> names;
     for (const auto& component : components) {
         names.push_back(component.name);
@@ -142,7 +160,9 @@ std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSe
     std::vector<Tally> tallies(components.size());
     runSideBySide(names, settings.timeout * settings.parts,
                   [&](std::size_t row, const TellRow& tell) {
-                      tallies[row] = Mover(components[row], settings, tell).run();
+                      tallies[row] = Mover(components[row], settings, tell, [&urls] {
+                                         resetAllHalted(urls, kLongestReset);
+                                     }).run();
                       return tallies[row].failures.empty();
                   });
     return tallies;
@@ -157,6 +177,9 @@ std::string tableOf(const std::vector<Component>& components, const std::vector<
         for (const auto& failure : tallies[i].failures) {
             table += fmt::format("  {}\n", failure);
         }
+        for (const auto& retried : tallies[i].retried) {
+            table += fmt::format("  tried again: {}\n", retried);
+        }
     }
     return table;
 }
@@ -168,6 +191,7 @@ std::string jsonOf(const std::vector<Component>& components, const std::vector<T
                         {"url", components[i].url},
                         {"placed", tallies[i].placed},
                         {"failures", tallies[i].failures},
+                        {"retried", tallies[i].retried},
                         {"time_s", tallies[i].time}});
     }
     return json.dump(2) + "\n";
@@ -231,7 +255,7 @@ Exit pickAndPlace(const std::vector<std::string>& urls, const PickPlaceSettings&
     if (!components) {
         return report(components.error());
     }
-    const auto tallies = moveAll(*components, settings);
+    const auto tallies = moveAll(*components, settings, urls);
     fmt::print("{}", settings.json ? jsonOf(*components, tallies) : tableOf(*components, tallies));
     const bool all_placed = std::all_of(tallies.begin(), tallies.end(), [&](const auto& one) {
         return one.placed == settings.parts;

@@ -19,6 +19,9 @@ struct PickPlaceSettings {
     double approach = 0.05;  ///< [m]
     double force = 0.0;      ///< [N]; 0: the gripper's own
     std::chrono::seconds timeout{120};
+    /// How often a part that failed is tried again, after a Reset of all that is Halted on its
+    /// servers. Only for trials in which nobody can be in the way.
+    int second_tries = 0;
     bool json = false;
 };
 
@@ -26,7 +29,8 @@ struct PickPlaceSettings {
 void addPickPlaceOptions(CLI::App& command, PickPlaceSettings& settings);
 
 /// Has every PickPlaceSkill that the servers have move its parts, all at the same time, shows how
-/// it goes, and prints the result. After a part that failed the skill is Reset and takes the next.
+/// it goes, and prints the result. After a part that failed the skill is Reset and takes the next,
+/// or that part again.
 Exit pickAndPlace(const std::vector<std::string>& urls, const PickPlaceSettings& settings);
 
 }  // namespace metier::app

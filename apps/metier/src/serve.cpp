@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,20 +13,27 @@
 #include "composition_server.hpp"
 #include "folders.hpp"
 #include "gripper_server.hpp"
+#include "lab_warning.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
 #include "security.hpp"
+#include "start_watch.hpp"
 #include "stop_signal.hpp"
 #include "synchronized_server.hpp"
 
 namespace metier::app {
 namespace {
 
+// From the signal to the end of the process: what moves brakes within 2 s of it.
+constexpr std::chrono::seconds kLongestEnd{10};
+
 struct ServeOptions {
     std::string cell;
     std::string server;
     std::optional<std::uint16_t> port;
+    std::uint16_t again_at = 0;
+    bool lab_is_known = false;
     std::string robot;
     std::string controller;
     std::string sensor;
@@ -174,19 +182,29 @@ Result<void> becomeServer(const configuration::ServerConfig& config) {
          .hosts = std::move(hosts)});
 }
 
-template <typename Server>
-Exit serveUntil(const StopSignal& stop, Result<std::unique_ptr<Server>> server) {
+/// Starts a server and serves until the signal; then it brakes what moves and ends.
+/// \param start makes the server
+template <typename Start>
+Exit serveUntil(const StopSignal& stop, const ServeOptions& options, Start start) {
+    auto starting = std::make_unique<StartWatch>(stop);
+    auto server = start();
+    starting.reset();
     if (!server) {
         return report(server.error());
+    }
+    if (!options.lab_is_known) {
+        warnOfLab("metier " + options.server, (*server)->url());
     }
     fmt::print("{}\n", readyLine((*server)->url()));
     std::fflush(stdout);
     stop.wait();
+    StopSignal::endWithin(kLongestEnd);
     return Exit::success;
 }
 
 Exit runServe(const ServeOptions& options) {
     const StopSignal stop;
+    StopSignal::outliveOutput();
     const auto cell = configuration::loadCell(options.cell);
     if (!cell) {
         return reportUsage(cell.error());
@@ -198,23 +216,26 @@ Exit runServe(const ServeOptions& options) {
     if (const auto known = becomeServer(*config); !known) {
         return report(known.error());
     }
+    if (config->port == 0) {
+        config->port = options.again_at;
+    }
     if (config->kind == configuration::ServerKind::arm) {
-        return serveUntil(stop, ArmServer::start(*config));
+        return serveUntil(stop, options, [&] { return ArmServer::start(*config); });
     }
     if (config->kind == configuration::ServerKind::gripper) {
-        return serveUntil(stop, GripperServer::start(*config));
+        return serveUntil(stop, options, [&] { return GripperServer::start(*config); });
     }
     if (const auto right = resolveUsed(*cell, options.used, config->usedServers()); !right) {
         return reportUsage(right.error());
     }
     if (config->kind == configuration::ServerKind::composition) {
-        return serveUntil(stop, CompositionServer::start(*config, stop));
+        return serveUntil(stop, options, [&] { return CompositionServer::start(*config, stop); });
     }
     if (config->kind == configuration::ServerKind::synchronized) {
-        return serveUntil(stop, SynchronizedServer::start(*config));
+        return serveUntil(stop, options, [&] { return SynchronizedServer::start(*config); });
     }
     resolveRobot(*cell, *config);
-    return serveUntil(stop, MoveServer::start(*config, stop));
+    return serveUntil(stop, options, [&] { return MoveServer::start(*config, stop); });
 }
 
 }  // namespace
@@ -227,6 +248,14 @@ void addServe(CLI::App& app, Exit& exit) {
     command->add_option("cell", options->cell, "The cell's file")->required();
     command->add_option("--server", options->server, "Name of the server, if the file has several");
     command->add_option("--port", options->port, "Another TCP port than the file's; 0: a free one");
+    command
+        ->add_option("--again-at", options->again_at,
+                     "With --port 0: the free port that the server had before it ended")
+        ->group("");  // for `metier up`, which starts a server again
+    command
+        ->add_flag("--lab-is-known", options->lab_is_known,
+                   "Do not warn of an insecure lab: who started this has")
+        ->group("");
     command->add_option("--robot", options->robot,
                         "Another opc.tcp:// address of the robot than the file's");
     command->add_option("--controller", options->controller,

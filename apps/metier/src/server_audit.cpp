@@ -41,7 +41,8 @@ audit::Entry entryOf(const opcua::AuditRecord& record) {
 Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::ServerConfig& config,
                                                        opcua::ServerOptions& options) {
     if (config.state_folder.empty()) {
-        spdlog::warn("{}: no state folder, so no audit log", config.name);
+        const auto level = options.security ? spdlog::level::warn : spdlog::level::info;
+        spdlog::log(level, "{}: no state folder, so no audit log", config.name);
         return nullptr;
     }
     std::unique_ptr<ServerAudit> audit(new ServerAudit(config.name));

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "kinematics_conversion.hpp"
@@ -19,6 +20,8 @@
 
 namespace metier::app {
 namespace {
+
+constexpr std::chrono::seconds kLongestBraking{2};
 
 /// SafetyStateKind of the Metier NodeSet.
 std::int32_t safetyKind(device::SafetyState state) {
@@ -203,6 +206,10 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
 /// Whatever watches the Programs lets go of them between the server's thread and their end. A disk
 /// that hangs is waited for once they have stopped their device.
 SkillHost::~SkillHost() {
+    if (announcement_ && !skills_->comeToRest("the server is ended", kLongestBraking)) {
+        spdlog::error("{}: something still moves {} s after it was to brake: its device stops it",
+                      config_.name, kLongestBraking.count());
+    }
     announcement_.reset();
     stall_watch_.reset();
     device_watch_.reset();

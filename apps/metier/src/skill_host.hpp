@@ -47,6 +47,7 @@ public:
     static Result<std::unique_ptr<SkillHost>> create(
         const configuration::ServerConfig& config, std::vector<std::string> nodesets,
         std::shared_ptr<skill::ExecutionNames> names = nullptr);
+    /// Brakes what moves and waits until it stands, 2 s at most; then ends the server.
     ~SkillHost();
     SkillHost(const SkillHost&) = delete;
     SkillHost& operator=(const SkillHost&) = delete;
@@ -128,7 +129,7 @@ private:
     std::optional<robot_skills::DeviceWatch> device_watch_;
     std::vector<std::function<void()>> stops_;
     std::optional<robot_skills::StallWatch> stall_watch_;
-    std::optional<Announcement> announcement_;  // ends first
+    std::optional<Announcement> announcement_;  // ends first; none before start()
 };
 
 }  // namespace metier::app

@@ -13,6 +13,7 @@
 #include "metier/path_evaluation/placement.hpp"
 #include "metier/skill_client/kinematics_reader.hpp"
 #include "metier/skill_client/skill_handle.hpp"
+#include "second_try.hpp"
 
 namespace metier::app {
 namespace {
@@ -25,6 +26,7 @@ using skill_client::SkillHandle;
 constexpr const char* kPtpType = "CartesianPtpMoveSkillType";
 constexpr const char* kLinearType = "CartesianLinearMoveSkillType";
 constexpr std::chrono::milliseconds kSampling{10};
+constexpr std::chrono::seconds kLongestReset{5};
 
 /// The measured path of the flange; filled by the client's thread.
 class PathRecorder {
@@ -125,8 +127,7 @@ private:
 
     Result<void> move(SkillHandle& skill, std::size_t corner) {
         const skill::ValueMap target{{"TargetPosition", geometry::toFrame(square_.corner(corner))}};
-        const auto deadline = std::chrono::steady_clock::now() + settings_.move_timeout;
-        const auto result = skill.run(target, deadline);
+        const auto result = tryToRun(skill, target);
         if (!result) {
             return fail(result.error());
         }
@@ -137,6 +138,19 @@ private:
             }
         }
         return {};
+    }
+
+    Result<skill::ValueMap> tryToRun(SkillHandle& skill, const skill::ValueMap& target) {
+        for (int tries_left = settings_.second_tries;; --tries_left) {
+            const auto deadline = std::chrono::steady_clock::now() + settings_.move_timeout;
+            auto result = skill.run(target, deadline);
+            if (result || result.error().code == Errc::cancelled || tries_left <= 0) {
+                return result ? Result<skill::ValueMap>(std::move(*result)) : fail(result.error());
+            }
+            if (const auto ready = resetUntilReady(skill, kLongestReset); !ready) {
+                return fail(ready.error());
+            }
+        }
     }
 
     Result<SquareResult> goAround() {

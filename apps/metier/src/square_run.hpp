@@ -25,6 +25,9 @@ struct SquareSettings {
     double side = 0.1;  ///< [m]
     /// Longest time for one move.
     std::chrono::seconds move_timeout{60};
+    /// How often a move that failed is tried again, after a Reset. Only for trials in which nobody
+    /// can be in the way.
+    int second_tries = 0;
 };
 
 struct SquareResult {

@@ -18,6 +18,7 @@ StopSignal::StopSignal() {
     sigemptyset(&signals);
     sigaddset(&signals, SIGINT);
     sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     descriptor_ = signalfd(-1, &signals, SFD_CLOEXEC);
     if (descriptor_ < 0) {
@@ -27,6 +28,14 @@ StopSignal::StopSignal() {
 
 StopSignal::~StopSignal() {
     close(descriptor_);
+}
+
+void StopSignal::endWithin(std::chrono::seconds longest) noexcept {
+    alarm(static_cast<unsigned>(longest.count()));
+}
+
+void StopSignal::outliveOutput() noexcept {
+    std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool StopSignal::waitUntil(SteadyTime deadline) const {

@@ -4,7 +4,8 @@
 
 namespace metier::app {
 
-/// Ctrl-C and SIGTERM as something to wait for: blocked in every thread that starts after it.
+/// Ctrl-C, SIGTERM and the end of the terminal (SIGHUP) as something to wait for: blocked in every
+/// thread that starts after it. A SIGHUP that is ignored, as below nohup, stays so.
 ///
 /// Make it first thing in a command. Threading: one thread.
 class StopSignal {
@@ -21,6 +22,13 @@ public:
     /// Waits for a signal for as long as the user wants.
     void wait() const { waitUntil(SteadyTime::max()); }
     bool came() const { return waitUntil(SteadyTime{}); }
+
+    /// Bounds the end of the program: the kernel ends it when it still runs after that time,
+    /// because a disk or a peer hangs.
+    static void endWithin(std::chrono::seconds longest) noexcept;
+    /// Lets writing to a terminal or a pipe that is gone fail instead of ending the program before
+    /// its devices stand.
+    static void outliveOutput() noexcept;
 
 private:
     int descriptor_;

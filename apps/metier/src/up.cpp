@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cell_runner.hpp"
 #include "commands.hpp"
+#include "printable.hpp"
 #include "security.hpp"
 #include "stop_signal.hpp"
 
@@ -16,6 +18,7 @@ struct UpOptions {
     std::string cell;
     bool free_ports = false;
     std::string endpoints;
+    OnFailure on_failure = OnFailure::restart;
 };
 
 Result<void> writeEndpoints(const std::string& file, const CellRunner& cell) {
@@ -35,12 +38,16 @@ Result<void> writeEndpoints(const std::string& file, const CellRunner& cell) {
     return {};
 }
 
-Exit supervise(CellRunner& cell, const StopSignal& stop) {
+/// Writes a line to standard error, which may be a terminal that is gone.
+void say(const std::string& text) {
+    std::fputs(fmt::format("metier: {}\n", printable(text)).c_str(), stderr);
+}
+
+Exit lookAfter(CellRunner& cell, const StopSignal& stop, OnFailure on_failure) {
     fmt::print("the cell is up; Ctrl-C ends it\n");
     std::fflush(stdout);
-    if (const auto ended = cell.waitForEnd(stop.descriptor())) {
-        fmt::print(stderr, "metier: '{}' ended with status {}; the cell goes down\n", ended->name,
-                   ended->status);
+    if (const auto ended = cell.lookAfter(stop.descriptor(), on_failure, say)) {
+        say(fmt::format("'{}' {}; the cell goes down", ended->name, ended->how));
         return Exit::failed;
     }
     return Exit::success;
@@ -48,6 +55,7 @@ Exit supervise(CellRunner& cell, const StopSignal& stop) {
 
 Exit runUp(const UpOptions& options) {
     const StopSignal stop;
+    StopSignal::outliveOutput();
     const auto config = configuration::loadCell(options.cell);
     if (!config) {
         return reportUsage(config.error());
@@ -55,11 +63,12 @@ Exit runUp(const UpOptions& options) {
     if (isInsecureLab()) {
         fmt::print(stderr, "{}\n", kInsecureLab);
     }
-    const auto ports = options.free_ports ? CellRunner::Ports::free : CellRunner::Ports::configured;
-    auto cell = CellRunner::start(*config, ports, [](const CellRunner::Running& server) {
-        fmt::print("{:<16} {}\n", server.name, server.url);
-        std::fflush(stdout);
-    });
+    const auto ports = options.free_ports ? Ports::free : Ports::configured;
+    auto cell =
+        CellRunner::start(*config, ports, stop.descriptor(), [](const CellRunner::Running& server) {
+            fmt::print("{:<16} {}\n", server.name, server.url);
+            std::fflush(stdout);
+        });
     if (!cell) {
         return report(cell.error());
     }
@@ -68,7 +77,7 @@ Exit runUp(const UpOptions& options) {
             return reportUsage(written.error());
         }
     }
-    return supervise(*cell, stop);
+    return lookAfter(*cell, stop, options.on_failure);
 }
 
 }  // namespace
@@ -77,6 +86,10 @@ void addUp(CLI::App& app, Exit& exit) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<UpOptions>();
     auto* command = app.add_subcommand("up", "Start every server of a cell, until Ctrl-C");
+    command->footer(
+        "A server that ends by itself is started again, after 0.5 s at first and 30 s at most; it\n"
+        "comes up as after any start: nothing moves by itself. Ctrl-C, SIGTERM and the end of the\n"
+        "terminal brake what moves and end the cell.");
     command->add_option("cell", options->cell, "The cell's file, such as cells/demo.toml")
         ->required();
     command->add_flag("--free-ports", options->free_ports,
@@ -84,6 +97,9 @@ void addUp(CLI::App& app, Exit& exit) {
     command->add_option(
         "--endpoints", options->endpoints,
         "Write the names and addresses of servers and virtual controllers to this JSON file");
+    command->add_flag_callback(
+        "--exit-on-failure", [options] { options->on_failure = OnFailure::end_cell; },
+        "End the whole cell when one of its processes ends by itself; exit status 1");
     command->callback([options, &exit] { exit = runUp(*options); });
 }
 

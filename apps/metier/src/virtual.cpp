@@ -24,6 +24,9 @@ using namespace std::chrono_literals;
 using virtual_controller::Host;
 
 constexpr std::uint16_t kControlPort = 7400;
+// The servers of a cell may be told to end at the same moment: they brake first.
+constexpr auto kLongestCompany = 3s;
+constexpr auto kLongestEnd = 10s;
 
 struct VirtualRunOptions {
     std::string cell;
@@ -70,7 +73,8 @@ Result<Exit> runController(const VirtualRunOptions& options, const StopSignal& s
     std::fflush(stdout);
     std::jthread running([&] { (*host)->run(); });
     stop.wait();
-    (*host)->stop();
+    StopSignal::endWithin(kLongestEnd);
+    (*host)->stopOnceAlone(kLongestCompany);
     return Exit::success;
 }
 
@@ -196,6 +200,7 @@ void addVirtual(CLI::App& app, Exit& exit) {
     run_command->add_option("--world", run->world, "Address of the world, if not the file's");
     run_command->callback([run, &exit] {
         const StopSignal stop;
+        StopSignal::outliveOutput();
         const auto ended = runController(*run, stop);
         exit = ended ? *ended : report(ended.error());
     });

@@ -4,8 +4,11 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 
@@ -25,12 +28,29 @@ void WakeEvent::ring() noexcept {
     eventfd_write(descriptor_, 1);
 }
 
-void WakeEvent::wait(const StopSignal& signal) {
+bool WakeEvent::wait(const StopSignal& signal) {
     std::array<pollfd, 2> requests{{{descriptor_, POLLIN, 0}, {signal.descriptor(), POLLIN, 0}}};
     while (poll(requests.data(), requests.size(), -1) < 0 && errno == EINTR) {
     }
+    return take();
+}
+
+bool WakeEvent::waitUntil(SteadyTime deadline) {
+    for (;;) {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+            deadline - std::chrono::steady_clock::now());
+        pollfd request{descriptor_, POLLIN, 0};
+        const int ready =
+            poll(&request, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+        if (ready >= 0 || errno != EINTR) {
+            return take();
+        }
+    }
+}
+
+bool WakeEvent::take() noexcept {
     eventfd_t rung = 0;
-    eventfd_read(descriptor_, &rung);
+    return eventfd_read(descriptor_, &rung) == 0;
 }
 
 }  // namespace metier::app

@@ -16,9 +16,15 @@ public:
 
     void ring() noexcept;
     /// Until it was rung, since the last time, or the user ends the program.
-    void wait(const StopSignal& signal);
+    /// \return whether it was rung
+    bool wait(const StopSignal& signal);
+    /// Until it was rung; false at the deadline.
+    bool waitUntil(SteadyTime deadline);
 
 private:
+    /// \return whether it was rung since the last time
+    bool take() noexcept;
+
     int descriptor_;
 };
 

@@ -2,7 +2,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "control_node.hpp"
@@ -14,6 +16,12 @@
 #include "wiring.hpp"
 
 namespace metier::opcua_skill {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLookForRest{5};
+
+}  // namespace
 
 class SkillServer::State {
 public:
@@ -96,7 +104,29 @@ public:
         return programs;
     }
 
+    bool comeToRest(const std::string& why, std::chrono::milliseconds longest) {
+        const auto deadline = std::chrono::steady_clock::now() + longest;
+        while (std::chrono::steady_clock::now() < deadline) {
+            const auto rests = server_.call([this, why] { return brakeAll(why); }, longest);
+            if (!rests || *rests) {
+                return rests.has_value();
+            }
+            std::this_thread::sleep_for(kLookForRest);
+        }
+        return false;
+    }
+
 private:
+    /// \return whether all rest
+    bool brakeAll(const std::string& why) {
+        bool rests = true;
+        for (auto* program : programs()) {
+            program->deviceStopped(why);
+            rests = rests && program->state() != skill::State::running;
+        }
+        return rests;
+    }
+
     Result<skill::Program*> serve(const SkillInstance& instance,
                                   std::unique_ptr<skill::Skill> skill,
                                   skill::ProgramOptions options) {
@@ -205,6 +235,10 @@ Result<void> SkillServer::serveControl(const opcua::NodeId& controller,
 
 Result<void> SkillServer::publishRecords() {
     return state_->publishRecords();
+}
+
+bool SkillServer::comeToRest(const std::string& why, std::chrono::milliseconds longest) {
+    return state_->comeToRest(why, longest);
 }
 
 std::vector<skill::Program*> SkillServer::programs() const {

@@ -42,11 +42,17 @@ bool waitReadable(int descriptor, SteadyTime deadline) {
 }
 
 /// Runs in the child between fork and exec: only async-signal-safe calls.
-[[noreturn]] void becomeProgram(char* const* arguments, int output, ErrorOutput error_output,
-                                int failure) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+[[noreturn]] void becomeProgram(char* const* arguments, int output, const ChildOptions& options,
+                                pid_t owner, int failure) {
+    if (options.group == Group::own) {
+        setpgid(0, 0);
+    }
+    prctl(PR_SET_PDEATHSIG, options.on_owners_death);
+    if (getppid() != owner) {  // it died before the kernel knew whom to signal
+        _exit(kSignalBase + options.on_owners_death);
+    }
     dup2(output, STDOUT_FILENO);
-    if (error_output == ErrorOutput::with_output) {
+    if (options.error_output == ErrorOutput::with_output) {
         dup2(output, STDERR_FILENO);
     }
     sigset_t none;
@@ -82,7 +88,7 @@ int exitStatusOf(int status) {
 }  // namespace
 
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command,
-                                         ErrorOutput error_output) {
+                                         const ChildOptions& options) {
     auto output = makePipe();
     auto failure = makePipe();
     if (!output || !failure) {
@@ -94,9 +100,10 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& command
         arguments.push_back(argument.data());
     }
     arguments.push_back(nullptr);
+    const pid_t owner = getpid();
     const pid_t pid = fork();
     if (pid == 0) {
-        becomeProgram(arguments.data(), output->write_end, error_output, failure->write_end);
+        becomeProgram(arguments.data(), output->write_end, options, owner, failure->write_end);
     }
     close(output->write_end);
     close(failure->write_end);

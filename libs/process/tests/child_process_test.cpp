@@ -1,8 +1,13 @@
 #include "metier/process/child_process.hpp"
 
 #include <gmock/gmock.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
+#include <string>
 
 namespace metier::process {
 namespace {
@@ -63,6 +68,62 @@ TEST(ChildProcess, EndsWithItsOwner) {
         EXPECT_EQ(kill(pid, 0), 0);
     }
     EXPECT_NE(kill(pid, 0), 0);
+}
+
+TEST(ChildProcess, IsInAGroupOfItsOwnIfAsked) {
+    auto child = ChildProcess::start({"tail", "-f", "/dev/null"}, {.group = Group::own});
+    ASSERT_TRUE(child);
+    EXPECT_EQ(getpgid(child->pid()), child->pid());
+    auto other = ChildProcess::start({"tail", "-f", "/dev/null"});
+    ASSERT_TRUE(other);
+    EXPECT_EQ(getpgid(other->pid()), getpgrp());
+}
+
+/// Starts a child in a process of its own, which then dies as by kill -9.
+/// \return what the child printed when it was signalled
+std::string lastWordsOfOrphan(int on_owners_death) {
+    std::array<int, 2> words{};
+    if (pipe(words.data()) != 0) {
+        return "no pipe";
+    }
+    const pid_t owner = fork();
+    if (owner == 0) {
+        const auto script = "trap 'echo signalled >&" + std::to_string(words[1]) +
+                            "; exit' TERM; echo ready; while :; do sleep 0.01; done";
+        auto child =
+            ChildProcess::start({"sh", "-c", script}, {.on_owners_death = on_owners_death});
+        if (!child || !child->readLine(soon())) {
+            _exit(1);
+        }
+        kill(getpid(), SIGKILL);
+    }
+    close(words[1]);
+    std::string said;
+    std::array<char, 64> part{};
+    for (ssize_t count = 0; (count = read(words[0], part.data(), part.size())) > 0;) {
+        said.append(part.data(), static_cast<std::size_t>(count));
+    }
+    close(words[0]);
+    int status = 0;
+    waitpid(owner, &status, 0);
+    return WIFSIGNALED(status) ? said : "the owner could not start it";
+}
+
+TEST(ChildProcess, MayEndByItselfWhenItsOwnerDies) {
+    EXPECT_EQ(lastWordsOfOrphan(SIGTERM), "signalled\n");
+}
+
+TEST(ChildProcess, IsKilledWhenItsOwnerDiesUnlessAskedOtherwise) {
+    EXPECT_EQ(lastWordsOfOrphan(ChildOptions().on_owners_death), "");
+}
+
+TEST(ChildProcess, ShowsItsEndByADescriptor) {
+    auto child = ChildProcess::start({"sh", "-c", "read line"});
+    ASSERT_TRUE(child);
+    pollfd request{child->endDescriptor(), POLLIN, 0};
+    EXPECT_EQ(poll(&request, 1, 0), 0);
+    child->signal(SIGKILL);
+    EXPECT_EQ(poll(&request, 1, 5'000), 1);
 }
 
 TEST(ChildProcess, MovesWithWhatItOwns) {

@@ -4,15 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <asio/post.hpp>
 #include <charconv>
 #include <utility>
 
 #include "metier/virtual_controller/remote_world.hpp"
+#include "open_connections.hpp"
 
 namespace metier::virtual_controller {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::chrono::milliseconds kLookForSolitude{10};
 
 Result<std::uint32_t> wholeNumber(const Injection& injection, std::uint32_t limit) {
     std::uint32_t number = 0;
@@ -89,6 +93,25 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
 }
 
 Host::~Host() = default;
+
+void Host::stopOnceAlone(std::chrono::milliseconds longest) {
+    asio::post(context_, [this, deadline = std::chrono::steady_clock::now() + longest] {
+        awaitSolitude(deadline);
+    });
+}
+
+void Host::awaitSolitude(SteadyTime deadline) {
+    if (OpenConnections::of(context_).count == 0 || std::chrono::steady_clock::now() >= deadline) {
+        context_.stop();
+        return;
+    }
+    solitude_.expires_after(kLookForSolitude);
+    solitude_.async_wait([this, deadline](const asio::error_code& error) {
+        if (!error) {
+            awaitSolitude(deadline);
+        }
+    });
+}
 
 Json Host::controlAnswer(std::string_view line) {
     const auto request = Json::parse(line, nullptr, false);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <asio/buffer.hpp>
+#include <asio/execution/context.hpp>
+#include <asio/query.hpp>
 #include <asio/write.hpp>
 #include <chrono>
 #include <utility>
@@ -11,6 +13,8 @@
 namespace metier::virtual_controller {
 
 using asio::ip::tcp;
+
+asio::execution_context::id OpenConnections::id;
 
 namespace {
 
@@ -23,6 +27,9 @@ constexpr std::chrono::milliseconds kCutPause{10};
 // ---- owner -------------------------------------------------------------------------------------
 
 TcpConnectionOwner::~TcpConnectionOwner() {
+    if (open_ != nullptr) {
+        open_->count -= peers_.size();
+    }
     for (const auto& peer : peers_) {
         peer->abandon();
     }
@@ -35,10 +42,13 @@ void TcpConnectionOwner::take(tcp::socket socket) {
         return;
     }
     socket.set_option(tcp::no_delay(true), error);
+    const auto executor = socket.get_executor();
     auto peer = std::make_shared<TcpConnection>(
         *this, std::move(socket),
         fmt::format("{}:{}", remote.address().to_string(), remote.port()));
     peers_.push_back(peer);
+    open_ = &OpenConnections::of(asio::query(executor, asio::execution::context));
+    ++open_->count;
     if (handlers.on_connected) {
         handlers.on_connected(*peer);
     }
@@ -51,6 +61,7 @@ void TcpConnectionOwner::remove(const TcpConnection* peer) {
     if (found != peers_.end()) {
         const auto kept = *found;  // until the handler returns
         peers_.erase(found);
+        --open_->count;
         if (handlers.on_closed) {
             handlers.on_closed(*kept);
         }

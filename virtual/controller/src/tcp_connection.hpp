@@ -12,6 +12,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
+#include "open_connections.hpp"
 
 namespace metier::virtual_controller {
 
@@ -39,6 +40,7 @@ protected:
 
 private:
     std::vector<std::shared_ptr<TcpConnection>> peers_;  // shared with their own operations
+    OpenConnections* open_ = nullptr;                    // of the io_context; null before the first
 };
 
 /// One connection. It keeps itself alive while an operation of it is under way.

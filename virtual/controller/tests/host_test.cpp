@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <chrono>
+#include <optional>
+#include <span>
 #include <thread>
 
 #include "metier/link/tcp_link.hpp"
@@ -37,7 +40,28 @@ Result<std::unique_ptr<Controller>> startLamp(const ControllerRequest& request) 
     return std::make_unique<Lamp>();
 }
 
-const std::vector<ControllerType> kTypes{{"lamp", "A lamp", startLamp}};
+/// A thing with a port, which it shows.
+class Socket final : public Controller {
+public:
+    explicit Socket(std::unique_ptr<TcpServer> port) : port_(std::move(port)) {}
+    std::vector<InjectionHelp> injections() const override { return {}; }
+    Result<void> inject(const Injection&) override { return {}; }
+    nlohmann::ordered_json state() const override { return {{"port", port_->port()}}; }
+    void restart() override {}
+
+private:
+    std::unique_ptr<TcpServer> port_;
+};
+
+Result<std::unique_ptr<Controller>> startSocket(const ControllerRequest& request) {
+    return TcpServer::listen(request.context, request.address, 0, request.faults, {})
+        .transform([](auto port) -> std::unique_ptr<Controller> {
+            return std::make_unique<Socket>(std::move(port));
+        });
+}
+
+const std::vector<ControllerType> kTypes{{"lamp", "A lamp", startLamp},
+                                         {"socket", "A thing with a port", startSocket}};
 
 HostOptions lampOptions() {
     HostOptions options;
@@ -88,12 +112,56 @@ TEST_F(HostOfALamp, AnswersOnItsControlPort) {
     host->stop();
 }
 
+/// A host whose port a client is connected to.
+struct HostInCompany : ::testing::Test {
+    HostInCompany() {
+        auto options = lampOptions();
+        options.type = "socket";
+        host = Host::start(options, kTypes).value();
+        const std::uint16_t port = host->controller().state().at("port");
+        client = link::TcpLink::connect("127.0.0.1", port, soon()).value();
+    }
+    static SteadyTime soon() { return std::chrono::steady_clock::now() + 5s; }
+    /// What its control port says; its thread has done by then what it was given before.
+    std::string ask() const {
+        auto link = link::TcpLink::connect("127.0.0.1", host->controlPort(), soon()).value();
+        const std::string_view request = "{\"help\":true}\n";
+        if (!link.send(std::as_bytes(std::span(request)), soon())) {
+            return "";
+        }
+        std::array<char, 4096> answer{};
+        const auto count = link.receive(std::as_writable_bytes(std::span(answer)), soon());
+        return {answer.data(), count.value_or(0)};
+    }
+
+    std::unique_ptr<Host> host;
+    std::optional<link::TcpLink> client;
+};
+
+TEST_F(HostInCompany, EndsOnceItsClientsHaveGone) {
+    std::jthread thread([this] { host->run(); });
+    ASSERT_THAT(ask(), HasSubstr("cut-link")) << "the client is taken before";
+    host->stopOnceAlone(60s);
+    EXPECT_THAT(ask(), HasSubstr("cut-link"));
+    client.reset();
+    const auto begun = std::chrono::steady_clock::now();
+    thread.join();
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, 30s);
+}
+
+TEST_F(HostInCompany, EndsInTimeAlthoughAClientStays) {
+    std::jthread thread([this] { host->run(); });
+    ASSERT_THAT(ask(), HasSubstr("cut-link"));
+    host->stopOnceAlone(20ms);
+    thread.join();
+}
+
 TEST(Host, TellsWhichTypesThereAre) {
     auto options = lampOptions();
     options.type = "robot";
     const auto host = Host::start(options, kTypes);
     ASSERT_FALSE(host);
-    EXPECT_THAT(host.error().message, HasSubstr("there are: lamp"));
+    EXPECT_THAT(host.error().message, HasSubstr("there are: lamp, socket"));
 }
 
 TEST(Host, PassesOnWhatIsWrongWithTheSettings) {

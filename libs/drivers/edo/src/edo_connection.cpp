@@ -133,7 +133,7 @@ void EdoConnection::run(const std::stop_token& stop) {
         tell();
         pause(next_pause, stop);
     }
-    session_.linkDown("the driver was shut down");
+    session_.letGo("the driver was shut down");
     tell();
 }
 

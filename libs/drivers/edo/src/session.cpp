@@ -75,6 +75,11 @@ void Session::linkDown(const std::string& why) {
     if (std::exchange(phase_, Phase::down) == Phase::up) {
         spdlog::warn("{}: link lost: {}", options_.name, why);
     }
+    letGo(why);
+}
+
+void Session::letGo(const std::string& why) {
+    phase_ = Phase::down;
     safety_.linkLost(why);
     arm_.disconnected();
     loseGripper(Errc::connection_lost);

@@ -2,7 +2,9 @@
 
 #include <spdlog/logger.h>
 
+#include <chrono>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "metier/base/clock.hpp"
@@ -80,6 +82,12 @@ public:
     /// Shows the last executions of each skill that is served by now, see
     /// publishExecutionRecords(). Before Server::start(); once.
     Result<void> publishRecords();
+
+    /// Brakes what runs, and what a client starts meanwhile, and waits until all Programs rest: for
+    /// the end of a server. What runs is Halted for an error, with `why`.
+    /// \return false if something still runs after `longest`
+    /// Threads: any but the server's, while the server serves.
+    bool comeToRest(const std::string& why, std::chrono::milliseconds longest);
 
     /// All Programs, in the order in which they came; they end in the opposite one.
     std::vector<skill::Program*> programs() const;

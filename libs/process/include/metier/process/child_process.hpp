@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,16 +16,32 @@ namespace metier::process {
 /// Where a child's standard error goes.
 enum class ErrorOutput { inherited, with_output };
 
+/// Process group of a child. A terminal sends Ctrl-C, Ctrl-Z and its own end to the owner's group.
+enum class Group { owners, own };
+
+/// Start of a child that differs from the usual.
+struct ChildOptions {
+    ErrorOutput error_output = ErrorOutput::inherited;
+    Group group = Group::owners;
+    /// Sent by the kernel when the owner dies. With another signal than SIGKILL the program ends
+    /// by itself, and it is up to the program that it does so in time.
+    int on_owners_death = SIGKILL;
+};
+
 /// A program that runs as a child and does not outlive its owner: it is ended with this object,
-/// and the kernel ends it when the owning process dies, even by kill -9.
+/// and the kernel signals it when the owner dies, even by kill -9.
 ///
-/// Threading: one thread.
+/// Threading: one thread, which must live as long as the child: for the kernel it is the owner.
 class ChildProcess {
 public:
     /// \param command program (a path, or a name found in PATH) and its arguments, not empty
     /// Errors: not_found if the program cannot be started.
     static Result<ChildProcess> start(const std::vector<std::string>& command,
-                                      ErrorOutput error_output = ErrorOutput::inherited);
+                                      const ChildOptions& options);
+    static Result<ChildProcess> start(const std::vector<std::string>& command,
+                                      ErrorOutput error_output = ErrorOutput::inherited) {
+        return start(command, ChildOptions{.error_output = error_output});
+    }
 
     ChildProcess(ChildProcess&& other) noexcept;
     ChildProcess& operator=(ChildProcess&& other) noexcept;
@@ -34,6 +51,8 @@ public:
     pid_t pid() const noexcept { return pid_; }
     /// File descriptor of the child's standard output, for poll(); -1 once it is closed.
     int outputDescriptor() const noexcept { return output_; }
+    /// File descriptor that becomes readable when the child ends, for poll().
+    int endDescriptor() const noexcept { return handle_; }
 
     /// The next line of the child's standard output, without its newline.
     /// Errors: timeout at the deadline, connection_lost when the child closed its output.

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <asio/io_context.hpp>
+#include <asio/steady_timer.hpp>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "metier/base/clock.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/peer_lines.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
@@ -37,6 +40,9 @@ public:
     /// Runs the controller until stop().
     void run() { context_.run(); }
     void stop() { context_.stop(); }
+    /// Ends run() once nobody is connected to the controller, or at the latest after that time:
+    /// a driver that is about to end brakes its arm first. Any thread; does not wait.
+    void stopOnceAlone(std::chrono::milliseconds longest);
     asio::io_context& context() noexcept { return context_; }
     Controller& controller() noexcept { return *controller_; }
     std::uint16_t controlPort() const { return control_->port(); }
@@ -47,10 +53,12 @@ public:
 
 private:
     Host() = default;
+    void awaitSolitude(SteadyTime deadline);
     Result<void> inject(const Injection& injection);
     std::vector<InjectionHelp> injections() const;
 
     asio::io_context context_;
+    asio::steady_timer solitude_{context_};
     LinkFaults faults_;
     LinkFaults no_faults_;  // of the control port
     std::unique_ptr<WorldLink> world_;

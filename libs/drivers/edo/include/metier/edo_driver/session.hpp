@@ -24,6 +24,8 @@ public:
     void linkUp(SteadyTime now, Wire& wire);
     /// The connection is lost, or there was none; who waits for something hears of it.
     void linkDown(const std::string& why);
+    /// The same of a link that the driver ends itself: nobody is warned.
+    void letGo(const std::string& why);
     void onText(std::string_view text, SteadyTime now, Wire& wire);
     /// At least every 20 ms.
     /// Errors: connection_lost if the robot is silent and a new connection might help.

@@ -1,0 +1,128 @@
+#include "cell_commands.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <random>
+
+#include "security.hpp"
+
+namespace metier::app {
+namespace {
+
+using configuration::ServerKind;
+
+std::string self() {
+    return std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
+/// The driver of a server's device; nullptr for one without.
+const configuration::DriverChoice* driverOf(const configuration::ServerConfig& server) {
+    switch (server.kind) {
+        case ServerKind::arm:
+            return &server.arm.driver;
+        case ServerKind::gripper:
+            return &server.gripper.driver;
+        case ServerKind::move:
+        case ServerKind::composition:
+        case ServerKind::synchronized:
+            break;
+    }
+    return nullptr;
+}
+
+/// Some address of this machine that nobody else is likely to use.
+std::string freeAddress() {
+    std::random_device random;
+    const auto part = [&random](unsigned low, unsigned high) {
+        return std::uniform_int_distribution<unsigned>(low, high)(random);
+    };
+    return fmt::format("127.{}.{}.{}", part(1, 254), part(0, 255), part(1, 254));
+}
+
+/// Options of `metier serve` for the servers that a server uses.
+void addUsed(const configuration::ServerConfig& server, const CellAddresses& known,
+             std::vector<std::string>& command) {
+    const auto robot = known.servers.find(server.move.robot);
+    if (server.kind == ServerKind::move && robot != known.servers.end()) {
+        command.insert(command.end(), {"--robot", robot->second});
+    }
+    for (const auto& used : server.usedServers()) {
+        const auto found = known.servers.find(used.name);
+        if (found != known.servers.end()) {
+            command.insert(command.end(), {"--use", used.name + "=" + found->second});
+        }
+    }
+}
+
+/// Options of `metier serve` for the virtual controllers of a server's devices.
+void addControllers(const configuration::ServerConfig& server, const CellAddresses& known,
+                    std::vector<std::string>& command) {
+    const auto give = [&](const configuration::DriverChoice& driver, const char* option) {
+        const auto found = known.controllers.find(driver.controller);
+        if (found != known.controllers.end()) {
+            command.insert(command.end(), {option, found->second});
+        }
+    };
+    if (const auto* driver = driverOf(server)) {
+        give(*driver, "--controller");
+    }
+    if (server.arm.force_torque_sensor) {
+        give(*server.arm.force_torque_sensor, "--sensor");
+    }
+}
+
+}  // namespace
+
+CellRank rankOf(const configuration::ServerConfig& server) {
+    switch (server.kind) {
+        case ServerKind::arm:
+        case ServerKind::gripper:
+            return CellRank::device;
+        case ServerKind::move:
+            return CellRank::move;
+        case ServerKind::synchronized:
+            return CellRank::synchronized;
+        case ServerKind::composition:
+            break;
+    }
+    return CellRank::composition;
+}
+
+CellMember::Plan planOf(const configuration::CellConfig& cell,
+                        const configuration::VirtualController& controller, Ports ports,
+                        const CellAddresses& known) {
+    const auto* world = cell.world();
+    CellMember::Plan plan{controller.name,
+                          world == &controller ? CellRank::world : CellRank::controller,
+                          {self(), "virtual", "run", cell.file.string(), controller.name},
+                          {}};
+    if (ports == Ports::free) {
+        plan.command.insert(plan.command.end(), {"--address", freeAddress()});
+    }
+    if (world != nullptr && world != &controller) {
+        plan.command.insert(plan.command.end(), {"--world", known.controllers.at(world->name)});
+    }
+    return plan;
+}
+
+CellMember::Plan planOf(const configuration::CellConfig& cell,
+                        const configuration::ServerConfig& server, Ports ports,
+                        const CellAddresses& known) {
+    CellMember::Plan plan{server.name, rankOf(server), {self()}, {}};
+    const auto security = securityArguments();
+    plan.command.insert(plan.command.end(), security.begin(), security.end());
+    plan.command.insert(plan.command.end(),
+                        {"serve", cell.file.string(), "--server", server.name, "--lab-is-known"});
+    if (ports == Ports::free) {
+        plan.command.insert(plan.command.end(), {"--port", "0", "--metrics", "off"});
+    }
+    if (ports == Ports::free || server.port == 0) {
+        plan.option_for_port = "--again-at";
+    }
+    addUsed(server, known, plan.command);
+    addControllers(server, known, plan.command);
+    return plan;
+}
+
+}  // namespace metier::app

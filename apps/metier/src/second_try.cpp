@@ -1,0 +1,53 @@
+#include "second_try.hpp"
+
+#include <thread>
+
+#include "metier/skill_client/skill_finder.hpp"
+#include "servers.hpp"
+
+namespace metier::app {
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenResets{200};
+
+}  // namespace
+
+Result<void> resetUntilReady(skill_client::SkillHandle& skill, std::chrono::milliseconds longest) {
+    const auto deadline = std::chrono::steady_clock::now() + longest;
+    for (;;) {
+        const auto state = skill.state();
+        if (!state) {
+            return fail(state.error());
+        }
+        if (*state != skill::State::halted) {
+            return {};
+        }
+        const auto reset = skill.reset();
+        if (!reset && std::chrono::steady_clock::now() + kBetweenResets > deadline) {
+            return fail(reset.error().code, "Reset: " + reset.error().message);
+        }
+        if (!reset) {
+            std::this_thread::sleep_for(kBetweenResets);
+        }
+    }
+}
+
+void resetAllHalted(const std::vector<std::string>& urls, std::chrono::milliseconds longest) {
+    for (const auto& url : urls) {
+        const auto client = connectTo(url);
+        const auto skills = client ? skill_client::findSkills(**client)
+                                   : opcua::Answer<std::vector<skill_client::SkillAddress>>();
+        if (!client || !skills) {
+            continue;
+        }
+        for (const auto& address : *skills) {
+            auto skill = skill_client::SkillHandle::open(**client, address);
+            if (skill) {
+                // The next start says why, if it was in vain.
+                static_cast<void>(resetUntilReady(*skill, longest));
+            }
+        }
+    }
+}
+
+}  // namespace metier::app

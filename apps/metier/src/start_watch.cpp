@@ -1,0 +1,31 @@
+#include "start_watch.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "commands.hpp"
+
+namespace metier::app {
+
+namespace {
+
+constexpr std::chrono::milliseconds kOrderly{500};
+
+}  // namespace
+
+StartWatch::StartWatch(const StopSignal& signal) : thread_([this, &signal] { watch(signal); }) {}
+
+StartWatch::~StartWatch() {
+    over_.ring();
+}
+
+void StartWatch::watch(const StopSignal& signal) {
+    if (over_.wait(signal) || over_.waitUntil(std::chrono::steady_clock::now() + kOrderly)) {
+        return;
+    }
+    std::fputs("metier: stopped before it was ready\n", stderr);  // which may be gone
+    std::_Exit(static_cast<int>(Exit::failed));
+}
+
+}  // namespace metier::app
