@@ -5,11 +5,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <stdexcept>
 
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
+#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -56,7 +58,17 @@ private:
     std::string url_;
 };
 
-TEST(SkillSurvey, TellsTypesWithAllThatTheyAreDerivedFrom) {
+/// The servers of these tests have no security.
+class SkillSurvey : public ::testing::Test {
+protected:
+    SkillSurvey() {
+        CLI::App app;
+        addSecurityOptions(app);
+        app.parse(std::vector<std::string>{"--insecure-lab"});
+    }
+};
+
+TEST_F(SkillSurvey, TellsTypesWithAllThatTheyAreDerivedFrom) {
     const auto server = serveIiwa();
     const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}});
     ASSERT_THAT(servers, SizeIs(1));
@@ -70,7 +82,7 @@ TEST(SkillSurvey, TellsTypesWithAllThatTheyAreDerivedFrom) {
     }
 }
 
-TEST(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
+TEST_F(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
     const auto server = serveIiwa();
     const Mute first;
     const Mute second;
@@ -90,11 +102,11 @@ TEST(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
     EXPECT_LT(took, 6s) << "one after the other it would be longer";
 }
 
-TEST(SkillSurvey, OfNobodyIsEmpty) {
+TEST_F(SkillSurvey, OfNobodyIsEmpty) {
     EXPECT_THAT(survey({}), IsEmpty());
 }
 
-TEST(SkillSurvey, KnowsComposedSkillsByTheirName) {
+TEST_F(SkillSurvey, KnowsComposedSkillsByTheirName) {
     SurveyedSkill skill;
     skill.address.name = "VisitSkill";
     skill.types = {"SequenceSkillType", "SkillType"};
@@ -103,7 +115,7 @@ TEST(SkillSurvey, KnowsComposedSkillsByTheirName) {
     EXPECT_FALSE(isA(skill, "Visit"));
 }
 
-TEST(SkillSurvey, TellsWhatSkillsAreForByTheirTypes) {
+TEST_F(SkillSurvey, TellsWhatSkillsAreForByTheirTypes) {
     const auto server = serveIiwa();
     const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}});
     ASSERT_TRUE(servers[0].skills) << servers[0].skills.error().message;

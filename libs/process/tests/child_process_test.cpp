@@ -118,7 +118,7 @@ TEST(ChildProcess, IsKilledWhenItsOwnerDiesUnlessAskedOtherwise) {
 }
 
 TEST(ChildProcess, ShowsItsEndByADescriptor) {
-    auto child = ChildProcess::start({"sh", "-c", "read line"});
+    auto child = ChildProcess::start({"tail", "-f", "/dev/null"});
     ASSERT_TRUE(child);
     pollfd request{child->endDescriptor(), POLLIN, 0};
     EXPECT_EQ(poll(&request, 1, 0), 0);
