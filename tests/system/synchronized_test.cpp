@@ -155,6 +155,8 @@ TEST_F(BothArms, AreSuspendedIfSomebodySuspendsOne) {
     ASSERT_TRUE((*right_)->suspend());
     right_->awaitEvent(State::suspended);
     left_->awaitEvent(State::suspended);
+    EXPECT_THAT(both_->awaitEvent(State::suspended).reason_text,
+                StartsWith("right was suspended by "));
     ASSERT_TRUE((*right_)->resume());
     const auto both = both_->awaitEvent(State::halted);
     EXPECT_EQ(both.reason_text, "right was resumed alone");

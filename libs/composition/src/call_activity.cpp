@@ -177,7 +177,7 @@ void CallActivity::restTimePassed() {
 }
 
 void CallActivity::suspend() {
-    if (stage_ != Stage::runs || halting_ || suspended_) {
+    if (stage_ != Stage::runs || halting_ || stopping_ || suspended_) {
         return;
     }
     if (const auto asked = child().suspend(); !asked) {
@@ -214,13 +214,31 @@ bool CallActivity::atRest() const noexcept {
            (stage_ == Stage::runs && suspended_);
 }
 
+void CallActivity::onStopping(const ChildStop& stop) {
+    run_.enter([this, stop] {
+        if (stage_ != Stage::runs || halting_ || stop.to != State::suspended) {
+            return;
+        }
+        stopping_ = true;
+        if (!run_.held()) {
+            run_.suspendedByOther(fmt::format("{} was suspended {}", describe(), stop.text));
+        }
+    });
+}
+
 void CallActivity::onSuspended() {
-    run_.enter([this] { suspended_ = true; });
+    run_.enter([this] {
+        stopping_ = false;
+        suspended_ = true;
+        if (!run_.held() && !halting_) {
+            run_.suspendedByOther(fmt::format("{} was suspended", describe()));
+        }
+    });
 }
 
 void CallActivity::onResumed() {
     run_.enter([this] {
-        suspended_ = false;
+        stopping_ = suspended_ = false;
         if (run_.held()) {
             suspend();  // somebody else resumed it, but the whole is to stand still
         }

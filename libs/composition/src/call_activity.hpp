@@ -37,6 +37,7 @@ private:
     enum class Stage { parked, resetting, runs, ended };
 
     void onReset(const Result<void>& outcome) override;
+    void onStopping(const ChildStop& stop) override;
     void onSuspended() override;
     void onResumed() override;
     void onProgress(const skill::Value& intermediate) override;
@@ -58,6 +59,7 @@ private:
 
     Stage stage_ = Stage::ended;
     bool halting_ = false;
+    bool stopping_ = false;  // comes to rest, to be Suspended then
     bool suspended_ = false;
     double progress_ = 0.0;
     SteadyTime begun_{};

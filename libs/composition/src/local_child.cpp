@@ -115,6 +115,14 @@ void LocalChild::onTransition(const skill::TransitionEvent& event) {
     }
 }
 
+void LocalChild::onStopping(const skill::StoppingEvent& event) {
+    if (!execution_.empty() && event.execution_id == execution_) {
+        post([stop = ChildStop{event.to, event.reason, event.reason_text}](ChildListener& to) {
+            to.onStopping(stop);
+        });
+    }
+}
+
 void LocalChild::onProgress(const skill::Value& intermediate) {
     if (!execution_.empty()) {
         post([intermediate](ChildListener& to) { to.onProgress(intermediate); });

@@ -96,6 +96,8 @@ public:
     /// The next execution of a used skill, named and told to whoever watches this one.
     skill::StartRequest childExecution(const std::string& step, const Child& child);
     void attach(CallActivity& call) { calls_.push_back(&call); }
+    /// Somebody else has suspended a used skill: the whole follows. \param why for a person
+    void suspendedByOther(std::string why) { execution_.suspend(std::move(why)); }
     void detach(CallActivity& call);
 
 private:

@@ -149,7 +149,7 @@ TEST_F(LocalChildren, EndWithAFailureIfTheyAreResetWhileSuspended) {
     executor_->run();
     ASSERT_TRUE(move.suspend(kClient));
     executor_->run();
-    EXPECT_EQ(outer.state(), State::running);
+    EXPECT_EQ(outer.state(), State::suspended);
     ASSERT_TRUE(move.reset(kClient));
     executor_->run();
     EXPECT_EQ(outer.state(), State::halted);

@@ -66,6 +66,9 @@ public:
         state_now = skill::State::ready;
         listener->onEnd({ChildEnd::Kind::refused, {}, skill::Reason::error, std::move(text)});
     }
+    void stops(skill::State to, std::string text = "by somebody") {
+        listener->onStopping({to, skill::Reason::by_client, std::move(text)});
+    }
     void suspended() {
         state_now = skill::State::suspended;
         listener->onSuspended();

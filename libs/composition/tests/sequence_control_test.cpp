@@ -109,6 +109,59 @@ TEST(SuspendOfASequence, HaltsAStepThatDoesNotComeToRest) {
               "not at rest within 2 s after Suspend, and halted: step first: MoveSkill a");
 }
 
+TEST(SuspendOfAUsedSkill, SuspendsAllOthersAtOnceAndThenTheWhole) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].stops(State::suspended, "by a panel");
+    bench.run();
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "suspend")) << "before the first stands";
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin")) << "it brakes already";
+    bench["a"].suspended();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Running");
+    bench["b"].suspended();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Suspended");
+    EXPECT_EQ(bench.program->reason(), Reason::by_client);
+    EXPECT_EQ(bench.why(), "step both/left: MoveSkill a was suspended by a panel");
+    ASSERT_TRUE(bench.call(Method::resume));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("resume"));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("resume"));
+    bench["a"].resumed();
+    bench["b"].resumed();
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::suspend));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("suspend")) << "as before";
+}
+
+TEST(SuspendOfAUsedSkill, SuspendsTheWholeAlsoIfItsServerSaysItOnlyAtStandstill) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    bench["a"].suspended();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Suspended");
+    EXPECT_EQ(bench.why(), "step first: MoveSkill a was suspended");
+    ASSERT_TRUE(bench.call(Method::resume));
+    bench["a"].resumed();
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Running");
+    EXPECT_TRUE(bench["b"].runs());
+}
+
+TEST(SuspendOfAUsedSkill, ThatFinishesInsteadLetsNothingBeginUntilResume) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    bench["a"].stops(State::suspended);
+    bench.run();
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Suspended");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+    ASSERT_TRUE(bench.call(Method::resume));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+}
+
 TEST(SuspendOfASequence, SuspendsWhatAnotherClientResumes) {
     Bench bench(kTwoSteps);
     ASSERT_TRUE(bench.start());

@@ -15,6 +15,7 @@ using testing::Bench;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::kHead;
 using testing::kHeadWithGrip;
 
@@ -414,6 +415,46 @@ run = "b"
     bench.run();
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_EQ(bench.why(), "step move: not done within 3 s");
+}
+
+const std::string kTimedAndTriedAgain = kHead + R"(
+reset = true
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "move"
+run = "b"
+timeout = 3
+retry = 1
+)";
+
+TEST(Timeout, LetsNoRetryBeginBeforeTheStepHasStopped) {
+    Bench bench(kTimedAndTriedAgain);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.advance(3s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+    bench.advance(1s);
+    EXPECT_THAT(bench["b"].heard(), IsEmpty()) << "it still brakes";
+    bench["b"].halted();
+    bench.advance(0s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].wasReset();
+    bench.run();
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+}
+
+TEST(Timeout, OfAStepThatDoesNotStopIsNotTriedAgain) {
+    Bench bench(kTimedAndTriedAgain);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.advance(3s);
+    bench.advance(2s);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("step move: MoveSkill b did not end within 2 s after Halt"));
+    bench.advance(10s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt")) << "it may still move";
 }
 
 TEST(Timeout, IsNoMatterOfWhatIsDoneInTime) {

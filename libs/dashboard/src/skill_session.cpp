@@ -15,7 +15,7 @@ opcua::Answer<std::shared_ptr<AsyncSkill>> SkillSession::skill(const LinkedSkill
             return known->second;
         }
     }
-    auto opened = AsyncSkill::open(*client_, linked.address, [](const auto& /*transition*/) {});
+    auto opened = AsyncSkill::open(*client_, linked.address, {});
     if (!opened) {
         return tl::unexpected(opened.error());
     }

@@ -101,7 +101,7 @@ Answer<> Survey::add(const SkillAddress& address) {
     LinkedSkill linked{uniqueKey(address), address, addController(address), std::move(*halt),
                        nullptr};
     auto skill =
-        AsyncSkill::open(link_.client(), address, transitionsTo(context_.board, linked.key));
+        AsyncSkill::open(link_.client(), address, {transitionsTo(context_.board, linked.key)});
     if (!skill) {
         return tl::unexpected(skill.error());
     }

@@ -22,6 +22,7 @@ using opcua::Session;
 using opcua::Value;
 
 constexpr std::size_t kLongestParent = 256;
+constexpr std::uint16_t kInformation = 100;  // severity
 
 template <typename Name>
 LocalizedText textOf(Name name) {
@@ -176,8 +177,7 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
                 {},
                 {}};
         case Role::reason_text: {
-            const auto* refusal = context_.refusals.find(session, *this);
-            return {Value::of(refusal == nullptr ? program_->reasonText() : *refusal), {}, {}, {}};
+            return {Value::of(readReason(session)), {}, {}, {}};
         }
         case Role::execution_id:
             return {Value::of(program_->executionId()), {}, {}, {}};
@@ -192,6 +192,19 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
         default:
             return {{}, opcua::status::kBadInternalError, {}, {}};
     }
+}
+
+/// Why the session's last command was refused, and in any case why the skill is Halted.
+std::string SkillNode::readReason(const Session& session) const {
+    const auto& reason = program_->reasonText();
+    const auto* refusal = context_.refusals.find(session, *this);
+    if (refusal == nullptr) {
+        return reason;
+    }
+    const bool halted = program_->state() == skill::State::halted;
+    return !halted || reason.empty() || refusal->find(reason) != std::string::npos
+               ? *refusal
+               : fmt::format("{}; it is Halted: {}", *refusal, reason);
 }
 
 Value SkillNode::readState(Purpose purpose) const {
@@ -438,8 +451,24 @@ void SkillNode::onTransition(const skill::TransitionEvent& event) {
     occurrence.severity = event.severity;
     occurrence.message = {"en", event.message};
     occurrence.fields = transitionValues(event);
-    const auto emitted = context_.emitter.emit(occurrence);
-    if (!emitted) {
+    raise(context_.emitter, occurrence);
+}
+
+void SkillNode::onStopping(const skill::StoppingEvent& event) {
+    opcua::Event occurrence;
+    occurrence.source = id_;
+    occurrence.source_name = program_->description().name;
+    occurrence.time = event.time;
+    occurrence.severity = kInformation;
+    occurrence.message = {"en",
+                          fmt::format("{}: comes to rest, then {}: {}", occurrence.source_name,
+                                      skill::toString(event.to), event.reason_text)};
+    occurrence.fields = stoppingValues(event);
+    raise(context_.stopping, occurrence);
+}
+
+void SkillNode::raise(opcua::EventEmitter& emitter, const opcua::Event& occurrence) {
+    if (const auto emitted = emitter.emit(occurrence); !emitted) {
         context_.log->error("no event of {}: {}", id_.toString(), emitted.error().message);
     }
 }

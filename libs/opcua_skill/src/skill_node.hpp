@@ -42,7 +42,8 @@ private:
 /// What all skills of one server share.
 struct SkillContext {
     ModelIds ids;
-    opcua::EventEmitter emitter;
+    opcua::EventEmitter emitter;   ///< of transitions
+    opcua::EventEmitter stopping;  ///< of what begins to come to rest
     Refusals refusals;
     opcua::Server& server;
     std::shared_ptr<spdlog::logger> log;  // with its other users, as spdlog does
@@ -74,6 +75,7 @@ public:
 
 private:
     void onTransition(const skill::TransitionEvent& event) override;
+    void onStopping(const skill::StoppingEvent& event) override;
     void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
     void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
     void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
@@ -82,6 +84,7 @@ private:
     void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
 
     void auditOwnAct(const skill::TransitionEvent& event);
+    void raise(opcua::EventEmitter& emitter, const opcua::Event& occurrence);
     Result<void> call(const opcua::Session& session, skill::Method method);
     Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose);
     Result<void> bindMethod(opcua::AddressSpace& nodes, const opcua::NodeId& node,
@@ -100,6 +103,7 @@ private:
     Result<void> takeGiven(const opcua::KeyValue& given, Given& into) const;
     Result<Given> givenIn(const opcua::Value& pairs) const;
     std::vector<opcua::KeyValue> pairsOf(const skill::ValueMap& values) const;
+    std::string readReason(const opcua::Session& session) const;
     opcua::Value readState(Purpose purpose) const;
     opcua::Value readTransition(Purpose purpose) const;
     opcua::DataValue readSubState(Purpose purpose) const;
@@ -120,5 +124,8 @@ skill::Caller callerOf(const opcua::Session& session);
 /// The fields of the transition event, in the order of transitionFields().
 std::vector<opcua::Value> transitionValues(const skill::TransitionEvent& event);
 std::vector<opcua::BrowsePath> transitionFields(const ModelIds& ids);
+/// As these, of what begins to come to rest.
+std::vector<opcua::Value> stoppingValues(const skill::StoppingEvent& event);
+std::vector<opcua::BrowsePath> stoppingFields(const ModelIds& ids);
 
 }  // namespace metier::opcua_skill

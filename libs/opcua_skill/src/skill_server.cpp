@@ -199,8 +199,14 @@ Result<std::unique_ptr<SkillServer>> SkillServer::create(
     if (!emitter) {
         return fail(std::move(emitter.error()));
     }
+    auto stopping = opcua::EventEmitter::create(
+        server, opcua::NodeId(ids->metier, kStoppingEventTypeId), stoppingFields(*ids));
+    if (!stopping) {
+        return fail(std::move(stopping.error()));
+    }
     SkillContext context{std::move(*ids),
                          std::move(*emitter),
+                         std::move(*stopping),
                          {},
                          server,
                          logger ? std::move(logger) : spdlog::default_logger()};

@@ -51,4 +51,16 @@ std::vector<Value> transitionValues(const skill::TransitionEvent& event) {
     return values;
 }
 
+std::vector<opcua::BrowsePath> stoppingFields(const ModelIds& ids) {
+    return {{{ids.metier, "ExecutionId"}},
+            {{ids.metier, "StateAtRest"}},
+            {{ids.metier, "Reason"}},
+            {{ids.metier, "ReasonText"}}};
+}
+
+std::vector<Value> stoppingValues(const skill::StoppingEvent& event) {
+    return {Value::of(event.execution_id), Value::of(static_cast<std::uint32_t>(event.to)),
+            Value::of(static_cast<std::int32_t>(event.reason)), Value::of(event.reason_text)};
+}
+
 }  // namespace metier::opcua_skill

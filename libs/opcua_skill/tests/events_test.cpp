@@ -124,6 +124,31 @@ TEST_F(Events, OfTheAuditTellWhatTheServerDidByItself) {
                                 HasSubstr("by the server: DeviceLost: the wire is cut")));
 }
 
+TEST_F(Events, SayThatASkillBeginsToComeToRest) {
+    const auto metier = client_->namespaceIndex(kMetierUri).value();
+    const auto stops = std::make_shared<Queue<std::vector<opcua::Value>>>(10);  // with the callback
+    const auto subscription = client_->subscribeEvents(
+        skill_.id,
+        {.fields = {{{metier, "ExecutionId"}},
+                    {{metier, "StateAtRest"}},
+                    {{metier, "Reason"}},
+                    {{metier, "ReasonText"}}},
+         .of_type = opcua::NodeId(metier, kStoppingEventTypeId)},
+        [stops](const opcua::EventNotice& notice) { stops->tryPush(notice.fields); });
+    ASSERT_TRUE(subscription) << subscription.error().message;
+    const auto type =
+        client_->read({metier, kStoppingEventTypeId}, opcua::AttributeId::browse_name);
+    EXPECT_EQ(type.value().as<opcua::QualifiedName>()->name, "SkillStoppingEventType");
+    start();
+    ASSERT_EQ(call(*connect("panel"), skill_, "Suspend"), "Good");
+    const auto stop = stops->popUntil(std::chrono::steady_clock::now() + 10s);
+    ASSERT_TRUE(stop) << "before the body has come to rest";
+    EXPECT_EQ((*stop)[0], opcua::Value::of(skill_.hand->execution().id()));
+    EXPECT_EQ((*stop)[1], opcua::Value::of(14U));
+    EXPECT_EQ((*stop)[2], opcua::Value::of(std::int32_t{2}));
+    EXPECT_EQ((*stop)[3], opcua::Value::of(std::string("by panel")));
+}
+
 /// Skills that finish at once, shared by several clients.
 class ManyClients : public ServedSkills {
 protected:

@@ -140,6 +140,20 @@ TEST_F(StateMachine, StaysHaltedAndSaysWhyIfTheDeviceDoesNotAgreeToReset) {
     EXPECT_THAT(read(*client_, skill_, "ReasonText"), HasSubstr("axis 2: brake still closed"));
 }
 
+TEST_F(StateMachine, SaysWhyItIsHaltedAlsoAfterARefusedCommand) {
+    start();
+    skill_.hand->execution().fail(skill::Reason::error, "axis 2 is hot: 91 C");
+    EXPECT_EQ(watch_->nextName(), "RunningToHalted");
+    EXPECT_EQ(call("Start"), "BadInvalidState");
+    EXPECT_THAT(read(*client_, skill_, "ReasonText"), HasSubstr("axis 2 is hot: 91 C"));
+    skill_.hand->refuseReset({Errc::device_fault, "brake still closed"});
+    EXPECT_EQ(call("Reset"), "BadDeviceFailure");
+    EXPECT_EQ(write(*client_, skill_, "ParameterSet/TargetJointPosition",
+                    opcua::Value::of(std::string("no numbers"))),
+              "BadTypeMismatch");
+    EXPECT_THAT(read(*client_, skill_, "ReasonText"), HasSubstr("brake still closed"));
+}
+
 TEST_F(StateMachine, TellsTheCallerWhyStartWasRefused) {
     writeTarget();
     skill_.hand->refuseStart({Errc::unreachable, "axis 1 would need 3.4 rad, limit 2.9 rad"});

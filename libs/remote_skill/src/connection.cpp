@@ -44,24 +44,15 @@ opcua::Answer<std::unique_ptr<opcua::Client>> Connection::connect(
 }
 
 void Connection::watch(opcua::Client& client) {
-    client.onConnectionLost([this](const opcua::Failure& failure) {
-        {
-            const std::lock_guard lock(mutex_);
-            lost_ = failure.message.empty() ? "the connection is lost" : failure.message;
-            if (!away_since_) {
-                away_since_ = std::chrono::steady_clock::now();
-            }
-        }
-        changed_.notify_all();
+    client.onConnectionLost([this, &client](const opcua::Failure& failure) {
+        noteLoss(client, failure.message.empty() ? "the connection is lost" : failure.message);
     });
 }
 
 Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
                                                     const std::shared_ptr<ChildLink>& link) {
     const auto client = present();
-    auto skill = AsyncSkill::open(*client, address, [link](const skill::TransitionEvent& event) {
-        link->post([event](RemoteChild& child) { child.onTransition(event); });
-    });
+    auto skill = AsyncSkill::open(*client, address, watchFor(*client, link));
     if (!skill) {
         return fail(skill.error());
     }
@@ -74,6 +65,34 @@ Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
         uses_.push_back({std::move(name), link});
     }
     return std::make_shared<OpenSkill>(OpenSkill{client, std::move(*skill)});
+}
+
+AsyncSkill::Watch Connection::watchFor(const opcua::Client& client,
+                                       const std::shared_ptr<ChildLink>& link) {
+    return {.on_transition =
+                [link](const skill::TransitionEvent& event) {
+                    link->post([event](RemoteChild& child) { child.onTransition(event); });
+                },
+            .on_stopping =
+                [link](const skill::StoppingEvent& event) {
+                    link->post([event](RemoteChild& child) { child.onStopping(event); });
+                },
+            .on_doubt = [link] { link->post([](RemoteChild& child) { child.onDoubt(); }); },
+            .on_deaf = [this, &client](const std::string& why) { noteLoss(client, why); }};
+}
+
+void Connection::noteLoss(const opcua::Client& client, const std::string& why) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (client_.get() != &client) {
+            return;  // another one has taken its place
+        }
+        lost_ = why;
+        if (!away_since_) {
+            away_since_ = std::chrono::steady_clock::now();
+        }
+    }
+    changed_.notify_all();
 }
 
 std::shared_ptr<opcua::Client> Connection::present() const {
@@ -164,14 +183,15 @@ bool Connection::reconnect() {
         warn(told_attempt_, client.error().message);
         return false;
     }
-    watch(**client);
     std::shared_ptr<opcua::Client> former = std::move(*client);
     std::vector<Use> uses;
     {
         const std::lock_guard lock(mutex_);
         client_.swap(former);
+        lost_.clear();  // that of the former, which may have been heard of in several ways
         uses = uses_;
     }
+    watch(*present());
     former.reset();  // without the lock: its thread may still tell of a loss
     // All or none: a child that was told would begin, and be told again in the next attempt.
     std::vector<std::function<void()>> adoptions;

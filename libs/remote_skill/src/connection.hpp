@@ -61,6 +61,9 @@ public:
                                             const std::shared_ptr<ChildLink>& link);
     /// Runs `job` on this thread; jobs may wait.
     void run(std::function<void()> job);
+    /// Has the thread connect again, as after a loss. Any thread.
+    /// \param client whose connection is of no use any more
+    void noteLoss(const opcua::Client& client, const std::string& why);
     /// As RemoteServer::awaySince().
     std::optional<SteadyTime> awaySince() const;
 
@@ -70,6 +73,8 @@ public:
 private:
     void work(const std::stop_token& stop);
     void watch(opcua::Client& client);
+    skill_client::AsyncSkill::Watch watchFor(const opcua::Client& client,
+                                             const std::shared_ptr<ChildLink>& link);
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();

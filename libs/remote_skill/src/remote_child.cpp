@@ -108,7 +108,7 @@ void RemoteChild::begin(skill::StartRequest request, ChildListener& listener) {
     listener_ = &listener;
     execution_ = request.execution_id;
     request.parent.server = connection_.options().own_server;
-    started_ = halt_wanted_ = suspend_wanted_ = left_over_ = false;
+    started_ = halt_wanted_ = suspend_wanted_ = left_over_ = in_doubt_ = false;
     const auto sent =
         skill_
             ? skill_->skill.startWith(
@@ -136,6 +136,9 @@ void RemoteChild::started(const std::string& id, const opcua::Answer<std::string
             static_cast<void>(command(Method::halt));
         } else if (suspend_wanted_) {
             static_cast<void>(command(Method::suspend));
+        }
+        if (std::exchange(in_doubt_, false)) {
+            onDoubt();
         }
         return;
     }
@@ -215,6 +218,74 @@ void RemoteChild::onTransition(const skill::TransitionEvent& event) {
                 {ChildEnd::Kind::halted, {}, event.reason, "it was reset while it was suspended"});
         default:
             return end({ChildEnd::Kind::halted, {}, event.reason, event.reason_text});
+    }
+}
+
+void RemoteChild::onStopping(const skill::StoppingEvent& event) {
+    if (listener_ != nullptr && !execution_.empty() && event.execution_id == execution_) {
+        listener_->onStopping({event.to, event.reason, event.reason_text});
+    }
+}
+
+/// Asks what has become of the skill, or of its execution that was begun here.
+void RemoteChild::onDoubt() {
+    if (!skill_) {
+        return;  // once it is back, it is looked at
+    }
+    if (execution_.empty()) {
+        withReason({}, [](RemoteChild& child, const AsyncSkill::Now& now) { child.refresh(now); });
+    } else if (!started_) {
+        in_doubt_ = true;
+    } else {
+        const auto sent = skill_->skill.execution(
+            execution_, [link = link_, id = execution_](const auto& record) {
+                link->post([id, record](RemoteChild& child) { child.caughtUp(id, record); });
+            });
+        if (!sent) {
+            end({ChildEnd::Kind::lost, {}, Reason::device_lost, sent.error().message});
+        }
+    }
+}
+
+void RemoteChild::caughtUp(const std::string& id,
+                           const opcua::Answer<skill::ExecutionRecord>& record) {
+    if (execution_ != id) {
+        return;
+    }
+    if (!record) {
+        haltIfRuns(id);
+        end({ChildEnd::Kind::lost,
+             {},
+             Reason::device_lost,
+             "what became of it: " + record.error().message});
+        return;
+    }
+    tellMissed(*record);
+}
+
+/// What the events would have said.
+void RemoteChild::tellMissed(const skill::ExecutionRecord& record) {
+    const auto before = std::exchange(state_, record.state);
+    switch (record.state) {
+        case State::suspended:
+            if (before != State::suspended && listener_ != nullptr) {
+                listener_->onSuspended();
+            }
+            return;
+        case State::running:
+            if (before == State::suspended && listener_ != nullptr) {
+                listener_->onResumed();
+            }
+            return;
+        case State::ready:
+            if (record.reason == Reason::finished) {
+                return end({ChildEnd::Kind::finished, record.result});
+            }
+            return end(
+                {ChildEnd::Kind::halted, {}, record.reason, "it was reset while it was suspended"});
+        case State::halted:
+            reason_text_ = record.reason_text;
+            return end({ChildEnd::Kind::halted, {}, record.reason, record.reason_text});
     }
 }
 

@@ -47,6 +47,9 @@ public:
     void refresh(const skill_client::AsyncSkill::Now& now);
     void lost(const std::string& why);
     void onTransition(const skill::TransitionEvent& event);
+    void onStopping(const skill::StoppingEvent& event);
+    /// Transitions may have been missed.
+    void onDoubt();
 
 private:
     using ChildEnd = composition::ChildEnd;
@@ -54,6 +57,8 @@ private:
     bool isOurs(const std::string& execution) const;
     void started(const std::string& id, const opcua::Answer<std::string>& answer);
     void finished();
+    void caughtUp(const std::string& id, const opcua::Answer<skill::ExecutionRecord>& record);
+    void tellMissed(const skill::ExecutionRecord& record);
     void end(ChildEnd end);
     /// \param call the Reset that is answered
     void wasReset(std::uint64_t call, const opcua::Answer<>& answer);
@@ -88,6 +93,7 @@ private:
     std::string execution_;  // begun here and not over
     std::string unsure_;     // maybe runs, to be asked for once execution_ is over
     bool started_ = false;   // the server has said so
+    bool in_doubt_ = false;  // transitions may have been missed before it said so
     bool halt_wanted_ = false;
     bool suspend_wanted_ = false;
 };

@@ -9,7 +9,9 @@
 #include <condition_variable>
 #include <mutex>
 
+#include "connection.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
+#include "remote_child.hpp"
 #include "served_skills.hpp"
 
 namespace metier::remote_skill {
@@ -26,6 +28,7 @@ using ::testing::HasSubstr;
 class Listener final : public composition::ChildListener {
 public:
     void onReset(const Result<void>& outcome) override { reset = outcome; }
+    void onStopping(const composition::ChildStop& stop) override { stops.push_back(stop); }
     void onSuspended() override { suspended = true; }
     void onResumed() override { suspended = false; }
     void onProgress(const skill::Value& /*intermediate*/) override {}
@@ -35,6 +38,7 @@ public:
     void onEnd(ChildEnd told) override { end = std::move(told); }
 
     std::optional<Result<void>> reset;
+    std::vector<composition::ChildStop> stops;
     bool suspended = false;
     std::string refusal;
     std::optional<ChildEnd> end;
@@ -124,6 +128,22 @@ TEST_F(RemoteChildTest, IsSuspendedResumedAndHalted) {
     ASSERT_TRUE(until([this] { return listener_.reset.has_value(); }));
     EXPECT_TRUE(*listener_.reset);
     EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, HearsThatAnotherClientBringsItToRestBeforeItStands) {
+    beginAndAwait("here.Test/1/move/1");
+    const auto panel = connect("panel");
+    ASSERT_EQ(call(*panel, move_, "Suspend"), "Good");
+    ASSERT_TRUE(until([this] { return !listener_.stops.empty(); }));
+    EXPECT_FALSE(listener_.suspended);
+    EXPECT_EQ(listener_.stops[0].to, State::suspended);
+    EXPECT_EQ(listener_.stops[0].reason, Reason::by_client);
+    EXPECT_EQ(listener_.stops[0].text, "by panel");
+    ASSERT_EQ(call(*panel, move_, "Halt"), "Good");
+    ASSERT_TRUE(until([this] { return listener_.stops.size() == 2; }));
+    EXPECT_EQ(listener_.stops[1].to, State::halted);
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
 }
 
 TEST_F(RemoteChildTest, HaltsRightAfterItsStartWasAskedFor) {
@@ -290,6 +310,83 @@ TEST_F(LoggedRemoteChild, TellsOnceThatItsServerIsAway) {
     ASSERT_TRUE(log_->await("connecting again", 1));
     ASSERT_TRUE(log_->await("BadConnectionRejected", 5)) << "it tries again and again";
     EXPECT_EQ(log_->warnings(""), 2) << "the loss, and why it cannot be mended";
+}
+
+/// A child that hears of no transition, as if all were lost on their way.
+class DeafChild : public RemoteChildTest {
+protected:
+    DeafChild() : connection_({.url = server().endpointUrl(), .name = "other"}, connect("deaf")) {
+        link_ = std::make_shared<ChildLink>(executor_);
+        deaf_.emplace(connection_, link_, "JointPtpMoveSkill of other", "here.Test");
+        auto opened = skill_client::AsyncSkill::open(connection_.client(),
+                                                     remote_->skills().value().front(), {});
+        const auto now = opened->now();
+        deaf_->adopt(std::make_shared<OpenSkill>(OpenSkill{nullptr, std::move(*opened)}), *now);
+        deaf_->begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
+                     listener_);
+        EXPECT_TRUE(move_.hand->await("start"));
+        // The answer to its start has come once this one has, which was asked for later.
+        bool checked = false;
+        deaf_->check({}, [&](const auto& /*report*/) { checked = true; });
+        EXPECT_TRUE(until([&] { return checked; }));
+    }
+
+    Connection connection_;
+    std::shared_ptr<ChildLink> link_;
+    std::optional<RemoteChild> deaf_;
+};
+
+TEST_F(DeafChild, LearnsTheEndWhenTransitionsMayHaveBeenMissed) {
+    move_.hand->execution().finish();
+    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    EXPECT_FALSE(listener_.end);
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::finished);
+    EXPECT_EQ(deaf_->state(), State::ready);
+}
+
+TEST_F(DeafChild, LearnsWhyItWasHalted) {
+    move_.hand->execution().fail(Reason::error, "axis 2 is hot");
+    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->reason, Reason::error);
+    EXPECT_EQ(listener_.end->text, "axis 2 is hot");
+}
+
+TEST_F(DeafChild, LearnsThatItWasSuspendedAndResumed) {
+    ASSERT_EQ(call(*connect(), move_, "Suspend"), "Good");
+    ASSERT_TRUE(move_.hand->await("suspend"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.suspended; }));
+    ASSERT_EQ(call(*connect(), move_, "Resume"), "Good");
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return !listener_.suspended; }));
+    EXPECT_FALSE(listener_.end);
+}
+
+TEST_F(RemoteChildTest, IsLostWithItsEventsAndComesBackByItself) {
+    Connection connection({.url = server().endpointUrl(), .name = "other"}, connect("component"));
+    const auto link = std::make_shared<ChildLink>(executor_);
+    RemoteChild child(connection, link, "JointPtpMoveSkill of other", "here.Test");
+    const auto opened = connection.open(remote_->skills().value().front(), link).value();
+    child.adopt(opened, opened->skill.now().value());
+    child.begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
+                listener_);
+    ASSERT_TRUE(move_.hand->await("start"));
+    connection.noteLoss(connection.client(), "its events have ended: BadTimeout");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_EQ(listener_.end->text, "its events have ended: BadTimeout");
+    ASSERT_TRUE(until([&] { return child.leftOver(); }));
+    ASSERT_TRUE(move_.hand->await("halt")) << "nobody waits for it any more";
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([&] { return child.available() && child.state() == State::halted; }));
+    EXPECT_FALSE(connection.awaySince());
 }
 
 }  // namespace

@@ -46,6 +46,12 @@ void Execution::step(std::string name) const {
          [name = std::move(name)](ExecutionSink& sink) mutable { sink.onStep(std::move(name)); });
 }
 
+void Execution::suspend(std::string why) const {
+    post(core_, [why = std::move(why)](ExecutionSink& sink) mutable {
+        sink.onSuspendAsked(std::move(why));
+    });
+}
+
 void Execution::started(StartedExecution child) const {
     post(core_, [child = std::move(child)](ExecutionSink& sink) mutable {
         sink.onStarted(std::move(child));

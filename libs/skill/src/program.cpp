@@ -139,12 +139,22 @@ Result<void> Program::command(Method method, const Caller& caller, Work work) {
 
 Result<void> Program::checkAllowed(Method method, const Caller& caller) const {
     if (!allows(method)) {
-        return metier::fail(Errc::invalid_state,
-                            fmt::format("{} is not possible while {}", toString(method),
-                                        sub_state_ == SubState::stopping ? toString(sub_state_)
-                                                                         : toString(state_)));
+        return metier::fail(
+            Errc::invalid_state,
+            fmt::format("{} is not possible while {}{}", toString(method),
+                        sub_state_ == SubState::stopping ? toString(sub_state_) : toString(state_),
+                        wayOut()));
     }
     return method == Method::halt ? Result<void>{} : checkControl(caller);
+}
+
+/// For refusals: why it is Halted, and what makes it Ready; empty in all other states.
+std::string Program::wayOut() const {
+    if (state_ != State::halted) {
+        return {};
+    }
+    return fmt::format(" ({}{}{}); Reset makes it Ready", toString(reason_),
+                       reason_text_.empty() ? "" : ": ", reason_text_);
 }
 
 Result<void> Program::checkControl(const Caller& caller) const {

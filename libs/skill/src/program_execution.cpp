@@ -332,8 +332,29 @@ Result<void> Program::suspendNow(Cause cause) {
     }
     suspending_ = std::move(cause);
     setSubState(SubState::stopping);
+    announceRest(State::suspended, *suspending_);
     armRestDeadline();
     return {};
+}
+
+/// Lets observers know before standstill, so that what belongs together stops together.
+void Program::announceRest(State to, const Cause& cause) {
+    StoppingEvent event{clock_.utcNow(), execution_->id, to, cause.reason, cause.text};
+    if (event.reason == Reason::by_client && event.reason_text.empty()) {
+        event.reason_text = fmt::format("by {}", diagnostic_.last_method_client_name);
+    }
+    notify([&](ProgramObserver& observer) { observer.onStopping(event); });
+}
+
+void Program::onSuspendAsked(std::string why) {
+    inTurn([this, why = std::move(why)]() mutable {
+        if (sub_state_ != SubState::executing) {
+            return;
+        }
+        if (const auto asked = suspendNow({Reason::by_client, why}); !asked) {
+            brake({Reason::error, fmt::format("{}; {}", why, asked.error().message)});
+        }
+    });
 }
 
 Result<void> Program::resumeNow(const Caller& caller) {
@@ -382,6 +403,7 @@ void Program::brake(Cause cause) {
         ++execution_->stop_request;
         setSubState(SubState::stopping);
     }
+    announceRest(State::halted, *halting_);
     armRestDeadline();
     if (const auto asked = guarded([this] { body_->halt(); }); !asked) {
         forceHalted({Reason::error, asked.error().message});

@@ -33,8 +33,8 @@ Result<void> Program::write(const Caller& caller, std::string_view parameter, Va
     if ((*field)->input == Input::live && sub_state_ == SubState::executing) {
         return writeLive(caller, **field, {std::move(value), meant_for});
     }
-    return metier::fail(Errc::invalid_state,
-                        fmt::format("{} cannot be written while {}", parameter, toString(state_)));
+    return metier::fail(Errc::invalid_state, fmt::format("{} cannot be written while {}{}",
+                                                         parameter, toString(state_), wayOut()));
 }
 
 Result<void> Program::writeReady(const Caller& caller, const Field& field, Value value) {

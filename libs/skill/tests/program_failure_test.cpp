@@ -29,6 +29,22 @@ TEST(Start, RefusedBySkillChangesNothingAndLeavesItUsable) {
     EXPECT_TRUE(bench.program->start(kAlice));
 }
 
+TEST(Start, RefusedWhileHaltedSaysWhyItHaltedAndWhatToDo) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->execution.fail(Reason::error, "axis 2 is hot: 91 °C");
+    bench.run();
+    const auto refused = bench.program->startWith(kAlice, {"next"});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message,
+              "StartWith is not possible while Halted (Error: axis 2 is hot: 91 °C); Reset makes "
+              "it Ready");
+    EXPECT_EQ(bench.program->write(kAlice, "Speed", 1.0).error().message,
+              "Speed cannot be written while Halted (Error: axis 2 is hot: 91 °C); Reset makes it "
+              "Ready");
+    EXPECT_EQ(bench.program->reasonText(), "axis 2 is hot: 91 °C");
+}
+
 TEST(Failure, ThrownByStartStopsTheDeviceAndHalts) {
     ProgramBench bench;
     bench.script->on_start = [](const Execution&) { throw std::runtime_error("no current"); };

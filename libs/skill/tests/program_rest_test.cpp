@@ -26,6 +26,50 @@ TEST(ComingToRest, OfASuspendTurnsIntoAHaltIfThatFollows) {
     EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
 }
 
+TEST(ComingToRest, IsAnnouncedBeforeStandstillWithWhoAskedForIt) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->suspend(kBob));
+    ASSERT_EQ(bench.observer.stops.size(), 1U) << "before the body has answered";
+    EXPECT_EQ(bench.observer.stops[0].to, State::suspended);
+    EXPECT_EQ(bench.observer.stops[0].reason, Reason::by_client);
+    EXPECT_EQ(bench.observer.stops[0].reason_text, "by Bob's client");
+    EXPECT_EQ(bench.observer.stops[0].execution_id, bench.program->executionId());
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    ASSERT_EQ(bench.observer.stops.size(), 2U);
+    EXPECT_EQ(bench.observer.stops[1].to, State::halted);
+    EXPECT_EQ(bench.observer.stops[1].reason_text, "by Alice's client");
+}
+
+TEST(ComingToRest, OfABodyThatAsksForItIsASuspendWithItsReason) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->execution.suspend("left was suspended by a panel");
+    bench.script->execution.suspend("right was suspended, too");
+    bench.run();
+    EXPECT_THAT(bench.script->calls, ElementsAre("suspend"));
+    EXPECT_EQ(bench.program->subState(), SubState::stopping);
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::suspended);
+    EXPECT_EQ(bench.program->reason(), Reason::by_client);
+    EXPECT_EQ(bench.program->reasonText(), "left was suspended by a panel");
+    ASSERT_TRUE(bench.program->resume(kAlice));
+    EXPECT_EQ(bench.program->state(), State::running);
+}
+
+TEST(ComingToRest, IsAHaltIfABodyAsksForASuspendThatItRefuses) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->suspended = fail(Errc::not_supported, "not now");
+    bench.script->execution.suspend("left was suspended");
+    bench.run();
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_EQ(bench.program->state(), State::halted);
+    EXPECT_EQ(bench.program->reasonText(), "left was suspended; not now");
+}
+
 TEST(ComingToRest, TakesAnAnswerToSuspendForTheHaltThatOvertookIt) {
     ProgramBench bench;
     bench.enter(State::running);

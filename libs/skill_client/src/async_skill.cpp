@@ -21,6 +21,7 @@ struct AsyncSkill::Impl {
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
     opcua::Subscription subscription{};
+    opcua::Subscription stopping{};
 
     /// Calls a method and tells what `read` makes of its outputs.
     template <typename T, typename Read>
@@ -57,8 +58,7 @@ skill::Fields fieldsOf(const std::vector<FieldNode>& nodes) {
 
 }  // namespace
 
-Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
-                                    OnTransition on_transition) {
+Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address, Watch watch) {
     auto nodes = readSkillNodes(client, address);
     if (!nodes) {
         return tl::unexpected(nodes.error());
@@ -69,7 +69,13 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
                          .parameters = fieldsOf(impl->nodes.parameters),
                          .results = fieldsOf(impl->nodes.results),
                          .suspendable = impl->nodes.suspendable};
-    impl->log->onTransition(std::move(on_transition));
+    if (auto stopping = watchStopping(client, impl->address.node, std::move(watch.on_stopping))) {
+        impl->stopping = std::move(*stopping);
+    } else if (stopping.error().code == Errc::connection_lost) {
+        return tl::unexpected(stopping.error());
+    }
+    impl->log->watch(
+        {std::move(watch.on_transition), std::move(watch.on_doubt), std::move(watch.on_deaf)});
     auto subscription = client.subscribeEvents(
         impl->address.node, transitionFilter(client.namespaceIndex(kDeviceNamespace).value_or(1)),
         [log = impl->log](const opcua::EventNotice& notice) { log->add(notice); });

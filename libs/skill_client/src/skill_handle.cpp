@@ -393,7 +393,7 @@ std::string SkillHandle::reasonText() {
 }
 
 void SkillHandle::onTransition(std::function<void(const TransitionEvent&)> callback) {
-    impl_->log->onTransition(std::move(callback));
+    impl_->log->watch({.on_transition = std::move(callback)});
 }
 
 }  // namespace metier::skill_client

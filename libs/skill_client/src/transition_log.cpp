@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/namespaces.hpp"
 #include "metier/opcua_skill/values.hpp"
 
 namespace metier::skill_client {
@@ -55,6 +56,23 @@ std::optional<TransitionEvent> eventFrom(const std::vector<opcua::Value>& fields
     return event;
 }
 
+/// \return nothing for any other notice: the transition that follows says the same
+std::optional<skill::StoppingEvent> stoppingFrom(const opcua::EventNotice& notice) {
+    constexpr std::size_t count = 5;  // of the fields that watchStopping() asks for
+    const auto& fields = notice.fields;
+    if (notice.kind != opcua::EventNotice::Kind::event || fields.size() != count) {
+        return std::nullopt;
+    }
+    const auto state = fields[2].as<std::uint32_t>().value_or(0);
+    const bool suspends = state == static_cast<std::uint32_t>(skill::State::suspended);
+    return skill::StoppingEvent{
+        .time = fields[0].as<UtcTime>().value_or(UtcTime{}),
+        .execution_id = opcua::sanitise(fields[1].as<std::string>().value_or("")),
+        .to = suspends ? skill::State::suspended : skill::State::halted,
+        .reason = static_cast<skill::Reason>(fields[3].as<std::int32_t>().value_or(0)),
+        .reason_text = opcua::sanitise(fields[4].as<std::string>().value_or(""))};
+}
+
 }  // namespace
 
 opcua::EventFilter transitionFilter(std::uint16_t device_namespace) {
@@ -69,6 +87,31 @@ opcua::EventFilter transitionFilter(std::uint16_t device_namespace) {
             .of_type = opcua::ids::kProgramTransitionEventType};
 }
 
+opcua::Answer<opcua::Subscription> watchStopping(
+    opcua::Client& client, const opcua::NodeId& skill,
+    std::function<void(const skill::StoppingEvent&)> on_stopping) {
+    if (!on_stopping) {
+        return opcua::Subscription();
+    }
+    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
+    if (!metier) {
+        return tl::unexpected(metier.error());
+    }
+    const opcua::EventFilter filter{
+        .fields = {{{0, "Time"}},
+                   {{*metier, "ExecutionId"}},
+                   {{*metier, "StateAtRest"}},
+                   {{*metier, "Reason"}},
+                   {{*metier, "ReasonText"}}},
+        .of_type = opcua::NodeId(*metier, opcua_skill::kStoppingEventTypeId)};
+    return client.subscribeEvents(
+        skill, filter, [on_stopping = std::move(on_stopping)](const opcua::EventNotice& notice) {
+            if (const auto event = stoppingFrom(notice)) {
+                on_stopping(*event);
+            }
+        });
+}
+
 void TransitionLog::append(TransitionEvent event) {
     events_.push_back(std::move(event));
     if (events_.size() > kKept) {
@@ -80,27 +123,33 @@ void TransitionLog::append(TransitionEvent event) {
 void TransitionLog::add(const opcua::EventNotice& notice) {
     using Kind = opcua::EventNotice::Kind;
     const auto event = notice.kind == Kind::event ? eventFrom(notice.fields) : std::nullopt;
-    Callback callback;
+    const bool ended = notice.kind == Kind::ended;
+    const bool doubt = !event && !ended && notice.kind != Kind::interrupted;  // whose end follows
+    Watch watch;
     {
         const std::lock_guard lock(mutex_);
         if (event) {
             append(*event);
-            callback = callback_;
-        } else if (notice.kind == Kind::ended) {
+        } else if (ended) {
             ended_ = notice.status;
-        } else if (notice.kind != Kind::interrupted) {  // whose end will tell
+        } else if (doubt) {
             ++doubts_;
         }
+        watch = watch_;
     }
     changed_.notify_all();
-    if (callback) {
-        callback(*event);
+    if (event && watch.on_transition) {
+        watch.on_transition(*event);
+    } else if (doubt && watch.on_doubt) {
+        watch.on_doubt();
+    } else if (ended && watch.on_deaf) {
+        watch.on_deaf("its events have ended: " + notice.status.name());
     }
 }
 
-void TransitionLog::onTransition(Callback callback) {
+void TransitionLog::watch(Watch watch) {
     const std::lock_guard lock(mutex_);
-    callback_ = std::move(callback);
+    watch_ = std::move(watch);
 }
 
 TransitionLog::Mark TransitionLog::mark() const {

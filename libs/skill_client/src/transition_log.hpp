@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "metier/base/clock.hpp"
@@ -19,10 +20,15 @@ namespace metier::skill_client {
 /// Threading: add...() on the client's thread, the rest on any.
 class TransitionLog {
 public:
-    using Callback = std::function<void(const skill::TransitionEvent&)>;
+    /// What is called when something arrives; each may be empty. On the client's thread.
+    struct Watch {
+        std::function<void(const skill::TransitionEvent&)> on_transition{};
+        std::function<void()> on_doubt{};  ///< transitions may have been missed
+        std::function<void(const std::string& why)> on_deaf{};  ///< nothing will come any more
+    };
 
     void add(const opcua::EventNotice& notice);
-    void onTransition(Callback callback);
+    void watch(Watch watch);
 
     /// A point in what arrives.
     struct Mark {
@@ -54,8 +60,14 @@ private:
     std::uint64_t first_number_ = 0;
     std::uint64_t doubts_ = 0;
     std::optional<opcua::StatusCode> ended_;
-    Callback callback_;
+    Watch watch_;
 };
+
+/// Has `on_stopping` called when a skill begins to come to rest, on the client's thread.
+/// Errors: the server's, also if it raises no such events.
+opcua::Answer<opcua::Subscription> watchStopping(
+    opcua::Client& client, const opcua::NodeId& skill,
+    std::function<void(const skill::StoppingEvent&)> on_stopping);
 
 /// What to ask of an event so that TransitionLog understands it.
 /// \param device_namespace index of the Device namespace on this server

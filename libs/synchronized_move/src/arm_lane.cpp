@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace metier::synchronized_move {
@@ -12,6 +14,8 @@ using skill::CheckReport;
 using skill::Reason;
 
 namespace {
+
+const std::string kStopTime = "StopTime";
 
 double seconds(std::chrono::nanoseconds time) {
     return std::chrono::duration<double>(time).count();
@@ -57,6 +61,7 @@ void ArmLane::askJointMove(Done done) {
                 return;
             }
             shortest_ = report->planned_duration;
+            braking_ = brakingTime(report->joint_path, shortest_);
             const auto off = offWay(way_, report->joint_path.front());
             done(off.empty() ? std::optional<LaneFailure>()
                              : failure("was moved off its way: " + off));
@@ -72,9 +77,11 @@ std::optional<LaneFailure> ArmLane::checkPossible(const Result<CheckReport>& rep
     }
     if (!report->possible) {
         const auto& move = *setup_.arm.joint_move;
-        const bool halted = move.state() == skill::State::halted && !move.reasonText().empty();
+        const auto why = move.reasonText();
+        const bool halted = move.state() == skill::State::halted && !why.empty() &&
+                            report->reason.find(why) == std::string::npos;
         return failure(fmt::format("cannot get to its target: {}{}", report->reason,
-                                   halted ? " (" + move.reasonText() + ")" : ""));
+                                   halted ? " (" + why + ")" : ""));
     }
     if (report->joint_path.empty()) {
         return failure("does not tell the joints on its way");
@@ -94,6 +101,21 @@ void ArmLane::compareClocks(std::function<void(std::optional<LaneFailure>)> done
     });
 }
 
+bool ArmLane::takes(const std::string& parameter) const {
+    const auto& fields = setup_.arm.joint_move->description().parameters;
+    return std::any_of(fields.begin(), fields.end(),
+                       [&](const skill::Field& field) { return field.name == parameter; });
+}
+
+/// At full speed a pace that falls smoothly needs twice the time of the quickest brake. A motion
+/// slowed down by a factor brakes from a speed less by that factor: the time falls with the factor
+/// where acceleration counts, with its root where jerk does.
+double ArmLane::stopTime(double duration) const noexcept {
+    constexpr double smooth = 2.0;
+    const double slowed = shortest_ > 0.0 ? std::max(duration / shortest_, 1.0) : 1.0;
+    return smooth * braking_ / std::sqrt(slowed);
+}
+
 void ArmLane::begin(const Start& start) {
     const auto time = start.time.time_since_epoch() + offset_.ahead;
     skill::StartRequest request{.execution_id = start.execution_id,
@@ -104,6 +126,9 @@ void ArmLane::begin(const Start& start) {
                           {"StartTime", std::chrono::duration<double>(time).count()}};
     if (hasWay()) {
         request.parameters.emplace("Duration", start.duration);
+    }
+    if (takes(kStopTime)) {
+        request.parameters.emplace(kStopTime, start.stop_time);
     }
     stage_ = Stage::runs;
     rest_asked_ = halt_asked_ = false;
@@ -157,11 +182,10 @@ void ArmLane::onReset(const Result<void>& outcome) {
 
 void ArmLane::onSuspended() {
     stage_ = Stage::resting;
-    if (rest_asked_) {
-        owner_.changed();
-    } else {
-        owner_.suspendedByOther();
+    if (!std::exchange(rest_asked_, true)) {
+        owner_.suspendedByOther(fmt::format("{} was suspended", name()));
     }
+    owner_.changed();
 }
 
 void ArmLane::onResumed() {
@@ -186,11 +210,28 @@ LaneFailure ArmLane::failureOf(const ChildEnd& end) const {
         default:
             break;
     }
-    const bool by_someone = end.reason == Reason::by_client || end.reason == Reason::owner_lost ||
-                            end.reason == Reason::none;
-    return failure(fmt::format("was Halted ({}){}{}", skill::toString(end.reason),
-                               end.text.empty() ? "" : ": ", end.text),
-                   by_someone ? Reason::error : end.reason);
+    return haltedFailure(end.reason, end.text);
+}
+
+LaneFailure ArmLane::haltedFailure(Reason reason, const std::string& text) const {
+    const bool by_someone =
+        reason == Reason::by_client || reason == Reason::owner_lost || reason == Reason::none;
+    return failure(
+        fmt::format("was Halted ({}){}{}", skill::toString(reason), text.empty() ? "" : ": ", text),
+        by_someone ? Reason::error : reason);
+}
+
+/// The others must brake now, not once this arm stands.
+void ArmLane::onStopping(const composition::ChildStop& stop) {
+    if (stage_ != Stage::runs || halt_asked_) {
+        return;
+    }
+    if (stop.to == skill::State::halted) {
+        halt_asked_ = true;  // by somebody else: it is not to be reset here
+        owner_.failed(haltedFailure(stop.reason, stop.text));
+    } else if (!std::exchange(rest_asked_, true)) {
+        owner_.suspendedByOther(fmt::format("{} was suspended {}", name(), stop.text));
+    }
 }
 
 void ArmLane::onEnd(ChildEnd end) {

@@ -25,8 +25,9 @@ public:
     virtual void changed() = 0;
     /// The arm's part cannot go on.
     virtual void failed(LaneFailure failure) = 0;
-    /// Somebody else has suspended this arm.
-    virtual void suspendedByOther() = 0;
+    /// Somebody else has suspended an arm, which brakes or stands now.
+    /// \param why names the arm, and who it was where that is known
+    virtual void suspendedByOther(const std::string& why) = 0;
 };
 
 /// One arm's part of a synchronized move.
@@ -69,11 +70,15 @@ public:
     double shortestDuration() const noexcept { return shortest_; }
     const composition::ClockOffset& clockOffset() const noexcept { return offset_; }
     bool hasWay() const noexcept { return shortest_ > 0.0; }
+    /// How long a stop must take that this arm can make at any time of a motion of that length,
+    /// slowing its planned time down as all do [s]. After ask().
+    double stopTime(double duration) const noexcept;
 
     struct Start {
         std::string execution_id;
         std::string parent;  ///< execution that moves the arms
         double duration;     ///< [s]
+        double stop_time;    ///< of a Suspend, the same for all arms [s]
         UtcTime time;        ///< by the clock of this machine
     };
     void begin(const Start& start);
@@ -93,6 +98,7 @@ public:
     double lateness() const { return number("LargestLateness"); }  ///< [s]
 
     void onReset(const Result<void>& outcome) override;
+    void onStopping(const composition::ChildStop& stop) override;
     void onSuspended() override;
     void onResumed() override;
     void onProgress(const skill::Value& /*intermediate*/) override {}
@@ -112,8 +118,10 @@ private:
         };
     }
     void askJointMove(Done done);
+    bool takes(const std::string& parameter) const;
     std::optional<LaneFailure> checkPossible(const Result<skill::CheckReport>& report) const;
     LaneFailure failureOf(const composition::ChildEnd& end) const;
+    LaneFailure haltedFailure(skill::Reason reason, const std::string& text) const;
     LaneFailure failure(const std::string& text, skill::Reason reason = skill::Reason::error) const;
     double number(const std::string& name) const;
     double localTime(const std::string& name) const;
@@ -123,8 +131,9 @@ private:
     Stage stage_ = Stage::idle;
     bool rest_asked_ = false;
     bool halt_asked_ = false;
-    Way way_;  ///< as first asked for; its end is the target
-    double shortest_ = 0.0;
+    Way way_;                ///< as first asked for; its end is the target
+    double shortest_ = 0.0;  ///< [s]
+    double braking_ = 0.0;   ///< at the end of the shortest motion [s]
     composition::ClockOffset offset_;
     skill::ValueMap result_;
     // Answers that come late ask it whether this is still there.

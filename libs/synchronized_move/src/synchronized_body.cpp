@@ -94,15 +94,21 @@ void SynchronizedBody::begin() {
     for (const auto& lane : lanes_) {
         duration = arrived(*lane) ? duration : std::max(duration, lane->shortestDuration());
     }
+    double stop_time = 0.0;
+    for (const auto& lane : lanes_) {
+        stop_time = arrived(*lane) ? stop_time : std::max(stop_time, lane->stopTime(duration));
+    }
     const auto time = options_.clock.utcNow() + std::chrono::duration_cast<UtcTime::duration>(
                                                     nanoseconds(options_.start_delay));
+    begun_lanes_.clear();
     for (const auto& lane : lanes_) {
         if (!arrived(*lane)) {
+            begun_lanes_.push_back(lane.get());
             const auto id = composition::childExecutionId(
                 {options_.origin, execution_.id(), lane->name(), ++begun_});
             const auto& move = lane->move();
             execution_.started({id, move.description().name, move.serverUrl()});
-            lane->begin({id, execution_.id(), duration, time});
+            lane->begin({id, execution_.id(), duration, stop_time, time});
         }
     }
     timer_ = options_.executor->after(nanoseconds((1.0 - kShareForDoubt) * options_.start_delay),
@@ -144,9 +150,12 @@ void SynchronizedBody::failed(LaneFailure failure) {
     stop();
 }
 
-void SynchronizedBody::suspendedByOther() {
-    suspendLanes();
-    changed();
+/// All brake at once; the whole follows them to Suspended.
+void SynchronizedBody::suspendedByOther(const std::string& why) {
+    if (phase_ == Phase::moving) {
+        suspendLanes();
+        execution_.suspend(why);
+    }
 }
 
 void SynchronizedBody::suspendLanes() {
@@ -230,14 +239,11 @@ void SynchronizedBody::forceStop() noexcept {
     }
 }
 
-/// Those that have moved; an arm that was where it should be has no times to compare.
+/// Those that have moved together; an arm that was where it should be, or arrived before a Resume
+/// of the others, has no times to compare.
 std::vector<const ArmLane*> SynchronizedBody::measured() const {
-    std::vector<const ArmLane*> lanes;
-    for (const auto& lane : lanes_) {
-        if (lane->hasWay()) {
-            lanes.push_back(lane.get());
-        }
-    }
+    auto lanes = begun_lanes_;
+    std::erase_if(lanes, [](const ArmLane* lane) { return !lane->hasWay(); });
     return lanes;
 }
 

@@ -49,7 +49,7 @@ private:
 
     void changed() override;
     void failed(LaneFailure failure) override;
-    void suspendedByOther() override;
+    void suspendedByOther(const std::string& why) override;
 
     void dropOld();
     /// Asks all lanes that have not arrived; `then` once all have answered well.
@@ -69,6 +69,7 @@ private:
     const Options& options_;
     const double least_duration_;
     std::vector<std::unique_ptr<ArmLane>> lanes_;
+    std::vector<const ArmLane*> begun_lanes_;  // since Start, or the last Resume
     skill::Execution execution_;
     Phase phase_ = Phase::asking;
     bool rest_told_ = false;

@@ -43,6 +43,22 @@ std::vector<double> nearest(const std::vector<double>& from, const std::vector<d
 
 }  // namespace
 
+double brakingTime(const Way& way, double duration) {
+    constexpr double near_largest = 0.95;
+    std::vector<double> steps;  // lengths between neighbours, as speeds are to each other
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+        steps.push_back(offPlace(way[i], way[i + 1]).by);
+    }
+    const double largest = steps.empty() ? 0.0 : *std::max_element(steps.begin(), steps.end());
+    const auto last_quick = std::find_if(
+        steps.rbegin(), steps.rend(), [&](double step) { return step >= near_largest * largest; });
+    if (largest <= 0.0) {
+        return 0.0;
+    }
+    const auto slower = static_cast<double>(last_quick - steps.rbegin()) + 1.0;
+    return duration * slower / static_cast<double>(steps.size());
+}
+
 std::string offWay(const Way& way, const std::vector<double>& now) {
     Off least;
     for (std::size_t i = 0; i < way.size(); ++i) {

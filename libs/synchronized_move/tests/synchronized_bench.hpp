@@ -24,7 +24,8 @@ inline const skill::Caller kClient{"session", "client", "user"};
 
 inline skill::SkillDescription moveDescription(const std::string& name) {
     skill::SkillDescription description{.name = name, .type = name + "Type"};
-    for (const auto* parameter : {"TargetJointPosition", "ToolFrame", "Duration", "StartTime"}) {
+    for (const auto* parameter :
+         {"TargetJointPosition", "ToolFrame", "Duration", "StartTime", "StopTime"}) {
         description.parameters.push_back({.name = parameter});
     }
     return description;

@@ -45,6 +45,23 @@ TEST(SynchronizedMove, TakesALongerDurationThanTheSlowestNeeds) {
     EXPECT_EQ(bench.requested("left", "Duration"), 8.0);
 }
 
+TEST(SynchronizedMove, HasAllArmsStopInTheTimeOfTheSlowestForASuspend) {
+    Bench bench;
+    bench.startBoth();
+    // Ways without a cruise: they brake for half of the shortest duration; 3 s are the common one.
+    EXPECT_NEAR(bench.requested("right", "StopTime"), 2 * 1.5, 1e-9);
+    EXPECT_EQ(bench.requested("left", "StopTime"), bench.requested("right", "StopTime"));
+}
+
+TEST(SynchronizedMove, HasAllArmsStopSoonerWhenTheyMoveSlowly) {
+    Bench bench;
+    auto parameters = Bench::twoPoses();
+    parameters["Duration"] = 48.0;
+    ASSERT_TRUE(bench.start(parameters));
+    bench.answerAll();
+    EXPECT_NEAR(bench.requested("left", "StopTime"), 2 * 1.5 / 4.0, 1e-9);
+}
+
 TEST(SynchronizedMove, TellsEachArmTheMomentByItsOwnClock) {
     Bench bench;
     ASSERT_TRUE(bench.start());

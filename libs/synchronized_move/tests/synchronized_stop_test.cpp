@@ -56,6 +56,23 @@ TEST_F(SynchronizedStop, OneThatIsHaltedHaltsTheOther) {
     EXPECT_THAT(bench.why(), HasSubstr("a client called Halt"));
 }
 
+TEST_F(SynchronizedStop, OneThatBrakesForAHaltHaltsTheOtherBeforeItStands) {
+    left().stops(State::halted, "by a panel");
+    run();
+    EXPECT_THAT(right().heard(), ElementsAre("halt"));
+    EXPECT_THAT(left().heard(), IsEmpty());
+    right().halted();
+    run();
+    EXPECT_EQ(bench.state(), "Running") << "until both stand";
+    left().halted(Reason::by_client);
+    run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "left was Halted (ByClient): by a panel");
+    ASSERT_TRUE(bench.call(bench.program->reset(kClient)));
+    EXPECT_THAT(left().heard(), IsEmpty()) << "a client has halted it";
+    EXPECT_THAT(right().heard(), ElementsAre("reset"));
+}
+
 TEST_F(SynchronizedStop, OneThatIsLostHaltsTheOther) {
     right().listener->onEnd({composition::ChildEnd::Kind::lost, {}, Reason::device_lost, "gone"});
     run();
@@ -163,18 +180,49 @@ TEST_F(SynchronizedStop, ResumeFailsIfAnArmWasMovedOffItsWay) {
     EXPECT_THAT(right().heard(), Not(Contains("begin")));
 }
 
-TEST_F(SynchronizedStop, OneThatSomebodySuspendsSuspendsTheOther) {
+TEST_F(SynchronizedStop, OneThatSomebodySuspendsSuspendsTheOtherBeforeItStandsAndThenTheWhole) {
+    left().stops(State::suspended, "by a panel");
+    run();
+    EXPECT_THAT(right().heard(), ElementsAre("suspend"));
+    EXPECT_EQ(bench.program->subState(), skill::SubState::stopping);
+    left().suspended();
+    run();
+    EXPECT_EQ(bench.state(), "Running") << "the other still moves";
+    right().suspended();
+    run();
+    EXPECT_EQ(bench.state(), "Suspended");
+    EXPECT_EQ(bench.why(), "left was suspended by a panel");
+    EXPECT_EQ(bench.program->reason(), Reason::by_client);
+    EXPECT_THAT(left().heard(), IsEmpty());
+    ASSERT_TRUE(bench.call(bench.program->resume(kClient)));
+    EXPECT_THAT(left().heard(), ElementsAre("reset"));
+    EXPECT_THAT(right().heard(), ElementsAre("reset"));
+}
+
+TEST_F(SynchronizedStop, OneWhoseServerDoesNotSayThatItBrakesSuspendsAllOnceItStands) {
     left().suspended();
     run();
     EXPECT_THAT(right().heard(), ElementsAre("suspend"));
     right().suspended();
     run();
-    EXPECT_EQ(bench.state(), "Running") << "it waits to be suspended and resumed as a whole";
-    ASSERT_TRUE(bench.call(bench.program->suspend(kClient)));
     EXPECT_EQ(bench.state(), "Suspended");
-    static_cast<void>(left().heard());
+    EXPECT_EQ(bench.why(), "left was suspended");
+}
+
+TEST_F(SynchronizedStop, SkewsAfterAResumeAreThoseOfTheArmsThatWentOn) {
+    bench.finish("left", 100.0, 103.0);
+    ASSERT_TRUE(bench.call(bench.program->suspend(kClient)));
+    right().suspended();
+    run();
     ASSERT_TRUE(bench.call(bench.program->resume(kClient)));
-    EXPECT_THAT(left().heard(), ElementsAre("reset"));
+    given(right());
+    bench.answerCheck("right", 1.5, -0.5, -1.0);
+    bench.answerClocks("right", 0ns, 1ms);
+    bench.finish("right", 112.8, 114.3);
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_EQ(bench.result("SkewAtEnd"), 0.0) << "the pause is no skew";
+    EXPECT_EQ(bench.result("LargestSkew"), 0.0);
+    EXPECT_NEAR(bench.result("Duration"), 1.5, 1e-9);
 }
 
 TEST_F(SynchronizedStop, OneThatIsResumedAloneHaltsBoth) {

@@ -25,6 +25,17 @@ TEST(OffWay, TellsWhoIsBeforeOrBehindIt) {
     EXPECT_EQ(offWay(kWay, {2.05, 4.0}), "axis 1 by 0.0500 rad, limit 0.002 rad");
 }
 
+TEST(BrakingTime, IsFromTheLastOfTheLargestStepsToTheEnd) {
+    const Way way{{0.0}, {0.1}, {0.4}, {0.7}, {1.0}, {1.2}, {1.3}};
+    EXPECT_NEAR(brakingTime(way, 1.2), 0.6, 1e-9) << "the last three of six";
+    EXPECT_NEAR(brakingTime(kWay, 1.0), 0.5, 1e-9);
+}
+
+TEST(BrakingTime, IsNoneWithoutAWay) {
+    EXPECT_EQ(brakingTime({{0.3}}, 0.0), 0.0);
+    EXPECT_EQ(brakingTime({{0.3}, {0.3}}, 0.0), 0.0);
+}
+
 TEST(OffWay, OfOtherAxesIsOff) {
     EXPECT_EQ(offWay(kWay, {0.0}), "1 axes instead of 2");
 }

@@ -26,6 +26,13 @@ struct ChildEnd {
     std::string text{};  ///< with value, limit and unit
 };
 
+/// The execution of a used skill begins to come to rest.
+struct ChildStop {
+    skill::State to = skill::State::suspended;  ///< Halted or Suspended, at standstill
+    skill::Reason reason = skill::Reason::by_client;
+    std::string text{};  ///< "by CLIENT", or what is wrong
+};
+
 /// How far the clock of a used skill's server is ahead of this machine's.
 struct ClockOffset {
     std::chrono::nanoseconds ahead{0};
@@ -40,6 +47,9 @@ public:
     virtual ~ChildListener() = default;
     /// Answers Child::reset().
     virtual void onReset(const Result<void>& outcome) = 0;
+    /// It begins to come to rest, also at a request from here; onSuspended() or onEnd() follows.
+    /// Not called by servers that do not say so.
+    virtual void onStopping(const ChildStop& /*stop*/) {}
     /// It came to rest; at whoever's request.
     virtual void onSuspended() = 0;
     virtual void onResumed() = 0;

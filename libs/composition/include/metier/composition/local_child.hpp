@@ -45,6 +45,7 @@ private:
     };
 
     void onTransition(const skill::TransitionEvent& event) override;
+    void onStopping(const skill::StoppingEvent& event) override;
     void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
     void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
     void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}

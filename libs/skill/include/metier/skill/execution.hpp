@@ -25,6 +25,7 @@ public:
     virtual void onStarted(StartedExecution child) = 0;
     /// The name of the execution is on disk, or why it is not.
     virtual void onNameKept(Result<void> kept) = 0;
+    virtual void onSuspendAsked(std::string why) = 0;
 };
 
 struct ExecutionCore;
@@ -55,6 +56,10 @@ public:
     void progress(Value intermediate) const;
     /// The step that a sequence is in, shown as a sub-state of Executing.
     void step(std::string name) const;
+    /// Has the Program suspend the work, as a client's Suspend does: Body::suspend() follows. While
+    /// it comes to rest already, or does not run, nothing changes.
+    /// \param why for a person: who brought a part of the work to rest
+    void suspend(std::string why) const;
     /// The work has another skill started, here or elsewhere.
     void started(StartedExecution child) const;
 

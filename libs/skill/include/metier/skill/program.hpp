@@ -172,6 +172,7 @@ private:
     void onStep(std::string name) override;
     void onStarted(StartedExecution child) override;
     void onNameKept(Result<void> kept) override;
+    void onSuspendAsked(std::string why) override;
     void onControlLost(std::string_view session, OwnerLossAction action,
                        const std::string& text) override;
 
@@ -186,6 +187,7 @@ private:
 
     bool allows(Method method) const noexcept;
     Result<void> checkAllowed(Method method, const Caller& caller) const;
+    std::string wayOut() const;
     Result<void> checkControl(const Caller& caller) const;
     void recordCall(Method method, const Caller& caller);
     void recordStatus(const Result<void>& status);
@@ -219,6 +221,7 @@ private:
     Result<void> takeResult(ValueMap& result);
     void brake(Cause cause);
     void requestRest();
+    void announceRest(State to, const Cause& cause);
     void armRestDeadline();
     void restDeadlinePassed();
     void forceHalted(Cause cause);

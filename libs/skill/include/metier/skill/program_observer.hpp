@@ -30,6 +30,15 @@ struct TransitionEvent {
     std::uint16_t severity = 0;  ///< 1 to 1000, as OPC 10000-5 grades it
 };
 
+/// The work of a Program begins to come to rest; the transition to `to` follows at standstill.
+struct StoppingEvent {
+    UtcTime time{};
+    std::string execution_id{};
+    State to = State::halted;  ///< Halted or Suspended
+    Reason reason = Reason::by_client;
+    std::string reason_text{};  ///< who asked for it, or what is wrong, for a person
+};
+
 /// Who did what last to a Program: ProgramDiagnostic of OPC 10000-10.
 struct Diagnostic {
     std::string create_session_id{};  ///< empty: the server made the Program itself
@@ -65,6 +74,8 @@ public:
     virtual void onResult(const ValueMap& result) = 0;
     virtual void onProgress(const Value& intermediate) = 0;
     virtual void onDiagnostic(const Diagnostic& diagnostic) = 0;
+    /// The work begins to come to rest. Again, if a Halt follows a Suspend before standstill.
+    virtual void onStopping(const StoppingEvent& /*event*/) {}
     /// An execution begins; its transition to Running follows.
     virtual void onBegin(const ExecutionRecord& /*execution*/) {}
     /// The execution that is under way has started another one.

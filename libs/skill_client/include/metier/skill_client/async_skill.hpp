@@ -28,10 +28,21 @@ public:
     using Done = std::function<void(opcua::Answer<T>)>;
     using OnTransition = std::function<void(const skill::TransitionEvent&)>;
 
-    /// Reads what the skill is like and subscribes to its transitions, which are told on the
-    /// client's thread, the first maybe before this returns. `client` must outlive it.
-    static opcua::Answer<AsyncSkill> open(opcua::Client& client, SkillAddress address,
-                                          OnTransition on_transition);
+    /// What is called when the skill does something; each may be empty. On the client's thread.
+    struct Watch {
+        OnTransition on_transition{};
+        /// It begins to come to rest; not called by servers that do not say so.
+        std::function<void(const skill::StoppingEvent&)> on_stopping{};
+        /// Transitions may have been missed: look what has become of it.
+        std::function<void()> on_doubt{};
+        /// Nothing will be heard any more, though requests may still be answered.
+        /// \param why for a person
+        std::function<void(const std::string& why)> on_deaf{};
+    };
+
+    /// Reads what the skill is like and subscribes to its events; the first may come before this
+    /// returns. `client` must outlive it.
+    static opcua::Answer<AsyncSkill> open(opcua::Client& client, SkillAddress address, Watch watch);
     AsyncSkill(AsyncSkill&&) noexcept;
     AsyncSkill& operator=(AsyncSkill&&) noexcept;
     ~AsyncSkill();

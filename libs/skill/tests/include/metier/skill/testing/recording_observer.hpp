@@ -40,6 +40,8 @@ public:
         add("diagnostic " + diagnostic.last_method_call);
     }
 
+    void onStopping(const StoppingEvent& event) override { stops.push_back(event); }
+
     /// The names of the transitions so far.
     std::vector<std::string> transitions() const {
         std::vector<std::string> names;
@@ -56,6 +58,7 @@ public:
 
     std::vector<std::string> log;
     std::vector<TransitionEvent> events;
+    std::vector<StoppingEvent> stops;
     /// Called with each entry of the log, if set.
     std::function<void(const std::string&)> on_entry;
 
