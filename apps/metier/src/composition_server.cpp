@@ -251,6 +251,7 @@ void CompositionServer::keepBound() {
             .discovery = config_.discovery,
             .own_url = host_->announcedUrl(),
             .application_name = "metier " + name_,
+            .own_server = host_->applicationUri(),
             .rebind_after = std::chrono::duration<double>(config_.composition.rebind_after),
             .executor = host_->skills().executor(),
             .nodes = host_->nodes()},

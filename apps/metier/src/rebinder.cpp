@@ -105,7 +105,8 @@ Result<void> Rebinder::moveTo(const DiscoveredServer& other, Bond& bond) {
     auto server = remote_skill::RemoteServer::connect({.url = other.found.url,
                                                        .name = chosen->begin()->second.server,
                                                        .application_name = setup_.application_name,
-                                                       .security = ownCredentials()},
+                                                       .security = ownCredentials(),
+                                                       .own_server = setup_.own_server},
                                                       setup_.executor);
     if (!server) {
         return fail(std::move(server.error()));

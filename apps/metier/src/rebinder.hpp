@@ -43,6 +43,7 @@ public:
         configuration::Discovery discovery;
         std::string own_url;           ///< of the component, which does not serve itself
         std::string application_name;  ///< as others see it
+        std::string own_server;  ///< ApplicationUri that executions are told as their parent's
         std::chrono::duration<double> rebind_after;  ///< absence of a server [s]
         std::shared_ptr<skill::Executor> executor;   ///< shared by what its thread owns
         opcua::AddressSpace& nodes;                  ///< of the component

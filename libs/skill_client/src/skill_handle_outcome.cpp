@@ -216,7 +216,9 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
     for (;;) {
         auto found = impl_->log->await(from, deadline, endsExecution);
         if (!found) {
-            return tl::unexpected(found.error());
+            const bool away = impl_->client.state() != opcua::Client::State::connected;
+            return tl::unexpected(away ? impl_->unknownOutcome("there is no connection")
+                                       : found.error());
         }
         if (*found) {
             impl_->own.reset();
@@ -245,14 +247,26 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
     }
 }
 
+/// What was written for a Start that was refused does not count for the next one.
+void SkillHandle::takeBack(const skill::ValueMap& parameters, const Failure& refusal) {
+    if (refusal.delivery != Delivery::answered) {
+        return;  // it may run
+    }
+    for (const auto& [name, value] : parameters) {
+        static_cast<void>(set(name, {}));  // if that fails the session ends, and with it the values
+    }
+}
+
 Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& parameters, SteadyTime deadline) {
     for (const auto& [name, value] : parameters) {
         if (auto written = set(name, value); !written) {
+            takeBack(parameters, written.error());
             return tl::unexpected(written.error());
         }
     }
     const AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
     if (auto started = start(); !started) {
+        takeBack(parameters, started.error());
         return tl::unexpected(started.error());
     }
     impl_->own.reset();  // waited for here
@@ -299,12 +313,19 @@ Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
 }
 
 Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {
-    if (!outcome && outcome.error().code == Errc::timeout) {
-        // The work has lost its client's interest: it must not go on alone.
-        if (const auto halted = halt(); !halted) {
-            outcome.error().message += "; " + halted.error().message;
-        }
+    if (outcome || outcome.error().code != Errc::timeout) {
+        return outcome;
     }
+    // The work has lost its client's interest: it must not go on alone.
+    const auto halted = halt();
+    if (halted) {
+        return outcome;
+    }
+    if (isForLackOfConnection(halted.error())) {
+        return tl::unexpected(impl_->unknownOutcome(
+            "it was not done in its time, and Halt did not reach it: " + halted.error().message));
+    }
+    outcome.error().message += "; " + halted.error().message;
     return outcome;
 }
 

@@ -338,7 +338,7 @@ TEST_F(SurvivingClient, WaitsNoLongerThanItsDeadlineForTheConnection) {
     EXPECT_TRUE(bystanding_.awaitState(State::running, soon()));
 }
 
-TEST_F(SurvivingClient, SaysAtItsDeadlineThatItCouldNotEvenHalt) {
+TEST_F(SurvivingClient, SaysAtItsDeadlineThatNobodyKnowsWhatBecameOfWhatItCouldNotHalt) {
     auto outcome = std::async(std::launch::async, [this] {
         return skill_.runWith(request(), std::chrono::steady_clock::now() + 8s);
     });
@@ -348,9 +348,19 @@ TEST_F(SurvivingClient, SaysAtItsDeadlineThatItCouldNotEvenHalt) {
     cut();
     const auto result = outcome.get();
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().code, Errc::timeout);
-    EXPECT_THAT(result.error().message, HasSubstr("Halt"));
+    EXPECT_EQ(result.error().delivery, Delivery::unknown);
+    EXPECT_THAT(result.error().message, HasSubstr("unknown what became of the execution"));
+    EXPECT_THAT(result.error().message, HasSubstr("Halt did not reach it"));
     EXPECT_EQ(*bystanding_.state(), State::running);
+}
+
+TEST_F(SurvivingClient, DoesNotKnowTheEndOfWhatItResumedIfTheConnectionStaysAway) {
+    ASSERT_TRUE(skill_.startWith(request()));
+    cut();
+    const auto end = skill_.awaitEnd(std::chrono::steady_clock::now() + 200ms);
+    ASSERT_FALSE(end);
+    EXPECT_EQ(end.error().delivery, Delivery::unknown);
+    EXPECT_THAT(end.error().message, HasSubstr("unknown what became of the execution"));
 }
 
 TEST_F(SurvivingClient, SeesAStateThatWasReachedWhileItWasAway) {

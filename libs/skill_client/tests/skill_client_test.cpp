@@ -49,6 +49,7 @@ struct Behaviour {
     std::atomic<bool> finish_at_once{true};
     std::atomic<bool> refuse{false};
     std::atomic<bool> fail{false};
+    std::atomic<double> first_axis{-1};  ///< target of the last start [rad]
 };
 
 /// A server with one arm system and one skill, and a client, on loopback.
@@ -88,8 +89,10 @@ protected:
             }
             return {};
         };
-        functions.start = [behaviour = behaviour_](const skill::ValueMap&,
+        functions.start = [behaviour = behaviour_](const skill::ValueMap& snapshot,
                                                    const skill::Execution& execution) {
+            behaviour->first_axis =
+                std::get<std::vector<double>>(snapshot.at("TargetJointPosition")).front();
             if (behaviour->fail) {
                 execution.fail(skill::Reason::error, "axis 2 is hot: 91 °C");
             } else if (behaviour->finish_at_once) {
@@ -173,7 +176,7 @@ protected:
 
 bool isSuspendable(opcua::Client& client) {
     auto address = findSkill(client, "JointPtpMoveSkill").value();
-    const auto skill = AsyncSkill::open(client, std::move(address), [](const auto&) {});
+    const auto skill = AsyncSkill::open(client, std::move(address), {});
     return skill.value().description().suspendable;
 }
 
@@ -233,6 +236,15 @@ TEST_F(SkillClient, TellsWhyStartWasRefused) {
     EXPECT_EQ(skill.state().value(), State::ready);
     behaviour_->refuse = false;
     EXPECT_TRUE(skill.run({}, soon()));
+}
+
+TEST_F(SkillClient, LeavesNothingOfARunWhoseStartWasRefusedToTheNextOne) {
+    auto skill = open();
+    behaviour_->refuse = true;
+    EXPECT_FALSE(skill.run({{"TargetJointPosition", std::vector{0.4, 0.5}}}, soon()));
+    behaviour_->refuse = false;
+    ASSERT_TRUE(skill.run({}, soon()));
+    EXPECT_EQ(behaviour_->first_axis, 0.0);
 }
 
 TEST_F(SkillClient, TellsWhyAnExecutionWasHalted) {

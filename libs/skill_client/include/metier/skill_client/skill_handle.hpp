@@ -99,8 +99,10 @@ public:
     /// Errors: as awaitState(); execution_lost, if the server was started again meanwhile.
     opcua::Answer<skill::TransitionEvent> awaitEnd(SteadyTime deadline);
 
-    /// Sets the parameters, starts, and waits for the end of this execution.
-    /// At the deadline it halts the skill and reports timeout.
+    /// Sets the parameters, starts, and waits for the end of this execution. If Start is refused,
+    /// the parameters fall back to their defaults.
+    /// At the deadline it halts the skill and reports timeout, or connection_lost with
+    /// Delivery::unknown if the Halt did not arrive.
     /// Errors: as above; device_fault, limit_violated, connection_lost or cancelled if it ended in
     /// Halted, with the reason; cancelled if it was given up while suspended; connection_lost with
     /// Delivery::unknown if transitions were missed and the server cannot tell what became of it.
@@ -121,6 +123,7 @@ public:
 
 private:
     struct Impl;
+    void takeBack(const skill::ValueMap& parameters, const opcua::Failure& refusal);
     /// Halts the skill if its end was not seen in time.
     opcua::Answer<skill::ValueMap> orHalt(opcua::Answer<skill::ValueMap> outcome);
     explicit SkillHandle(std::unique_ptr<Impl> impl);
