@@ -27,8 +27,12 @@ SetPoint MotionExecution::next(Seconds step) noexcept {
         step = late_.cycle;
     }
     brakeHarder();
-    profile_time_ += std::max(step.count(), 0.0);
+    const double passed = std::max(step.count(), 0.0);
+    profile_time_ += pace_ ? pace_->advance(passed) : passed;
     state_ = profile_.at(profile_time_);
+    if (pace_) {
+        state_ = pace_->slowed(state_);
+    }
     current_ =
         along_ == Along::clock ? trajectory_.sampleAt(state_) : trajectory_.sampleOnPath(state_);
     return current_;
@@ -69,6 +73,7 @@ void MotionExecution::follow(const Profile& profile, Along along, const ScalarSt
     along_ = along;
     state_ = now;
     profile_time_ = 0;
+    pace_.reset();
 }
 
 /// Stops with `factor` of the robot's own limits; by the plan's where the path is too short.
@@ -109,6 +114,14 @@ void MotionExecution::stop() noexcept {
     }
 }
 
+void MotionExecution::stopIn(Seconds length) noexcept {
+    if (mode_ == Mode::running) {
+        mode_ = Mode::stopping;
+        brake_factor_ = 0;
+        pace_.emplace(length.count());
+    }
+}
+
 void MotionExecution::halt() noexcept {
     mode_ = Mode::stopping;
     if (!atRest()) {
@@ -132,7 +145,7 @@ void MotionExecution::setOverride(double factor) noexcept {
 }
 
 bool MotionExecution::atRest() const noexcept {
-    return profile_time_ >= profile_.duration();
+    return profile_time_ >= profile_.duration() || (pace_ && pace_->over());
 }
 
 bool MotionExecution::finished() const noexcept {
@@ -145,7 +158,8 @@ double MotionExecution::pathParameter() const noexcept {
 }
 
 Seconds MotionExecution::remaining() const noexcept {
-    return Seconds(std::max(profile_.duration() - profile_time_, 0.0));
+    const double left = std::max(profile_.duration() - profile_time_, 0.0);
+    return Seconds(pace_ ? std::min(pace_->remaining(), left) : left);
 }
 
 StoppingWay MotionExecution::stoppingWay() const noexcept {

@@ -4,6 +4,7 @@
 #include <map>
 #include <thread>
 
+#include "metier/opcua_skill/namespaces.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "served_skills.hpp"
 

@@ -109,9 +109,10 @@ Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
     if (!limit) {
         return fail(std::move(limit.error()));
     }
-    return makeStreamedBody({arm.arm, arm.model, arm.clock},
-                            {trajectory, Path::cartesian_line, parameters.start_time,
-                             std::make_unique<SensorWatch>(arm, parameters, *limit)});
+    return makeStreamedBody(
+        {arm.arm, arm.model, arm.clock},
+        {trajectory, Path::cartesian_line, parameters.start_time, parameters.stop_time,
+         std::make_unique<SensorWatch>(arm, parameters, *limit)});
 }
 
 // ---- by either --------------------------------------------------------------------------------

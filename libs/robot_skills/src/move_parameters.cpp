@@ -137,6 +137,7 @@ Field redundancyField() {
 
 // Longer motions are rather a mistake of the unit.
 constexpr double kLongestDuration = 3600.0;
+constexpr double kLongestStop = 60.0;
 constexpr double kLatestTime = 1e11;  // beyond any clock, and so no range for a person
 
 Field durationField() {
@@ -162,6 +163,17 @@ Field startTimeField() {
                 .unit = skill::kSecond};
     field.place = Place::options;
     field.range = Range{0.0, kLatestTime};
+    return field;
+}
+
+Field stopTimeField() {
+    Field field{.name = "StopTime",
+                .description =
+                    "How long a Suspend brakes, at least, so that arms that move together stop "
+                    "together; not set: as short as this arm can",
+                .unit = skill::kSecond};
+    field.place = Place::options;
+    field.range = Range{0.0, kLongestStop};
     return field;
 }
 
@@ -211,6 +223,7 @@ void addMoveFields(skill::FieldList<Parameters>& fields, const motion::RobotMode
     add(fields, &MoveParameters::redundancy_angle, redundancyField());
     add(fields, &MoveParameters::duration, durationField());
     add(fields, &MoveParameters::start_time, startTimeField());
+    add(fields, &MoveParameters::stop_time, stopTimeField());
 }
 
 template <typename Parameters>

@@ -19,7 +19,8 @@ Result<std::unique_ptr<skill::Skill>> makeStreamed(const StreamedArm& streamed,
         [streamed, path = variant.path](
             const Trajectory& trajectory,
             const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
-        return makeStreamedBody(streamed, {trajectory, path, parameters.start_time});
+        return makeStreamedBody(streamed,
+                                {trajectory, path, parameters.start_time, parameters.stop_time});
     };
     return makeMove<Parameters>({streamed.arm, streamed.model, streamed.clock, make_body},
                                 std::move(variant));

@@ -21,6 +21,7 @@ constexpr double kWayBack = 0.2;
 MoveSource::MoveSource(Setup setup)
     : arm_(std::move(setup.info.name)),
       cycle_(setup.info.cycleSeconds()),
+      stop_time_(setup.stop_time),
       execution_(setup.trajectory),
       timetable_(setup.timetable),
       deviation_(setup.trajectory, setup.path),
@@ -83,6 +84,8 @@ void MoveSource::obey() noexcept {
     stop_asked_ = true;
     if (request == Request::halt) {
         execution_.halt();
+    } else if (stop_time_ > 0.0) {
+        execution_.stopIn(motion::Seconds(stop_time_));
     } else {
         execution_.stop();
     }

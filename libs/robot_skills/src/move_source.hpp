@@ -31,6 +31,7 @@ public:
         PathDeviationMeter::Path path;
         Timetable timetable;
         std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
+        double stop_time = 0.0;                   ///< of a Suspend [s]; 0: as the limits have it
     };
 
     explicit MoveSource(Setup setup);
@@ -52,7 +53,8 @@ private:
     MoveResults results() const;
 
     const std::string arm_;
-    const double cycle_;  ///< [s]
+    const double cycle_;      ///< [s]
+    const double stop_time_;  ///< [s]
     motion::MotionExecution execution_;
     Timetable timetable_;
     PathDeviationMeter deviation_;

@@ -79,6 +79,9 @@ Result<void> checkTimes(const MoveParameters& parameters) {
     if (parameters.duration) {
         return notByController("it takes as long as it takes, not a Duration");
     }
+    if (parameters.stop_time.value_or(0.0) > 0.0) {
+        return notByController("its stop is its own, not one of a StopTime");
+    }
     return {};
 }
 

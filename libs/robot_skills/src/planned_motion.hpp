@@ -23,8 +23,9 @@ struct PlannedRequest {
 /// configuration. A line becomes a line of the flange. Accelerations are the robot's own, so that
 /// the controller can stop as soon as the robot can.
 /// Errors: not_supported with the reason, where the controller's motion would be another one: a
-/// Duration, a StartTime, a lower MaxAcceleration, a line that only turns, on which the tool frame
-/// would leave its line or the elbow turns, and a motion too slow to tell from standstill.
+/// Duration, a StartTime, a StopTime, a lower MaxAcceleration, a line that only turns, on which the
+/// tool frame would leave its line or the elbow turns, and a motion too slow to tell from
+/// standstill.
 Result<device::PlannedMotion> plannedMotion(const PlannedRequest& request);
 
 }  // namespace metier::robot_skills

@@ -24,8 +24,9 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
             const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
         auto motion = plannedMotion({arm.model, trajectory, path, parameters});
         if (!motion) {
-            return makeStreamedBody({arm.arm, arm.model, arm.clock},
-                                    {trajectory, path, parameters.start_time});
+            return makeStreamedBody(
+                {arm.arm, arm.model, arm.clock},
+                {trajectory, path, parameters.start_time, parameters.stop_time});
         }
         auto move = std::make_shared<PlannedMove>(
             PlannedMove::Setup{arm.arm, arm.clock, trajectory, path, end, tellMoveDone});

@@ -51,6 +51,7 @@ std::vector<Move> moves() {
          controller},
         {"duration_of_a_ptp", kJointPtp, with(kTurn, {{"Duration", 3.0}}), set_points},
         {"duration_of_a_line", kCartesianLinear, with(kUp, {{"Duration", 3.0}}), set_points},
+        {"stop_time_of_a_ptp", kJointPtp, with(kTurn, {{"StopTime", 0.5}}), set_points},
         {"low_acceleration_of_a_ptp", kJointPtp,
          with(kTurn, {{"MaxAcceleration", std::vector<double>(7, 0.5)}}), set_points},
         {"low_acceleration_of_a_line", kCartesianLinear, with(kUp, accelerations(0.5, 5)),

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "metier/motion/pace_brake.hpp"
 #include "metier/motion/trajectory.hpp"
 
 namespace metier::motion {
@@ -41,6 +44,9 @@ public:
     /// Brakes on the path to rest: Suspend. Keeps the plan's limits if the motion stands within
     /// kGentleStop by them, else takes the robot's own. Takes effect at next().
     void stop() noexcept;
+    /// As stop(), but in exactly that time, as PaceBrake does, whatever the limits are.
+    /// \param length [s], > 0
+    void stopIn(Seconds length) noexcept;
     /// Brakes on the path with twice the robot's own acceleration and jerk: Halt.
     void halt() noexcept;
     /// Goes on to the end of the path, from rest or while still braking.
@@ -85,7 +91,8 @@ private:
     ScalarState state_;  ///< of the clock or of the path parameter, as along_ says
     Profile profile_;
     double profile_time_ = 0;
-    double brake_factor_ = 0;  ///< part of the robot's limits that a stop uses; 0: the plan's
+    double brake_factor_ = 0;        ///< part of the robot's limits that a stop uses; 0: the plan's
+    std::optional<PaceBrake> pace_;  ///< of profile_time_, while it stops by it
     SetPoint current_;
 };
 

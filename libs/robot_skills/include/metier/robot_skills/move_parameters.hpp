@@ -29,6 +29,9 @@ struct MoveParameters {
     std::optional<double> duration{};          ///< of the motion [s]; none: as short as can be
     /// When it begins, by the clock of whoever runs it [s since 1970-01-01 UTC]; none: at once.
     std::optional<double> start_time{};
+    /// Of a Suspend: all arms of a motion together brake that long, along their planned times [s];
+    /// none: each as its own limits have it.
+    std::optional<double> stop_time{};
 };
 
 /// A move to a pose.
