@@ -108,6 +108,73 @@ TEST(Execution, BrakesWithTheFirstSetPointAfterAStopOrHalt) {
     }
 }
 
+/// A motion of some seconds that brakes for a stop in a given time.
+class StopInATime : public ::testing::Test {
+protected:
+    StopInATime() {
+        while (execution_.pathParameter() < 0.4) {
+            execution_.next(kCycle);
+        }
+        execution_.stopIn(kLength);
+    }
+    Seconds untilRest() {
+        Seconds time{0};
+        for (; !execution_.atRest(); time += kCycle) {
+            const auto point = execution_.next(kCycle);
+            EXPECT_LE(trajectory_.deviation(trajectory_.toolPose(point.position)).distance, 1e-9);
+        }
+        return time;
+    }
+
+    static constexpr Seconds kLength{0.8};
+    const RobotModel model_ = loadRobot("ur5");
+    const Trajectory trajectory_ = lineOf(model_, 0.4);
+    MotionExecution execution_{trajectory_};
+};
+
+TEST_F(StopInATime, TakesJustThatTimeOnThePath) {
+    EXPECT_EQ(execution_.remaining(), kLength);
+    EXPECT_NEAR(untilRest().count(), kLength.count(), kCycle.count());
+    EXPECT_TRUE(execution_.current().velocity.allZero());
+    const auto held = execution_.current().position;
+    EXPECT_EQ(execution_.next(kCycle).position, held);
+    EXPECT_FALSE(execution_.finished());
+}
+
+TEST_F(StopInATime, IsNoReasonForAHaltToTakeLonger) {
+    MotionExecution at_once(trajectory_);
+    while (at_once.pathParameter() < execution_.pathParameter()) {
+        at_once.next(kCycle);
+    }
+    at_once.halt();
+    for (int i = 0; i < 10; ++i) {
+        execution_.next(kCycle);
+    }
+    execution_.halt();
+    EXPECT_LE(execution_.remaining().count(), 1.05 * at_once.remaining().count());
+    EXPECT_LE(untilRest().count(), 1.05 * at_once.remaining().count() + kCycle.count());
+}
+
+TEST_F(StopInATime, IsOverWithAResumeAlsoWhileItBrakes) {
+    execution_.next(kLength / 2);
+    execution_.resume();
+    untilRest();
+    EXPECT_TRUE(execution_.finished());
+    EXPECT_EQ(execution_.current().position, trajectory_.end());
+}
+
+TEST_F(StopInATime, FollowsAHaltAndAResume) {
+    execution_.halt();
+    untilRest();
+    execution_.resume();
+    while (execution_.pathParameter() < 0.6) {
+        execution_.next(kCycle);
+    }
+    execution_.stopIn(kLength / 2);
+    EXPECT_NEAR(untilRest().count(), kLength.count() / 2, kCycle.count());
+    EXPECT_FALSE(execution_.finished());
+}
+
 TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);

@@ -137,7 +137,8 @@ Field redundancyField() {
 
 // Longer motions are rather a mistake of the unit.
 constexpr double kLongestDuration = 3600.0;
-constexpr double kLongestStop = 60.0;
+// Well below the time after which an execution that does not come to rest is stopped.
+constexpr double kLongestStop = 3.0;
 constexpr double kLatestTime = 1e11;  // beyond any clock, and so no range for a person
 
 Field durationField() {

@@ -19,8 +19,8 @@ constexpr double kMostJerk = 2.0;          // as a Halt may use
 constexpr int kBeginnings = 25;            // of the brake, over the motion
 constexpr int kSteps = 20;                 // of one brake
 constexpr double kLonger = 1.15;
-constexpr int kMostAttempts = 40;
 constexpr double kShortest = 1e-3;  // [s]
+constexpr double kLongest = 4.0;    // [s]
 
 /// Whether all axes can follow from one set-point to the next.
 bool canFollow(const RobotModel& model, const motion::SetPoint& from, const motion::SetPoint& to,
@@ -69,11 +69,12 @@ double stopTimeFor(const Trajectory& trajectory, const RobotModel& model,
     if (length <= 0.0) {
         return 0.0;
     }
-    length = std::max(length, kShortest);
-    for (int i = 0; i < kMostAttempts && !canAlwaysStop(trajectory, model, length); ++i) {
-        length *= kLonger;
+    for (length = std::max(length, kShortest); length <= kLongest; length *= kLonger) {
+        if (canAlwaysStop(trajectory, model, length)) {
+            return length;
+        }
     }
-    return length;
+    return 0.0;
 }
 
 }  // namespace metier::robot_skills

@@ -11,7 +11,8 @@ namespace metier::robot_skills {
 ///
 /// At least `asked`; longer where an axis would need more than 1.2 times the robot's own
 /// acceleration, or twice its jerk, for it.
-/// \param asked [s]; none or 0: the result is 0, the motion stops by its own limits
+/// \param asked [s]
+/// \return 0 if none or 0 is asked for, or over 4 s are needed: it stops by its own limits
 double stopTimeFor(const motion::Trajectory& trajectory, const motion::RobotModel& model,
                    const std::optional<double>& asked);
 

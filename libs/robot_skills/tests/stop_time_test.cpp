@@ -44,6 +44,11 @@ double brakingOf(const Trajectory& trajectory) {
     return trajectory.duration().count() * static_cast<double>(last - speeds.rbegin() + 1) / count;
 }
 
+/// As a component of several arms asks for it, of a motion that it has slowed down [s].
+double commonStop(const Trajectory& quickest, double slowed) {
+    return brakingOf(quickest) * (1.15 / std::sqrt(slowed) + std::exp(-10.0 * (slowed - 1.0)));
+}
+
 /// The planned time at which the motion is where an arm stands now [s].
 double plannedTimeOf(const Trajectory& trajectory, const motion::JointVector& now) {
     const auto gone = [&](const motion::JointVector& q) {
@@ -68,8 +73,8 @@ TEST(StopTime, IsTakenByArmsOfAllKindsFromAnySpeed) {
             if (!plan) {
                 continue;
             }
-            for (const double slowed : {1.0, 1.1, 1.3, 2.0, 10.0}) {
-                const double asked = 2 * brakingOf(*plan) / std::sqrt(slowed);
+            for (const double slowed : {1.0, 1.05, 1.1, 1.2, 1.3, 1.5, 2.0, 3.0, 10.0, 30.0}) {
+                const double asked = commonStop(*plan, slowed);
                 EXPECT_EQ(stopTimeFor(plan->stretchedTo(slowed * plan->duration()), model, asked),
                           asked)
                     << robot << " slowed down by " << slowed;
@@ -152,8 +157,8 @@ TEST(StopTime, HasTwoArmsOfOtherLimitsAndCyclesStandAtOneTimeOfTheirPlans) {
             }
             double stop = 0.0;
             for (const auto* arm : {&left, &right}) {
-                stop = std::max(stop, 2 * brakingOf(arm->plan()) /
-                                          std::sqrt(common / arm->plan().duration().count()));
+                stop = std::max(stop,
+                                commonStop(arm->plan(), common / arm->plan().duration().count()));
             }
             left.start(common, stop);
             right.start(common, stop);

@@ -16,6 +16,7 @@ using skill::Reason;
 namespace {
 
 const std::string kStopTime = "StopTime";
+constexpr double kLongestStop = 3.0;  // that arms take [s]
 
 double seconds(std::chrono::nanoseconds time) {
     return std::chrono::duration<double>(time).count();
@@ -107,13 +108,16 @@ bool ArmLane::takes(const std::string& parameter) const {
                        [&](const skill::Field& field) { return field.name == parameter; });
 }
 
-/// At full speed a pace that falls smoothly needs twice the time of the quickest brake. A motion
-/// slowed down by a factor brakes from a speed less by that factor: the time falls with the factor
-/// where acceleration counts, with its root where jerk does.
+/// A motion slowed down by a factor brakes from a speed less by that factor: the time falls with
+/// the factor where acceleration counts, with its root where jerk does. One at its limits brakes at
+/// its end with all that the axes have: there the pace can fall only slowly. Both numbers bound
+/// from above what random moves of all arms need (tests: StopTime.IsTakenByArmsOfAllKinds...).
 double ArmLane::stopTime(double duration) const noexcept {
-    constexpr double smooth = 2.0;
+    constexpr double slow = 1.15;
+    constexpr double reserve = 0.1;  // of being slower, that makes the end of the way no matter
     const double slowed = shortest_ > 0.0 ? std::max(duration / shortest_, 1.0) : 1.0;
-    return smooth * braking_ / std::sqrt(slowed);
+    const double needed = slow / std::sqrt(slowed) + std::exp(-(slowed - 1.0) / reserve);
+    return std::min(braking_ * needed, kLongestStop);
 }
 
 void ArmLane::begin(const Start& start) {
