@@ -49,6 +49,12 @@ SafetyState safetyFrom(std::int32_t kind) {
     }
 }
 
+/// Whether the skill was halted for what is wrong with its device.
+bool isOfTheRobot(const skill::TransitionEvent& event) {
+    return event.to == skill::State::halted &&
+           (event.reason == skill::Reason::error || event.reason == skill::Reason::device_lost);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOptions& remote,
@@ -133,14 +139,38 @@ void StreamSession::Notes::noteAnswer(const opcua::Answer<>& answer) {
     note([&](Observed& seen) { seen.refused = answer.error().message; });
 }
 
+void StreamSession::Notes::noteTransition(const skill::TransitionEvent& event) {
+    note([&](Observed& seen) {
+        if (event.from == skill::State::running) {
+            seen.stream_end = event;
+        }
+        seen.words = isOfTheRobot(event) ? event.reason_text : "";
+    });
+}
+
+void StreamSession::Notes::noteSafety(device::SafetyState safety) {
+    note([&](Observed& seen) {
+        if (seen.safety != safety) {
+            seen.safety = safety;
+            seen.safety_since = std::chrono::steady_clock::now();
+        }
+    });
+}
+
+/// A robot that was stopped before says why in the state of its stream skill alone.
+void StreamSession::subscribeTransitions() {
+    stream_.onTransition(
+        [notes = notes_](const skill::TransitionEvent& event) { notes->noteTransition(event); });
+    if (stream_.state() == skill::State::halted) {
+        auto words = stream_.reasonText();
+        notes_->note([&](Observed& seen) { seen.words = std::move(words); });
+    }
+}
+
 Result<void> StreamSession::subscribe() {
     client_->onConnectionLost(
         [notes = notes_](const opcua::Failure& failure) { notes->noteBroken(failure.message); });
-    stream_.onTransition([notes = notes_](const skill::TransitionEvent& event) {
-        if (event.from == skill::State::running) {
-            notes->note([&](Observed& seen) { seen.stream_end = event; });
-        }
-    });
+    subscribeTransitions();
     const auto interval = std::chrono::milliseconds(
         static_cast<std::int64_t>(std::max(kinematics_.cycle_time * 1000.0, 5.0)));
     auto joints = skill_client::subscribeJointPosition(
@@ -173,8 +203,7 @@ Result<void> StreamSession::subscribeState() {
                 return;
             }
             const auto kind = value.value.as<std::int32_t>();
-            const auto state = kind ? safetyFrom(*kind) : SafetyState::disconnected;
-            notes->note([&](Observed& seen) { seen.safety = state; });
+            notes->noteSafety(kind ? safetyFrom(*kind) : SafetyState::disconnected);
         });
     if (!safety) {
         return fail(safety.error());

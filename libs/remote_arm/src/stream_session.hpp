@@ -29,6 +29,8 @@ public:
         SteadyTime sampled{};         ///< when `position` came
         SteadyTime moved{};           ///< when the measured arm was last seen in motion
         device::SafetyState safety = device::SafetyState::normal;
+        SteadyTime safety_since{};  ///< when `safety` became what it is
+        std::string words;          ///< the robot's own, of why the stream skill is Halted
         std::uint64_t missed_cycles = 0;
         std::optional<skill::TransitionEvent> stream_end;  ///< of the stream that was started last
         std::string refused;  ///< why a set-point was refused, since the stream was started
@@ -73,9 +75,12 @@ private:
         void notePosition(const device::JointArray& position);
         void noteBroken(const std::string& why);
         void noteAnswer(const opcua::Answer<>& answer);
+        void noteTransition(const skill::TransitionEvent& event);
+        void noteSafety(device::SafetyState safety);
     };
 
     Result<void> subscribe();
+    void subscribeTransitions();
     Result<void> subscribeState();
 
     std::unique_ptr<opcua::Client> client_;

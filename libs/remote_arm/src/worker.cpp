@@ -16,6 +16,8 @@ using device::SafetyState;
 constexpr auto kIdlePause = 100ms;
 // How long the server's safety state may take to follow its Reset.
 constexpr auto kResetWait = 2s;
+// How long the words of a robot that has stopped are waited for; it stands meanwhile.
+constexpr auto kLongestSilence = 100ms;
 // How long a stream goes on at rest after a motion, so that the next one finds it.
 constexpr auto kLinger = 500ms;
 // How long a silent stream may take to be Ready again.
@@ -265,10 +267,18 @@ Safety RemoteArm::Worker::judge(const StreamSession::Observed& seen) const {
         const auto state = seen.safety == SafetyState::normal ? SafetyState::fault : seen.safety;
         return {state, fault_, fault_is_limit_};
     }
-    if (seen.safety != SafetyState::normal) {
-        return {seen.safety, fmt::format("{}: {}", info_.name, toString(seen.safety))};
+    if (seen.safety != SafetyState::normal && !awaitsWords(seen)) {
+        const auto text = seen.words.empty() ? std::string(toString(seen.safety)) : seen.words;
+        const bool named = text.starts_with(info_.name);
+        return {seen.safety, named ? text : fmt::format("{}: {}", info_.name, text)};
     }
     return {};
+}
+
+/// The state of a stopped robot may be seen before the transition that says why.
+bool RemoteArm::Worker::awaitsWords(const StreamSession::Observed& seen) const {
+    return seen.words.empty() && state_.safety == SafetyState::normal &&
+           std::chrono::steady_clock::now() - seen.safety_since < kLongestSilence;
 }
 
 void RemoteArm::Worker::enter(Safety safety) {

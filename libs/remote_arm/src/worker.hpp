@@ -51,6 +51,7 @@ private:
     void observeStream(const StreamSession::Observed& seen);
     void observeArm(const StreamSession::Observed& seen);
     device::Safety judge(const StreamSession::Observed& seen) const;
+    bool awaitsWords(const StreamSession::Observed& seen) const;
     void enter(device::Safety safety);
     void publish();
     void takeRequests();

@@ -192,13 +192,26 @@ TEST(RemoteArm, EndsTheMotionAtAProtectiveStopAndMovesAgainAfterReset) {
     served.arm().protectiveStop("a hand in the light curtain");
     ASSERT_EQ(move->awaitEnd(), EndCause::safety);
     EXPECT_NE(arm->safety().state, SafetyState::normal);
-    EXPECT_FALSE(arm->safety().text.empty());
+    EXPECT_THAT(move->text(), HasSubstr("a hand in the light curtain")) << "in the robot's words";
     EXPECT_FALSE(arm->attach(std::make_shared<SmoothMove>(0.1, 60)));
     const auto reset = resetUntilDone(*arm);
     ASSERT_TRUE(reset) << reset.error().message;
     const auto again = std::make_shared<SmoothMove>(0.1, 60);
     ASSERT_TRUE(arm->attach(again));
     EXPECT_EQ(again->awaitEnd(), EndCause::done) << again->text();
+}
+
+TEST(RemoteArm, TellsInTheRobotsWordsWhyItIsStoppedAlsoWhileNothingMovesIt) {
+    ServedArm served;
+    served.watchDevice();
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    served.arm().protectiveStop("C153A0: a hand in the light curtain");
+    ASSERT_TRUE(awaitSafety(*arm, SafetyState::protective_stop));
+    EXPECT_THAT(arm->safety().text, HasSubstr("C153A0: a hand in the light curtain"));
+    const auto later = RemoteArm::connect({.url = served.url()}).value();
+    EXPECT_TRUE(awaitText(*later, "C153A0: a hand in the light curtain"));
+    ASSERT_TRUE(resetUntilDone(*arm));
+    EXPECT_EQ(arm->safety().text, "");
 }
 
 TEST(RemoteArm, HoldsUpNobodyWhoAsksForAResetThatItsServerDoesNotAnswer) {

@@ -81,8 +81,8 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
     const auto system = opcua_skill::findMotionDeviceSystem(server_->nodes()).value();
     auto skills = robot_skills::makeArmSkills(*arm_, model_, clock_).value();
     const auto node = server_->nodes().browse(system.skills).value().front().target;
-    auto* program = skills_->bind(node, std::move(skills.position_stream)).value();
-    program->attach(*this);
+    program_ = skills_->bind(node, std::move(skills.position_stream)).value();
+    program_->attach(*this);
     const auto published = opcua_skill::publishKinematics(
         server_->nodes(), system, dataOf(model_, fastest), [this] { return stateOf(*arm_); });
     EXPECT_TRUE(published);
@@ -92,7 +92,12 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
 }
 
 ServedArm::~ServedArm() {
+    watch_.reset();
     skills_.reset();
+}
+
+void ServedArm::watchDevice() {
+    watch_.emplace(*arm_, skills_->executor(), std::vector<skill::Program*>{program_});
 }
 
 std::shared_ptr<void> ServedArm::keepBusy() {

@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "metier/base/clock.hpp"
@@ -11,6 +12,7 @@
 #include "metier/motion/robot_model.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
+#include "metier/robot_skills/device_watch.hpp"
 #include "metier/skill/program_observer.hpp"
 
 namespace metier::remote_arm {
@@ -28,6 +30,9 @@ public:
     std::string url() const { return server_->endpointUrl(); }
     std::uint16_t port() const { return server_->port(); }
     virtual_robots::JointSimulator& arm() { return *arm_; }
+
+    /// The skill is halted when the arm is stopped, also while it does not run.
+    void watchDevice();
 
     /// Waits until the stream runs, or has ended; false after 10 s.
     bool awaitStreamStart() { return awaitRunning(true); }
@@ -51,6 +56,8 @@ private:
     std::unique_ptr<virtual_robots::JointSimulator> arm_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
+    skill::Program* program_ = nullptr;
+    std::optional<robot_skills::DeviceWatch> watch_;
     std::unique_ptr<virtual_robots::SimulatorDrive> drive_;
     std::mutex mutex_;
     std::condition_variable changed_;
