@@ -281,5 +281,19 @@ TEST_F(CliOnARobot, HaltHaltsEverySkillAndIsDoneASecondTimeToo) {
     EXPECT_THAT(runMetier({"list", own.url()}).output, Not(HasSubstr("Ready")));
 }
 
+TEST_F(CliOnARobot, ARunOfWhatIsHaltedSaysWhyItIsHaltedAndWhatToDo) {
+    const ServerProcess own("iiwa");
+    EXPECT_EQ(runMetier({"halt", own.url()}).status, kSuccess);
+    const std::vector<std::string> run{"run", own.url(), "JointPtpMoveSkill", "--set",
+                                       "TargetJointPosition=0,0,0,0,0,0,0.1"};
+    const auto refused = runMetier(run);
+    EXPECT_EQ(refused.status, kFailed);
+    EXPECT_THAT(refused.output,
+                AllOf(HasSubstr("Halted (ByClient"),
+                      HasSubstr("metier reset " + own.url() + " JointPtpMoveSkill")));
+    EXPECT_EQ(runMetier({"reset", own.url(), "JointPtpMoveSkill"}).status, kSuccess);
+    EXPECT_EQ(runMetier(run).status, kSuccess);
+}
+
 }  // namespace
 }  // namespace metier::system_tests

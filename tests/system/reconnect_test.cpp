@@ -143,6 +143,17 @@ TEST_F(CutOff, RunningGoesOnAndItsEndIsLearnt) {
     EXPECT_THAT(run->text(), HasSubstr("done"));
 }
 
+TEST_F(CutOff, RunningOnAServerThatIsKilledIsUnknownAtTheEndOfItsTimeout) {
+    auto line = longRun();
+    line.insert(line.end(), {"--timeout", "3"});
+    Told run(line);
+    ASSERT_EQ(next().to, State::running);
+    robot_->kill();
+    EXPECT_EQ(run.end(), 3) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("unknown what became of the execution"));
+    EXPECT_THAT(run.text(), HasSubstr("Halt did not reach it"));
+}
+
 TEST_F(CutOff, RunningEndsMeanwhileAndThatIsLearnt) {
     const auto run = startLongRun();
     relay_.cut();

@@ -165,6 +165,14 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
                          run.deadline);
 }
 
+/// A skill that is Halted runs nothing until somebody resets it.
+void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
+    if (skill.state() == skill::State::halted) {
+        fmt::print(stderr, "metier: {} is Halted; `metier reset {} {}` makes it Ready\n",
+                   printable(choice.skill), printable(choice.url), printable(choice.skill));
+    }
+}
+
 Exit runRun(const RunOptions& options) {
     const StopSignal signal;
     auto open = openSkill(options.choice, OnLoss::reconnect);
@@ -181,7 +189,11 @@ Exit runRun(const RunOptions& options) {
     if (!values) {
         return reportUsage(values.error());
     }
-    return runSkill(signal, *open, *values, options.run);
+    const auto exit = runSkill(signal, *open, *values, options.run);
+    if (exit == Exit::failed) {
+        showWayOut(skill, options.choice);
+    }
+    return exit;
 }
 
 }  // namespace
