@@ -111,6 +111,25 @@ TEST_F(ComposedArm, IsSuspendedResumedAndHaltedDownToTheArm) {
     EXPECT_TRUE(again) << "what was halted from here is reset from here: " << again.error().message;
 }
 
+TEST_F(ComposedArm, IsSuspendedIfSomebodySuspendsTheArmAndGoesOnAsAWhole) {
+    startSlowly();
+    ASSERT_TRUE((*arm_)->suspend());
+    const auto arm_rests = arm_->awaitEvent(State::suspended);
+    const auto between = swing_->awaitEvent(State::suspended);
+    const auto whole = wave_->awaitEvent(State::suspended);
+    EXPECT_LE(arm_rests.time, between.time);
+    EXPECT_LE(between.time, whole.time);
+    EXPECT_EQ(whole.reason, Reason::by_client);
+    EXPECT_THAT(whole.reason_text, HasSubstr("JointPtpMoveSkill of iiwa was suspended by metier"));
+    const auto read = (*wave_)->reasonText();
+    EXPECT_EQ(read, whole.reason_text) << "also for those who ask later";
+    ASSERT_TRUE((*wave_)->resume());
+    arm_->awaitEvent(State::running);
+    wave_->awaitEvent(State::running);
+    ASSERT_TRUE((*wave_)->halt());
+    EXPECT_EQ(wave_->awaitEvent(State::halted).reason, Reason::by_client);
+}
+
 TEST_F(ComposedArm, EndsIfSomebodyHaltsTheArm) {
     startSlowly();
     ASSERT_TRUE((*arm_)->halt());

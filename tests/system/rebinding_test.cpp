@@ -33,6 +33,15 @@ protected:
         const auto client = connectTo(url);
         return jointPosition(*client, openSkill(*client, "JointPtpMoveSkill")).front();
     }
+    /// A property of the record of the arm's last execution.
+    static std::string lastRecordOn(const std::string& url, const std::string& property) {
+        const auto client = connectTo(url);
+        const auto metier = client->namespaceIndex("urn:metier:skills").value();
+        const auto node = client->translate(
+            openSkill(*client, "JointPtpMoveSkill").address().node,
+            {{metier, "ExecutionRecords"}, {metier, "Latest"}, {metier, property}});
+        return client->read(node.value()).value().toString();
+    }
     ValueMap to(double first_axis, double speed = 1.0) const {
         auto target = home_;
         target.front() = first_axis;
@@ -86,6 +95,8 @@ TEST_F(FoundArm, IsWhatTheNextExecutionRunsOnWhenTheFormerIsGone) {
     const auto second = swing_->runWith({"second", to(0.2)}, inAMinute());
     ASSERT_TRUE(second) << second.error().message;
     EXPECT_NEAR(firstAxisOf(b.url()), 0.2, 1e-3);
+    EXPECT_THAT(lastRecordOn(b.url(), "ParentExecution"), HasSubstr("second"));
+    EXPECT_THAT(lastRecordOn(b.url(), "ParentServer"), HasSubstr("metier:swing"));
 }
 
 TEST_F(FoundArm, IsNotChangedInTheMiddleOfAnExecution) {
