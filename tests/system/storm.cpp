@@ -272,6 +272,7 @@ private:
         skill.reset = (*methods)[2].value_or(opcua::NodeId());
         opcua::EventFilter filter;
         filter.fields = {{{0, "Transition"}, {0, "Number"}}, {{device, "ExecutionId"}}};
+        filter.of_type = opcua::ids::kProgramTransitionEventType;
         auto subscription = client_->subscribeEvents(
             object, filter,
             [this, &skill](const opcua::EventNotice& notice) { heard(skill, notice); });

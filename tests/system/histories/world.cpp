@@ -168,6 +168,7 @@ void World::subscribe(Side& side) {
     opcua::EventFilter filter;
     filter.fields = {
         {{0, "Transition"}, {0, "Number"}}, {{device, "Reason"}}, {{device, "ExecutionId"}}};
+    filter.of_type = opcua::ids::kProgramTransitionEventType;
     side.subscription = orThrow(onlooker_->subscribeEvents(
         side.nodes.skill, filter,
         [this, &side](const opcua::EventNotice& notice) { hear(side, notice); }));
