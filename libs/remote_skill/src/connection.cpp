@@ -84,9 +84,10 @@ AsyncSkill::Watch Connection::watchFor(const opcua::Client& client,
 void Connection::noteLoss(const opcua::Client& client, const std::string& why) {
     {
         const std::lock_guard lock(mutex_);
-        if (client_.get() != &client) {
-            return;  // another one has taken its place
+        if (client_.get() != &client || loss_noted_) {
+            return;  // another one has taken its place, or it was heard of in another way before
         }
+        loss_noted_ = true;
         lost_ = why;
         if (!away_since_) {
             away_since_ = std::chrono::steady_clock::now();
@@ -188,7 +189,8 @@ bool Connection::reconnect() {
     {
         const std::lock_guard lock(mutex_);
         client_.swap(former);
-        lost_.clear();  // that of the former, which may have been heard of in several ways
+        lost_.clear();  // that of the former
+        loss_noted_ = false;
         uses = uses_;
     }
     watch(*present());

@@ -94,7 +94,8 @@ private:
     std::optional<SteadyTime> away_since_;  // guarded by mutex_
     std::condition_variable_any changed_;
     std::vector<std::function<void()>> jobs_;
-    std::string lost_;  // why; empty while connected
+    std::string lost_;         // why; empty while connected
+    bool loss_noted_ = false;  // of client_; guarded by mutex_
     // Of the thread: what the log has been told of since the connection was there.
     std::string told_loss_;
     std::string told_attempt_;

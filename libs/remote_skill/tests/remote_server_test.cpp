@@ -312,6 +312,17 @@ TEST_F(LoggedRemoteChild, TellsOnceThatItsServerIsAway) {
     EXPECT_EQ(log_->warnings(""), 2) << "the loss, and why it cannot be mended";
 }
 
+TEST_F(LoggedRemoteChild, TellsALossOnceThatIsHeardOfInTwoWays) {
+    Connection connection({.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms},
+                          connect("component"));
+    remote_.reset();
+    shutDown();
+    ASSERT_TRUE(log_->await("connecting again", 1));
+    connection.noteLoss(connection.client(), "its events have ended");
+    ASSERT_TRUE(log_->await("BadConnectionRejected", 5)) << "it tries again and again";
+    EXPECT_EQ(log_->warnings("its events have ended"), 0);
+}
+
 /// A child that hears of no transition, as if all were lost on their way.
 class DeafChild : public RemoteChildTest {
 protected:
