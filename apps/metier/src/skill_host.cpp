@@ -68,6 +68,11 @@ opcua_skill::ArmFigures figuresOf(const SkillHost::ShownArm& shown, const Clock&
         }
         return std::vector(state.commanded_position.begin(), state.commanded_position.end());
     };
+    figures.standstill = [&arm]() -> std::optional<bool> {
+        const auto state = arm.state();
+        return state.safety == device::SafetyState::disconnected ? std::nullopt
+                                                                 : std::optional(state.standstill);
+    };
     if (const auto* jitter = arm.cycleJitter()) {
         // Shared by the copies of the function.
         const auto mean =

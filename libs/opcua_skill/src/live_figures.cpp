@@ -140,6 +140,10 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
             &skill::kRadian, ValueType::numbers,
             [read = figures.commanded_joint_position] { return valueOf(read()); });
     }
+    if (figures.standstill) {
+        maker.live("Standstill", "True while the measured arm does not move.", nullptr,
+                   ValueType::boolean, [read = figures.standstill] { return valueOf(read()); });
+    }
     if (figures.cycle_jitter) {
         maker.live("CycleJitter",
                    "How far the time between two control cycles was off the period in the last "

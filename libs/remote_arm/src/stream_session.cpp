@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -13,6 +14,7 @@ using device::SafetyState;
 
 constexpr const char* kStreamType = "PositionStreamSkillType";
 constexpr const char* kTarget = "TargetJointPosition";
+constexpr const char* kEndOfStream = "EndOfStream";
 constexpr auto kConnectTimeout = 2s;
 constexpr auto kPublishingInterval = 10ms;
 constexpr auto kSafetyInterval = 20ms;
@@ -30,6 +32,12 @@ Result<skill_client::SkillAddress> findStream(opcua::Client& client) {
         }
     }
     return fail(Errc::not_found, "the server has no PositionStreamSkill");
+}
+
+bool hasParameter(const skill_client::SkillHandle& skill, std::string_view name) {
+    const auto& fields = skill.parameters();
+    return std::any_of(fields.begin(), fields.end(),
+                       [&](const skill::Field& field) { return field.name == name; });
 }
 
 /// SafetyStateKind of the Metier NodeSet.
@@ -105,7 +113,8 @@ StreamSession::StreamSession(std::unique_ptr<opcua::Client> client,
     : client_(std::move(client)),
       nodes_(std::move(nodes)),
       kinematics_(std::move(kinematics)),
-      stream_(std::move(stream)) {
+      stream_(std::move(stream)),
+      takes_end_(hasParameter(stream_, kEndOfStream)) {
     notes_->bell = std::move(bell);
 }
 
@@ -220,6 +229,23 @@ Result<void> StreamSession::subscribeState() {
     }
     safety_ = std::move(*safety);
     missed_cycles_ = std::move(*missed);
+    return subscribeStandstill();
+}
+
+Result<void> StreamSession::subscribeStandstill() {
+    if (nodes_.standstill.isNull()) {
+        return {};
+    }
+    auto standstill = client_->subscribeData(
+        nodes_.standstill, {.sampling_interval = kPublishingInterval},
+        [notes = notes_](const opcua::DataValue& value) {
+            const auto stands = value.value.as<bool>();
+            notes->note([&](Observed& seen) { seen.standstill = stands.value_or(false); });
+        });
+    if (!standstill) {
+        return fail(standstill.error());
+    }
+    standstill_ = std::move(*standstill);
     return {};
 }
 
@@ -242,9 +268,20 @@ Result<void> StreamSession::startStream(const skill::ParentExecution& parent) {
 }
 
 void StreamSession::send(const device::JointArray& set_point, UtcTime meant_for) {
-    const std::vector<double> joints(set_point.begin(), set_point.end());
+    write(kTarget, std::vector<double>(set_point.begin(), set_point.end()), meant_for);
+}
+
+bool StreamSession::endStream() {
+    if (takes_end_) {
+        write(kEndOfStream, true, std::chrono::system_clock::now());
+    }
+    return takes_end_;
+}
+
+void StreamSession::write(std::string_view parameter, const skill::Value& value,
+                          UtcTime meant_for) {
     const auto sent = stream_.setAsync(
-        kTarget, joints, meant_for,
+        parameter, value, meant_for,
         [notes = notes_](const opcua::Answer<>& answer) { notes->noteAnswer(answer); });
     if (!sent) {
         notes_->noteBroken(sent.error().message);

@@ -28,6 +28,7 @@ public:
         device::JointArray position;  ///< measured [rad]; empty before the first
         SteadyTime sampled{};         ///< when `position` came
         SteadyTime moved{};           ///< when the measured arm was last seen in motion
+        std::optional<bool> standstill;  ///< as the server judges; nothing if it does not tell
         device::SafetyState safety = device::SafetyState::normal;
         SteadyTime safety_since{};  ///< when `safety` became what it is
         std::string words;          ///< the robot's own, of why the stream skill is Halted
@@ -50,6 +51,9 @@ public:
     Result<void> startStream(const skill::ParentExecution& parent);
     /// Sends a set-point; nothing waits. Its failure shows in observed().
     void send(const device::JointArray& set_point, UtcTime meant_for);
+    /// Tells the server that no set-point comes any more, without waiting. False if it knows no end
+    /// of a stream but silence.
+    bool endStream();
     Result<skill::State> streamState();
     Result<void> haltStream();
     Result<void> resetStream();
@@ -82,13 +86,17 @@ private:
     Result<void> subscribe();
     void subscribeTransitions();
     Result<void> subscribeState();
+    Result<void> subscribeStandstill();
+    void write(std::string_view parameter, const skill::Value& value, UtcTime meant_for);
 
     std::unique_ptr<opcua::Client> client_;
     skill_client::KinematicsNodes nodes_;
     opcua_skill::KinematicsData kinematics_;
     skill_client::SkillHandle stream_;
     std::shared_ptr<Notes> notes_ = std::make_shared<Notes>();
+    const bool takes_end_;
     opcua::Subscription joints_;
+    opcua::Subscription standstill_;
     opcua::Subscription safety_;
     opcua::Subscription missed_cycles_;
 };

@@ -18,12 +18,11 @@ constexpr auto kIdlePause = 100ms;
 constexpr auto kResetWait = 2s;
 // How long the words of a robot that has stopped are waited for; it stands meanwhile.
 constexpr auto kLongestSilence = 100ms;
-// How long a stream goes on at rest after a motion, so that the next one finds it.
-constexpr auto kLinger = 500ms;
-// How long a silent stream may take to be Ready again.
+// How long a stream may take to be Ready again after its last set-point.
 constexpr auto kLongestEnding = 2s;
-// Without a change of the measured position for so long, the arm stands: the shorter time where it
-// is at its last set-point, the longer one elsewhere, since news of its motion may be late.
+// Where the server does not tell it, the arm stands without a change of the measured position for so
+// long: the shorter time where it is at its last set-point, the longer one elsewhere, since news of
+// its motion may be late.
 constexpr auto kStandstillAtTarget = 60ms;
 constexpr auto kStandstill = 300ms;
 // How near its last set-point an arm is there [rad].
@@ -96,7 +95,6 @@ void RemoteArm::Worker::nameOwner(std::string application_uri) {
     owner_ = std::move(application_uri);
 }
 
-/// The stream may serve further motions, but it was this one that had it started.
 skill::ParentExecution RemoteArm::Worker::parent() const {
     const std::lock_guard lock(mutex_);
     return owner_.empty() ? skill::ParentExecution{}
@@ -225,6 +223,9 @@ void RemoteArm::Worker::observeStream(const StreamSession::Observed& seen) {
         const auto& end = *seen.stream_end;
         const bool expected = end.to == skill::State::ready && stream_ == Stream::ending;
         stream_ = Stream::none;
+        if (expected && done_) {
+            letGo(EndCause::done);
+        }
         if (!expected && !halted_by_stop_) {
             fault_ = fmt::format("{}: the position stream ended ({}): {}", info_.name,
                                  toString(end.reason), end.reason_text);
@@ -232,8 +233,7 @@ void RemoteArm::Worker::observeStream(const StreamSession::Observed& seen) {
         }
     } else if (!seen.refused.empty()) {
         fault_ = fmt::format("{}: {}", info_.name, seen.refused);
-        stream_ = Stream::ending;
-        ending_since_ = std::chrono::steady_clock::now();
+        enterEnding();
     }
 }
 
@@ -251,11 +251,18 @@ void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
     const bool at_target =
         state_.commanded_position.size() == state_.position.size() &&
         device::largestDifference(state_.commanded_position, state_.position) < kAtTarget;
+    state_.standstill = judgeStandstill(seen, at_target);
+    state_.missed_cycles = seen.missed_cycles;
+}
+
+bool RemoteArm::Worker::judgeStandstill(const StreamSession::Observed& seen, bool at_target) const {
+    if (seen.standstill) {
+        // Of a stream it is old news until the arm is where the stream ends.
+        return *seen.standstill && (at_target || source_ == nullptr);
+    }
     const auto unmoved = std::chrono::steady_clock::now() - seen.moved;
     // Late news of a motion that has come to its end is no motion.
-    state_.standstill =
-        unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
-    state_.missed_cycles = seen.missed_cycles;
+    return unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
 }
 
 Safety RemoteArm::Worker::judge(const StreamSession::Observed& seen) const {
@@ -378,8 +385,7 @@ void RemoteArm::Worker::stopNow() {
         if (const auto halted = session_->haltStream(); !halted) {
             fault_ = halted.error().message;
         }
-        stream_ = Stream::ending;
-        ending_since_ = std::chrono::steady_clock::now();
+        enterEnding();
     }
     letGo(EndCause::stopped);
 }
@@ -393,7 +399,7 @@ void RemoteArm::Worker::serveSource() {
     } else if (stream_ == Stream::none) {
         startStream();
     } else if (std::chrono::steady_clock::now() - ending_since_ > kLongestEnding) {
-        fault_ = fmt::format("{}: the position stream before did not end", info_.name);
+        fault_ = fmt::format("{}: the position stream did not end", info_.name);
     }
 }
 
@@ -412,7 +418,6 @@ void RemoteArm::Worker::startStream() {
     stream_start_ = std::chrono::steady_clock::now();
     stream_start_utc_ = std::chrono::system_clock::now();
     sent_ = 0;
-    idle_cycles_ = 0;
 }
 
 SteadyTime RemoteArm::Worker::nextWake() const {
@@ -440,24 +445,36 @@ void RemoteArm::Worker::cycle() {
 }
 
 void RemoteArm::Worker::nextSetPoint() {
-    state_.cycle = sent_;
-    auto set_point = state_.commanded_position;
-    if (source_ != nullptr) {
-        idle_cycles_ = 0;
-        if (source_->next(state_, set_point) == device::SetPointSource::Next::done) {
-            letGo(EndCause::done);
-        }
-    } else if (++idle_cycles_ * info_.cycle > kLinger) {
-        stream_ = Stream::ending;
-        ending_since_ = std::chrono::steady_clock::now();
+    if (source_ == nullptr) {  // it was taken from the arm: the server ends the stream by itself
+        enterEnding();
         return;
     }
+    state_.cycle = sent_;
+    auto set_point = state_.commanded_position;
+    done_ = source_->next(state_, set_point) == device::SetPointSource::Next::done;
     state_.commanded_position = set_point;
     session_->send(set_point, meantFor());
     ++sent_;
+    if (done_) {
+        finishStream();
+    }
+}
+
+/// The source is told once the stream has ended: then the arm is free for whoever is next.
+void RemoteArm::Worker::finishStream() {
+    enterEnding();
+    if (!session_->endStream()) {
+        letGo(EndCause::done);  // the silence that ends it is longer than anybody would wait
+    }
+}
+
+void RemoteArm::Worker::enterEnding() {
+    stream_ = Stream::ending;
+    ending_since_ = std::chrono::steady_clock::now();
 }
 
 void RemoteArm::Worker::letGo(EndCause cause) {
+    done_ = false;
     const auto source = std::exchange(source_, nullptr);
     if (source == nullptr) {
         return;

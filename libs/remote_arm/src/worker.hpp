@@ -40,7 +40,7 @@ private:
     enum class Stream {
         none,
         running,
-        ending,  ///< silent; the skill is Ready soon
+        ending,  ///< without further set-points; the skill is Ready soon
     };
     void run(const std::stop_token& stop);
     void reconnect(const std::stop_token& stop);
@@ -50,6 +50,8 @@ private:
     void observe();
     void observeStream(const StreamSession::Observed& seen);
     void observeArm(const StreamSession::Observed& seen);
+    /// \param at_target whether the measured arm is at its last set-point
+    bool judgeStandstill(const StreamSession::Observed& seen, bool at_target) const;
     device::Safety judge(const StreamSession::Observed& seen) const;
     bool awaitsWords(const StreamSession::Observed& seen) const;
     void enter(device::Safety safety);
@@ -64,8 +66,9 @@ private:
     void startStream();
     skill::ParentExecution parent() const;
     void cycle();
-    /// One set-point of the source, or of holding still.
     void nextSetPoint();
+    void finishStream();
+    void enterEnding();
     void letGo(device::EndCause cause);
     SteadyTime nextWake() const;
     UtcTime meantFor() const;
@@ -98,13 +101,13 @@ private:
     std::shared_ptr<device::SetPointSource> source_;
     std::optional<SteadyTime> reset_deadline_;  // of the reset that has begun
     Stream stream_ = Stream::none;
+    bool done_ = false;     // the source has nothing more; it is told when the stream has ended
     bool settled_ = false;  // the last source came to its end, where the arm stands
     bool halted_by_stop_ = false;
     SteadyTime ending_since_;
     SteadyTime stream_start_;
     UtcTime stream_start_utc_;
     std::uint64_t sent_ = 0;
-    std::uint64_t idle_cycles_ = 0;
     std::string fault_;  // a stop of the stream that only resetFault() ends
     bool fault_is_limit_ = false;
     std::jthread thread_;  // last: it uses everything above

@@ -89,6 +89,19 @@ private:
     std::string text_;
 };
 
+/// Looks at the arm's state until it fits; false after 10 s.
+template <typename Fits>
+bool awaitState(const RemoteArm& arm, Fits fits) {
+    const auto deadline = soon();
+    while (!fits(arm.state())) {
+        if (std::chrono::steady_clock::now() > deadline) {
+            return false;
+        }
+        std::this_thread::yield();
+    }
+    return true;
+}
+
 /// Waits until what the arm says of its safety fits; false after 10 s.
 template <typename Fits>
 bool awaitSaying(RemoteArm& arm, Fits fits) {
@@ -158,7 +171,40 @@ TEST(RemoteArm, ShowsTheStateOfTheEndToWhoeverHearsOfIt) {
     }
 }
 
-TEST(RemoteArm, MovesAgainWithinOneStreamAndAfterItsEnd) {
+TEST(RemoteArm, LeavesTheArmFreeForOthersWhenItTellsTheEndOfAMotion) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    for (int i = 0; i < 5; ++i) {
+        const auto move = std::make_shared<SmoothMove>(0.05, 30);
+        const auto own = std::make_shared<SmoothMove>(0.0, 1);
+        std::promise<bool> others_may;
+        move->onEnd([&] { others_may.set_value(served.arm().attach(own).has_value()); });
+        ASSERT_TRUE(arm->attach(move));
+        ASSERT_EQ(move->awaitEnd(), EndCause::done) << move->text();
+        ASSERT_TRUE(others_may.get_future().get());
+        ASSERT_EQ(own->awaitEnd(), EndCause::done);
+    }
+}
+
+TEST(RemoteArm, StandsAsSoonAsItsServerSaysSo) {
+    ServedArm served;
+    const auto arm = RemoteArm::connect({.url = served.url()}).value();
+    auto shortest = std::chrono::nanoseconds::max();
+    for (int i = 0; i < 5; ++i) {  // one of them is not held up by other work of the machine
+        const auto own = std::make_shared<SmoothMove>(0.05, 30);
+        SteadyTime ended;
+        own->onEnd([&] { ended = std::chrono::steady_clock::now(); });
+        ASSERT_TRUE(served.arm().attach(own));
+        ASSERT_EQ(own->awaitEnd(), EndCause::done);
+        ASSERT_TRUE(awaitState(*arm, [&](const device::ArmState& seen) {
+            return seen.standstill && seen.position == served.arm().state().position;
+        }));
+        shortest = std::min(shortest, std::chrono::steady_clock::now() - ended);
+    }
+    EXPECT_LT(shortest, 50ms);
+}
+
+TEST(RemoteArm, MovesAgainAtOnceAndAfterAPause) {
     ServedArm served;
     const auto arm = RemoteArm::connect({.url = served.url()}).value();
     for (const double distance : {0.1, -0.1, 0.1}) {

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "metier/geometry/frame.hpp"
+#include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
 
@@ -86,6 +87,9 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
     const auto published = opcua_skill::publishKinematics(
         server_->nodes(), system, dataOf(model_, fastest), [this] { return stateOf(*arm_); });
     EXPECT_TRUE(published);
+    EXPECT_TRUE(opcua_skill::publishArmFigures(
+        server_->nodes(), system.kinematics,
+        {.standstill = [this] { return std::optional(arm_->state().standstill); }}));
     drive_ = std::make_unique<virtual_robots::SimulatorDrive>(*arm_);
     const auto started = server_->start();
     EXPECT_TRUE(started) << (started ? "" : started.error().message);

@@ -8,7 +8,7 @@ namespace {
 Result<void> checkStanding(const device::Arm& arm) {
     return arm.state().standstill
                ? Result<void>()
-               : fail(Errc::invalid_state, arm.info().name + ": the arm still moves");
+               : fail(Errc::resource_unavailable, arm.info().name + ": the arm still moves");
 }
 
 }  // namespace

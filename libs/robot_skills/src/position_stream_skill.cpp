@@ -22,6 +22,7 @@ using skill::Value;
 namespace {
 
 constexpr std::string_view kTarget = "TargetJointPosition";
+constexpr std::string_view kEndOfStream = "EndOfStream";
 constexpr double kLongestPlayOutDelay = 0.5;  // [s]
 
 Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double>& position) {
@@ -67,6 +68,10 @@ public:
     }
 
     Result<void> input(std::string_view parameter, const skill::LiveValue& live) override {
+        if (const auto* ends = std::get_if<bool>(&live.value);
+            parameter == kEndOfStream && ends != nullptr) {
+            return *ends ? finish() : Result<void>();
+        }
         const auto* values = std::get_if<std::vector<double>>(&live.value);
         if (parameter != kTarget || values == nullptr) {
             return Body::input(parameter, live);
@@ -79,7 +84,16 @@ public:
     }
 
 private:
+    Result<void> finish() {
+        stream_.source->finish();
+        return {};
+    }
+
     Result<void> push(const std::vector<double>& values, std::optional<UtcTime> meant_for = {}) {
+        if (stream_.source->finishing()) {
+            return fail(Errc::invalid_state,
+                        fmt::format("{}: no set-point is taken after {}", kTarget, kEndOfStream));
+        }
         auto position = JointVector::from(values);
         if (!position) {
             return fail(std::move(position.error()));
@@ -188,6 +202,12 @@ skill::FieldList<PositionStreamParameters> positionStreamFields(const RobotModel
                      .unit = skill::kSecond,
                      .range = skill::Range{0.0, kLongestPlayOutDelay},
                      .place = skill::Place::options});
+    fields.add(&PositionStreamParameters::end_of_stream,
+               Field{.name = std::string(kEndOfStream),
+                     .description = "Write true after the last set-point: the stream ends when the "
+                                    "arm stands there; before Start it means nothing",
+                     .place = skill::Place::options,
+                     .input = skill::Input::live});
     return fields;
 }
 

@@ -23,6 +23,8 @@ constexpr double kStanding = 0.02;
 constexpr int kLostAfterCycles = 6;
 // Silence after which a standing stream is finished [s].
 constexpr double kFinishedAfter = 0.5;
+// The arm was sent the last set-point where it was sent a position this near to it [rad].
+constexpr double kAtLast = 1e-5;
 // How long a stream may take to begin [s].
 constexpr double kLongestWait = 10.0;
 // What the network may be late: the delay of the play-out unless it is told, and the time that a
@@ -126,6 +128,7 @@ device::SetPointSource::Next StreamSource::next(const device::ArmState& state,
 
 void StreamSource::takeSetPoints() noexcept {
     silence_ += setup_.cycle;
+    finishing_ = finish_asked_.load(std::memory_order_acquire);  // first: the queue then has all
     if (!last_) {
         dropAllButNewest();
     }
@@ -199,9 +202,18 @@ void StreamSource::watchSilence() noexcept {
     if (last_ && silence_ > setup_.cycle && speed_ <= kStanding) {
         hold();
     }
-    if (end_ == End::none && silence_ > (last_ ? kFinishedAfter : kLongestWait)) {
+    if (end_ == End::none && isFinished()) {
         end_ = dropped_ > 0 ? End::went_back : End::silent;
     }
+}
+
+bool StreamSource::isFinished() const noexcept {
+    if (!last_) {
+        return finishing_ || silence_ > kLongestWait;
+    }
+    const bool at_last = finishing_ && speed_ <= kStanding && follower_.atRest() &&
+                         motion::maxDifference(toVector(commanded_), last_->position) < kAtLast;
+    return at_last || silence_ > kFinishedAfter;
 }
 
 /// Repeats the last set-point of a standing stream, so that the arm gets there however far it is

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,12 @@ public:
     /// Where the owner's thread leaves the set-points.
     StreamQueue& queue() noexcept { return queue_; }
 
+    /// Owner's thread: no set-point comes after those in the queue. The stream ends when the arm
+    /// stands at the last one.
+    void finish() noexcept { finish_asked_.store(true, std::memory_order_release); }
+    /// Owner's thread: whether finish() was called.
+    bool finishing() const noexcept { return finish_asked_.load(std::memory_order_relaxed); }
+
     Next next(const device::ArmState& state, device::JointArray& set_point) noexcept override;
     device::JointArray restingPlace() const noexcept override { return commanded_; }
 
@@ -68,6 +75,8 @@ private:
     /// The report's text for it, to be put behind another text.
     std::string reported() const;
     void watchSilence() noexcept;
+    /// Whether nothing more is to be waited for.
+    bool isFinished() const noexcept;
     /// Silence of a moving stream that ends it [s].
     double longestSilence() const noexcept;
     static motion::StreamOptions followerOptions(const Setup& setup) noexcept;
@@ -80,6 +89,7 @@ private:
     const int play_out_cycles_;
     motion::StreamFollower follower_;
     StreamQueue queue_;
+    std::atomic<bool> finish_asked_{false};
     Settling settling_;
     End end_ = End::none;
     device::JointArray commanded_;
@@ -89,6 +99,7 @@ private:
     std::optional<StreamedPosition> last_;
     double speed_ = 0.0;    ///< of the stream in its fastest axis [rad/s]
     double silence_ = 0.0;  ///< since the last set-point [s]
+    bool finishing_ = false;  ///< that was the last set-point
     std::uint64_t set_points_ = 0;
     std::uint64_t missed_cycles_ = 0;
     std::uint64_t dropped_ = 0;  ///< since the last set-point that was followed

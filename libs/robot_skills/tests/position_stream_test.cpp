@@ -18,6 +18,7 @@ using ::testing::HasSubstr;
 
 constexpr std::chrono::milliseconds kCycle{8};
 const std::string kTarget = "TargetJointPosition";
+const std::string kEndOfStream = "EndOfStream";
 
 /// The commanded joint position.
 std::vector<double> jointsOf(const Bench& bench) {
@@ -103,6 +104,43 @@ TEST_F(Stream, IsFinishedWhenItFallsSilentStanding) {
     EXPECT_NEAR(bench.commanded()[0], joints[0], 1e-9);
     EXPECT_EQ(program.finalResult().at("SetPoints"), Value(std::uint64_t{127}));
     EXPECT_GT(std::get<double>(program.finalResult().at("Duration")), 1.5);
+}
+
+TEST_F(Stream, EndsAtItsLastSetPointWhenItIsToldThatNoneComes) {
+    streamSine(125);
+    auto joints = home;
+    joints[0] = sine(125);  // the sine turns here: the stream stands
+    ASSERT_TRUE(write(joints));
+    bench.step();
+    ASSERT_TRUE(write(joints));
+    ASSERT_TRUE(program.write(bench.caller(), kEndOfStream, true));
+    const auto refused = write(joints);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::invalid_state);
+    const auto told = bench.executor().clock().now();
+    ASSERT_TRUE(bench.stepUntil(kPositionStream, State::ready));
+    EXPECT_NEAR(bench.commanded()[0], joints[0], 1e-5);
+    EXPECT_TRUE(bench.arm().state().standstill);
+    EXPECT_LE(bench.executor().clock().now() - told, 12 * kCycle) << "3 of them are PlayOutDelay";
+    EXPECT_EQ(program.finalResult().at("SetPoints"), Value(std::uint64_t{127}));
+    ASSERT_TRUE(bench.start(kPositionStream, {})) << "the next one has an end of its own";
+    home = jointsOf(bench);
+    sent = 0;
+    streamSine(10);
+}
+
+TEST_F(Stream, IsSilentMovingWhenItsEndIsToldWhileItMoves) {
+    streamSine(62);
+    ASSERT_TRUE(program.write(bench.caller(), kEndOfStream, true));
+    ASSERT_TRUE(bench.stepUntil(kPositionStream, State::halted));
+    EXPECT_THAT(program.reasonText(), HasSubstr("fell silent while it moved at 0.94"));
+}
+
+TEST_F(Stream, EndsAtOnceWhenItIsToldSoBeforeTheFirstSetPoint) {
+    ASSERT_TRUE(program.write(bench.caller(), kEndOfStream, true));
+    const auto told = bench.executor().clock().now();
+    ASSERT_TRUE(bench.stepUntil(kPositionStream, State::ready));
+    EXPECT_LE(bench.executor().clock().now() - told, 5 * kCycle);
 }
 
 TEST_F(Stream, IsHaltedWhenItFallsSilentMoving) {

@@ -117,8 +117,9 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
         }
         *node = found->second;
     }
-    const std::array<std::pair<std::string_view, NodeId*>, 4> optional{
+    const std::array<std::pair<std::string_view, NodeId*>, 5> optional{
         {{"CommandedJointPosition", &nodes.commanded_joint_position},
+         {"Standstill", &nodes.standstill},
          {"CycleJitter", &nodes.cycle_jitter},
          {"FlangeForce", &nodes.flange_force},
          {"FlangeTorque", &nodes.flange_torque}}};

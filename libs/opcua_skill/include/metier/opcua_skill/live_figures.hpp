@@ -37,6 +37,8 @@ struct StreamFigures {
 struct ArmFigures {
     /// CommandedJointPosition: the last set-point that the controller took [rad].
     std::function<std::optional<std::vector<double>>()> commanded_joint_position{};
+    /// Standstill: whether the measured arm stands.
+    std::function<std::optional<bool>()> standstill{};
     /// CycleJitter: how far cycles were off their period lately, in the mean [s].
     std::function<std::optional<double>()> cycle_jitter{};
     /// FlangeForce, FlangeTorque.

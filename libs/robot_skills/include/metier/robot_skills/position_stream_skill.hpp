@@ -19,6 +19,8 @@ struct PositionStreamParameters {
     /// From the time a set-point is meant for until the arm is sent it [s], rounded up to cycles.
     /// Not set: 20 ms, but at least three cycles. 0: every cycle takes the newest set-point.
     std::optional<double> play_out_delay{};
+    /// Written true while the skill runs: no set-point comes any more. Live.
+    std::optional<bool> end_of_stream{};
 };
 
 struct PositionStreamOptions {
@@ -51,6 +53,8 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 /// cycles, and brakes then. A stream ends
 /// - by Halt or Suspend: brakes. The number of set-points is the IntermediateResult. After Resume
 ///   the stream begins anew where the arm stands;
+/// - by EndOfStream, written while the stream stands: as soon as the arm stands at the last
+///   set-point, with its results;
 /// - by silence while the stream stands, that is its last two set-points differ by less than
 ///   0.02 rad/s: the arm goes to the last one, and after 0.5 s it is finished, with its results;
 /// - by silence of over PositionStreamOptions::longest_silence while it moves: brakes, then Halted

@@ -20,6 +20,7 @@ struct KinematicsNodes {
     opcua::NodeId safety_state;
     opcua::NodeId missed_cycles;
     opcua::NodeId commanded_joint_position;  ///< null if the server does not tell, as the next
+    opcua::NodeId standstill;
     opcua::NodeId cycle_jitter;
     opcua::NodeId flange_force;
     opcua::NodeId flange_torque;
