@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 
 #include "arm_bench.hpp"
@@ -31,12 +32,15 @@ protected:
         const auto asked = std::chrono::steady_clock::now();
         auto taken = asked;
         auto started = skill.startWith({.parameters = {{"TargetJointPosition", target}}});
-        while (!started && taken < deadline) {
-            EXPECT_EQ(started.error().code, Errc::resource_unavailable) << started.error().message;
+        while (!started && started.error().code == Errc::resource_unavailable && taken < deadline) {
             started = skill.startWith({.parameters = {{"TargetJointPosition", target}}});
             taken = std::chrono::steady_clock::now();
         }
-        EXPECT_TRUE(skill.awaitEnd(deadline));
+        const auto ended = skill.awaitEnd(deadline);
+        if (!started || !ended || ended->to != skill::State::ready) {
+            throw std::runtime_error(started ? ended ? ended->reason_text : ended.error().message
+                                             : started.error().message);
+        }
         return taken - asked;
     }
 
