@@ -141,7 +141,8 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
     return host_->publishArm(
         *system,
         {*device_.arm, model_, config.arm.payload,
-         sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor, stream_report_});
+         sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor, stream_report_,
+         stopping_report_});
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
@@ -157,6 +158,7 @@ Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& syste
         return fail(arm.error());
     }
     stream_report_ = arm->stream_report;
+    stopping_report_ = arm->stopping_report;
     auto skills = std::move(arm->moves);
     skills.push_back(std::move(arm->position_stream));
     if (device_.gripper != nullptr) {

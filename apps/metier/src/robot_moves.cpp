@@ -95,7 +95,10 @@ Result<void> RobotMoves::offer(const std::string& name) {
         return offered;
     }
     host_->haltOnLossOf(arm);
-    return host_->publishArm(*system, {arm, robot_.model, arm.kinematics().payload});
+    return host_->publishArm(*system, {.arm = arm,
+                                       .model = robot_.model,
+                                       .payload = arm.kinematics().payload,
+                                       .stopping = skills->stopping_report});
 }
 
 }  // namespace metier::app

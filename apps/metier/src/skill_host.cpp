@@ -73,6 +73,16 @@ opcua_skill::ArmFigures figuresOf(const SkillHost::ShownArm& shown, const Clock&
         return state.safety == device::SafetyState::disconnected ? std::nullopt
                                                                  : std::optional(state.standstill);
     };
+    figures.stopping = [&arm, &model = shown.model,
+                        report = shown.stopping]() -> std::optional<opcua_skill::StoppingFigures> {
+        const auto state = arm.state();
+        if (state.safety == device::SafetyState::disconnected) {
+            return std::nullopt;
+        }
+        const auto planned = report ? report->read() : std::nullopt;
+        const auto way = planned ? *planned : robot_skills::stoppingWayOf(state, model);
+        return opcua_skill::StoppingFigures{way.time.count(), way.distance};
+    };
     if (const auto* jitter = arm.cycleJitter()) {
         // Shared by the copies of the function.
         const auto mean =

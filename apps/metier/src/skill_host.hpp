@@ -68,6 +68,8 @@ public:
         const device::ForceTorqueSensor* sensor = nullptr;  ///< at its flange; must outlive this
         /// Shared with the arm's stream skill; null: it has none.
         std::shared_ptr<const robot_skills::StreamReport> stream{};
+        /// Shared with its moves; null: it has none of metier's.
+        std::shared_ptr<const robot_skills::StoppingReport> stopping{};
     };
     /// Shows what is known of the arm, and its live state.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const ShownArm& shown);

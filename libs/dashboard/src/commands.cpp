@@ -141,6 +141,8 @@ json checkJson(const skill::CheckReport& report) {
             {"code", report.possible ? "" : "refused"},
             {"message", report.reason},
             {"duration", rounded(report.planned_duration)},
+            {"stopping_time", rounded(report.stopping_time)},
+            {"stopping_distance", rounded(report.stopping_distance)},
             {"first_failing_fraction", report.first_failing_fraction},
             {"preview", std::move(preview)}};
 }

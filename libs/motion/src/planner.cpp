@@ -298,6 +298,23 @@ void synchronise(std::vector<Trajectory>& trajectories) {
     }
 }
 
+namespace {
+
+StoppingWay longestStop(const Trajectory& trajectory) {
+    constexpr int kPlaces = 200;
+    StoppingWay longest;
+    MotionExecution execution(trajectory);
+    for (int i = 0; i < kPlaces; ++i) {
+        execution.next(trajectory.duration() / kPlaces);
+        const auto way = execution.stoppingWay();
+        longest.time = std::max(longest.time, way.time);
+        longest.distance = std::max(longest.distance, way.distance);
+    }
+    return longest;
+}
+
+}  // namespace
+
 Feasibility assess(const Planned<Trajectory>& plan, std::size_t preview_points) {
     Feasibility result;
     if (!plan) {
@@ -305,6 +322,7 @@ Feasibility assess(const Planned<Trajectory>& plan, std::size_t preview_points) 
         return result;
     }
     result.duration = plan->duration();
+    result.longest_stop = longestStop(*plan);
     for (std::size_t i = 0; i < preview_points; ++i) {
         const double share = static_cast<double>(i) /
                              static_cast<double>(std::max<std::size_t>(preview_points, 2) - 1);

@@ -144,6 +144,19 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const NodeId& kinemat
         maker.live("Standstill", "True while the measured arm does not move.", nullptr,
                    ValueType::boolean, [read = figures.standstill] { return valueOf(read()); });
     }
+    if (figures.stopping) {
+        const auto part = [read = figures.stopping](auto StoppingFigures::*of) {
+            return [read, of] {
+                const auto now = read();
+                return now ? Value::of((*now).*of) : Value();
+            };
+        };
+        maker.live("StoppingTime",
+                   "Time in which the set-points would stand if the arm were halted now [s].",
+                   &skill::kSecond, ValueType::number, part(&StoppingFigures::time));
+        maker.live("StoppingDistance", "How far the tool frame would go meanwhile [m].",
+                   &skill::kMetre, ValueType::number, part(&StoppingFigures::distance));
+    }
     if (figures.cycle_jitter) {
         maker.live("CycleJitter",
                    "How far the time between two control cycles was off the period in the last "

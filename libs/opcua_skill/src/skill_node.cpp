@@ -400,7 +400,8 @@ Result<std::vector<Value>> SkillNode::check(const Session& session, std::span<co
     }
     return std::vector{Value::of(report.possible), Value::of(report.reason),
                        Value::of(report.first_failing_fraction), Value::of(report.planned_duration),
-                       Value::ofRows(report.joint_path)};
+                       Value::ofRows(report.joint_path), Value::of(report.stopping_time),
+                       Value::of(report.stopping_distance)};
 }
 
 Result<std::vector<Value>> SkillNode::getExecution(std::span<const Value> inputs) const {

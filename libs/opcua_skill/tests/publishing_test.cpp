@@ -214,16 +214,24 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
     std::atomic<bool> connected{true};
     const auto known = [&](auto value) { return connected ? std::optional(value) : std::nullopt; };
     ASSERT_TRUE(publishArmFigures(server().nodes(), system().kinematics,
-                                  {[=] {
-                                       return known(std::vector{0.5, -0.5});
-                                   },
-                                   [=] { return known(25e-6); },
-                                   [=] {
-                                       return known(FlangeWrench{{1, 2, 3}, {4, 5, 6}});
-                                   },
-                                   [] {
-                                       return StreamFigures{0.1, 0.2, -0.3, 4, 5};
-                                   }}));
+                                  {.commanded_joint_position =
+                                       [=] {
+                                           return known(std::vector{0.5, -0.5});
+                                       },
+                                   .standstill = [=] { return known(true); },
+                                   .stopping =
+                                       [=] {
+                                           return known(StoppingFigures{0.25, 0.02});
+                                       },
+                                   .cycle_jitter = [=] { return known(25e-6); },
+                                   .flange_wrench =
+                                       [=] {
+                                           return known(FlangeWrench{{1, 2, 3}, {4, 5, 6}});
+                                       },
+                                   .stream =
+                                       [] {
+                                           return StreamFigures{0.1, 0.2, -0.3, 4, 5};
+                                       }}));
     serve();
     const auto client = connect();
     const auto metier = client->namespaceIndex("urn:metier:skills").value();
@@ -238,6 +246,11 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
     };
     EXPECT_EQ(value({{metier, "CommandedJointPosition"}}).value(),
               opcua::Value::of(std::vector{0.5, -0.5}));
+    EXPECT_EQ(value({{metier, "Standstill"}}).value(), opcua::Value::of(true));
+    EXPECT_EQ(value({{metier, "StoppingTime"}}).value(), opcua::Value::of(0.25));
+    EXPECT_EQ(value({{metier, "StoppingDistance"}}).value(), opcua::Value::of(0.02));
+    EXPECT_EQ(unit("StoppingTime"), "s");
+    EXPECT_EQ(unit("StoppingDistance"), "m");
     EXPECT_EQ(value({{metier, "CycleJitter"}}).value(), opcua::Value::of(25e-6));
     EXPECT_EQ(value({{metier, "FlangeForce"}}).value(), opcua::Value::of(std::vector{1., 2., 3.}));
     EXPECT_EQ(value({{metier, "FlangeTorque"}}).value(), opcua::Value::of(std::vector{4., 5., 6.}));
@@ -257,7 +270,7 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
 
 TEST_F(Publishing, AnArmWithoutASensorHasNoVariablesOfOne) {
     ASSERT_TRUE(publishArmFigures(server().nodes(), system().kinematics,
-                                  {[] { return std::optional(std::vector{0.5}); }, {}, {}, {}}));
+                                  {.commanded_joint_position = [] { return std::optional(std::vector{0.5}); }}));
     serve();
     const auto client = connect();
     const auto metier = client->namespaceIndex("urn:metier:skills").value();

@@ -28,10 +28,12 @@ std::string_view nameOf(skill::Reason reason) {
 
 std::string jsonOf(const skill::CheckReport& report) {
     return fmt::format(
-        R"({{"possible":{},"reason":{},"first_failing_fraction":{},"planned_duration":{}}})",
+        R"({{"possible":{},"reason":{},"first_failing_fraction":{},"planned_duration":{},"stopping_time":{},"stopping_distance":{}}})",
         report.possible, skill::jsonText(report.reason),
         skill::jsonOf(skill::Value(report.first_failing_fraction)),
-        skill::jsonOf(skill::Value(report.planned_duration)));
+        skill::jsonOf(skill::Value(report.planned_duration)),
+        skill::jsonOf(skill::Value(report.stopping_time)),
+        skill::jsonOf(skill::Value(report.stopping_distance)));
 }
 
 /// Fewer than the history of a Program keeps, since one more may be under way.

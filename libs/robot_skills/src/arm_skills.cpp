@@ -34,15 +34,15 @@ Result<Skills> streamedMoves(const StreamedArm& arm) {
 }
 
 Result<Skills> makeMoves(const ArmFaces& faces, const StreamedArm& streamed) {
-    const auto& [arm, model, clock] = streamed;
+    const auto& [arm, model, clock, stopping] = streamed;
     if (faces.planner == nullptr) {
         auto moves = streamedMoves(streamed);
         if (moves && faces.sensor != nullptr) {
-            moves = with(std::move(*moves), makeForceMoveSkill({arm, *faces.sensor, model, clock}));
+            moves = with(std::move(*moves), makeForceMoveSkill({arm, *faces.sensor, model, clock, stopping}));
         }
         return moves;
     }
-    const PlanningArm planning{arm, *faces.planner, model, clock, faces.sensor};
+    const PlanningArm planning{arm, *faces.planner, model, clock, faces.sensor, stopping};
     auto moves = makePlannedMoveSkills(planning);
     if (!moves) {
         return moves;
@@ -71,6 +71,7 @@ Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel&
     }
     skills.position_stream = std::move(*position_stream);
     skills.stream_report = stream.report;
+    skills.stopping_report = streamed.stopping;
     return skills;
 }
 

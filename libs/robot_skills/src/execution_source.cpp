@@ -6,6 +6,7 @@ using device::EndCause;
 using skill::Reason;
 
 void ExecutionSource::ended(EndCause cause, const device::Safety& safety) {
+    released();
     attached_.store(false);
     switch (cause) {
         case EndCause::done:

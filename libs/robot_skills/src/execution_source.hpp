@@ -54,6 +54,8 @@ protected:
 private:
     /// Prepares next() to go on from rest.
     virtual void goOnFrom(const device::JointArray& from) = 0;
+    /// The arm has let go, for whatever cause. Notifying thread.
+    virtual void released() noexcept {}
     /// Tells how it ended after next() returned done. Notifying thread.
     virtual void tellDone(const skill::Execution& tell) = 0;
 

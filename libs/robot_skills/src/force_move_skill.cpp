@@ -110,7 +110,7 @@ Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
         return fail(std::move(limit.error()));
     }
     return makeStreamedBody(
-        {arm.arm, arm.model, arm.clock},
+        {arm.arm, arm.model, arm.clock, arm.stopping},
         {trajectory, Path::cartesian_line, parameters.start_time, parameters.stop_time,
          std::make_unique<SensorWatch>(arm, parameters, *limit)});
 }

@@ -26,6 +26,8 @@ skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan) {
         return report;
     }
     report.planned_duration = feasibility.duration.count();
+    report.stopping_time = feasibility.longest_stop.time.count();
+    report.stopping_distance = feasibility.longest_stop.distance;
     for (const auto& joints : feasibility.preview) {
         report.joint_path.emplace_back(joints.begin(), joints.end());
     }

@@ -23,6 +23,7 @@ MoveSource::MoveSource(Setup setup)
       cycle_(setup.info.cycleSeconds()),
       stop_time_(setup.stop_time),
       execution_(setup.trajectory),
+      stopping_(std::move(setup.stopping)),
       timetable_(setup.timetable),
       deviation_(setup.trajectory, setup.path),
       contact_(std::move(setup.contact)),
@@ -73,6 +74,7 @@ device::SetPointSource::Next MoveSource::next(const device::ArmState& state,
     const double step = timetable_.step(cycle_);
     in_motion_ += step;
     set_point = toArray(execution_.next(motion::Seconds(step)).position);
+    stopping_->note(execution_.stoppingWay());
     return Next::set_point;
 }
 
@@ -144,6 +146,10 @@ MoveResults MoveSource::results() const {
     results.motion_end_time = timetable_.lastTime();
     results.largest_lateness = timetable_.largestLateness();
     return results;
+}
+
+void MoveSource::released() noexcept {
+    stopping_->clear();
 }
 
 void MoveSource::tellDone(const skill::Execution& tell) {

@@ -6,6 +6,7 @@
 #include "execution_source.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
+#include "metier/robot_skills/stopping_report.hpp"
 #include "path_deviation.hpp"
 #include "settling.hpp"
 #include "timetable.hpp"
@@ -32,6 +33,8 @@ public:
         Timetable timetable;
         std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
         double stop_time = 0.0;                   ///< of a Suspend [s]; 0: as the limits have it
+        /// Where it reports how soon it would stand.
+        std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
     };
 
     explicit MoveSource(Setup setup);
@@ -43,6 +46,7 @@ private:
     enum class Outcome : std::uint8_t { none, finished, at_rest, in_contact, off_target, missed };
 
     void goOnFrom(const device::JointArray& from) override;
+    void released() noexcept override;
     void tellDone(const skill::Execution& tell) override;
 
     void obey() noexcept;
@@ -56,6 +60,7 @@ private:
     const double cycle_;      ///< [s]
     const double stop_time_;  ///< [s]
     motion::MotionExecution execution_;
+    const std::shared_ptr<StoppingReport> stopping_;
     Timetable timetable_;
     PathDeviationMeter deviation_;
     Settling settling_;

@@ -25,7 +25,7 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
         auto motion = plannedMotion({arm.model, trajectory, path, parameters});
         if (!motion) {
             return makeStreamedBody(
-                {arm.arm, arm.model, arm.clock},
+                {arm.arm, arm.model, arm.clock, arm.stopping},
                 {trajectory, path, parameters.start_time, parameters.stop_time});
         }
         auto move = std::make_shared<PlannedMove>(

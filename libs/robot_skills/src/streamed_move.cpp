@@ -11,7 +11,7 @@ namespace metier::robot_skills {
 std::unique_ptr<skill::Body> makeStreamedBody(const StreamedArm& arm, StreamedMove move) {
     auto source = std::make_shared<MoveSource>(MoveSource::Setup{
         arm.arm.info(), move.trajectory, move.path, Timetable(arm.clock, move.start_time),
-        std::move(move.contact), stopTimeFor(move.trajectory, arm.model, move.stop_time)});
+        std::move(move.contact), stopTimeFor(move.trajectory, arm.model, move.stop_time), arm.stopping});
     return std::make_unique<SourceBody>(arm.arm, std::move(source), toolDistance(move.trajectory));
 }
 

@@ -62,6 +62,7 @@ public:
                           .value();
         resource_ = skills.resource;
         stream_report_ = skills.stream_report;
+        stopping_report_ = skills.stopping_report;
         for (auto& move : skills.moves) {
             add(std::move(move));
         }
@@ -76,6 +77,8 @@ public:
     void destroyProgram(const std::string& name) { programs_.erase(name); }
     const skill::Caller& caller() const { return caller_; }
     StreamReport::Figures streamFigures() const { return stream_report_->figures(); }
+    /// What the moves report of how soon they would stand.
+    std::optional<motion::StoppingWay> stoppingWay() const { return stopping_report_->read(); }
 
     Result<void> write(const std::string& skill, const skill::ValueMap& values) {
         for (const auto& [name, value] : values) {
@@ -138,6 +141,7 @@ private:
     std::unique_ptr<virtual_robots::JointSimulator> arm_;
     std::shared_ptr<skill::Resource> resource_;
     std::shared_ptr<const StreamReport> stream_report_;  // shared with the skill that fills it
+    std::shared_ptr<const StoppingReport> stopping_report_;  // likewise
     std::map<std::string, std::unique_ptr<skill::Program>> programs_;
     skill::Caller caller_{"session", "client", "user"};
 };

@@ -32,6 +32,12 @@ struct StreamFigures {
     std::uint64_t dropped = 0;  ///< for a time that was not after that of the one before
 };
 
+/// How soon an arm would stand if it were halted now.
+struct StoppingFigures {
+    double time = 0.0;      ///< [s]
+    double distance = 0.0;  ///< of its tool frame [m]
+};
+
 /// An arm besides its KinematicsState. An empty function: the arm does not have it, and there is no
 /// Variable.
 struct ArmFigures {
@@ -39,6 +45,8 @@ struct ArmFigures {
     std::function<std::optional<std::vector<double>>()> commanded_joint_position{};
     /// Standstill: whether the measured arm stands.
     std::function<std::optional<bool>()> standstill{};
+    /// StoppingTime, StoppingDistance.
+    std::function<std::optional<StoppingFigures>()> stopping{};
     /// CycleJitter: how far cycles were off their period lately, in the mean [s].
     std::function<std::optional<double>()> cycle_jitter{};
     /// FlangeForce, FlangeTorque.

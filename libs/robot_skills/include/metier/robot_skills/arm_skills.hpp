@@ -9,6 +9,7 @@
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/robot_skills/position_stream_skill.hpp"
+#include "metier/robot_skills/stopping_report.hpp"
 #include "metier/skill/resource.hpp"
 #include "metier/skill/skill.hpp"
 
@@ -24,6 +25,8 @@ struct ArmSkills {
     std::unique_ptr<skill::Skill> position_stream;
     /// How well the set-points of position_stream come; shared with the skill.
     std::shared_ptr<const StreamReport> stream_report;
+    /// How soon the moves would stand; shared with them.
+    std::shared_ptr<const StoppingReport> stopping_report;
 };
 
 /// What there is of an arm; all must outlive its skills.

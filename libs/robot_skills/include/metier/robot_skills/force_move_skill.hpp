@@ -29,6 +29,8 @@ struct FeelingArm {
     device::ForceTorqueSensor& sensor;  ///< its axes are those of the flange frame
     const motion::RobotModel& model;
     const Clock& clock;
+    /// Where its moves report how soon they would stand; shared with whoever shows it.
+    std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
 };
 
 /// By any arm and a sensor: the force passes a low-pass of 20 Hz (motion::ForceLimit) and is

@@ -5,6 +5,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "metier/robot_skills/stopping_report.hpp"
 #include "metier/skill/skill.hpp"
 
 namespace metier::robot_skills {
@@ -14,6 +15,8 @@ struct StreamedArm {
     device::Arm& arm;
     const motion::RobotModel& model;
     const Clock& clock;
+    /// Where its moves report how soon they would stand; shared with whoever shows it.
+    std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
 };
 
 /// The moves of an arm. Each plans the whole motion at Start, from where the arm is commanded

@@ -8,6 +8,7 @@
 #include "metier/device/force_torque_sensor.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "metier/robot_skills/stopping_report.hpp"
 #include "metier/skill/skill.hpp"
 
 namespace metier::robot_skills {
@@ -21,6 +22,8 @@ struct PlanningArm {
     const Clock& clock;
     /// Watches the force of force moves that are streamed; nullptr: such moves are refused.
     device::ForceTorqueSensor* sensor = nullptr;
+    /// Where its moves report how soon they would stand; shared with whoever shows it.
+    std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
 };
 
 /// The four moves of makeCartesianPtpMoveSkill() and its like: the same names, parameters, checks

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "metier/device/arm.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/motion/execution.hpp"
+#include "metier/motion/robot_model.hpp"
+
+namespace metier::robot_skills {
+
+/// How soon an arm would stand on its path if it were halted now: time and way of the set-points,
+/// which the measured arm follows by the lag of its controller.
+///
+/// Threading: read() on any thread; the others on whichever thread has the source of the
+/// set-points, the cycle thread while it is attached. Nobody locks or allocates.
+class StoppingReport {
+public:
+    /// Of the motion that metier plans and runs now; nothing if none does.
+    std::optional<motion::StoppingWay> read() const noexcept {
+        const auto now = newest_.read();
+        return now.known ? std::optional(now.way) : std::nullopt;
+    }
+    void note(const motion::StoppingWay& way) noexcept { newest_.write({true, way}); }
+    void clear() noexcept { newest_.write({}); }
+
+private:
+    struct Newest {
+        bool known = false;
+        motion::StoppingWay way{};
+    };
+    device::SharedValue<Newest> newest_;
+};
+
+/// The same for an arm whose motion somebody else plans, from its measured velocity: each axis
+/// brakes with its own limits. The way is that of the flange.
+motion::StoppingWay stoppingWayOf(const device::ArmState& state, const motion::RobotModel& model);
+
+}  // namespace metier::robot_skills
