@@ -104,7 +104,7 @@ protected:
                                           : program(skill).suspend(caller_));
         EXPECT_TRUE(becomes(skill, rest)) << program(skill).reasonText();
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked;
-        EXPECT_LT(speed(), 1e-3);
+        EXPECT_LT(speed(), 5e-3) << "below this the driver takes the arm for standing";
         return took.count();
     }
 
