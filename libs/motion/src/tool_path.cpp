@@ -41,6 +41,21 @@ ToolDerivatives scaled(const ToolDerivatives& d, double length) noexcept {
     return {d.first * length, d.second * length * length, d.third * length * length * length};
 }
 
+/// Where a function of one minimum is least.
+template <typename Function>
+double leastBetween(double low, double high, const Function& function) noexcept {
+    constexpr int steps = 60;
+    for (int i = 0; i < steps && low < high; ++i) {
+        const double third = (high - low) / 3;
+        if (function(low + third) < function(high - third)) {
+            high -= third;
+        } else {
+            low += third;
+        }
+    }
+    return (low + high) / 2;
+}
+
 double share(const Vector3d& part, const Vector3d& whole) noexcept {
     return part.dot(whole) / whole.squaredNorm();
 }
@@ -126,6 +141,19 @@ const ToolPath::Piece& ToolPath::pieceAt(double length) const noexcept {
     return *(after - 1);
 }
 
+double ToolPath::wayOut(const Piece& corner, double along) noexcept {
+    return corner.length * fade(along / corner.length).integral;
+}
+
+double ToolPath::wayIn(const Piece& corner, double along) noexcept {
+    return along - wayOut(corner, along) - corner.length / 2;
+}
+
+Vector3d ToolPath::translationIn(const Piece& corner, double along) noexcept {
+    return corner.pose.translation + wayIn(corner, along) * corner.in.velocity +
+           wayOut(corner, along) * corner.out.velocity;
+}
+
 Pose ToolPath::at(double s) const noexcept {
     const double length = s * length_;
     const Piece& piece = pieceAt(length);
@@ -134,11 +162,11 @@ Pose ToolPath::at(double s) const noexcept {
         return {piece.pose.translation + along * piece.in.velocity,
                 geometry::fromRotationVector(along * piece.in.spin) * piece.pose.rotation};
     }
-    const double out = piece.length * fade(along / piece.length).integral;
-    const double in = along - out - piece.length / 2;
-    return {piece.pose.translation + in * piece.in.velocity + out * piece.out.velocity,
-            geometry::fromRotationVector(out * piece.out.spin) *
-                geometry::fromRotationVector(in * piece.in.spin) * piece.pose.rotation};
+    const double out = wayOut(piece, along);
+    const double in = wayIn(piece, along);
+    return {translationIn(piece, along), geometry::fromRotationVector(out * piece.out.spin) *
+                                             geometry::fromRotationVector(in * piece.in.spin) *
+                                             piece.pose.rotation};
 }
 
 ToolDerivatives ToolPath::translationAt(double s) const noexcept {
@@ -180,20 +208,30 @@ double ToolPath::nearestOn(const Piece& piece, const Pose& pose) const noexcept 
                   : share(geometry::rotationVectorBetween(piece.pose.rotation, pose.rotation),
                           piece.in.spin));
     }
-    const auto off = [&](double along) {
-        return geometry::distanceBetween(at(clamped(along)), pose);
-    };
-    double low = 0;
-    double high = piece.length;
-    for (int i = 0; i < 60; ++i) {
-        const double third = (high - low) / 3;
-        if (off(low + third) < off(high - third)) {
-            high -= third;
-        } else {
-            low += third;
+    return clamped(nearestInCorner(piece, pose.translation));
+}
+
+/// Far round a corner the path comes near its beginning again: each of its sections that could hold
+/// the nearest place is searched.
+double ToolPath::nearestInCorner(const Piece& piece, const Vector3d& point) noexcept {
+    constexpr int sections = 64;
+    const double section = piece.length / sections;
+    const double reach = section * std::max(piece.in.velocity.norm(), piece.out.velocity.norm());
+    const auto off = [&](double along) { return (translationIn(piece, along) - point).norm(); };
+    double best = 0;
+    double least = off(0);
+    double before = least;
+    for (int i = 0; i < sections; ++i) {
+        const double after = off((i + 1) * section);
+        if (std::min(before, after) - reach <= least) {
+            const double along = leastBetween(i * section, (i + 1) * section, off);
+            const double there = off(along);
+            best = there < least ? along : best;
+            least = std::min(least, there);
         }
+        before = after;
     }
-    return clamped((low + high) / 2);
+    return best;
 }
 
 /// A corner is searched, which takes time, only where the place could be nearer than on any line.

@@ -74,6 +74,11 @@ private:
     const Piece& pieceAt(double length) const noexcept;
     static Piece lineBetween(const geometry::Pose& start, const geometry::Pose& target);
     void appendLine(const geometry::Pose& start, const geometry::Pose& target);
+    /// Ways along both lines of a corner, from its point: the first one's is negative [m].
+    static double wayIn(const Piece& corner, double along) noexcept;
+    static double wayOut(const Piece& corner, double along) noexcept;
+    static Eigen::Vector3d translationIn(const Piece& corner, double along) noexcept;
+    static double nearestInCorner(const Piece& piece, const Eigen::Vector3d& point) noexcept;
     double nearestOn(const Piece& piece, const geometry::Pose& pose) const noexcept;
     /// No place of the piece is nearer than that [m].
     static double nearestPossible(const Piece& piece, const geometry::Pose& pose) noexcept;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "metier/geometry/rotation.hpp"
 #include "metier/motion/planner.hpp"
@@ -263,6 +264,33 @@ TEST(Synchronise, GivesEveryMotionTheDurationOfTheSlowest) {
     synchronise(motions);
     EXPECT_NEAR(motions[0].duration().count(), slowest.count(), 1e-9);
     EXPECT_NEAR(motions[1].duration().count(), slowest.count(), 1e-9);
+}
+
+TEST(BlendedPath, TheNearestPlaceOfOneOfItsOwnPosesIsThere) {
+    const RobotModel model = loadRobot("ur5e");
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> side(-0.05, 0.05);
+    int planned = 0;
+    for (int n = 0; n < scaled(100); ++n) {
+        PathRequest request;
+        request.lin.start = model.home();
+        request.lin.reference = TargetReference::relative_base;
+        for (int i = 0; i < 3; ++i) {
+            const Eigen::Vector3d line(side(random), side(random), side(random));
+            request.waypoints.push_back({{line, Eigen::Quaterniond::Identity()}, line.norm()});
+        }
+        for (std::size_t i = 0; i < 2; ++i) {
+            double& radius = request.waypoints[i].blend_radius;
+            radius = 0.499 * std::min(radius, request.waypoints[i + 1].blend_radius);
+        }
+        const auto plan = Planner(model).path(request);
+        planned += plan ? 1 : 0;
+        for (int i = 0; plan && i <= 100; ++i) {
+            ASSERT_LT(plan->deviation(plan->poseAt(i / 100.0)).distance, 1e-9)
+                << "path " << n << ", place " << i;
+        }
+    }
+    EXPECT_GT(planned, scaled(75));
 }
 
 }  // namespace
