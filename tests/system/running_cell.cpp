@@ -1,6 +1,5 @@
 #include "running_cell.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -45,7 +44,7 @@ nlohmann::json askControlPort(const std::string& address, const nlohmann::json& 
 }  // namespace
 
 RunningCell::RunningCell(const std::filesystem::path& file, const std::vector<std::string>& more)
-    : endpoints_(std::filesystem::path(::testing::TempDir()) /
+    : endpoints_(std::filesystem::temp_directory_path() /
                  ("endpoints_" + std::to_string(getpid()) + ".json")),
       process_(startUp(file, endpoints_, more)) {
     for (std::string line; line != kUp;) {
