@@ -59,13 +59,27 @@ Result<std::unique_ptr<ServerAccess>> ServerAccess::open(opcua::Credentials own,
 ServerAccess::ServerAccess(opcua::Credentials own, trust::SecurityFolder folder,
                            trust::LoginGuard logins, trust::TrustStore store)
     : own_(std::move(own)),
+      identity_folder_(own_.identity_folder),
       folder_(std::move(folder)),
       logins_(std::move(logins)),
       store_(std::move(store)),
-      seen_(latestChange(folder_)),
-      keeper_([this](const std::stop_token& stop) { keepRefused(stop); }) {}
+      keeper_([this](const std::stop_token& stop) { keepRefused(stop); }),
+      folder_now_(read(), [this](const auto& /*last*/) { return read(); }) {
+    seen_ = folder_now_.get()->latest_change;
+}
 
 ServerAccess::~ServerAccess() = default;
+
+std::shared_ptr<const ServerAccess::Folder> ServerAccess::read() const {
+    return std::make_shared<Folder>(
+        Folder{trust::loadIdentity(identity_folder_), folder_.roles(), latestChange(folder_)});
+}
+
+std::optional<trust::Role> ServerAccess::roleOf(const std::string& thumbprint) {
+    const auto now = folder_now_.get();
+    const auto role = now->roles.find(thumbprint);
+    return role == now->roles.end() ? std::nullopt : std::optional(role->second);
+}
 
 opcua::ServerSecurity ServerAccess::security() {
     return {.credentials = own_,
@@ -84,7 +98,7 @@ Result<opcua::Admission> ServerAccess::authenticate(const opcua::Login& login) {
                          login.thumbprint));
     if (!login.user.empty()) {
         role = logins_.check(login.user, login.password, login.thumbprint);
-    } else if (const auto own = folder_.roleOf(login.thumbprint)) {
+    } else if (const auto own = roleOf(login.thumbprint)) {
         role = *own;
     }
     if (!role) {
@@ -130,18 +144,17 @@ void ServerAccess::keepRefused(const std::stop_token& stop) {
 }
 
 void ServerAccess::look(opcua::Server& server) {
-    takeRenewed(server);
+    const auto folder = folder_now_.get();
+    takeRenewed(server, folder->identity);
     warnOfEnd();
-    const auto latest = latestChange(folder_);
-    if (latest != seen_) {
-        seen_ = latest;
+    if (folder->latest_change != seen_) {
+        seen_ = folder->latest_change;
         closeStrangers(server);
     }
     timer_ = server.after(kLookEvery, [this, &server] { look(server); });
 }
 
-void ServerAccess::takeRenewed(opcua::Server& server) {
-    const auto present = trust::loadIdentity(own_.identity_folder);
+void ServerAccess::takeRenewed(opcua::Server& server, const Result<trust::Identity>& present) {
     if (!present) {
         if (unread_ != present.error().message) {
             unread_ = present.error().message;
@@ -194,7 +207,7 @@ std::optional<trust::Role> ServerAccess::roleNow(const std::string& user,
     if (!isTrustedStill(thumbprint)) {
         return std::nullopt;
     }
-    return user.empty() ? folder_.roleOf(thumbprint) : logins_.roleOf(user);
+    return user.empty() ? roleOf(thumbprint) : logins_.roleOf(user);
 }
 
 void ServerAccess::closeStrangers(opcua::Server& server) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "metier/base/background_read.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/security.hpp"
@@ -25,8 +26,8 @@ namespace metier::app {
 /// folder, if any. What changes there holds within seconds: sessions of applications that are
 /// trusted no more, and of users who are gone or have another role, are closed; the server goes on
 /// with a renewed certificate, and warns before its own ends.
-/// Threading: between open() and the end of the server, the server's thread; a thread of its own
-/// writes files.
+/// Threading: between open() and the end of the server, the server's thread, which does not wait
+/// for a disk; threads of its own read and write files.
 class ServerAccess {
 public:
     /// \param clock must outlive this
@@ -49,13 +50,23 @@ private:
     std::optional<trust::Role> roleNow(const std::string& user, const std::string& thumbprint);
     void noteRefused(const opcua::RefusedPeer& peer);
     void look(opcua::Server& server);
-    void takeRenewed(opcua::Server& server);
+    void takeRenewed(opcua::Server& server, const Result<trust::Identity>& present);
     void warnOfEnd();
     void closeStrangers(opcua::Server& server);
     void keepRefused(const std::stop_token& stop);
 
+    /// What the folder holds besides users and trust.
+    struct Folder {
+        Result<trust::Identity> identity;
+        std::map<std::string, trust::Role> roles;         ///< by thumbprint
+        std::filesystem::file_time_type latest_change{};  ///< of what decides on rights
+    };
+    std::shared_ptr<const Folder> read() const;
+    std::optional<trust::Role> roleOf(const std::string& thumbprint);
+
     opcua::Credentials own_;
-    trust::SecurityFolder folder_;
+    const std::filesystem::path identity_folder_;
+    const trust::SecurityFolder folder_;
     trust::LoginGuard logins_;
     trust::TrustStore store_;
     std::map<std::string, std::string> let_in_;  // DER of applications by thumbprint
@@ -68,6 +79,7 @@ private:
     std::condition_variable_any wake_;
     std::deque<trust::Certificate> refused_;
     std::jthread keeper_;
+    BackgroundRead<Folder> folder_now_;  // last: its thread uses both folders
 };
 
 /// Makes a server of this process closed, under the ApplicationUri of its certificate; in an

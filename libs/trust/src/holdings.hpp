@@ -25,6 +25,8 @@ std::vector<Certificate> certificatesIn(const std::filesystem::path& folder);
 
 /// What the folders hold when they are looked at.
 struct TrustStore::Holdings {
+    /// Nothing, of no folder: never current.
+    Holdings() = default;
     explicit Holdings(const std::filesystem::path& folder);
 
     /// Whether nothing was added, renamed or removed since.
@@ -38,8 +40,8 @@ struct TrustStore::Holdings {
     }
 
     std::filesystem::path folder;
-    std::array<std::filesystem::file_time_type, 4> changed;
-    std::filesystem::file_time_type looked;
+    std::array<std::filesystem::file_time_type, 4> changed{};
+    std::filesystem::file_time_type looked{};
     std::vector<Certificate> trusted;
     std::vector<Certificate> issuers;
     std::vector<CrlPtr> lists;

@@ -36,43 +36,44 @@ const std::string& hashOfNobody() {
 }  // namespace
 
 Result<LoginGuard> LoginGuard::open(std::filesystem::path file, const Clock& clock) {
+    const auto changed = changeOf(file);
     auto users = UserTable::load(file);
     if (!users) {
         return fail(users.error());
     }
-    return LoginGuard(std::move(file), clock, std::move(*users));
+    return LoginGuard(file, clock, {std::move(*users), changed});
 }
 
-LoginGuard::LoginGuard(std::filesystem::path file, const Clock& clock, UserTable users)
-    : file_(std::move(file)), clock_(&clock), users_(std::move(users)), read_(changeOf(file_)) {}
-
-void LoginGuard::reload() {
-    const auto changed = changeOf(file_);
-    if (changed == read_) {
-        return;
-    }
-    read_ = changed;
-    auto users = UserTable::load(file_);
-    if (users) {
-        users_ = std::move(*users);
-    } else {
-        spdlog::error("the users of before stay: {}", users.error().message);
-    }
+LoginGuard::LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users)
+    : clock_(&clock) {
+    using Kept = std::shared_ptr<const Users>;
+    users_ = std::make_unique<BackgroundRead<Users>>(
+        std::make_shared<Users>(std::move(users)), [file](const Kept& last) -> Kept {
+            const auto changed = changeOf(file);
+            if (changed == last->changed) {
+                return last;
+            }
+            auto table = UserTable::load(file);
+            if (!table) {
+                spdlog::error("the users of before stay: {}", table.error().message);
+            }
+            return std::make_shared<Users>(Users{table ? std::move(*table) : last->table, changed});
+        });
 }
 
 Result<Role> LoginGuard::check(const std::string& user, const std::string& password,
                                const std::string& thumbprint) {
-    reload();
+    const auto users = users_->get();
     const Who who{user.substr(0, kLongestName), thumbprint};
     if (auto free = checkBar(who); !free) {
         return fail(free.error());
     }
-    const auto* known = users_.find(user);
+    const auto* known = users->table.find(user);
     const bool right = isPassword(password, known ? known->password_hash : hashOfNobody());
     if (known == nullptr || !right) {
         const Who application{"", thumbprint};  // no user has that name
-        noteFailure(who, freeAttempts(application));
-        noteFailure(application, std::numeric_limits<int>::max());
+        noteFailure(who, freeAttempts(application), users->table);
+        noteFailure(application, std::numeric_limits<int>::max(), users->table);
         return fail(Errc::access_denied, "unknown user or wrong password");
     }
     failures_.erase(who);
@@ -80,8 +81,8 @@ Result<Role> LoginGuard::check(const std::string& user, const std::string& passw
 }
 
 std::optional<Role> LoginGuard::roleOf(const std::string& user) {
-    reload();
-    const auto* known = users_.find(user);
+    const auto users = users_->get();
+    const auto* known = users->table.find(user);
     return known == nullptr ? std::nullopt : std::optional(known->role);
 }
 
@@ -97,10 +98,10 @@ Result<void> LoginGuard::checkBar(const Who& who) const {
 }
 
 /// A name that nobody has goes first: guesses at others stay counted whatever is made up.
-void LoginGuard::forgetOne() {
-    const auto isLess = [this](const auto& left, const auto& right) {
-        const auto isKept = [this](const std::string& user) {
-            return user.empty() || users_.find(user) != nullptr;
+void LoginGuard::forgetOne(const UserTable& users) {
+    const auto isLess = [&](const auto& left, const auto& right) {
+        const auto isKept = [&](const std::string& user) {
+            return user.empty() || users.find(user) != nullptr;
         };
         const bool known_left = isKept(left.first.first);
         const bool known_right = isKept(right.first.first);
@@ -121,9 +122,9 @@ int LoginGuard::freeAttempts(const Who& application) {
                                                                                  : 1;
 }
 
-void LoginGuard::noteFailure(const Who& who, int free_attempts) {
+void LoginGuard::noteFailure(const Who& who, int free_attempts, const UserTable& users) {
     if (failures_.size() >= kMostRemembered && failures_.find(who) == failures_.end()) {
-        forgetOne();
+        forgetOne(users);
     }
     auto& failures = failures_[who];
     ++failures.count;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "holdings.hpp"
 #include "openssl.hpp"
 #include "private_file.hpp"
 
@@ -136,6 +137,17 @@ std::optional<Role> SecurityFolder::roleOf(std::string_view thumbprint) const {
         text.pop_back();
     }
     return roleNamed(text);
+}
+
+std::map<std::string, Role> SecurityFolder::roles() const {
+    std::map<std::string, Role> roles;
+    for (const auto& file : filesIn(folder_ / "roles")) {
+        const auto thumbprint = file.filename().string();
+        if (const auto role = roleOf(thumbprint)) {
+            roles.emplace(thumbprint, *role);
+        }
+    }
+    return roles;
 }
 
 Result<void> SecurityFolder::setRole(const Certificate& certificate, std::optional<Role> role) {

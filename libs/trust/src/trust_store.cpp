@@ -98,17 +98,21 @@ tl::expected<Certificate, CertificateRefusal> TrustStore::check(std::string_view
         return tl::unexpected(
             CertificateRefusal{RefusalKind::malformed, certificate.error().message});
     }
-    if (auto verdict = checkCertificate(*certificate, holdings(), now); !verdict) {
+    if (auto verdict = checkCertificate(*certificate, *holdings(), now); !verdict) {
         return tl::unexpected(std::move(verdict.error()));
     }
     return std::move(*certificate);
 }
 
-const TrustStore::Holdings& TrustStore::holdings() {
-    if (holdings_ == nullptr || !holdings_->isCurrent()) {
-        holdings_ = std::make_unique<Holdings>(folder_);
+std::shared_ptr<const TrustStore::Holdings> TrustStore::holdings() {
+    using Kept = std::shared_ptr<const Holdings>;
+    if (holdings_ == nullptr) {
+        holdings_ = std::make_unique<BackgroundRead<Holdings>>(
+            std::make_shared<Holdings>(), [folder = folder_](const Kept& last) -> Kept {
+                return last->isCurrent() ? last : std::make_shared<Holdings>(folder);
+            });
     }
-    return *holdings_;
+    return holdings_->get();
 }
 
 void TrustStore::keepRejected(const Certificate& certificate) const {

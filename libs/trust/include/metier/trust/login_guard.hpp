@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "metier/base/background_read.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/trust/users.hpp"
@@ -20,7 +22,8 @@ namespace metier::trust {
 /// by itself: somebody who guesses cannot lock out other users of the same application, such as of
 /// the page of a cell, nor those who use others. After twenty wrong passwords from one application
 /// for whatever users, the last within ten minutes, the first wrong one for a user is enough.
-/// The file of users is read again when it has changed.
+/// The file of users is read again when it has changed; while a disk hangs, the users of before are
+/// let in.
 /// Threading: one thread.
 class LoginGuard {
 public:
@@ -45,17 +48,19 @@ private:
     };
     using Who = std::pair<std::string, std::string>;
 
-    LoginGuard(std::filesystem::path file, const Clock& clock, UserTable users);
-    void reload();
-    void noteFailure(const Who& who, int free_attempts);
+    struct Users {
+        UserTable table;
+        std::filesystem::file_time_type changed{};
+    };
+
+    LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users);
+    void noteFailure(const Who& who, int free_attempts, const UserTable& users);
     int freeAttempts(const Who& application);
-    void forgetOne();
+    void forgetOne(const UserTable& users);
     Result<void> checkBar(const Who& who) const;
 
-    std::filesystem::path file_;
     const Clock* clock_;
-    UserTable users_;
-    std::filesystem::file_time_type read_;
+    std::unique_ptr<BackgroundRead<Users>> users_;
     std::map<Who, Failures> failures_;
 };
 

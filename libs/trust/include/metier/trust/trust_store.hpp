@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "metier/base/background_read.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/trust/certificate.hpp"
@@ -45,8 +46,8 @@ public:
     TrustStore(TrustStore&& other) noexcept;
     TrustStore& operator=(TrustStore&& other) noexcept;
 
-    /// Whether to talk to whoever presents this, in DER, perhaps with its chain. Reads the folders
-    /// only if they have changed, and writes nothing.
+    /// Whether to talk to whoever presents this, in DER, perhaps with its chain. Does not wait for
+    /// a disk that hangs: what the folders held before is what counts then.
     tl::expected<Certificate, CertificateRefusal> check(std::string_view der, UtcTime now);
     /// Keeps one that was refused, for somebody to decide on; the latest 100. Writes a file.
     void keepRejected(const Certificate& certificate) const;
@@ -73,10 +74,10 @@ public:
 
 private:
     explicit TrustStore(std::filesystem::path folder);
-    const Holdings& holdings();
+    std::shared_ptr<const Holdings> holdings();
 
     std::filesystem::path folder_;
-    std::unique_ptr<Holdings> holdings_;  // as of the last look
+    std::unique_ptr<BackgroundRead<Holdings>> holdings_;  // from the first check on
 };
 
 }  // namespace metier::trust
