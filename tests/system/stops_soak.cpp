@@ -1,10 +1,10 @@
 // How long arms take to stand after Halt and Suspend, by the clock of a client in another process.
 //
-// metier_stops_soak [STOPS] [ARM...]: moves of random length and pace of arms on their makers' wires
-// (ur5, iiwa, edo), and of the UR5 over a move component (component), stopped at random points. The
-// server's StoppingTime, read just before, is what a Halt of the set-points needs; what comes on top
-// is the way of the request and of the event, the controller's lag, and for a component the
-// play-out of the stream. Prints median, 99th percentile and largest of both.
+// metier_stops_soak [STOPS] [ARM...]: moves of random length and pace of arms on their makers'
+// wires (ur5, iiwa, edo), and of the UR5 over a move component (component), stopped at random
+// points. The server's StoppingTime, read just before, is what a Halt of the set-points needs; what
+// comes on top is the way of the request and of the event, the controller's lag, and for a
+// component the play-out of the stream. Prints median, 99th percentile and largest of both.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ std::filesystem::path cellOf(const std::string& arm) {
 void print(const std::string& name, std::vector<double> seconds) {
     std::sort(seconds.begin(), seconds.end());
     const auto at = [&](double share) {
-        return 1e3 * seconds[static_cast<std::size_t>(share *
-                                                      static_cast<double>(seconds.size() - 1))];
+        return 1e3 *
+               seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1))];
     };
     fmt::print("{:<28} p50 {:7.1f} ms   p99 {:7.1f} ms   max {:7.1f} ms   ({} stops)\n", name,
                at(0.5), at(0.99), at(1.0), seconds.size());
@@ -91,7 +91,8 @@ private:
         away_ = !away_;
         const auto id = fmt::format("stop-{}", stop);
         const auto from = jointPosition(move_.client(), *move_);
-        if (const auto started = move_->startWith({.execution_id = id, .parameters = parameters(away_)});
+        if (const auto started =
+                move_->startWith({.execution_id = id, .parameters = parameters(away_)});
             !started) {
             throw std::runtime_error(started.error().message);
         }

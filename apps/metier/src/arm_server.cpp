@@ -138,11 +138,10 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
         }
     }
     // A controller that measures the wrench itself needs no sensor in the cell file.
-    return host_->publishArm(
-        *system,
-        {*device_.arm, model_, config.arm.payload,
-         sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor, stream_report_,
-         stopping_report_});
+    return host_->publishArm(*system,
+                             {*device_.arm, model_, config.arm.payload,
+                              sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor,
+                              stream_report_, stopping_report_});
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,

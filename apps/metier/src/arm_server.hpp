@@ -33,7 +33,7 @@ private:
     std::unique_ptr<const motion::RobotModel> file_model_;  // outlives the device, which reads it
     driver::OpenDevice device_;
     std::optional<driver::OpenDevice> sensor_;
-    std::shared_ptr<const robot_skills::StreamReport> stream_report_;  // shared with the skill
+    std::shared_ptr<const robot_skills::StreamReport> stream_report_;      // shared with the skill
     std::shared_ptr<const robot_skills::StoppingReport> stopping_report_;  // shared with the moves
     const motion::RobotModel& model_;  // as the controller describes the robot, else of the file
     std::unique_ptr<SkillHost> host_;  // ends before the device

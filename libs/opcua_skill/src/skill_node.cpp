@@ -398,9 +398,12 @@ Result<std::vector<Value>> SkillNode::check(const Session& session, std::span<co
         report.reason = given.error().message;
         report.first_failing_fraction = 0.0;
     }
-    return std::vector{Value::of(report.possible), Value::of(report.reason),
-                       Value::of(report.first_failing_fraction), Value::of(report.planned_duration),
-                       Value::ofRows(report.joint_path), Value::of(report.stopping_time),
+    return std::vector{Value::of(report.possible),
+                       Value::of(report.reason),
+                       Value::of(report.first_failing_fraction),
+                       Value::of(report.planned_duration),
+                       Value::ofRows(report.joint_path),
+                       Value::of(report.stopping_time),
                        Value::of(report.stopping_distance)};
 }
 

@@ -269,8 +269,9 @@ TEST_F(Publishing, AnArmsFiguresTellTheirUnits) {
 }
 
 TEST_F(Publishing, AnArmWithoutASensorHasNoVariablesOfOne) {
-    ASSERT_TRUE(publishArmFigures(server().nodes(), system().kinematics,
-                                  {.commanded_joint_position = [] { return std::optional(std::vector{0.5}); }}));
+    ASSERT_TRUE(publishArmFigures(
+        server().nodes(), system().kinematics,
+        {.commanded_joint_position = [] { return std::optional(std::vector{0.5}); }}));
     serve();
     const auto client = connect();
     const auto metier = client->namespaceIndex("urn:metier:skills").value();

@@ -25,9 +25,9 @@ class StreamSession {
 public:
     /// What the server told last.
     struct Observed {
-        device::JointArray position;  ///< measured [rad]; empty before the first
-        SteadyTime sampled{};         ///< when `position` came
-        SteadyTime moved{};           ///< when the measured arm was last seen in motion
+        device::JointArray position;     ///< measured [rad]; empty before the first
+        SteadyTime sampled{};            ///< when `position` came
+        SteadyTime moved{};              ///< when the measured arm was last seen in motion
         std::optional<bool> standstill;  ///< as the server judges; nothing if it does not tell
         device::SafetyState safety = device::SafetyState::normal;
         SteadyTime safety_since{};  ///< when `safety` became what it is

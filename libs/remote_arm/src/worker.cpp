@@ -20,9 +20,9 @@ constexpr auto kResetWait = 2s;
 constexpr auto kLongestSilence = 100ms;
 // How long a stream may take to be Ready again after its last set-point.
 constexpr auto kLongestEnding = 2s;
-// Where the server does not tell it, the arm stands without a change of the measured position for so
-// long: the shorter time where it is at its last set-point, the longer one elsewhere, since news of
-// its motion may be late.
+// Where the server does not tell it, the arm stands without a change of the measured position for
+// so long: the shorter time where it is at its last set-point, the longer one elsewhere, since news
+// of its motion may be late.
 constexpr auto kStandstillAtTarget = 60ms;
 constexpr auto kStandstill = 300ms;
 // How near its last set-point an arm is there [rad].

@@ -38,7 +38,8 @@ Result<Skills> makeMoves(const ArmFaces& faces, const StreamedArm& streamed) {
     if (faces.planner == nullptr) {
         auto moves = streamedMoves(streamed);
         if (moves && faces.sensor != nullptr) {
-            moves = with(std::move(*moves), makeForceMoveSkill({arm, *faces.sensor, model, clock, stopping}));
+            moves = with(std::move(*moves),
+                         makeForceMoveSkill({arm, *faces.sensor, model, clock, stopping}));
         }
         return moves;
     }

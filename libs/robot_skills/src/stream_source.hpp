@@ -97,8 +97,8 @@ private:
     // Since the stream began, or began anew after a rest.
     std::uint64_t cycles_ = 0;
     std::optional<StreamedPosition> last_;
-    double speed_ = 0.0;    ///< of the stream in its fastest axis [rad/s]
-    double silence_ = 0.0;  ///< since the last set-point [s]
+    double speed_ = 0.0;      ///< of the stream in its fastest axis [rad/s]
+    double silence_ = 0.0;    ///< since the last set-point [s]
     bool finishing_ = false;  ///< that was the last set-point
     std::uint64_t set_points_ = 0;
     std::uint64_t missed_cycles_ = 0;

@@ -140,7 +140,7 @@ private:
     std::shared_ptr<skill::testing::ManualExecutor> executor_;
     std::unique_ptr<virtual_robots::JointSimulator> arm_;
     std::shared_ptr<skill::Resource> resource_;
-    std::shared_ptr<const StreamReport> stream_report_;  // shared with the skill that fills it
+    std::shared_ptr<const StreamReport> stream_report_;      // shared with the skill that fills it
     std::shared_ptr<const StoppingReport> stopping_report_;  // likewise
     std::map<std::string, std::unique_ptr<skill::Program>> programs_;
     skill::Caller caller_{"session", "client", "user"};

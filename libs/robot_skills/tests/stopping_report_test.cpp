@@ -83,8 +83,8 @@ TEST(StoppingWay, OfAMeasuredVelocityIsThatOfTheSlowestAxis) {
                 1e-12);
     EXPECT_GT(way.distance, 0.0);
     state.velocity[0] = 0.0;
-    EXPECT_NEAR(stoppingWayOf(state, model).time.count(), 2 * std::sqrt(1e-4 / model.limits(1).jerk),
-                1e-12);
+    EXPECT_NEAR(stoppingWayOf(state, model).time.count(),
+                2 * std::sqrt(1e-4 / model.limits(1).jerk), 1e-12);
     state.standstill = true;
     EXPECT_EQ(stoppingWayOf(state, model).time.count(), 0.0);
 }

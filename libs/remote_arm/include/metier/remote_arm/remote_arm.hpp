@@ -22,8 +22,8 @@ struct RemoteArmOptions {
 /// An arm behind another OPC UA server: its set-points go out as the position stream of that
 /// server, each with the time it is meant for, one per cycle of the arm.
 ///
-/// Each motion is a stream of its own, and is told its end when the stream has ended: then the arm is
-/// free for other skills of its server. A server whose stream does not know EndOfStream ends it
+/// Each motion is a stream of its own, and is told its end when the stream has ended: then the arm
+/// is free for other skills of its server. A server whose stream does not know EndOfStream ends it
 /// by silence, half a second later. Its loss, a lost connection, and every
 /// safety state but normal end the motion; the server's arm brakes by itself then. A lost server
 /// is sought again until it is back. Should it tell of another arm then, or of other limits, the

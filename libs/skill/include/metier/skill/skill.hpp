@@ -35,8 +35,8 @@ struct CheckReport {
     std::string reason{};                 ///< why not, with value, limit and unit
     double first_failing_fraction = 1.0;  ///< of the path, 0 to 1; 1 if nothing fails
     double planned_duration = 0.0;        ///< [s]; 0 if the skill cannot tell
-    /// Most that a Halt would need until the set-points stand, at any time of the motion [s], and how
-    /// far the tool frame goes meanwhile [m]; 0 if the skill cannot tell.
+    /// Most that a Halt would need until the set-points stand, at any time of the motion [s], and
+    /// how far the tool frame goes meanwhile [m]; 0 if the skill cannot tell.
     double stopping_time = 0.0;
     double stopping_distance = 0.0;
     /// Joint positions along the path, one row per sample [rad]; empty if the skill moves no arm.
