@@ -138,7 +138,8 @@ TEST_F(RecordedProgram, TellsWhatCheckSaidOfTheSameValuesToTheSameSession) {
     ASSERT_TRUE(program->startWith(kAlice, {.parameters = {{"Speed", 0.25}}}));
     executor->run();
     EXPECT_EQ(only().check,
-              R"({"possible":true,"reason":"","first_failing_fraction":1,"planned_duration":0})");
+              R"({"possible":true,"reason":"","first_failing_fraction":1,"planned_duration":0,)"
+              R"("stopping_time":0,"stopping_distance":0})");
 }
 
 TEST_F(RecordedProgram, TellsNothingOfACheckOfOtherValuesOrAnotherSession) {
