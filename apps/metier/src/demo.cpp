@@ -8,7 +8,7 @@
 
 #include "cell_runner.hpp"
 #include "commands.hpp"
-#include "machine_load.hpp"
+#include "metier/base/wake_up_delay.hpp"
 #include "pick_place_command.hpp"
 #include "security.hpp"
 #include "square_command.hpp"
@@ -18,8 +18,13 @@ namespace metier::app {
 namespace {
 
 constexpr int kNoDescriptor = -1;
-// The cells are virtual, and nobody is near: what a busy machine let fail is tried again.
-constexpr int kSecondTries = 2;
+
+/// What a busy machine let fail is tried again, but never where a real robot would move by itself
+/// after a stop.
+int secondTries(const configuration::CellConfig& cell) {
+    constexpr int kOfVirtualCells = 2;
+    return cell.isVirtual() ? kOfVirtualCells : 0;
+}
 
 struct DemoOptions {
     std::string cell;
@@ -42,16 +47,30 @@ void waitForEnter(CellRunner& cell) {
                    [](const std::string& text) { fmt::print(stderr, "metier: {}\n", text); });
 }
 
-Result<CellRunner> startCell(const std::string& file, const DemoOptions& options) {
-    const auto config = configuration::loadCell(file);
-    if (!config) {
-        return fail(config.error());
+/// A cell that runs.
+struct DemoCell {
+    CellRunner servers;
+    int second_tries = 0;
+};
+
+/// Says what is wrong unless it runs.
+tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOptions& options) {
+    const auto cell = configuration::loadCell(file);
+    if (!cell) {
+        return tl::unexpected(cell.error().code == Errc::invalid_argument
+                                  ? reportUsage(cell.error())
+                                  : report(cell.error()));
     }
-    fmt::print(stderr, "the servers of the cell '{}':\n", config->name);
+    fmt::print(stderr, "the servers of the cell '{}':\n", cell->name);
     const auto ports = options.free_ports ? Ports::free : Ports::configured;
-    return CellRunner::start(*config, ports, kNoDescriptor, [](const CellRunner::Running& server) {
-        fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
-    });
+    auto started =
+        CellRunner::start(*cell, ports, kNoDescriptor, [](const CellRunner::Running& server) {
+            fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
+        });
+    if (!started) {
+        return tl::unexpected(report(started.error()));
+    }
+    return DemoCell{std::move(*started), secondTries(*cell)};
 }
 
 std::vector<std::string> addressesOf(const CellRunner& cell) {
@@ -64,30 +83,31 @@ std::vector<std::string> addressesOf(const CellRunner& cell) {
 
 /// Says so if something failed because others have the processors of this machine.
 /// \return whether it was that
-bool tellTooSlow(Exit exit, MachineLoad& load) {
-    const auto latest = load.takeLatest();
-    if (exit == Exit::success || latest < MachineLoad::kTooLate) {
+bool tellTooSlow(Exit exit, WakeUpDelay& delay) {
+    constexpr std::chrono::milliseconds kTooLate{100};
+    const std::chrono::nanoseconds longest = delay.takeLongest();
+    if (exit == Exit::success || longest < kTooLate) {
         return false;
     }
     fmt::print(stderr,
                "metier: this machine is too slow for all of it: a thread woke up {:.2f} s late, "
                "0.10 s is too much for these controllers; the demo goes on\n",
-               std::chrono::duration<double>(latest).count());
+               std::chrono::duration<double>(longest).count());
     return true;
 }
 
 /// Parts in a second cell.
-Exit runPickAndPlace(const DemoOptions& options, std::optional<CellRunner>& cell,
-                     MachineLoad& load) {
+Exit runPickAndPlace(const DemoOptions& options, std::optional<DemoCell>& cell,
+                     WakeUpDelay& delay) {
     auto started = startCell(options.pick_and_place, options);
     if (!started) {
-        return report(started.error());
+        return started.error();
     }
     cell.emplace(std::move(*started));
     PickPlaceSettings settings;
-    settings.second_tries = kSecondTries;
-    const auto exit = pickAndPlace(addressesOf(*cell), settings);
-    tellTooSlow(exit, load);
+    settings.second_tries = cell->second_tries;
+    const auto exit = pickAndPlace(addressesOf(cell->servers), settings);
+    tellTooSlow(exit, delay);
     return exit;
 }
 
@@ -99,25 +119,24 @@ Exit runDemo(const DemoOptions& options) {
     }
     auto started = startCell(options.cell, options);
     if (!started) {
-        return started.error().code == Errc::invalid_argument ? reportUsage(started.error())
-                                                              : report(started.error());
+        return started.error();
     }
-    std::optional<CellRunner> cell(std::move(*started));
-    MachineLoad load;
+    std::optional<DemoCell> cell(std::move(*started));
+    WakeUpDelay delay;
     auto settings = options.settings;
-    settings.second_tries = kSecondTries;
-    auto exit = moveAlongSquares(addressesOf(*cell), settings, options.output);
-    const bool go_on = tellTooSlow(exit, load) || exit == Exit::success;
-    std::optional<CellRunner> second;
+    settings.second_tries = cell->second_tries;
+    auto exit = moveAlongSquares(addressesOf(cell->servers), settings, options.output);
+    const bool go_on = tellTooSlow(exit, delay) || exit == Exit::success;
+    std::optional<DemoCell> second;
     if (go_on && !options.pick_and_place.empty()) {
         if (options.headless) {
             cell.reset();
         }
-        const auto parts = runPickAndPlace(options, second, load);
+        const auto parts = runPickAndPlace(options, second, delay);
         exit = exit == Exit::success ? parts : exit;
     }
     if (!options.headless) {
-        waitForEnter(*cell);
+        waitForEnter(cell->servers);
     }
     return exit;
 }
@@ -137,9 +156,9 @@ void addDemo(CLI::App& app, Exit& exit) {
     command->add_option("--pick-and-place", options->pick_and_place,
                         "Then a cell whose PickPlaceSkills move ten parts each");
     command->footer(
-        "The robots are virtual: a move or a part that failed is tried again twice. If it fails "
-        "for\n"
-        "good because the machine is too slow, the demo says so with a figure, and goes on.\n"
+        "In a cell without real devices, a move or a part that failed is tried again twice. If it\n"
+        "fails for good because the machine is too slow, the demo says so with a figure, and goes "
+        "on.\n"
         "Exit status 1 if anything failed.");
     addSquareOptions(*command, options->settings, options->output);
     command->callback([options, &exit] { exit = runDemo(*options); });

@@ -247,6 +247,30 @@ const VirtualController* CellConfig::world() const {
     return found == virtual_controllers.end() ? nullptr : &*found;
 }
 
+bool CellConfig::isVirtual() const {
+    const auto virtual_device = [&](const DriverChoice& driver) {
+        return driver.type == "simulator" || findVirtual(driver.controller) != nullptr;
+    };
+    return std::all_of(servers.begin(), servers.end(), [&](const ServerConfig& server) {
+        switch (server.kind) {
+            case ServerKind::arm:
+                return virtual_device(server.arm.driver) &&
+                       (!server.arm.force_torque_sensor ||
+                        virtual_device(*server.arm.force_torque_sensor));
+            case ServerKind::gripper:
+                return virtual_device(server.gripper.driver);
+            case ServerKind::move:
+                return !server.move.discover && find(server.move.robot) != nullptr;
+            case ServerKind::composition:
+            case ServerKind::synchronized:
+                return !server.composition.discover &&
+                       std::all_of(server.usedServers().begin(), server.usedServers().end(),
+                                   [&](const auto& used) { return find(used.name) != nullptr; });
+        }
+        return false;
+    });
+}
+
 namespace {
 
 Result<CellConfig> readCell(const TomlFile& toml, const std::filesystem::path& file) {

@@ -57,6 +57,61 @@ robot = "ur5"
     EXPECT_EQ(cell->find("other"), nullptr);
 }
 
+/// Two arms, one behind a virtual controller, with a component and two arms moved together.
+constexpr const char* kVirtualCell = R"(
+name = "demo"
+[[server]]
+name = "ur5"
+kind = "arm"
+driver = { type = "ur", controller = "controller" }
+model = "ur5.toml"
+skills = ["PositionStreamSkill"]
+[[server]]
+name = "other"
+kind = "arm"
+driver = { type = "simulator" }
+model = "ur5.toml"
+skills = ["PositionStreamSkill"]
+[[server]]
+name = "ur5-move"
+kind = "move"
+robot = "ur5"
+[[server]]
+name = "both"
+kind = "synchronized"
+servers = ["ur5-move", "other"]
+[[virtual]]
+name = "controller"
+type = "ur"
+address = "127.0.1.1"
+model = "ur5.toml"
+)";
+
+TEST_F(CellFile, TellsThatNothingOfItIsReal) {
+    const auto cell = load(kVirtualCell);
+    ASSERT_TRUE(cell) << cell.error().message;
+    EXPECT_TRUE(cell->isVirtual());
+}
+
+TEST_F(CellFile, TellsThatSomethingOfItMayBeReal) {
+    const std::vector<std::pair<std::string, std::string>> changes{
+        {R"(controller = "controller")", R"(controller = "10.0.0.5")"},
+        {R"(robot = "ur5")", R"(robot = "opc.tcp://127.0.0.1:4840")"},
+        {R"(robot = "ur5")", "robot = \"discover\"\nmdns = true"},
+        {R"(["ur5-move", "other"])", R"(["ur5-move", "opc.tcp://127.0.0.1:4840"])"},
+        {R"({ type = "simulator" })",
+         "{ type = \"simulator\" }\n"
+         "force_torque_sensor = { type = \"netft\", controller = \"10.0.0.6\" }"},
+    };
+    for (const auto& [what, by] : changes) {
+        std::string text = kVirtualCell;
+        text.replace(text.find(what), what.size(), by);
+        const auto cell = load(text);
+        ASSERT_TRUE(cell) << cell.error().message;
+        EXPECT_FALSE(cell->isVirtual()) << by;
+    }
+}
+
 TEST_F(CellFile, GivesAnArmToolsAndSkillsOfItsOwn) {
     std::ofstream(folder_ / "pick.toml") << "\n";
     const auto cell = load(R"(

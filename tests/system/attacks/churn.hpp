@@ -5,8 +5,8 @@
 #include <string>
 
 #include "../cable.hpp"
-#include "../load_meter.hpp"
 #include "halt_meter.hpp"
+#include "metier/base/wake_up_delay.hpp"
 #include "siege.hpp"
 
 namespace metier::system_tests {
@@ -49,7 +49,7 @@ private:
     HaltBounds bounds_;
     std::filesystem::path folder_;
     trust::Identity operator_;
-    LoadMeter load_;
+    WakeUpDelay load_;
     BenchServer server_;
 };
 

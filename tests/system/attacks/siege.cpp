@@ -79,9 +79,9 @@ SiegeOutcome Siege::run(Attack attack, std::chrono::milliseconds time) {
     if (attack == Attack::subscriber) {
         cable_.dropEverything();
     }
-    load_.worst();
+    load_.takeLongest();
     outcome.during = operator_.measure(time);
-    outcome.load_ms = std::chrono::duration<double, std::milli>(load_.worst()).count();
+    outcome.load_ms = std::chrono::duration<double, std::milli>(load_.takeLongest()).count();
     outcome.attack = attacker.end();
     if (attack == Attack::subscriber) {
         cable_.restore();

@@ -6,9 +6,9 @@
 
 #include "../bench_server.hpp"
 #include "../cable.hpp"
-#include "../load_meter.hpp"
 #include "attack.hpp"
 #include "halt_meter.hpp"
+#include "metier/base/wake_up_delay.hpp"
 #include "metier/process/child_process.hpp"
 
 namespace metier::system_tests {
@@ -59,7 +59,7 @@ private:
 
     Cable& cable_;
     HaltBounds bounds_;
-    LoadMeter load_;
+    WakeUpDelay load_;
     BenchServer server_;
     HaltMeter operator_;
     std::vector<std::string> skills_;  // NodeIds of those that clients may start and halt

@@ -192,7 +192,7 @@ void DeathRow::strike(const Trial& trial, process::ChildProcess& commander) {
 Outcome DeathRow::run(const Trial& trial) {
     Seen seen;
     server_.forgetLosses();
-    meter_.worst();
+    meter_.takeLongest();
     auto commander = startCommander(trial);
     readUntil(commander, "there", seen);
     strike(trial, commander);
@@ -216,7 +216,7 @@ Outcome DeathRow::run(const Trial& trial) {
     if (stop) {
         outcome.after_lease_ms =
             milliseconds(*stop + kLogResolution - seen.last_beat.value() - trial.lease);
-        outcome.load = meter_.worst();
+        outcome.load = meter_.takeLongest();
         judgeTimes(trial, outcome);
     }
     makeReady();

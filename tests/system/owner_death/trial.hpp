@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "../cable.hpp"
-#include "../load_meter.hpp"
 #include "../metier_program.hpp"
 #include "commander.hpp"
 #include "metier/base/queue.hpp"
+#include "metier/base/wake_up_delay.hpp"
 #include "owned_server.hpp"
 
 namespace metier::system_tests {
@@ -105,7 +105,7 @@ private:
     OwnedServer server_;
     Cable* cable_;
     Bounds bounds_;
-    LoadMeter meter_;
+    WakeUpDelay meter_;
     Queue<skill::TransitionEvent> transitions_{1000};
     std::unique_ptr<opcua::Client> watcher_;
     skill_client::SkillHandle skill_;

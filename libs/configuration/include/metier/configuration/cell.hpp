@@ -179,6 +179,9 @@ struct CellConfig {
     const VirtualController* findVirtual(const std::string& controller) const;
     /// The world of the virtual controllers, or nullptr.
     const VirtualController* world() const;
+    /// Whether nothing real can move: each device is simulated or behind a virtual controller of
+    /// this file, and no skill of a server outside of the file is used.
+    bool isVirtual() const;
 };
 
 /// "HOST:PORT" or "PORT", which is one of 127.0.0.1; an IPv6 address in brackets.

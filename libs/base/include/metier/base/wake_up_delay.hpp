@@ -1,22 +1,23 @@
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
 
-namespace metier::system_tests {
+namespace metier {
 
-/// How late a thread of this machine wakes up at the moment: what is measured while it is busy with
-/// other things cannot be sharper.
-class LoadMeter {
+/// How late a thread of this process wakes up because others have the processors: what is measured
+/// meanwhile cannot be sharper, and controllers with cycles of 1 to 10 ms suffer from it.
+///
+/// Threading: any thread.
+class WakeUpDelay {
 public:
-    LoadMeter() : thread_([this](const std::stop_token& stop) { measure(stop); }) {}
+    WakeUpDelay() : thread_([this](const std::stop_token& stop) { measure(stop); }) {}
 
-    /// The latest since the last call.
-    std::chrono::nanoseconds worst() { return worst_.exchange({}); }
+    /// The longest since the last call; 0 if there is none.
+    std::chrono::nanoseconds takeLongest() { return longest_.exchange({}); }
 
 private:
     void measure(const std::stop_token& stop) {
@@ -28,12 +29,14 @@ private:
             const auto due = std::chrono::steady_clock::now() + kPeriod;
             nobody.wait_until(lock, stop, due, [] { return false; });
             const std::chrono::nanoseconds late = std::chrono::steady_clock::now() - due;
-            worst_ = std::max(worst_.load(), late);
+            auto known = longest_.load();
+            while (late > known && !longest_.compare_exchange_weak(known, late)) {
+            }
         }
     }
 
-    std::atomic<std::chrono::nanoseconds> worst_{};
+    std::atomic<std::chrono::nanoseconds> longest_{};
     std::jthread thread_;  // last: it uses everything above
 };
 
-}  // namespace metier::system_tests
+}  // namespace metier
