@@ -206,7 +206,7 @@ bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
         changed_.wait_for(lock, stop, kGather,
                           [&] { return asked() || waiting_.count() > options_.most_waiting / 2; });
     }
-    round_began_ = now();
+    unwritten_since_ = unwritten_since_.value_or(now());
     return !stop.stop_requested();
 }
 
@@ -400,14 +400,17 @@ Result<void> Recorder::Impl::trim() {
 void Recorder::Impl::finishRound(const Result<void>& done) {
     {
         const std::lock_guard lock(mutex_);
-        error_ = done ? std::string() : done.error().message;
+        const bool in_the_way = !done && done.error().code == Errc::timeout;
+        error_ = done || in_the_way ? std::string() : done.error().message;
         if (done && (backlog_.isEmpty() || backlog_.first() > asked_piece_)) {
             answered_ = asked_then_;
         }
         written_ = writer_.written();
         behind_ = backlog_.messages() + (adds_ ? for_backlog_.messages : 0);
         writer_busy_ = isTaken() || writer_.isBusy() || !backlog_.isEmpty();
-        round_began_.reset();
+        if (done) {
+            unwritten_since_.reset();
+        }
     }
     changed_.notify_all();
 }
@@ -430,7 +433,7 @@ void Recorder::Impl::watch(const std::stop_token& stop) {
 
 /// With the lock.
 bool Recorder::Impl::hangs() const {
-    return round_began_ && now() - *round_began_ > options_.patience;
+    return unwritten_since_ && now() - *unwritten_since_ > options_.patience;
 }
 
 /// With the lock. Nothing if all is as it was told.

@@ -70,6 +70,8 @@ Errc codeOf(int status) {
         case SQLITE_MISUSE:
         case SQLITE_RANGE:
             return Errc::internal;
+        case SQLITE_BUSY:
+            return Errc::timeout;  // others have had it locked for kBusyTimeout
         default:
             return Errc::resource_unavailable;
     }

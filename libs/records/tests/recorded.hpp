@@ -82,6 +82,7 @@ inline std::unique_ptr<Recorder> recorderOf(const std::string& url,
     options.url = url;
     options.server = server;
     options.most_waiting = most_waiting;
+    options.patience = std::chrono::milliseconds(100);  // for tests that await Health::failing
     return Recorder::create(std::move(options)).value();
 }
 

@@ -246,6 +246,20 @@ TEST_F(TroubledRecorder, TellsOfPagesThatAreDamaged) {
     EXPECT_EQ(alarms_.await(0).health, Health::failing);
 }
 
+TEST_F(TroubledRecorder, TellsNothingOfAStoreThatOthersLockForAWhileIfNothingIsLost) {
+    const auto recorder = make(options());
+    recordOne(*recorder, moveOf("m-1"), finished(at(1)));
+    ASSERT_TRUE(recorder->flush(soon()));
+    const auto others = locked();
+    recordOne(*recorder, moveOf("m-2"), finished(at(2)));
+    EXPECT_FALSE(recorder->flush(std::chrono::steady_clock::now() + 2'500ms))
+        << "SQLite itself waits for 2 s";
+    others->rollBack();
+    ASSERT_TRUE(recorder->flush(soon()));
+    EXPECT_EQ(store()->find("m-2")->state, "Ready");
+    EXPECT_EQ(alarms_.count(), 0U);
+}
+
 TEST_F(TroubledRecorder, LeavesTheTablesOfOthersAlone) {
     fs::create_directories(folder_);
     ASSERT_TRUE(SqliteDatabase::open(file_, Store::Access::write)

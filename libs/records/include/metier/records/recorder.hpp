@@ -73,8 +73,9 @@ public:
         std::function<void(const HealthReport&)> on_health{};
         std::size_t most_waiting = 10'000;          ///< executions and events
         std::size_t most_waiting_samples = 16'384;  ///< about 220 byte each, taken at once
-        /// A write that takes longer is told as failing.
-        std::chrono::milliseconds patience{5'000};
+        /// Longest time without a write, because the disk hangs or others keep the store locked,
+        /// that is not told as failing while nothing is lost: a busy machine is no fault.
+        std::chrono::milliseconds patience{20'000};
     };
 
     /// How it is, for metrics.
