@@ -222,6 +222,22 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields() {
         list.add(&PositionStreamResults::duration, Field{.name = "Duration",
                                                          .description = "Time from Running to rest",
                                                          .unit = skill::kSecond});
+        list.add(&PositionStreamResults::largest_lag,
+                 Field{.name = "LargestStreamLag",
+                       .description = "Most that a set-point waited longer than PlayOutDelay",
+                       .unit = skill::kSecond});
+        list.add(&PositionStreamResults::clock_step,
+                 Field{.name = "StreamClockStep",
+                       .description = "Largest step of the client's clock between two set-points, "
+                                      "below 0: back",
+                       .unit = skill::kSecond});
+        list.add(&PositionStreamResults::refused_set_points,
+                 Field{.name = "RefusedSetPoints",
+                       .description = "Number of set-points refused when they were written"});
+        list.add(&PositionStreamResults::dropped_set_points,
+                 Field{.name = "DroppedSetPoints",
+                       .description = "Number of set-points dropped, since their time was not "
+                                      "after the one before"});
         return list;
     }();
     return fields;

@@ -241,6 +241,11 @@ PositionStreamResults StreamSource::results() const noexcept {
     results.set_points += set_points_;
     results.missed_cycles += missed_cycles_;
     results.duration += static_cast<double>(cycles_) * setup_.cycle;
+    const auto figures = setup_.report->figures();
+    results.largest_lag = figures.largest_lag;
+    results.clock_step = figures.clock_step;
+    results.refused_set_points = figures.refused;
+    results.dropped_set_points = figures.dropped;
     return results;
 }
 

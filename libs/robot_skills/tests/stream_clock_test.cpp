@@ -154,6 +154,24 @@ TEST_F(ClientClock, LagIsOverOnceTheArmRests) {
     EXPECT_EQ(bench_.arm().state().safety, device::SafetyState::normal);
 }
 
+TEST_F(ClientClock, StepsAndWhatWasRefusedAreInTheResult) {
+    stream(62);
+    step_ = 100ms;
+    stream(64);
+    EXPECT_FALSE(writeAxis1(std::nan(""), clientNow()));
+    const double there = sine(cycle_ - 1);
+    stand(40);
+    EXPECT_TRUE(writeAxis1(there, clientNow() - 3 * kCycle)) << "dropped for its time";
+    bench_.step();
+    EXPECT_TRUE(writeAxis1(there, clientNow()));
+    ASSERT_TRUE(bench_.stepUntil(kPositionStream, State::ready)) << program_.reasonText();
+    const auto result = program_.finalResult();
+    EXPECT_NEAR(std::get<double>(result.at("LargestStreamLag")), 0.1, 1e-6);
+    EXPECT_NEAR(std::get<double>(result.at("StreamClockStep")), 0.1, 1e-6);
+    EXPECT_EQ(result.at("RefusedSetPoints"), Value(std::uint64_t{1}));
+    EXPECT_EQ(result.at("DroppedSetPoints"), Value(std::uint64_t{1}));
+}
+
 TEST_F(ClientClock, ThatStepsWhileTheArmRestsDoesNotMakeItLeap) {
     stream(126);
     stand(40);

@@ -39,6 +39,11 @@ struct PositionStreamResults {
     std::uint64_t set_points = 0;     ///< that were followed
     std::uint64_t missed_cycles = 0;  ///< without a set-point in time, up to the last set-point
     double duration = 0.0;            ///< from Running to rest [s]
+    /// How its set-points came, from the start to the end (StreamReport::Figures).
+    double largest_lag = 0.0;  ///< [s]
+    double clock_step = 0.0;   ///< [s]
+    std::uint64_t refused_set_points = 0;
+    std::uint64_t dropped_set_points = 0;
 };
 
 /// The parameters as a server offers them for `model`, which must outlive the list.
