@@ -70,6 +70,23 @@ opcua::Answer<> call(skill_client::SkillHandle& skill, const Command& command) {
     return called;
 }
 
+/// Suspended follows at standstill, unless the skill reaches its end before, or is halted.
+Result<void> awaitSuspended(skill_client::SkillHandle& skill, const CommandOptions& options) {
+    const auto stands = skill.awaitRest(deadlineOf(options));
+    if (!stands) {
+        return fail(stands.error());
+    }
+    if (*stands == State::ready) {
+        return fail(Errc::invalid_state,
+                    options.choice.skill + " has reached its end: it is Ready, not Suspended");
+    }
+    if (*stands == State::halted) {
+        return fail(Errc::invalid_state, fmt::format("{} is Halted, not Suspended: {}",
+                                                     options.choice.skill, skill.reasonText()));
+    }
+    return {};
+}
+
 Exit runCommand(const Command& command, const CommandOptions& options) {
     const bool stays = command.method == Method::resume;
     auto open = openSkill(options.choice, stays ? OnLoss::reconnect : OnLoss::fail);
@@ -80,10 +97,9 @@ Exit runCommand(const Command& command, const CommandOptions& options) {
     if (const auto called = call(open->skill, command); !called) {
         return reportOutcome(called.error());
     }
-    if (command.method == Method::suspend) {  // follows at standstill
-        if (const auto reached = open->skill.awaitState(command.then, deadlineOf(options));
-            !reached) {
-            return report(reached.error());
+    if (command.method == Method::suspend) {
+        if (const auto suspended = awaitSuspended(open->skill, options); !suspended) {
+            return report(suspended.error());
         }
     }
     fmt::print("{} {}\n", options.choice.skill, toString(command.then));

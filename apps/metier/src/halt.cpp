@@ -43,18 +43,16 @@ Result<void> awaitHalted(opcua::Client& client, const SkillAddress& address,
     if (!skill) {
         return fail(skill.error());
     }
-    const auto halted = skill->awaitState(skill::State::halted, deadline);
-    // Somebody may have reset it before anybody here looked.
-    if (halted || (halted.error().code == Errc::timeout &&
-                   skill->state().value_or(skill::State::running) != skill::State::running)) {
-        tell(address, "halted");
-        return {};
+    const auto stands = skill->awaitRest(deadline);
+    if (!stands && stands.error().code == Errc::timeout) {
+        return fail(Errc::timeout,
+                    fmt::format("{}: still halting after {} s", address.name, options.timeout));
     }
-    if (halted.error().code != Errc::timeout) {
-        return fail(halted.error());
+    if (!stands) {
+        return fail(stands.error());
     }
-    return fail(Errc::timeout,
-                fmt::format("{}: still halting after {} s", address.name, options.timeout));
+    tell(address, "halted");  // also if somebody has reset it since
+    return {};
 }
 
 /// Halts the skills of one server, all of them before it waits for any.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -84,6 +85,9 @@ struct SkillHandle::Impl {
     opcua::Answer<skill::ValueMap> outcomeOf(const skill::ExecutionRecord& record) const;
     opcua::Failure unknownOutcome(const std::string& why) const;
     /// Whether the connection is back after `failure`; false at the deadline.
+    /// Waits until the skill is in a state that `wanted` names, and returns it.
+    opcua::Answer<skill::State> awaitState(SkillHandle& handle, SteadyTime deadline,
+                                           const std::function<bool(skill::State)>& wanted);
     bool isBackAfter(const opcua::Failure& failure, SteadyTime deadline);
 };
 

@@ -185,29 +185,39 @@ Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(AwaitedExecution awaited
     }
 }
 
-Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
+Answer<State> SkillHandle::Impl::awaitState(SkillHandle& handle, SteadyTime deadline,
+                                            const std::function<bool(State)>& wanted) {
     for (;;) {
         // Transitions from here on are waited for; the state read after it covers those before.
-        const auto from = impl_->log->mark();
-        const auto now = state();
-        if (!now && !impl_->isBackAfter(now.error(), deadline)) {
+        const auto from = log->mark();
+        const auto now = handle.state();
+        if (!now && !isBackAfter(now.error(), deadline)) {
             return tl::unexpected(now.error());
         }
         if (!now) {
             continue;
         }
-        if (*now == wanted) {
-            return {};
+        if (wanted(*now)) {
+            return *now;
         }
-        const auto found = impl_->log->await(
-            from, deadline, [wanted](const TransitionEvent& event) { return event.to == wanted; });
+        const auto found = log->await(
+            from, deadline, [&wanted](const TransitionEvent& event) { return wanted(event.to); });
         if (!found) {
             return tl::unexpected(found.error());
         }
         if (*found) {
-            return {};
+            return (*found)->event.to;
         }
     }
+}
+
+Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
+    return impl_->awaitState(*this, deadline, [wanted](State state) { return state == wanted; })
+        .map([](State) {});
+}
+
+Answer<State> SkillHandle::awaitRest(SteadyTime deadline) {
+    return impl_->awaitState(*this, deadline, [](State state) { return state != State::running; });
 }
 
 Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
@@ -247,7 +257,7 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
     }
 }
 
-/// What was written for a Start that was refused does not count for the next one.
+/// Parameters of a Start that was refused do not count for the next one.
 void SkillHandle::takeBack(const skill::ValueMap& parameters, const Failure& refusal) {
     if (refusal.delivery != Delivery::answered) {
         return;  // it may run

@@ -310,6 +310,18 @@ TEST_F(SkillClient, SuspendsAndResumes) {
     EXPECT_EQ(skill.result().value().at("Duration"), skill::Value(0.5));
 }
 
+TEST_F(SkillClient, WaitsForRestWhicheverStateItIsIn) {
+    auto skill = open();
+    EXPECT_EQ(skill.awaitRest(soon()).value(), State::ready);
+    behaviour_->finish_at_once = false;
+    ASSERT_TRUE(skill.start());
+    EXPECT_EQ(skill.awaitRest(std::chrono::steady_clock::now() + 50ms).error().code, Errc::timeout);
+    ASSERT_TRUE(skill.suspend());
+    EXPECT_EQ(skill.awaitRest(soon()).value(), State::suspended);
+    ASSERT_TRUE(skill.halt());
+    EXPECT_EQ(skill.awaitRest(soon()).value(), State::halted);
+}
+
 TEST_F(SkillClient, TellsTheStatusOfAMethodThatTheStateDoesNotAllow) {
     auto skill = open();
     const auto resumed = skill.resume();

@@ -92,6 +92,10 @@ public:
     /// Waits until the skill is in the state `wanted`.
     /// Errors: timeout at the deadline; connection_lost.
     opcua::Answer<> awaitState(skill::State wanted, SteadyTime deadline);
+    /// Waits until the skill is not Running, as after Suspend or Halt: what it moves stands then.
+    /// \return Suspended, Halted, or Ready if it had reached its end before it came to rest
+    /// Errors: as awaitState().
+    opcua::Answer<skill::State> awaitRest(SteadyTime deadline);
     /// Waits for the end of what this handle started or resumed last, which may have come already;
     /// once that was told, or if it was somebody else's, for the next transition to Ready or
     /// Halted.
