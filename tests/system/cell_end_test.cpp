@@ -264,7 +264,7 @@ TEST(DemoCells, AllowEveryServerOfABusyComputerASecond) {
     }
 }
 
-/// What a program waits for when it is told to stop: somebody who takes connections and never says
+/// A peer for which a program waits when it gets its signal: it takes connections and never says
 /// a word.
 struct SilentPeer {
     explicit SilentPeer(std::uint16_t port)

@@ -31,7 +31,7 @@ constexpr double kCycle = 0.008;
 constexpr double kRoundTrip = 0.030;
 // Others run on this machine: one round of so many is not held up by them.
 constexpr int kRounds = 5;
-// Of the common motion, long enough for all that is done on the way [s].
+// Duration of the common motion, long enough for all that is done on the way [s].
 constexpr double kDuration = 2.5;
 
 std::filesystem::path cell() {
@@ -220,7 +220,7 @@ protected:
     const ValueMap poses_;
 };
 
-/// Of other makers, with other limits and cycles.
+/// Arms of different makers, with different limits and cycles.
 class UnlikeArms : public StoppedArms {
 protected:
     UnlikeArms() : StoppedArms("left", "right", {0.5, 0, 0.4, 3.14159, 0, 3.14159}) {}

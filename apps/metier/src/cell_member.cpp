@@ -91,12 +91,11 @@ CellMember::Event CellMember::lookWhileStarting(SteadyTime now) {
 
 CellMember::Event CellMember::endedByItself() {
     const auto status = process_->waitUntil(std::chrono::steady_clock::now() + kLastBreath);
-    return end(status ? textOfStatus(*status) : "closed its output", status.value_or(-1));
+    return end(status ? textOfStatus(*status) : "closed its output");
 }
 
-CellMember::Event CellMember::end(std::string how, int status) {
+CellMember::Event CellMember::end(std::string how) {
     how_ = std::move(how);
-    status_ = status;
     process_.reset();
     ready_ = false;
     return Event::ended;

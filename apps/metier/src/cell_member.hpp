@@ -38,8 +38,6 @@ public:
     CellRank rank() const noexcept { return plan_.rank; }
     /// As its ready line says; empty before the first.
     const std::string& address() const noexcept { return address_; }
-    /// Exit status of the last end; 128 + signal; -1 if it was not ready.
-    int status() const noexcept { return status_; }
     /// How it ended the last time, for a person.
     const std::string& howItEnded() const noexcept { return how_; }
     bool hasProcess() const noexcept { return process_.has_value(); }
@@ -47,7 +45,7 @@ public:
     /// Starts the process; look() says when it is ready.
     /// Errors: not_found.
     Result<void> begin(SteadyTime now);
-    /// What has happened since the last look. Does not wait.
+    /// Event since the last look. Does not wait.
     Event look(SteadyTime now);
     /// Lets begin() be called by look() after a pause, which grows with every end.
     /// \return the pause
@@ -65,7 +63,7 @@ public:
 
 private:
     Event lookWhileStarting(SteadyTime now);
-    Event end(std::string how, int status = -1);
+    Event end(std::string how);
     Event endedByItself();
 
     Plan plan_;
@@ -75,7 +73,6 @@ private:
     SteadyTime begun_{};
     std::optional<SteadyTime> begin_at_;
     process::RestartPause pause_;
-    int status_ = 0;
     std::string how_;
 };
 

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 using configuration::ServerKind;
 
-// What uses others may take so long to let go of them before these are told to end, too.
+// Longest time for a process to let go of those that it uses before these get their signal, too.
 constexpr auto kLetGo = 500ms;
 // From the begin of the cell's end: servers brake within 2 s.
 constexpr auto kServersEnd = 4s;

@@ -15,7 +15,7 @@
 
 namespace metier::app {
 
-/// What becomes of a cell when one of its processes ends by itself.
+/// Consequence for a cell when one of its processes ends by itself.
 enum class OnFailure {
     restart,   ///< it is started again; the others stay
     end_cell,  ///< the whole cell ends

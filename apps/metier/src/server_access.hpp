@@ -55,7 +55,7 @@ private:
     void closeStrangers(opcua::Server& server);
     void keepRefused(const std::stop_token& stop);
 
-    /// What the folder holds besides users and trust.
+    /// Contents of the security folder besides users and trusted certificates.
     struct Folder {
         Result<trust::Identity> identity;
         std::map<std::string, trust::Role> roles;         ///< by thumbprint

@@ -53,7 +53,7 @@ protected:
             cell_, Ports::free, stop_descriptor,
             [this](const CellRunner::Running& server) { ready_.push_back(server.name); });
     }
-    /// What the processes wrote.
+    /// Output of the processes.
     std::vector<std::string> diary(const std::string& what = "") const {
         std::vector<std::string> lines;
         std::ifstream file(diaryFile());

@@ -257,7 +257,7 @@ void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
 
 bool RemoteArm::Worker::judgeStandstill(const StreamSession::Observed& seen, bool at_target) const {
     if (seen.standstill) {
-        // Of a stream it is old news until the arm is where the stream ends.
+        // While a stream runs, the news may be from before its begin until the arm is at its end.
         return *seen.standstill && (at_target || source_ == nullptr);
     }
     const auto unmoved = std::chrono::steady_clock::now() - seen.moved;

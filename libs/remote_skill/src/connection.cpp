@@ -77,8 +77,8 @@ AsyncSkill::Watch Connection::watchFor(const opcua::Client& client,
                 [link](const skill::StoppingEvent& event) {
                     link->post([event](RemoteChild& child) { child.onStopping(event); });
                 },
-            .on_doubt = [link] { link->post([](RemoteChild& child) { child.onDoubt(); }); },
-            .on_deaf = [this, &client](const std::string& why) { noteLoss(client, why); }};
+            .on_missed = [link] { link->post([](RemoteChild& child) { child.onMissed(); }); },
+            .on_ended = [this, &client](const std::string& why) { noteLoss(client, why); }};
 }
 
 void Connection::noteLoss(const opcua::Client& client, const std::string& why) {

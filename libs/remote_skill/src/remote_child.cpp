@@ -108,7 +108,7 @@ void RemoteChild::begin(skill::StartRequest request, ChildListener& listener) {
     listener_ = &listener;
     execution_ = request.execution_id;
     request.parent.server = connection_.options().own_server;
-    started_ = halt_wanted_ = suspend_wanted_ = left_over_ = in_doubt_ = false;
+    started_ = halt_wanted_ = suspend_wanted_ = left_over_ = missed_ = false;
     const auto sent =
         skill_
             ? skill_->skill.startWith(
@@ -137,8 +137,8 @@ void RemoteChild::started(const std::string& id, const opcua::Answer<std::string
         } else if (suspend_wanted_) {
             static_cast<void>(command(Method::suspend));
         }
-        if (std::exchange(in_doubt_, false)) {
-            onDoubt();
+        if (std::exchange(missed_, false)) {
+            onMissed();
         }
         return;
     }
@@ -228,14 +228,14 @@ void RemoteChild::onStopping(const skill::StoppingEvent& event) {
 }
 
 /// Asks what has become of the skill, or of its execution that was begun here.
-void RemoteChild::onDoubt() {
+void RemoteChild::onMissed() {
     if (!skill_) {
         return;  // once it is back, it is looked at
     }
     if (execution_.empty()) {
         withReason({}, [](RemoteChild& child, const AsyncSkill::Now& now) { child.refresh(now); });
     } else if (!started_) {
-        in_doubt_ = true;
+        missed_ = true;
     } else {
         const auto sent = skill_->skill.execution(
             execution_, [link = link_, id = execution_](const auto& record) {
@@ -263,7 +263,7 @@ void RemoteChild::caughtUp(const std::string& id,
     tellMissed(*record);
 }
 
-/// What the events would have said.
+/// Reports the state that missed events would have reported.
 void RemoteChild::tellMissed(const skill::ExecutionRecord& record) {
     const auto before = std::exchange(state_, record.state);
     switch (record.state) {

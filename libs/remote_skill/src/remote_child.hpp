@@ -49,7 +49,7 @@ public:
     void onTransition(const skill::TransitionEvent& event);
     void onStopping(const skill::StoppingEvent& event);
     /// Transitions may have been missed.
-    void onDoubt();
+    void onMissed();
 
 private:
     using ChildEnd = composition::ChildEnd;
@@ -93,7 +93,7 @@ private:
     std::string execution_;  // begun here and not over
     std::string unsure_;     // maybe runs, to be asked for once execution_ is over
     bool started_ = false;   // the server has said so
-    bool in_doubt_ = false;  // transitions may have been missed before it said so
+    bool missed_ = false;  // transitions may have been missed before it said so
     bool halt_wanted_ = false;
     bool suspend_wanted_ = false;
 };

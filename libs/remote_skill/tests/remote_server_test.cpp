@@ -351,7 +351,7 @@ TEST_F(DeafChild, LearnsTheEndWhenTransitionsMayHaveBeenMissed) {
     move_.hand->execution().finish();
     ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
     EXPECT_FALSE(listener_.end);
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::finished);
     EXPECT_EQ(deaf_->state(), State::ready);
@@ -360,7 +360,7 @@ TEST_F(DeafChild, LearnsTheEndWhenTransitionsMayHaveBeenMissed) {
 TEST_F(DeafChild, LearnsWhyItWasHalted) {
     move_.hand->execution().fail(Reason::error, "axis 2 is hot");
     ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
     EXPECT_EQ(listener_.end->reason, Reason::error);
@@ -372,10 +372,10 @@ TEST_F(DeafChild, LearnsThatItWasSuspendedAndResumed) {
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
     ASSERT_EQ(call(*connect(), move_, "Resume"), "Good");
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return !listener_.suspended; }));
     EXPECT_FALSE(listener_.end);
 }

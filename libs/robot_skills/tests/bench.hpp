@@ -77,7 +77,7 @@ public:
     void destroyProgram(const std::string& name) { programs_.erase(name); }
     const skill::Caller& caller() const { return caller_; }
     StreamReport::Figures streamFigures() const { return stream_report_->figures(); }
-    /// What the moves report of how soon they would stand.
+    /// The moves' report of how soon they would stand.
     std::optional<motion::StoppingWay> stoppingWay() const { return stopping_report_->read(); }
 
     Result<void> write(const std::string& skill, const skill::ValueMap& values) {

@@ -75,7 +75,7 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
         return tl::unexpected(stopping.error());
     }
     impl->log->watch(
-        {std::move(watch.on_transition), std::move(watch.on_doubt), std::move(watch.on_deaf)});
+        {std::move(watch.on_transition), std::move(watch.on_missed), std::move(watch.on_ended)});
     auto subscription = client.subscribeEvents(
         impl->address.node, transitionFilter(client.namespaceIndex(kDeviceNamespace).value_or(1)),
         [log = impl->log](const opcua::EventNotice& notice) { log->add(notice); });

@@ -140,10 +140,10 @@ void TransitionLog::add(const opcua::EventNotice& notice) {
     changed_.notify_all();
     if (event && watch.on_transition) {
         watch.on_transition(*event);
-    } else if (doubt && watch.on_doubt) {
-        watch.on_doubt();
-    } else if (ended && watch.on_deaf) {
-        watch.on_deaf("its events have ended: " + notice.status.name());
+    } else if (doubt && watch.on_missed) {
+        watch.on_missed();
+    } else if (ended && watch.on_ended) {
+        watch.on_ended("its events have ended: " + notice.status.name());
     }
 }
 

@@ -20,11 +20,11 @@ namespace metier::skill_client {
 /// Threading: add...() on the client's thread, the rest on any.
 class TransitionLog {
 public:
-    /// What is called when something arrives; each may be empty. On the client's thread.
+    /// Callbacks for what arrives; each may be empty. On the client's thread.
     struct Watch {
         std::function<void(const skill::TransitionEvent&)> on_transition{};
-        std::function<void()> on_doubt{};  ///< transitions may have been missed
-        std::function<void(const std::string& why)> on_deaf{};  ///< nothing will come any more
+        std::function<void()> on_missed{};  ///< transitions may have been missed
+        std::function<void(const std::string& why)> on_ended{};  ///< nothing will come any more
     };
 
     void add(const opcua::EventNotice& notice);

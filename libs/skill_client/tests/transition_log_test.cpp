@@ -14,13 +14,13 @@ using ::testing::HasSubstr;
 struct Heard {
     TransitionLog::Watch watch() {
         return {.on_transition = [this](const auto& /*event*/) { ++transitions; },
-                .on_doubt = [this] { ++doubts; },
-                .on_deaf = [this](const std::string& why) { deaf = why; }};
+                .on_missed = [this] { ++missed; },
+                .on_ended = [this](const std::string& why) { ended = why; }};
     }
 
     int transitions = 0;
-    int doubts = 0;
-    std::string deaf;
+    int missed = 0;
+    std::string ended;
 };
 
 TEST(TransitionLog, SaysThatTransitionsMayHaveBeenMissed) {
@@ -28,15 +28,15 @@ TEST(TransitionLog, SaysThatTransitionsMayHaveBeenMissed) {
     Heard heard;
     log.watch(heard.watch());
     log.add({Kind::interrupted, {}, {}});
-    EXPECT_EQ(heard.doubts, 0) << "its end will say it";
+    EXPECT_EQ(heard.missed, 0) << "its end will say it";
     log.add({Kind::overflow, {}, {}});
-    EXPECT_EQ(heard.doubts, 1);
+    EXPECT_EQ(heard.missed, 1);
     log.add({Kind::resumed, {}, {}});
-    EXPECT_EQ(heard.doubts, 2);
+    EXPECT_EQ(heard.missed, 2);
     log.add({Kind::event, {}, {}});
-    EXPECT_EQ(heard.doubts, 3) << "an event that cannot be understood";
+    EXPECT_EQ(heard.missed, 3) << "an event that cannot be understood";
     EXPECT_EQ(heard.transitions, 0);
-    EXPECT_EQ(heard.deaf, "");
+    EXPECT_EQ(heard.ended, "");
 }
 
 TEST(TransitionLog, SaysThatNothingWillComeAnyMore) {
@@ -44,8 +44,8 @@ TEST(TransitionLog, SaysThatNothingWillComeAnyMore) {
     Heard heard;
     log.watch(heard.watch());
     log.add({Kind::ended, {}, opcua::status::kBadTimeout});
-    EXPECT_THAT(heard.deaf, HasSubstr("BadTimeout"));
-    EXPECT_EQ(heard.doubts, 0);
+    EXPECT_THAT(heard.ended, HasSubstr("BadTimeout"));
+    EXPECT_EQ(heard.missed, 0);
 }
 
 TEST(TransitionLog, NeedsNobodyToListen) {

@@ -122,7 +122,7 @@ struct HostInCompany : ::testing::Test {
         client = link::TcpLink::connect("127.0.0.1", port, soon()).value();
     }
     static SteadyTime soon() { return std::chrono::steady_clock::now() + 5s; }
-    /// What its control port says; its thread has done by then what it was given before.
+    /// Answer of its control port; by then its thread has done what it was given before.
     std::string ask() const {
         auto link = link::TcpLink::connect("127.0.0.1", host->controlPort(), soon()).value();
         const std::string_view request = "{\"help\":true}\n";

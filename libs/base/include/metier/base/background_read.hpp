@@ -11,27 +11,27 @@
 
 namespace metier {
 
-/// What is read from files, for a thread that must not wait for a disk: another thread reads.
+/// Keeps the contents of files for a thread that must not wait for a disk: another thread reads them.
 ///
 /// Threading: get() from any thread. The end waits for a read that is under way.
 template <typename T>
 class BackgroundRead {
 public:
-    /// Reads, or gives what it got if that is still so; never null. Runs on the thread of this.
+    /// Reads, or returns `last` if nothing has changed; never null. Runs on the thread of this.
     using Read = std::function<std::shared_ptr<const T>(const std::shared_ptr<const T>& last)>;
 
     /// How long get() may wait for a read. One of a disk that works takes about a millisecond; a
     /// busy computer delays a thread by some 50 ms.
     static constexpr std::chrono::milliseconds kPatience{100};
 
-    /// \param first what get() gives until something was read; not null
+    /// \param first result of get() until something was read; not null
     BackgroundRead(std::shared_ptr<const T> first, Read read)
         : newest_(std::move(first)),
           read_(std::move(read)),
           thread_([this](const auto& stop) { run(stop); }) {}
 
-    /// What is there now; or what was there when it was read last, if a read takes longer than
-    /// kPatience. While such a read is under way nobody waits.
+    /// The contents now; those of the last read if a new one takes longer than kPatience. While such a
+    /// read is under way nobody waits.
     std::shared_ptr<const T> get() {
         std::unique_lock lock(mutex_);
         const auto wanted = ++asked_;

@@ -17,7 +17,7 @@ public:
 
     /// Lets `step` pass. \return the planned time that passes with it [s]
     double advance(double step) noexcept;
-    /// What becomes of the state that was planned for the present planned time.
+    /// The state planned for the present planned time, slowed to the present pace.
     ScalarState slowed(const ScalarState& planned) const noexcept;
     bool over() const noexcept { return elapsed_ >= length_; }
     double remaining() const noexcept { return over() ? 0.0 : length_ - elapsed_; }  ///< [s]

@@ -29,8 +29,8 @@ struct MoveParameters {
     std::optional<double> duration{};          ///< of the motion [s]; none: as short as can be
     /// When it begins, by the clock of whoever runs it [s since 1970-01-01 UTC]; none: at once.
     std::optional<double> start_time{};
-    /// Of a Suspend: all arms of a motion together brake that long, along their planned times [s];
-    /// none: each as its own limits have it.
+    /// Length of a Suspend [s], in which all arms of a common motion brake along their planned
+    /// times; none: as short as the arm's own limits allow.
     std::optional<double> stop_time{};
 };
 

@@ -16,7 +16,7 @@ namespace metier::robot_skills {
 /// set-points, the cycle thread while it is attached. Nobody locks or allocates.
 class StoppingReport {
 public:
-    /// Of the motion that metier plans and runs now; nothing if none does.
+    /// The stop of the motion that metier plans and runs now; nothing without one.
     std::optional<motion::StoppingWay> read() const noexcept {
         const auto now = newest_.read();
         return now.known ? std::optional(now.way) : std::nullopt;

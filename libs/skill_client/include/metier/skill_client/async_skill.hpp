@@ -28,16 +28,16 @@ public:
     using Done = std::function<void(opcua::Answer<T>)>;
     using OnTransition = std::function<void(const skill::TransitionEvent&)>;
 
-    /// What is called when the skill does something; each may be empty. On the client's thread.
+    /// Callbacks for what the skill does; each may be empty. On the client's thread.
     struct Watch {
         OnTransition on_transition{};
         /// It begins to come to rest; not called by servers that do not say so.
         std::function<void(const skill::StoppingEvent&)> on_stopping{};
         /// Transitions may have been missed: look what has become of it.
-        std::function<void()> on_doubt{};
-        /// Nothing will be heard any more, though requests may still be answered.
+        std::function<void()> on_missed{};
+        /// No event will come any more, though requests may still be answered.
         /// \param why for a person
-        std::function<void(const std::string& why)> on_deaf{};
+        std::function<void(const std::string& why)> on_ended{};
     };
 
     /// Reads what the skill is like and subscribes to its events; the first may come before this

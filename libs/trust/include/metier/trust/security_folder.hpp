@@ -51,7 +51,7 @@ public:
 
     /// Without one an application needs a user.
     std::optional<Role> roleOf(std::string_view thumbprint) const;
-    /// Of all applications that have one, by thumbprint.
+    /// Roles of all applications that have one, by thumbprint.
     std::map<std::string, Role> roles() const;
     /// None: it needs a user from now on. Errors: resource_unavailable.
     Result<void> setRole(const Certificate& certificate, std::optional<Role> role);
