@@ -93,7 +93,7 @@ private:
     std::string execution_;  // begun here and not over
     std::string unsure_;     // maybe runs, to be asked for once execution_ is over
     bool started_ = false;   // the server has said so
-    bool missed_ = false;  // transitions may have been missed before it said so
+    bool missed_ = false;    // transitions may have been missed before it said so
     bool halt_wanted_ = false;
     bool suspend_wanted_ = false;
 };
