@@ -74,8 +74,8 @@ private:
     std::uint64_t asked_ = 0;     // flushes
     std::uint64_t answered_ = 0;  // flushes
     std::uint64_t written_ = 0;
-    std::uint64_t behind_ = 0;  // messages that were taken and are no rows yet
-    bool writer_busy_ = false;  // has something to write, or executions under way
+    std::uint64_t behind_ = 0;                   // messages that were taken and are no rows yet
+    bool writer_busy_ = false;                   // has something to write, or executions under way
     std::optional<SteadyTime> unwritten_since_;  // begin of the first round since one went well
     std::string error_;  // of the last round; empty: it went well, or others were in the way
     Health told_ = Health::writing;
