@@ -11,7 +11,8 @@
 
 namespace metier {
 
-/// Keeps the contents of files for a thread that must not wait for a disk: another thread reads them.
+/// Keeps the contents of files for a thread that must not wait for a disk: another thread reads
+/// them.
 ///
 /// Threading: get() from any thread. The end waits for a read that is under way.
 template <typename T>
@@ -30,8 +31,8 @@ public:
           read_(std::move(read)),
           thread_([this](const auto& stop) { run(stop); }) {}
 
-    /// The contents now; those of the last read if a new one takes longer than kPatience. While such a
-    /// read is under way nobody waits.
+    /// The contents now; those of the last read if a new one takes longer than kPatience. While
+    /// such a read is under way nobody waits.
     std::shared_ptr<const T> get() {
         std::unique_lock lock(mutex_);
         const auto wanted = ++asked_;
