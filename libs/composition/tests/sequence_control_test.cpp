@@ -591,5 +591,173 @@ TEST(OwnerLossOfASequence, ReachesWhatRuns) {
     EXPECT_EQ(bench.program->subState(), skill::SubState::halted_owner_lost);
 }
 
+TEST(SuspendOfASequence, AsksNothingOfAStepThatIsSuspendedAlready) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].suspended();
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "suspend"));
+}
+
+TEST(SuspendOfASequence, IsNotTakenForAHaltThatAStepIsComingTo) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].stops(State::halted, "by a panel");
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), skill::SubState::executing);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin")) << "it is halted once the first stands";
+}
+
+TEST(SuspendOfASequence, KeepsTheTimeOfAStepThatWasRunningBefore) {
+    Bench bench(kHead +
+                "[[step]]\nname = \"first\"\nrun = \"a\"\ntimeout = 3\n"
+                "[[step]]\nname = \"second\"\nrun = \"b\"\n");
+    ASSERT_TRUE(bench.start());
+    for (int i = 0; i < 2; ++i) {
+        bench.advance(1s);
+        ASSERT_TRUE(bench.call(Method::suspend));
+        bench["a"].suspended();
+        bench.advance(10s);
+        ASSERT_TRUE(bench.call(Method::resume));
+        bench["a"].resumed();
+        bench.run();
+    }
+    bench["a"].heard();
+    bench.advance(999ms);
+    EXPECT_THAT(bench["a"].heard(), IsEmpty());
+    bench.advance(1ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("halt"));
+}
+
+TEST(HaltOfASequence, ReachesAStepOnceAlsoIfItIsToldTwice) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::error, "stuck");
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::halt));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+}
+
+TEST(ResumeOfASequence, ThatIsRefusedTwiceHaltsOnce) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::suspend));
+    bench["a"].suspended();
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::resume));
+    bench["a"].listener->onRefused(Method::resume, {Errc::out_of_range, "moved by 0.2 m"});
+    bench["a"].listener->onRefused(Method::resume, {Errc::out_of_range, "moved by 0.3 m"});
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "suspend", "resume", "halt"));
+    bench["a"].halted();
+    bench.run();
+    EXPECT_THAT(bench.why(), HasSubstr("moved by 0.2 m"));
+}
+
+TEST_F(HaltedBackground, ThatHasEndedByItselfIsNotReset) {
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST_F(HaltedBackground, ThatCannotBeReachedIsNotAsked) {
+    bench["b"].reachable = fail(Errc::connection_lost, "nobody is there");
+    ends();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST_F(HaltedBackground, ThatRefusesTheSecondTimeIsLeftHalted) {
+    ends();
+    bench["b"].wasReset(fail(Errc::timeout, "not yet"));
+    bench.advance(99ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench["b"].reset_answer = fail(Errc::device_fault, "the emergency stop is pressed");
+    bench.advance(1ms);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST_F(HaltedBackground, ThatWasResetIsNotResetByTheNextStart) {
+    ends();
+    bench["b"].wasReset();
+    bench.run();
+    bench["b"].heard();
+    bench["b"].state_now = State::halted;  // by a client
+    const auto refused = bench.program->startWith(testing::kClient, {"again", {}});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("reset it, or write reset = true"));
+}
+
+TEST(ResetOfASequence, AsksNobodyWhoIsReadyOrCannotBeReached) {
+    Bench bench(kHead + R"(
+reset = true
+[[step]]
+name = "first"
+run = "b"
+[[step]]
+name = "second"
+run = "a"
+)");
+    ASSERT_TRUE(bench.call(Method::halt));
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["b"].heard(), IsEmpty()) << "it is Ready";
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["b"].state_now = State::halted;
+    bench["b"].reachable = fail(Errc::connection_lost, "nobody is there");
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["b"].reachable = {};
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+}
+
+TEST(ResetOfASequence, ThatFailsLaterMayBeAskedForAgain) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["a"].halted();
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::reset));
+    bench["a"].wasReset(fail(Errc::device_fault, "too hot"));
+    bench["a"].heard();
+    ASSERT_TRUE(bench.program->startWith(testing::kClient, {"again", {}}));
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("reset"));
+}
+
+TEST(StartOfASequence, IsRefusedWhileAUsedSkillIsSuspended) {
+    Bench bench(kTwoSteps);
+    bench["b"].state_now = State::suspended;
+    const auto refused = bench.start();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
+    EXPECT_EQ(refused.error().message, "MoveSkill b (b) is Suspended");
+}
+
+TEST(StartOfASequence, AsksOnlyForTheSkillsThatEveryExecutionComesBy) {
+    struct Case {
+        const char* keys;
+        const char* where;
+        bool needed;
+    };
+    for (const auto& [keys, where, needed] :
+         {Case{"", "sequence", true}, Case{"", "parallel", true},
+          Case{"wait_for = \"any\"\n", "parallel", false}, Case{"", "fallback", false},
+          Case{"times = 2\n", "repeat", true},
+          Case{"at_most = 2\nwhile = { from = \"Ok\", is = true }\n", "repeat", false},
+          Case{"if = { from = \"Ok\", is = true }\n", "then", false}}) {
+        Bench bench(kHead + "[parameters.Ok]\ntype = \"boolean\"\ndefault = true\n" +
+                    "[[step]]\nname = \"first\"\nrun = \"a\"\n[[step]]\nname = \"group\"\n" + keys +
+                    "[[step." + where + "]]\nname = \"second\"\nrun = \"b\"\n");
+        bench["b"].state_now = State::halted;
+        EXPECT_EQ(bench.start().has_value(), !needed) << where << keys;
+    }
+}
+
 }  // namespace
 }  // namespace metier::composition

@@ -719,5 +719,388 @@ run = "b"
     EXPECT_TRUE(bench["a"].heard().empty());
 }
 
+/// A loop over `a`, with the keys that it is to have; then `b`.
+std::string looped(const std::string& keys) {
+    return kHead + R"(
+[parameters.Times]
+type = "number"
+range = [-9, 2000000]
+default = 2
+[parameters.Ok]
+type = "boolean"
+default = true
+[[step]]
+name = "laps"
+)" + keys + R"(
+[[step.repeat]]
+name = "lap"
+run = "a"
+[[step]]
+name = "after"
+run = "b"
+)";
+}
+
+TEST(Loop, NeedsAWholeNumberOfRounds) {
+    for (const double times : {1.5, -1.0, 1'000'001.0}) {
+        Bench bench(looped("times = { from = \"Times\" }"));
+        ASSERT_TRUE(bench.start({{"Times", times}}));
+        EXPECT_EQ(bench.state(), "Halted") << times;
+        EXPECT_THAT(bench.why(), HasSubstr("step laps: times is "));
+        EXPECT_THAT(bench.why(), HasSubstr("it needs a whole number from 0 to 1000000"));
+        EXPECT_THAT(bench["a"].heard(), IsEmpty());
+    }
+    Bench bench(looped("times = { from = \"Times\" }"));
+    ASSERT_TRUE(bench.start({{"Times", 1'000'000.0}}));
+    EXPECT_TRUE(bench["a"].runs());
+}
+
+TEST(Loop, OfNoRoundsGoesOnWithTheNextStep) {
+    Bench bench(looped("times = 0"));
+    ASSERT_TRUE(bench.start());
+    EXPECT_THAT(bench["a"].heard(), IsEmpty());
+    EXPECT_TRUE(bench["b"].runs());
+}
+
+TEST(Loop, TellsHowFarItIs) {
+    Bench bench(looped("times = 4"));
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.125)) << "a round of four, of two steps";
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.1875));
+    for (int round = 0; round < 3; ++round) {
+        bench["a"].finish();
+        bench.run();
+    }
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
+}
+
+TEST(Loop, WithoutTimesCountsItsMostRoundsForItsProgress) {
+    Bench bench(looped("at_most = 4\nuntil = { from = \"Ok\", is = false }"));
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.125));
+}
+
+TEST(Loop, IsDoneAfterItsTimesAlsoIfMoreAreAllowed) {
+    Bench bench(looped("at_most = 2\ntimes = 2"));
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.run();
+    bench["a"].finish();
+    bench.run();
+    EXPECT_TRUE(bench["b"].runs());
+}
+
+TEST(Loop, StopsBeforeARoundForWhichItsConditionDoesNotHold) {
+    Bench bench(looped("at_most = 9\nwhile = { from = \"Ok\", is = true }"));
+    ASSERT_TRUE(bench.start({{"Ok", false}}));
+    EXPECT_THAT(bench["a"].heard(), IsEmpty());
+    EXPECT_TRUE(bench["b"].runs());
+}
+
+TEST(Loop, AsksItsEndConditionOnlyAfterARound) {
+    Bench bench(looped("at_most = 9\nuntil = { from = \"Ok\", is = true }"));
+    ASSERT_TRUE(bench.start());
+    EXPECT_TRUE(bench["a"].runs());
+    bench["a"].finish();
+    bench.run();
+    EXPECT_TRUE(bench["b"].runs());
+}
+
+TEST(Loop, FailsWithTheRoundInWhichAStepFailed) {
+    Bench bench(looped("times = 3"));
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.run();
+    bench["a"].halted(Reason::error, "stuck");
+    bench.run();
+    EXPECT_EQ(bench.why(), "step laps[2]/lap: MoveSkill a was Halted (Error): stuck");
+}
+
+TEST(Loop, FailsIfItsConditionCannotBeAsked) {
+    for (const auto* key : {"while", "until"}) {
+        Bench bench(kHeadWithGrip + "[[step]]\nname = \"grasp\"\nrun = \"grip\"\nwith.Force = 1\n" +
+                    "[[step]]\nname = \"laps\"\nat_most = 3\n" + key +
+                    " = { from = \"grasp.Held\", is = true }\n[[step.repeat]]\nname = \"lap\"\nrun "
+                    "= \"a\"\n[[step]]\nname = \"after\"\nrun = \"b\"\n");
+        ASSERT_TRUE(bench.start());
+        bench["grip"].finish();
+        if (key == std::string("until")) {
+            bench["a"].finish();
+        }
+        bench.run();
+        EXPECT_EQ(bench.state(), "Halted") << key;
+        EXPECT_THAT(bench.why(), HasSubstr("step laps: step[1]."));
+        EXPECT_THAT(bench.why(), HasSubstr("grasp.Held has no value"));
+    }
+}
+
+TEST(Loop, BeginsNoRoundOnceItIsHalted) {
+    Bench bench(looped("times = 3"));
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();  // the next round begins in a later turn
+    ASSERT_TRUE(bench.call(skill::Method::halt));
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
+}
+
+TEST(Parallel, TellsTheMeanProgressOfThoseThatItWaitsFor) {
+    Bench bench(kParallel.substr(0, kParallel.find("WAIT")) +
+                kParallel.substr(kParallel.find("WAIT") + 4));
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.25));
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.75));
+}
+
+TEST(Background, CountsForNoProgress) {
+    Bench bench(kWatched);
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+    bench["b"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
+}
+
+TEST(Parallel, HaltsEveryOtherBranchAtTheFirstFailure) {
+    Bench bench(parallel("wait_for = \"all\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].halted(Reason::error, "stuck");
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    bench["a"].halted(Reason::error, "braked badly");
+    bench.run();
+    EXPECT_EQ(bench.why(), "step both/right: MoveSkill b was Halted (Error): stuck");
+}
+
+TEST(Parallel, OfWhichOneIsEnoughFailsAtOnceIfAClientHaltsOne) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].halted(Reason::by_client);
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    bench["a"].halted();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("both/right: MoveSkill b was Halted (ByClient)"));
+}
+
+TEST(Parallel, OfWhichOneIsEnoughNamesAllFailuresInTheirOrder) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].refused("stuck");
+    bench["a"].refused("jammed");
+    bench.run();
+    EXPECT_EQ(bench.why(),
+              "step both: no branch succeeded: step both/right: MoveSkill b refused Start: stuck; "
+              "step both/left: MoveSkill a refused Start: jammed");
+}
+
+TEST(Parallel, FailsIfABranchDoesNotStopAlthoughOneWasEnough) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].finish();
+    bench.advance(2s);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step both/left: MoveSkill a did not end within 2 s after Halt");
+}
+
+TEST(Fallback, TellsAllFailuresInTheirOrder) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].refused("stuck");
+    bench.run();
+    bench["b"].refused("jammed");
+    bench.run();
+    EXPECT_EQ(bench.why(),
+              "step either: nothing is left to try: step either/left: MoveSkill a refused Start: "
+              "stuck; step either/right: MoveSkill b refused Start: jammed");
+}
+
+TEST(Fallback, TriesNothingElseIfAClientHaltsOne) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::by_client);
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST(Fallback, TriesNothingElseOnceItIsHalted) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(skill::Method::halt));
+    bench["a"].refused("stuck");
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST(Fallback, TellsTheProgressOfTheOneThatItTries) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
+    bench["a"].refused("stuck");
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+}
+
+TEST(Sequence, TakesNoProgressThatIsNone) {
+    Bench bench(parallel(""));
+    ASSERT_TRUE(bench.start());
+    for (const Value& none : {Value(-0.1), Value(1.1), Value(true), Value(std::string("half"))}) {
+        bench["a"].listener->onProgress(none);
+    }
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+    bench["a"].listener->onProgress(Value(1.0));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
+    bench["a"].listener->onProgress(Value(0.0));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+}
+
+TEST(Sequence, IsShownWhatItStartsWithNameAndSkill) {
+    Bench bench(parallel(""));
+    ASSERT_TRUE(bench.start());
+    ASSERT_EQ(bench.observer.children.size(), 2U);
+    EXPECT_EQ(bench.observer.children[0].id, "here.TestSkill/run/left/1");
+    EXPECT_EQ(bench.observer.children[0].skill, "MoveSkill");
+    EXPECT_EQ(bench.observer.children[1].id, "here.TestSkill/run/right/2");
+    EXPECT_EQ(bench["a"].request.parent.id, "run");
+}
+
+TEST(Sequence, ShortensOnlyIdsThatWouldBeTooLong) {
+    const std::string text = kHead +
+                             "[[step]]\nname = \"first\"\nrun = \"a\"\n[[step]]\nname = "
+                             "\"s\"\nrun = \"b\"\n";
+    // "here.TestSkill/" and "/first/1" take 23 of 128 characters.
+    Bench longest(text);
+    const std::string fits(105, 'x');
+    ASSERT_TRUE(longest.program->startWith(testing::kClient, {fits, {}}));
+    EXPECT_EQ(longest["a"].request.execution_id, "here.TestSkill/" + fits + "/first/1");
+    Bench over(text);
+    ASSERT_TRUE(over.program->startWith(testing::kClient, {fits + "x", {}}));
+    EXPECT_EQ(over["a"].request.execution_id.size(), 15U + 16U + 8U);
+    Bench other(text);
+    ASSERT_TRUE(other.program->startWith(testing::kClient, {fits + "y", {}}));
+    EXPECT_NE(over["a"].request.execution_id, other["a"].request.execution_id);
+}
+
+TEST(Choice, ThatCannotBeMadeFailsTheSkill) {
+    Bench bench(choice("{ from = \"grasp.Held\", is = true }"));
+    ASSERT_TRUE(bench.start());
+    bench["grip"].finish({{"Width", 0.03}});
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("step decide: step[1].if.is (line"));
+    EXPECT_THAT(bench.why(), HasSubstr("grasp.Held has no value"));
+}
+
+TEST(Choice, IsHaltedWithItsSteps) {
+    Bench bench(choice("{ from = \"grasp.Held\", is = true }"));
+    ASSERT_TRUE(bench.start());
+    bench["grip"].finish({{"Width", 0.03}, {"Held", true}});
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.75));
+    ASSERT_TRUE(bench.call(skill::Method::halt));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+}
+
+TEST(Timeout, CountsEachAttemptAnew) {
+    Bench bench(kTimedAndTriedAgain);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.advance(2s);
+    bench["b"].refused("not yet");
+    bench.advance(2s);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "begin"));
+    EXPECT_EQ(bench.state(), "Running");
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST(Timeout, IsNoLongerCountedOnceTheSkillIsHalted) {
+    Bench bench(kTimedAndTriedAgain);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.advance(2s);
+    ASSERT_TRUE(bench.call(skill::Method::halt));
+    bench.advance(1s);
+    bench["b"].halted();
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+}
+
+TEST(Timeout, OfAllAttemptsNamesTheLast) {
+    Bench bench(kTimedAndTriedAgain);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    bench.advance(3s);
+    bench["b"].halted();
+    bench.advance(0s);
+    bench["b"].wasReset();
+    bench.advance(3s);
+    bench["b"].halted();
+    bench.run();
+    EXPECT_EQ(bench.why(), "step move: not done within 3 s (attempt 2 of 2)");
+}
+
 }  // namespace
 }  // namespace metier::composition
