@@ -623,5 +623,12 @@ TEST(CompositionFiles, MayNotDeclareOneTypeTwice) {
               2U);
 }
 
+TEST(CompositionFile, ThatIsNoTomlOrNotThereIsRefusedByItsName) {
+    EXPECT_THAT(problemsOf("name = \n"), HasSubstr("c.toml:1"));
+    const auto missing = loadDefinition("/none/there.toml");
+    ASSERT_FALSE(missing);
+    EXPECT_THAT(missing.error().message, HasSubstr("/none/there.toml"));
+}
+
 }  // namespace
 }  // namespace metier::composition

@@ -190,6 +190,7 @@ run = "a"
     bench["b"].wasReset();
     bench.run();
     EXPECT_EQ(bench.state(), "Suspended");
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens until it goes on";
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
     ASSERT_TRUE(bench.call(Method::resume));
     EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
@@ -360,6 +361,7 @@ run = "a"
     bench.run();
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens any more";
 }
 
 TEST(HaltOfASequence, EndsAtOnceBetweenTwoAttemptsToReset) {

@@ -184,6 +184,7 @@ TEST(FailureOfAStep, IsAResetThatIsRefused) {
     bench["b"].wasReset(fail(Errc::device_fault, "the emergency stop is pressed"));
     bench.run();
     EXPECT_EQ(bench.why(), "step second: MoveSkill b refused Reset: the emergency stop is pressed");
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens any more";
 }
 
 TEST(FailureOfAStep, IsAResetThatNobodyAnswers) {
@@ -216,6 +217,7 @@ TEST(FailureOfAStep, IsNotAResetThatTheDeviceTakesItsTimeFor) {
     bench["b"].state_now = State::halted;
     ASSERT_TRUE(bench.start());
     bench["b"].wasReset(fail(Errc::timeout, "the brakes are not released yet"));
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens during the pause";
     bench.advance(99ms);
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
     bench.advance(1ms);
