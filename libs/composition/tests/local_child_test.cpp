@@ -168,5 +168,156 @@ TEST_F(LocalChildren, TellTheirProgress) {
     outer.detach(observer);
 }
 
+/// Keeps what a Child tells.
+class Listener final : public ChildListener {
+public:
+    void onReset(const Result<void>& outcome) override {
+        told.emplace_back(outcome ? "reset" : "not reset");
+    }
+    void onStopping(const ChildStop& stop) override {
+        told.push_back("stopping, then " + std::string(toString(stop.to)) + ": " + stop.text);
+    }
+    void onSuspended() override { told.emplace_back("suspended"); }
+    void onResumed() override { told.emplace_back("resumed"); }
+    void onProgress(const skill::Value& intermediate) override {
+        told.push_back("progress " + skill::toString(intermediate));
+    }
+    void onRefused(skill::Method method, const Error& error) override {
+        told.push_back(std::string(toString(method)) + " refused: " + error.message);
+    }
+    void onEnd(ChildEnd end) override {
+        ends.push_back(std::move(end));
+        told.emplace_back("end");
+    }
+
+    std::vector<std::string> told;
+    std::vector<ChildEnd> ends;
+};
+
+class OneLocalChild : public LocalChildren {
+protected:
+    /// What was told since the last time.
+    std::vector<std::string> told() {
+        executor_->run();
+        return std::exchange(listener_.told, {});
+    }
+
+    Listener listener_;
+    Program& move_ = addMove();
+    LocalChild child_{move_, executor_, kClient};
+};
+
+TEST_F(OneLocalChild, TellsItsWholeLife) {
+    child_.begin({.execution_id = "one"}, listener_);
+    EXPECT_THAT(told(), ::testing::IsEmpty());
+    execution_.progress(0.5);
+    ASSERT_TRUE(child_.suspend());
+    EXPECT_THAT(told(), ::testing::ElementsAre("stopping, then Suspended: by client",
+                                               "progress 0.5", "suspended"));
+    ASSERT_TRUE(child_.resume());
+    EXPECT_THAT(told(), ::testing::ElementsAre("resumed"));
+    execution_.finish({{"Reached", 1.5}});
+    EXPECT_THAT(told(), ::testing::ElementsAre("end"));
+    EXPECT_EQ(listener_.ends[0].kind, ChildEnd::Kind::finished);
+    EXPECT_EQ(listener_.ends[0].result.at("Reached"), skill::Value(1.5));
+}
+
+TEST_F(OneLocalChild, IsHaltedWithItsReason) {
+    child_.begin({.execution_id = "one"}, listener_);
+    executor_->run();
+    execution_.fail(skill::Reason::limit_violated, "too fast");
+    EXPECT_THAT(told(), ::testing::ElementsAre("end"));
+    EXPECT_EQ(listener_.ends[0].kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.ends[0].reason, skill::Reason::limit_violated);
+    EXPECT_EQ(listener_.ends[0].text, "too fast");
+}
+
+TEST_F(OneLocalChild, TellsOfARefusedHalt) {
+    ASSERT_TRUE(move_.halt(kClient));
+    child_.begin({.execution_id = "one"}, listener_);
+    EXPECT_THAT(told(), ::testing::ElementsAre("end"));
+    EXPECT_EQ(listener_.ends[0].kind, ChildEnd::Kind::refused);
+    child_.halt();
+    const auto refused = told();
+    ASSERT_EQ(refused.size(), 1U);
+    EXPECT_THAT(refused[0], HasSubstr("Halt refused: Halt is not possible while Halted"));
+}
+
+TEST_F(OneLocalChild, TellsNothingOfOthersExecutions) {
+    ASSERT_TRUE(move_.startWith(kClient, {"foreign", {}}));
+    execution_.progress(0.5);
+    executor_->run();
+    ASSERT_TRUE(move_.suspend(kClient));
+    executor_->run();
+    ASSERT_TRUE(move_.reset(kClient));
+    child_.begin({.execution_id = "one"}, listener_);
+    executor_->run();
+    execution_.finish();
+    EXPECT_THAT(told(), ::testing::ElementsAre("end"));
+    ASSERT_TRUE(move_.startWith(kClient, {"foreign 2", {}}));
+    execution_.progress(0.5);
+    executor_->run();
+    ASSERT_TRUE(move_.halt(kClient));
+    EXPECT_THAT(told(), ::testing::IsEmpty());
+}
+
+TEST_F(OneLocalChild, TellsNothingOnceItsListenerHasLetGo) {
+    child_.begin({.execution_id = "one"}, listener_);
+    executor_->run();
+    execution_.progress(0.5);
+    executor_->run();
+    listener_.told.clear();
+    ASSERT_TRUE(child_.suspend());
+    child_.release();
+    EXPECT_THAT(told(), ::testing::IsEmpty());
+}
+
+TEST_F(OneLocalChild, IsResetAndTellsItLaterOrRefusesAtOnce) {
+    EXPECT_FALSE(child_.reset(listener_)) << "it is Ready";
+    EXPECT_THAT(told(), ::testing::IsEmpty());
+    ASSERT_TRUE(move_.halt(kClient));
+    ASSERT_TRUE(child_.reset(listener_));
+    EXPECT_THAT(listener_.told, ::testing::IsEmpty()) << "not from inside the call";
+    EXPECT_THAT(told(), ::testing::ElementsAre("reset"));
+}
+
+TEST_F(OneLocalChild, AnswersChecksAndClocksLaterAndNotOnceItIsGone) {
+    std::vector<bool> possible;
+    std::vector<ClockOffset> offsets;
+    const auto checked = [&](const Result<skill::CheckReport>& report) {
+        possible.push_back(report->possible);
+    };
+    const auto compared = [&](const Result<ClockOffset>& offset) { offsets.push_back(*offset); };
+    child_.check({{"Target", 1.0}}, checked);
+    child_.check({{"Target", 11.0}}, checked);
+    child_.compareClocks(compared);
+    EXPECT_TRUE(possible.empty() && offsets.empty()) << "in a later turn";
+    executor_->run();
+    EXPECT_THAT(possible, ::testing::ElementsAre(true, false));
+    ASSERT_EQ(offsets.size(), 1U);
+    EXPECT_EQ(offsets[0].ahead.count(), 0) << "it is the same clock";
+    EXPECT_EQ(offsets[0].uncertainty.count(), 0);
+    {
+        LocalChild gone(move_, executor_, kClient);
+        gone.check({}, checked);
+        gone.compareClocks(compared);
+    }
+    executor_->run();
+    EXPECT_EQ(possible.size(), 2U);
+    EXPECT_EQ(offsets.size(), 1U);
+}
+
+TEST_F(OneLocalChild, HearsNoMoreOfItsProgramOnceItIsGone) {
+    {
+        LocalChild gone(move_, executor_, kClient);
+        gone.begin({.execution_id = "one"}, listener_);
+        executor_->run();
+        execution_.progress(0.5);
+    }
+    execution_.finish();
+    EXPECT_THAT(told(), ::testing::IsEmpty());
+    EXPECT_EQ(move_.state(), State::ready);
+}
+
 }  // namespace
 }  // namespace metier::composition

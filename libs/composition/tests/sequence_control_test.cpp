@@ -190,6 +190,7 @@ run = "a"
     bench["b"].wasReset();
     bench.run();
     EXPECT_EQ(bench.state(), "Suspended");
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens until it goes on";
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
     ASSERT_TRUE(bench.call(Method::resume));
     EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
@@ -360,6 +361,7 @@ run = "a"
     bench.run();
     EXPECT_EQ(bench.state(), "Halted");
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens any more";
 }
 
 TEST(HaltOfASequence, EndsAtOnceBetweenTwoAttemptsToReset) {
@@ -400,186 +402,6 @@ TEST(HaltOfASequence, TellsOfAStepThatDoesNotEnd) {
     EXPECT_FALSE(bench["a"].runs());
 }
 
-/// `b` is a background step, which the end of `a` has halted.
-class HaltedBackground : public ::testing::Test {
-protected:
-    void SetUp() override {
-        ASSERT_TRUE(bench.start());
-        bench["a"].finish();
-        bench.run();
-        ASSERT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
-    }
-    void ends() {
-        bench["b"].halted();
-        bench.run();
-    }
-
-    Bench bench{kHead + R"(
-[[step]]
-name = "carry"
-[[step.parallel]]
-name = "move"
-run = "a"
-[[step.parallel]]
-name = "watch"
-run = "b"
-background = true
-)"};
-};
-
-TEST_F(HaltedBackground, IsReadyForOthersOnceTheSkillHasFinished) {
-    ends();
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
-    EXPECT_EQ(bench.state(), "Running");
-    bench["b"].wasReset();
-    bench.run();
-    EXPECT_EQ(bench.state(), "Ready");
-    EXPECT_EQ(bench.executor->timerCount(), 0U);
-    EXPECT_FALSE(bench["b"].runs()) << "nobody hears of it any more";
-}
-
-TEST_F(HaltedBackground, ThatCannotBeResetDoesNotUndoWhatIsDone) {
-    bench["b"].reset_answer = fail(Errc::locked, "somebody else has control");
-    ends();
-    EXPECT_EQ(bench.state(), "Ready");
-}
-
-TEST_F(HaltedBackground, ThatRefusesLaterDoesNotUndoWhatIsDone) {
-    ends();
-    bench["b"].wasReset(fail(Errc::device_fault, "the emergency stop is pressed"));
-    bench.run();
-    EXPECT_EQ(bench.state(), "Ready");
-}
-
-TEST_F(HaltedBackground, IsAskedAgainIfItsDeviceTakesItsTime) {
-    ends();
-    bench["b"].wasReset(fail(Errc::timeout, "not yet"));
-    bench.advance(100ms);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset", "reset"));
-    bench["b"].wasReset();
-    bench.run();
-    EXPECT_EQ(bench.state(), "Ready");
-}
-
-TEST_F(HaltedBackground, ThatDoesNotAnswerIsNotWaitedForLong) {
-    ends();
-    bench.advance(2s);
-    EXPECT_EQ(bench.state(), "Ready");
-    EXPECT_FALSE(bench["b"].runs());
-    ASSERT_TRUE(bench.program->startWith(testing::kClient, {"again", {}}));
-    bench.run();
-    bench["a"].finish();
-    bench.run();
-    EXPECT_EQ(bench["b"].heard().front(), "reset") << "the next execution asks again";
-}
-
-TEST_F(HaltedBackground, IsResetWhileTheSkillIsSuspended) {
-    ends();
-    ASSERT_TRUE(bench.call(Method::suspend));
-    EXPECT_EQ(bench.state(), "Suspended");
-    bench["b"].wasReset();
-    bench.run();
-    EXPECT_EQ(bench.state(), "Suspended");
-    ASSERT_TRUE(bench.call(Method::resume));
-    EXPECT_EQ(bench.state(), "Ready");
-}
-
-TEST_F(HaltedBackground, KeepsNoHaltFromBeingTaken) {
-    ends();
-    ASSERT_TRUE(bench.call(Method::halt));
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_FALSE(bench["b"].runs());
-    EXPECT_EQ(bench.executor->timerCount(), 0U);
-}
-
-TEST_F(HaltedBackground, StaysHaltedIfTheSkillIsHalted) {
-    ASSERT_TRUE(bench.call(Method::halt));
-    ends();
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_THAT(bench["b"].heard(), IsEmpty());
-    ASSERT_TRUE(bench.call(Method::reset));
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
-}
-
-TEST(ResetOfASequence, ResetsWhatItHaltedItself) {
-    Bench bench(kTwoSteps);
-    ASSERT_TRUE(bench.start());
-    ASSERT_TRUE(bench.call(Method::halt));
-    bench["a"].halted();
-    bench.run();
-    bench["b"].state_now = State::halted;  // by somebody else
-    bench["a"].heard();
-    ASSERT_TRUE(bench.call(Method::reset));
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("reset"));
-    EXPECT_THAT(bench["b"].heard(), IsEmpty());
-    EXPECT_EQ(bench.state(), "Ready");
-}
-
-TEST(ResetOfASequence, GivesNoRightToAnotherReset) {
-    // What a client halted after it was reset by the next Start.
-    Bench bench(kTwoSteps);
-    ASSERT_TRUE(bench.start());
-    ASSERT_TRUE(bench.call(Method::halt));
-    bench["a"].halted();
-    bench.run();
-    ASSERT_TRUE(bench.call(Method::reset));
-    bench["a"].wasReset();
-    bench["a"].state_now = State::halted;  // by a client
-    EXPECT_FALSE(bench.program->startWith(testing::kClient, {"again", {}}));
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt", "reset"));
-}
-
-TEST(ResetOfASequence, IsRefusedIfAUsedSkillRefusesAtOnce) {
-    Bench bench(kTwoSteps);
-    ASSERT_TRUE(bench.start());
-    ASSERT_TRUE(bench.call(Method::halt));
-    bench["a"].halted();
-    bench.run();
-    bench["a"].reset_answer = fail(Errc::device_fault, "the emergency stop is pressed");
-    EXPECT_FALSE(bench.call(Method::reset));
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_EQ(bench.why(), "MoveSkill a (a) refused Reset: the emergency stop is pressed");
-}
-
-TEST(StartOfASequence, ResetsWhatMayBeReset) {
-    Bench bench(kTwoSteps);
-    ASSERT_TRUE(bench.start());
-    ASSERT_TRUE(bench.call(Method::halt));
-    bench["a"].halted();
-    bench.run();
-    ASSERT_TRUE(bench.call(Method::reset));  // whose outcome is not there yet
-    ASSERT_TRUE(bench.start());
-    ASSERT_EQ(bench.program->startWith(testing::kClient, {"run", {}}), "run")
-        << "an id that is known starts nothing";
-    ASSERT_TRUE(bench.program->startWith(testing::kClient, {"again", {}}));
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt", "reset", "reset"));
-    bench["a"].wasReset();
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
-}
-
-TEST(StartOfASequence, IsRefusedIfAUsedSkillIsHaltedByOthers) {
-    Bench bench(kTwoSteps);
-    bench["b"].state_now = State::halted;
-    bench["b"].reason_text = "protective stop";
-    const auto started = bench.start();
-    ASSERT_FALSE(started);
-    EXPECT_EQ(started.error().code, Errc::invalid_state);
-    EXPECT_THAT(started.error().message,
-                HasSubstr("MoveSkill b (b) is Halted: protective stop; reset it"));
-    EXPECT_THAT(bench["a"].heard(), IsEmpty());
-}
-
-TEST(StartOfASequence, IsRefusedIfAUsedSkillRunsOrCannotBeReached) {
-    Bench bench(kTwoSteps);
-    bench["b"].state_now = State::running;
-    EXPECT_EQ(bench.start().error().message, "MoveSkill b (b) is Running");
-    bench["b"].state_now = State::ready;
-    bench["b"].reachable = fail(Errc::connection_lost, "nobody is there");
-    const auto started = bench.program->startWith(testing::kClient, {"other", {}});
-    ASSERT_FALSE(started);
-    EXPECT_EQ(started.error().code, Errc::connection_lost);
-}
-
 TEST(OwnerLossOfASequence, ReachesWhatRuns) {
     Bench bench(kTwoSteps);
     ASSERT_TRUE(bench.start());
@@ -589,6 +411,69 @@ TEST(OwnerLossOfASequence, ReachesWhatRuns) {
     bench["a"].halted();
     bench.run();
     EXPECT_EQ(bench.program->subState(), skill::SubState::halted_owner_lost);
+}
+
+TEST(SuspendOfASequence, AsksNothingOfAStepThatIsSuspendedAlready) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].suspended();
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "suspend"));
+}
+
+TEST(SuspendOfASequence, IsNotTakenForAHaltThatAStepIsComingTo) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].stops(State::halted, "by a panel");
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), skill::SubState::executing);
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin")) << "it is halted once the first stands";
+}
+
+TEST(SuspendOfASequence, KeepsTheTimeOfAStepThatWasRunningBefore) {
+    Bench bench(kHead +
+                "[[step]]\nname = \"first\"\nrun = \"a\"\ntimeout = 3\n"
+                "[[step]]\nname = \"second\"\nrun = \"b\"\n");
+    ASSERT_TRUE(bench.start());
+    for (int i = 0; i < 2; ++i) {
+        bench.advance(1s);
+        ASSERT_TRUE(bench.call(Method::suspend));
+        bench["a"].suspended();
+        bench.advance(10s);
+        ASSERT_TRUE(bench.call(Method::resume));
+        bench["a"].resumed();
+        bench.run();
+    }
+    bench["a"].heard();
+    bench.advance(999ms);
+    EXPECT_THAT(bench["a"].heard(), IsEmpty());
+    bench.advance(1ms);
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("halt"));
+}
+
+TEST(HaltOfASequence, ReachesAStepOnceAlsoIfItIsToldTwice) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::error, "stuck");
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::halt));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+}
+
+TEST(ResumeOfASequence, ThatIsRefusedTwiceHaltsOnce) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::suspend));
+    bench["a"].suspended();
+    bench.run();
+    ASSERT_TRUE(bench.call(Method::resume));
+    bench["a"].listener->onRefused(Method::resume, {Errc::out_of_range, "moved by 0.2 m"});
+    bench["a"].listener->onRefused(Method::resume, {Errc::out_of_range, "moved by 0.3 m"});
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "suspend", "resume", "halt"));
+    bench["a"].halted();
+    bench.run();
+    EXPECT_THAT(bench.why(), HasSubstr("moved by 0.2 m"));
 }
 
 }  // namespace

@@ -184,6 +184,7 @@ TEST(FailureOfAStep, IsAResetThatIsRefused) {
     bench["b"].wasReset(fail(Errc::device_fault, "the emergency stop is pressed"));
     bench.run();
     EXPECT_EQ(bench.why(), "step second: MoveSkill b refused Reset: the emergency stop is pressed");
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens any more";
 }
 
 TEST(FailureOfAStep, IsAResetThatNobodyAnswers) {
@@ -216,6 +217,7 @@ TEST(FailureOfAStep, IsNotAResetThatTheDeviceTakesItsTimeFor) {
     bench["b"].state_now = State::halted;
     ASSERT_TRUE(bench.start());
     bench["b"].wasReset(fail(Errc::timeout, "the brakes are not released yet"));
+    EXPECT_FALSE(bench["b"].runs()) << "nobody listens during the pause";
     bench.advance(99ms);
     EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
     bench.advance(1ms);
@@ -286,6 +288,90 @@ TEST(DestroyedWhileItRuns, AComposedSkillHaltsWhatRuns) {
     bench->program->deviceLost("the component ends");
     EXPECT_THAT((*bench)["a"].heard(), ElementsAre("begin", "halt"));
     EXPECT_FALSE((*bench)["a"].runs());
+}
+
+const std::string kTwoSteps = kHead +
+                              "[[step]]\nname = \"first\"\nrun = \"a\"\n"
+                              "[[step]]\nname = \"second\"\nrun = \"b\"\n";
+
+TEST(FailureOfAStep, IsASkillThatCannotBeReachedWhenItsTurnComes) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    bench["b"].reachable = fail(Errc::connection_lost, "nobody is there");
+    bench["a"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), skill::SubState::halted_device_lost);
+    EXPECT_EQ(bench.why(), "step second: MoveSkill b cannot be reached: nobody is there");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST(FailureOfAStep, ThatIsLostMayBeResetByTheNextStart) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onEnd({ChildEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
+    bench.run();
+    ASSERT_EQ(bench.state(), "Halted");
+    bench["a"].state_now = State::halted;
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "reset"));
+}
+
+TEST(FailureOfAStep, ThatLostItsOwnerIsNotTriedAgain) {
+    Bench bench(kHead +
+                "reset = true\n[[step]]\nname = \"first\"\nrun = \"b\"\nretry = 3\n"
+                "[[step]]\nname = \"second\"\nrun = \"a\"\n");
+    ASSERT_TRUE(bench.start());
+    bench["b"].halted(Reason::owner_lost, "no heartbeat");
+    bench.advance(0ms);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
+}
+
+TEST(FailureOfAStep, ThatDoesNotEndAfterHaltTellsWhatWasRefused) {
+    Bench bench(kTwoSteps);
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench["a"].listener->onRefused(Method::halt, {Errc::locked, "the lease is another's"});
+    bench.advance(2s);
+    EXPECT_EQ(bench.why(),
+              "step first: MoveSkill a did not end within 2 s after Halt (Halt was refused: the "
+              "lease is another's)");
+}
+
+TEST(FailureOfAStep, IsAResetThatIsNotAnsweredOnceTheSkillIsHalted) {
+    Bench bench(kOneThatIsReset);
+    bench["b"].state_now = State::halted;
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench.advance(2s);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step first: MoveSkill b did not end within 2 s after Halt");
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+    EXPECT_FALSE(bench["b"].runs());
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+}
+
+TEST(DestroyedWhileItRuns, AComposedSkillHaltsOnlyWhatItHasNotHaltedYetAndResetsIt) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench["a"].finish();
+    ASSERT_TRUE(bench.call(Method::halt));
+    bench.program->deviceLost("the component ends");
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
+    bench["b"].state_now = State::halted;
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
+}
+
+TEST(DestroyedWhileItRuns, AComposedSkillMayResetWhatItStopped) {
+    Bench bench(kBoth);
+    ASSERT_TRUE(bench.start());
+    bench.program->deviceLost("the component ends");
+    bench["a"].state_now = bench["b"].state_now = State::halted;
+    bench["a"].heard();
+    ASSERT_TRUE(bench.call(Method::reset));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("reset"));
 }
 
 }  // namespace

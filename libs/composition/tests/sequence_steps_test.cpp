@@ -329,174 +329,6 @@ TEST(Background, MayEndBeforeTheOthers) {
     EXPECT_EQ(bench.state(), "Ready");
 }
 
-TEST(Retry, TriesAgainAfterAPauseAndAReset) {
-    Bench bench(kHead + R"(
-reset = true
-[[step]]
-name = "first"
-run = "a"
-[[step]]
-name = "move"
-run = "b"
-retry = 2
-pause = 0.5
-)");
-    ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench["b"].halted(Reason::error, "missed");
-    bench.advance(400ms);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
-    bench.advance(100ms);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
-    bench["b"].wasReset();
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
-    bench["b"].finish();
-    bench.run();
-    EXPECT_EQ(bench.state(), "Ready");
-}
-
-TEST(Retry, TellsTheLastFailureWhenItGivesUp) {
-    Bench bench(kHead + R"(
-reset = true
-[[step]]
-name = "first"
-run = "a"
-[[step]]
-name = "move"
-run = "b"
-retry = 1
-)");
-    ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench["b"].refused("too far");
-    bench.advance(0ms);
-    bench["b"].refused("still too far");
-    bench.run();
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_EQ(bench.why(), "step move: MoveSkill b refused Start: still too far (attempt 2 of 2)");
-}
-
-TEST(Retry, DoesNotOverrideAClientThatHaltedTheSkill) {
-    Bench bench(kHead + R"(
-reset = true
-[[step]]
-name = "first"
-run = "a"
-[[step]]
-name = "move"
-run = "b"
-retry = 5
-)");
-    ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench["b"].halted(Reason::by_client);
-    bench.advance(1s);
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_THAT(bench.why(), HasSubstr("step move: MoveSkill b was Halted (ByClient)"));
-}
-
-TEST(Timeout, HaltsTheStepAndFailsIt) {
-    Bench bench(kHead + R"(
-[[step]]
-name = "move"
-run = "a"
-timeout = 3
-[[step]]
-name = "second"
-run = "b"
-)");
-    ASSERT_TRUE(bench.start());
-    bench.advance(2999ms);
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin"));
-    bench.advance(1ms);
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("halt"));
-    EXPECT_EQ(bench.state(), "Running") << "the child has not ended";
-    bench["a"].halted();
-    bench.run();
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_EQ(bench.why(), "step move: not done within 3 s");
-}
-
-const std::string kTimedAndTriedAgain = kHead + R"(
-reset = true
-[[step]]
-name = "first"
-run = "a"
-[[step]]
-name = "move"
-run = "b"
-timeout = 3
-retry = 1
-)";
-
-TEST(Timeout, LetsNoRetryBeginBeforeTheStepHasStopped) {
-    Bench bench(kTimedAndTriedAgain);
-    ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench.advance(3s);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt"));
-    bench.advance(1s);
-    EXPECT_THAT(bench["b"].heard(), IsEmpty()) << "it still brakes";
-    bench["b"].halted();
-    bench.advance(0s);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("reset"));
-    bench["b"].wasReset();
-    bench.run();
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
-}
-
-TEST(Timeout, OfAStepThatDoesNotStopIsNotTriedAgain) {
-    Bench bench(kTimedAndTriedAgain);
-    ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench.advance(3s);
-    bench.advance(2s);
-    EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_THAT(bench.why(), HasSubstr("step move: MoveSkill b did not end within 2 s after Halt"));
-    bench.advance(10s);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin", "halt")) << "it may still move";
-}
-
-TEST(Timeout, IsNoMatterOfWhatIsDoneInTime) {
-    Bench bench(kHead + R"(
-[[step]]
-name = "move"
-run = "a"
-timeout = 3
-[[step]]
-name = "second"
-run = "b"
-)");
-    ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench.advance(10s);
-    EXPECT_THAT(bench["b"].heard(), ElementsAre("begin"));
-    EXPECT_EQ(bench.state(), "Running");
-}
-
-TEST(Timeout, StandsStillWhileTheSkillIsSuspended) {
-    Bench bench(kHead + R"(
-[[step]]
-name = "move"
-run = "a"
-timeout = 3
-[[step]]
-name = "second"
-run = "b"
-)");
-    ASSERT_TRUE(bench.start());
-    bench.advance(2s);
-    ASSERT_TRUE(bench.call(skill::Method::suspend));
-    bench["a"].suspended();
-    bench.advance(60s);
-    EXPECT_EQ(bench.state(), "Suspended");
-    ASSERT_TRUE(bench.call(skill::Method::resume));
-    bench.advance(999ms);
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "suspend", "resume"));
-    bench.advance(1ms);
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("halt"));
-}
-
 TEST(Fallback, TakesTheFirstThatSucceeds) {
     Bench bench(kHead + R"(
 [[step]]
@@ -609,114 +441,213 @@ run = "b"
     EXPECT_TRUE(bench["b"].runs());
 }
 
-TEST(Loop, RepeatsAsOftenAsAParameterSays) {
-    Bench bench(kHead + R"(
-[parameters.Laps]
-type = "uint32"
-range = [0, 9]
-[[step]]
-name = "laps"
-times = { from = "Laps" }
-[[step.repeat]]
-name = "there"
-run = "a"
-[[step.repeat]]
-name = "back"
-run = "b"
-)");
-    ASSERT_TRUE(bench.start({{"Laps", std::uint32_t{2}}}));
-    EXPECT_EQ(bench.program->step(), "laps[1]/there");
-    for (int lap = 0; lap < 2; ++lap) {
-        bench["a"].finish();
-        bench.run();
-        bench["b"].finish();
-        bench.run();
-    }
-    EXPECT_EQ(bench.state(), "Ready");
-    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "begin"));
-    ASSERT_TRUE(bench.start({{"Laps", std::uint32_t{0}}}));
-    EXPECT_EQ(bench.state(), "Ready");
-    EXPECT_TRUE(bench["a"].heard().empty());
+TEST(Parallel, TellsTheMeanProgressOfThoseThatItWaitsFor) {
+    Bench bench(kParallel.substr(0, kParallel.find("WAIT")) +
+                kParallel.substr(kParallel.find("WAIT") + 4));
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.25));
+    bench["b"].finish();
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.75));
 }
 
-TEST(Loop, EndsWhenItsConditionHoldsAfterARound) {
-    Bench bench(kHeadWithGrip + R"(
-[[step]]
-name = "move"
-run = "a"
-[[step]]
-name = "other"
-run = "b"
-[[step]]
-name = "until_held"
-at_most = 3
-until = { from = "grasp.Held", is = true }
-[[step.repeat]]
-name = "grasp"
-run = "grip"
-with.Force = 5
-)");
+TEST(Background, CountsForNoProgress) {
+    Bench bench(kWatched);
     ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench["b"].finish();
-    bench["grip"].finish({{"Held", false}});
+    bench["a"].listener->onProgress(Value(0.5));
     bench.run();
-    EXPECT_TRUE(bench["grip"].runs());
-    bench["grip"].finish({{"Held", true}});
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+    bench["b"].listener->onProgress(Value(0.5));
     bench.run();
-    EXPECT_EQ(bench.state(), "Ready");
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
 }
 
-TEST(Loop, FailsAtItsBound) {
-    Bench bench(kHeadWithGrip + R"(
-[[step]]
-name = "move"
-run = "a"
-[[step]]
-name = "other"
-run = "b"
-[[step]]
-name = "until_held"
-at_most = 2
-until = { from = "grasp.Held", is = true }
-[[step.repeat]]
-name = "grasp"
-run = "grip"
-with.Force = 5
-)");
+TEST(Parallel, HaltsEveryOtherBranchAtTheFirstFailure) {
+    Bench bench(parallel("wait_for = \"all\""));
     ASSERT_TRUE(bench.start());
-    bench["a"].finish();
-    bench["b"].finish();
-    for (int round = 0; round < 2; ++round) {
-        bench["grip"].finish({{"Held", false}});
-        bench.run();
-    }
+    bench["b"].halted(Reason::error, "stuck");
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    bench["a"].halted(Reason::error, "braked badly");
+    bench.run();
+    EXPECT_EQ(bench.why(), "step both/right: MoveSkill b was Halted (Error): stuck");
+}
+
+TEST(Parallel, OfWhichOneIsEnoughFailsAtOnceIfAClientHaltsOne) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].halted(Reason::by_client);
+    bench.run();
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
+    bench["a"].halted();
+    bench.run();
     EXPECT_EQ(bench.state(), "Halted");
-    EXPECT_EQ(bench.why(), "step until_held: not done after 2 rounds");
+    EXPECT_THAT(bench.why(), HasSubstr("both/right: MoveSkill b was Halted (ByClient)"));
 }
 
-TEST(Loop, GoesOnWhileItsConditionHolds) {
-    Bench bench(kHeadWithGrip + R"(
+TEST(Parallel, OfWhichOneIsEnoughNamesAllFailuresInTheirOrder) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].refused("stuck");
+    bench["a"].refused("jammed");
+    bench.run();
+    EXPECT_EQ(bench.why(),
+              "step both: no branch succeeded: step both/right: MoveSkill b refused Start: stuck; "
+              "step both/left: MoveSkill a refused Start: jammed");
+}
+
+TEST(Parallel, FailsIfABranchDoesNotStopAlthoughOneWasEnough) {
+    Bench bench(parallel("wait_for = \"any\""));
+    ASSERT_TRUE(bench.start());
+    bench["b"].finish();
+    bench.advance(2s);
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.why(), "step both/left: MoveSkill a did not end within 2 s after Halt");
+}
+
+TEST(Fallback, TellsAllFailuresInTheirOrder) {
+    Bench bench(kHead + R"(
 [[step]]
-name = "first"
-run = "grip"
-with.Force = 5
-[[step]]
-name = "until_held"
-at_most = 5
-while = { from = "first.Held", is = false }
-[[step.repeat]]
-name = "move"
+name = "either"
+[[step.fallback]]
+name = "left"
 run = "a"
-[[step.repeat]]
-name = "other"
+[[step.fallback]]
+name = "right"
 run = "b"
 )");
     ASSERT_TRUE(bench.start());
-    bench["grip"].finish({{"Held", true}});
+    bench["a"].refused("stuck");
     bench.run();
-    EXPECT_EQ(bench.state(), "Ready");
-    EXPECT_TRUE(bench["a"].heard().empty());
+    bench["b"].refused("jammed");
+    bench.run();
+    EXPECT_EQ(bench.why(),
+              "step either: nothing is left to try: step either/left: MoveSkill a refused Start: "
+              "stuck; step either/right: MoveSkill b refused Start: jammed");
+}
+
+TEST(Fallback, TriesNothingElseIfAClientHaltsOne) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].halted(Reason::by_client);
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST(Fallback, TriesNothingElseOnceItIsHalted) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    ASSERT_TRUE(bench.call(skill::Method::halt));
+    bench["a"].refused("stuck");
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
+    EXPECT_THAT(bench["b"].heard(), IsEmpty());
+}
+
+TEST(Fallback, TellsTheProgressOfTheOneThatItTries) {
+    Bench bench(kHead + R"(
+[[step]]
+name = "either"
+[[step.fallback]]
+name = "left"
+run = "a"
+[[step.fallback]]
+name = "right"
+run = "b"
+)");
+    ASSERT_TRUE(bench.start());
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
+    bench["a"].refused("stuck");
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+}
+
+TEST(Sequence, TakesNoProgressThatIsNone) {
+    Bench bench(parallel(""));
+    ASSERT_TRUE(bench.start());
+    for (const Value& none : {Value(-0.1), Value(1.1), Value(true), Value(std::string("half"))}) {
+        bench["a"].listener->onProgress(none);
+    }
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+    bench["a"].listener->onProgress(Value(1.0));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.5));
+    bench["a"].listener->onProgress(Value(0.0));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.0));
+}
+
+TEST(Sequence, IsShownWhatItStartsWithNameAndSkill) {
+    Bench bench(parallel(""));
+    ASSERT_TRUE(bench.start());
+    ASSERT_EQ(bench.observer.children.size(), 2U);
+    EXPECT_EQ(bench.observer.children[0].id, "here.TestSkill/run/left/1");
+    EXPECT_EQ(bench.observer.children[0].skill, "MoveSkill");
+    EXPECT_EQ(bench.observer.children[1].id, "here.TestSkill/run/right/2");
+    EXPECT_EQ(bench["a"].request.parent.id, "run");
+}
+
+TEST(Sequence, ShortensOnlyIdsThatWouldBeTooLong) {
+    const std::string text = kHead +
+                             "[[step]]\nname = \"first\"\nrun = \"a\"\n[[step]]\nname = "
+                             "\"s\"\nrun = \"b\"\n";
+    // "here.TestSkill/" and "/first/1" take 23 of 128 characters.
+    Bench longest(text);
+    const std::string fits(105, 'x');
+    ASSERT_TRUE(longest.program->startWith(testing::kClient, {fits, {}}));
+    EXPECT_EQ(longest["a"].request.execution_id, "here.TestSkill/" + fits + "/first/1");
+    Bench over(text);
+    ASSERT_TRUE(over.program->startWith(testing::kClient, {fits + "x", {}}));
+    EXPECT_EQ(over["a"].request.execution_id.size(), 15U + 16U + 8U);
+    Bench other(text);
+    ASSERT_TRUE(other.program->startWith(testing::kClient, {fits + "y", {}}));
+    EXPECT_NE(over["a"].request.execution_id, other["a"].request.execution_id);
+}
+
+TEST(Choice, ThatCannotBeMadeFailsTheSkill) {
+    Bench bench(choice("{ from = \"grasp.Held\", is = true }"));
+    ASSERT_TRUE(bench.start());
+    bench["grip"].finish({{"Width", 0.03}});
+    bench.run();
+    EXPECT_EQ(bench.state(), "Halted");
+    EXPECT_THAT(bench.why(), HasSubstr("step decide: step[1].if.is (line"));
+    EXPECT_THAT(bench.why(), HasSubstr("grasp.Held has no value"));
+}
+
+TEST(Choice, IsHaltedWithItsSteps) {
+    Bench bench(choice("{ from = \"grasp.Held\", is = true }"));
+    ASSERT_TRUE(bench.start());
+    bench["grip"].finish({{"Width", 0.03}, {"Held", true}});
+    bench["a"].listener->onProgress(Value(0.5));
+    bench.run();
+    EXPECT_EQ(bench.program->intermediate(), Value(0.75));
+    ASSERT_TRUE(bench.call(skill::Method::halt));
+    EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
 }
 
 }  // namespace

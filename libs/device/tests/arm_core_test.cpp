@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <functional>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace metier::device {
@@ -186,6 +189,69 @@ TEST_F(MeasuredCycles, CountAStateThatIsPublishedTwiceOnce) {
     publishAt(8'000us);
     publishAt(8'000us);
     EXPECT_EQ(count(), 1U);
+}
+
+TEST_F(Core, HasNothingToStopWhileNobodyMovesTheArm) {
+    core.stop();
+    EXPECT_FALSE(core.stopRequested());
+}
+
+TEST_F(Core, IsStoppedForItsOwnMotionAlone) {
+    ASSERT_TRUE(core.attach(source));
+    EXPECT_FALSE(core.stopRequested());
+    core.stop();
+    core.end(EndCause::stopped);
+    EXPECT_FALSE(core.stopRequested()) << "nobody moves the arm any more";
+}
+
+TEST_F(Core, TellsTheEndWithTheSafetyOfThatMoment) {
+    ASSERT_TRUE(core.attach(source));
+    core.setSafety({SafetyState::protective_stop, "robot: hit something"});
+    core.end(EndCause::safety);
+    core.dispatch();
+    EXPECT_THAT(source->causes, ElementsAre(EndCause::safety));
+    EXPECT_EQ(source->last.state, SafetyState::protective_stop);
+    EXPECT_EQ(source->last.text, "robot: hit something");
+    EXPECT_EQ(source.use_count(), 1) << "the core has let go of it";
+}
+
+TEST(SafetyState, HasANameForEach) {
+    EXPECT_EQ(toString(SafetyState::normal), "normal");
+    EXPECT_EQ(toString(SafetyState::protective_stop), "protective stop");
+    EXPECT_EQ(toString(SafetyState::emergency_stop), "emergency stop");
+    EXPECT_EQ(toString(SafetyState::fault), "fault");
+    EXPECT_EQ(toString(SafetyState::disconnected), "disconnected");
+}
+
+/// Does each of them a thousand times, all at the same time.
+void together(std::vector<std::function<void()>> all) {
+    std::atomic<std::size_t> waiting{all.size()};
+    std::vector<std::jthread> threads;
+    for (auto& one : all) {
+        threads.emplace_back([&waiting, one = std::move(one)] {
+            waiting.fetch_sub(1);
+            while (waiting.load() > 0) {
+                std::this_thread::yield();
+            }
+            for (int i = 0; i < 1'000; ++i) {
+                one();
+            }
+        });
+    }
+}
+
+// For the thread sanitizer: a client, the driver's threads and the notifier use it at once.
+TEST_F(Core, MayBeUsedByManyThreads) {
+    together({[&] { static_cast<void>(core.attach(std::make_shared<Source>())); },
+              [&] {
+                  core.setSafety({SafetyState::protective_stop, "robot: hit something"});
+                  core.end(EndCause::safety);
+                  core.setSafety({});
+              },
+              [&] { core.dispatch(); }, [&] { static_cast<void>(core.safety()); }});
+    core.end(EndCause::safety);
+    core.dispatch();
+    EXPECT_TRUE(core.attach(source));
 }
 
 }  // namespace

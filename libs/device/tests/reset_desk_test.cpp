@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 namespace metier::device {
 namespace {
 
@@ -45,6 +48,37 @@ TEST(ResetDesk, AnAnswerThatNobodyAskedForIsNoAnswer) {
     ResetDesk desk;
     desk.answer(fail(Errc::connection_lost, "gone"));
     EXPECT_FALSE(desk.ask());
+}
+
+TEST(ResetDesk, AsksNoDeviceThatAnsweredBeforeItWasAsked) {
+    ResetDesk desk;
+    EXPECT_FALSE(desk.ask());
+    desk.answer(fail(Errc::connection_lost, "gone"));  // before anybody took the request
+    EXPECT_FALSE(desk.taken());
+    EXPECT_EQ(desk.ask().value().error().message, "gone");
+}
+
+// For the thread sanitizer: clients ask on one thread, a device answers on another.
+TEST(ResetDesk, MayBeUsedByManyThreads) {
+    ResetDesk desk;
+    std::atomic<bool> done{false};
+    std::jthread device([&] {
+        while (!done.load()) {
+            if (desk.taken()) {
+                desk.answer(fail(Errc::device_fault, "too hot"));
+            }
+            std::this_thread::yield();
+        }
+    });
+    for (int failures = 0; failures < 20;) {
+        static_cast<void>(desk.underWay());
+        if (const auto outcome = desk.ask()) {
+            EXPECT_EQ(outcome->error().message, "too hot");
+            ++failures;
+        }
+        std::this_thread::yield();
+    }
+    done.store(true);
 }
 
 }  // namespace

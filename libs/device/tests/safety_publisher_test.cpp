@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace metier::device {
@@ -71,6 +73,48 @@ TEST(SafetyPublisher, LetsAListenerOwnAnotherRegistration) {
     heard.publisher.set({SafetyState::normal, "", false});
     heard.publisher.dispatch();
     EXPECT_EQ(heard.texts.size(), 1U);
+}
+
+// For the thread sanitizer: a driver sets, its notifier tells, clients ask and come and go.
+TEST(SafetyPublisher, MayBeUsedByManyThreads) {
+    SafetyPublisher publisher{{SafetyState::disconnected, "not connected yet", false}};
+    std::atomic<int> told{0};
+    const auto lasting = publisher.onChange([&](const Safety&) { ++told; });
+    std::atomic<bool> done{false};
+    {
+        std::jthread notifier([&] {
+            while (!done.load()) {
+                publisher.dispatch();
+            }
+        });
+        std::jthread client([&] {
+            while (!done.load()) {
+                static_cast<void>(publisher.safety());
+                const auto passing = publisher.onChange([](const Safety&) {});
+            }
+        });
+        std::jthread second([&] {
+            while (!done.load()) {
+                const auto passing = publisher.onChange([](const Safety&) {});
+            }
+        });
+        std::jthread driver([&] {
+            for (int i = 0; i < 2'000; ++i) {
+                publisher.set({SafetyState::fault, "fast stop", false});
+                publisher.set({SafetyState::normal, "", false});
+            }
+        });
+        for (int i = 0; i < 2'000; ++i) {
+            publisher.set({SafetyState::emergency_stop, "pressed", false});
+        }
+        driver.join();
+        done.store(true);
+    }
+    const int before = told.load();
+    publisher.set({SafetyState::disconnected, "cable", false});
+    publisher.dispatch();
+    EXPECT_LE(told.load() - before, 1);
+    EXPECT_EQ(publisher.safety().text, "cable");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 namespace metier::device {
@@ -196,6 +197,37 @@ TEST(Watchdog, WaitsBetweenItsLooks) {
     auto end = last.get_future();
     ASSERT_EQ(end.wait_for(60s), std::future_status::ready);
     EXPECT_GE(end.get() - first.get_future().get(), (kLooks - 1) * Watchdog::tickPeriod(kShort));
+}
+
+TEST(Watchdog, EndsOnlyOnceItsActionHasEnded) {
+    const SystemClock clock;
+    std::promise<void> begun;
+    std::atomic<bool> first{true};
+    std::atomic<bool> ended{false};
+    Watchdog watchdog({.stop =
+                           [&] {
+                               if (first.exchange(false)) {
+                                   begun.set_value();
+                                   const auto until = clock.now() + 100ms;
+                                   while (clock.now() < until) {
+                                       std::this_thread::yield();
+                                   }
+                                   ended.store(true);
+                               }
+                           },
+                       .post = [](const std::function<void()>&) {},
+                       .tell = [](std::chrono::nanoseconds) {},
+                       .noticed = [](std::chrono::nanoseconds) {}},
+                      20ms, clock);
+    watchdog.tick();
+    ASSERT_EQ(begun.get_future().wait_for(60s), std::future_status::ready);
+    watchdog.end();
+    EXPECT_TRUE(ended.load());
+    watchdog.end();  // again, without effect
+}
+
+TEST_F(WatchedThread, IsLookedAtAfterItsLimitIfItHasNotTickedYet) {
+    EXPECT_EQ(watchdog_.look(), kLimit);
 }
 
 }  // namespace

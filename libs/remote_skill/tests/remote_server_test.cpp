@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <future>
 #include <mutex>
 
 #include "connection.hpp"
@@ -221,6 +222,140 @@ TEST_F(RemoteChildTest, TellsARefusalToNoOtherExecution) {
     EXPECT_EQ(listener_.refusal, "");
 }
 
+TEST_F(RemoteChildTest, SuspendsRightAfterItsStartWasAskedFor) {
+    begin("here.Test/1/move/1");
+    ASSERT_TRUE(child_->suspend());
+    EXPECT_TRUE(until([&] { return child_->state() == State::running; }));
+    ASSERT_TRUE(move_.hand->await("suspend"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return listener_.suspended; }));
+    EXPECT_FALSE(listener_.end);
+}
+
+TEST_F(RemoteChildTest, ChecksWithoutMoving) {
+    std::optional<Result<skill::CheckReport>> report;
+    const auto checked = [&](Result<skill::CheckReport> answer) { report = std::move(answer); };
+    child_->check({{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}, checked);
+    EXPECT_FALSE(report) << "in a later turn";
+    ASSERT_TRUE(until([&] { return report.has_value(); }));
+    ASSERT_TRUE(*report) << report->error().message;
+    EXPECT_TRUE((*report)->possible);
+    report.reset();
+    child_->check({{"TargetJointPosition", std::vector<double>{9.0, 0.2}}}, checked);
+    ASSERT_TRUE(until([&] { return report.has_value(); }));
+    EXPECT_TRUE(!*report || !(*report)->possible) << "9 rad is over the limit of 3 rad";
+    EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, ComparesClocksWithinHalfARoundTrip) {
+    std::optional<Result<composition::ClockOffset>> offset;
+    child_->compareClocks(
+        [&](Result<composition::ClockOffset> answer) { offset = std::move(answer); });
+    ASSERT_TRUE(until([&] { return offset.has_value(); }));
+    ASSERT_TRUE(*offset) << offset->error().message;
+    EXPECT_GT((*offset)->uncertainty, 0ns);
+    EXPECT_LT((*offset)->uncertainty, 5s);
+    EXPECT_LE(std::chrono::abs((*offset)->ahead), (*offset)->uncertainty + 50ms)
+        << "it is the same clock, but for the server's steps of it";
+}
+
+TEST_F(RemoteChildTest, IsHaltedIfItIsResetWhileItIsSuspended) {
+    beginAndAwait("here.Test/1/move/1");
+    ASSERT_TRUE(child_->suspend());
+    ASSERT_TRUE(move_.hand->await("suspend"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return listener_.suspended; }));
+    ASSERT_EQ(call(*connect("panel"), move_, "Reset"), "Good");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->text, "it was reset while it was suspended");
+    EXPECT_EQ(child_->state(), State::ready);
+}
+
+TEST_F(RemoteChildTest, ShowsWhatOtherClientsDoAndTellsItToNobody) {
+    const auto panel = connect("panel");
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().finish();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    listener_ = {};
+    ASSERT_EQ(call(*panel, move_, "Halt"), "Good");
+    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    ASSERT_EQ(call(*panel, move_, "Reset"), "Good");
+    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    EXPECT_FALSE(listener_.end);
+    EXPECT_TRUE(listener_.stops.empty());
+}
+
+TEST_F(RemoteChildTest, TellsWhyItIsHalted) {
+    beginAndAwait("here.Test/1/move/1");
+    move_.hand->execution().fail(Reason::limit_violated, "too fast");
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->reason, Reason::limit_violated);
+    EXPECT_EQ(child_->state(), State::halted);
+    EXPECT_EQ(child_->reasonText(), "too fast");
+    EXPECT_EQ(use("there.Test")->reasonText(), "too fast") << "also to who comes later";
+}
+
+TEST_F(RemoteChildTest, TellsNobodyWhoHasLetGo) {
+    beginAndAwait("here.Test/1/move/1");
+    child_->release();
+    move_.hand->execution().finish();
+    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    executor_->run();
+    EXPECT_FALSE(listener_.end);
+}
+
+TEST_F(RemoteChildTest, ThatIsLostSaysSoToEverythingThatIsAsked) {
+    shutDown();
+    ASSERT_TRUE(until([this] { return !child_->available(); }));
+    EXPECT_EQ(child_->available().error().code, Errc::connection_lost);
+    EXPECT_EQ(child_->suspend().error().code, Errc::connection_lost);
+    EXPECT_EQ(child_->resume().error().code, Errc::connection_lost);
+    EXPECT_EQ(child_->reset(listener_).error().code, Errc::connection_lost);
+    std::optional<Result<skill::CheckReport>> report;
+    child_->check({}, [&](Result<skill::CheckReport> answer) { report = std::move(answer); });
+    ASSERT_TRUE(until([&] { return report.has_value(); }));
+    EXPECT_FALSE(*report);
+    std::optional<Result<composition::ClockOffset>> offset;
+    child_->compareClocks(
+        [&](Result<composition::ClockOffset> answer) { offset = std::move(answer); });
+    ASSERT_TRUE(until([&] { return offset.has_value(); }));
+    ASSERT_FALSE(*offset);
+    EXPECT_EQ(offset->error().code, Errc::connection_lost);
+    begin("here.Test/1/move/1");
+    EXPECT_FALSE(listener_.end) << "not from inside the call";
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_FALSE(listener_.reset);
+}
+
+TEST_F(RemoteChildTest, TellsItsServersNameAndAddress) {
+    EXPECT_EQ(remote_->name(), "other");
+    EXPECT_EQ(remote_->url(), server().endpointUrl());
+    EXPECT_EQ(child_->description().name, "JointPtpMoveSkill");
+    const auto unnamed =
+        RemoteServer::connect({.url = server().endpointUrl(), .name = ""}, executor_).value();
+    EXPECT_EQ(unnamed->name(), server().endpointUrl());
+    shutDown();
+    const auto nobody = RemoteServer::connect({.url = remote_->url(), .name = "x"}, executor_);
+    ASSERT_FALSE(nobody);
+    EXPECT_THAT(nobody.error().message, HasSubstr(remote_->url() + ": "));
+}
+
+TEST_F(RemoteChildTest, NamesTheServerOfItsParent) {
+    child_.reset();
+    remote_ = RemoteServer::connect(
+                  {.url = server().endpointUrl(), .name = "other", .own_server = "urn:component"},
+                  executor_)
+                  .value();
+    child_ = use("here.Test");
+    beginAndAwait("here.Test/1/move/1");
+    std::promise<std::string> parent;
+    server().post(
+        [&] { parent.set_value(move_.program->execution("here.Test/1/move/1")->parent.server); });
+    EXPECT_EQ(parent.get_future().get(), "urn:component");
+}
+
 TEST_F(RemoteChildTest, IsLostWithItsServer) {
     beginAndAwait("here.Test/1/move/1");
     shutDown();
@@ -378,6 +513,72 @@ TEST_F(DeafChild, LearnsThatItWasSuspendedAndResumed) {
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return !listener_.suspended; }));
     EXPECT_FALSE(listener_.end);
+}
+
+TEST_F(DeafChild, LearnsThatItWasResetWhileItWasSuspended) {
+    const auto panel = connect();
+    ASSERT_EQ(call(*panel, move_, "Suspend"), "Good");
+    ASSERT_TRUE(move_.hand->await("suspend"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
+    ASSERT_EQ(call(*panel, move_, "Reset"), "Good");
+    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->text, "it was reset while it was suspended");
+}
+
+TEST_F(DeafChild, LearnsItsResult) {
+    move_.hand->execution().finish({{"Duration", 1.5}});
+    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->result.at("Duration"), skill::Value(1.5));
+}
+
+TEST_F(DeafChild, IsToldASuspendOnceAlsoIfItIsAskedAgain) {
+    ASSERT_EQ(call(*connect(), move_, "Suspend"), "Good");
+    ASSERT_TRUE(move_.hand->await("suspend"));
+    move_.hand->execution().atRest();
+    ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.suspended; }));
+    listener_.suspended = false;
+    deaf_->onDoubt();
+    bool checked = false;
+    deaf_->check({}, [&](const auto& /*report*/) { checked = true; });
+    EXPECT_TRUE(until([&] { return checked; }));
+    EXPECT_FALSE(listener_.suspended);
+    EXPECT_FALSE(listener_.end);
+}
+
+TEST_F(DeafChild, SeesTheStateOnceNothingRunsFromHere) {
+    move_.hand->execution().finish();
+    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    ASSERT_EQ(call(*connect(), move_, "Halt"), "Good");
+    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    EXPECT_EQ(deaf_->state(), State::ready);
+    deaf_->onDoubt();
+    EXPECT_TRUE(until([this] { return deaf_->state() == State::halted; }));
+}
+
+TEST_F(DeafChild, TellsAResetThatIsUnderWayWhenItsServerIsLost) {
+    move_.hand->execution().fail(Reason::error, "stuck");
+    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    deaf_->onDoubt();
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    ASSERT_TRUE(deaf_->reset(listener_));
+    deaf_->lost("the cable is cut");
+    ASSERT_TRUE(listener_.reset);
+    ASSERT_FALSE(*listener_.reset);
+    EXPECT_EQ(listener_.reset->error().code, Errc::connection_lost);
+    EXPECT_EQ(listener_.reset->error().message, "the cable is cut");
+    listener_.reset.reset();
+    executor_->run();
+    EXPECT_FALSE(listener_.reset) << "once";
 }
 
 TEST_F(RemoteChildTest, IsLostWithItsEventsAndComesBackByItself) {

@@ -83,5 +83,26 @@ TEST(Settling, BeginsAnewForTheNextMotion) {
     EXPECT_NEAR(arm.timeUntilAnswer([](double) { return Seen{0.002, true}; }), 2.0, 2 * kCycle);
 }
 
+TEST(Settling, TakesAnArmForArrivedWithinAMilliradian) {
+    for (const auto& [off, status] :
+         {std::pair(0.00099, Status::arrived), std::pair(0.00101, Status::waiting)}) {
+        Settling settling;
+        device::ArmState state;
+        state.position = device::JointArray(1);
+        state.position[0] = off;
+        state.standstill = true;
+        EXPECT_EQ(settling.take(state, device::JointArray(1), kCycle), status) << off;
+    }
+}
+
+TEST(Settling, CountsRestAnewOnceTheArmMoves) {
+    Arm arm;
+    const double answered = arm.timeUntilAnswer([](double time) {
+        return Seen{0.02, !(time > 1.5 && time < 1.6)};
+    });
+    EXPECT_NEAR(answered, 3.6, 3 * kCycle);
+    EXPECT_EQ(arm.answer, Status::off_target);
+}
+
 }  // namespace
 }  // namespace metier::robot_skills

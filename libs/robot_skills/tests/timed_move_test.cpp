@@ -134,5 +134,58 @@ TEST(Timetable, TellsHowLateASetPointIs) {
     EXPECT_NEAR(timetable.lastTime() - timetable.firstTime(), 0.011, 1e-6);
 }
 
+TEST(StartTime, MayBeUpToAMinuteAhead) {
+    const ManualClock clock;
+    const double now = toSeconds(clock.utcNow());
+    EXPECT_TRUE(checkStartTime({}, clock));
+    EXPECT_TRUE(checkStartTime(now, clock));
+    EXPECT_TRUE(checkStartTime(now + 59.9, clock));
+    EXPECT_EQ(checkStartTime(now + 60.1, clock).error().code, Errc::out_of_range);
+    EXPECT_EQ(checkStartTime(now - 0.1, clock).error().code, Errc::out_of_range);
+}
+
+TEST(Timetable, WithoutAStartTimeBeginsAtOnceWithAWholeCycle) {
+    ManualClock clock;
+    Timetable timetable(clock, {});
+    EXPECT_EQ(timetable.firstTime(), 0.0) << "not begun";
+    EXPECT_EQ(timetable.look(), Timetable::Due::now);
+    EXPECT_NEAR(timetable.step(0.008), 0.008, 1e-9);
+    EXPECT_NEAR(timetable.firstTime(), toSeconds(clock.utcNow()), 1e-6);
+    clock.advance(std::chrono::milliseconds(5));  // 3 ms early
+    EXPECT_EQ(timetable.look(), Timetable::Due::now);
+    timetable.step(0.008);
+    EXPECT_NEAR(timetable.largestLateness(), 0.003, 1e-6);
+    clock.advance(std::chrono::milliseconds(9));
+    EXPECT_EQ(timetable.look(), Timetable::Due::now);
+    timetable.step(0.008);
+    EXPECT_NEAR(timetable.largestLateness(), 0.003, 1e-6) << "the largest, not the last";
+}
+
+TEST(Timetable, MissesAStartThatIsMoreThanATenthOfASecondAgo) {
+    for (const auto& [late, due] :
+         {std::pair(99, Timetable::Due::now), std::pair(101, Timetable::Due::missed)}) {
+        ManualClock clock;
+        Timetable timetable(clock, toSeconds(clock.utcNow()) + 1.0);
+        clock.advance(std::chrono::milliseconds(1000 + late));
+        EXPECT_EQ(timetable.look(), due) << late;
+        EXPECT_NEAR(timetable.missedBy(), 1e-3 * late, 1e-6);
+    }
+}
+
+TEST(Timetable, BeginsAnewAfterASuspendWithoutItsStartTime) {
+    ManualClock clock;
+    Timetable timetable(clock, toSeconds(clock.utcNow()) + 1.0);
+    EXPECT_EQ(timetable.look(), Timetable::Due::not_yet);
+    timetable.restart();
+    EXPECT_EQ(timetable.look(), Timetable::Due::now);
+    EXPECT_NEAR(timetable.step(0.008), 0.008, 1e-9);
+    clock.advance(std::chrono::seconds(3));
+    timetable.restart();
+    EXPECT_EQ(timetable.look(), Timetable::Due::now);
+    EXPECT_NEAR(timetable.step(0.008), 0.008, 1e-9);
+    EXPECT_LT(timetable.largestLateness(), 1e-6) << "the pause counts for nothing";
+    EXPECT_NEAR(timetable.lastTime() - timetable.firstTime(), 3.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace metier::robot_skills

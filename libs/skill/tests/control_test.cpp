@@ -201,5 +201,84 @@ TEST_F(Controlled, LockEndsWithoutRenewalWithItsSessionAndWhenBroken) {
     EXPECT_THAT(losses.told, IsEmpty());
 }
 
+TEST_F(Controlled, NamesItsHolderAndWhatTheLeaseAsksFor) {
+    EXPECT_TRUE(control.holder().session_id.empty());
+    EXPECT_FALSE(control.leasedBy("alice"));
+    EXPECT_EQ(control.epoch(), 0U);
+    ASSERT_TRUE(control.lock(kAlice));
+    EXPECT_EQ(control.holder().session_id, "alice");
+    EXPECT_EQ(control.locker().session_id, "alice");
+    EXPECT_FALSE(control.leasedBy("alice")) << "a lock is no lease";
+    ASSERT_TRUE(control.unlock(kAlice));
+    const auto epoch = control.acquire(kBob, 0ms, OwnerLossAction::suspend);
+    EXPECT_EQ(control.holder().session_id, "bob");
+    EXPECT_TRUE(control.leasedBy("bob"));
+    EXPECT_FALSE(control.leasedBy("alice"));
+    EXPECT_EQ(control.epoch(), *epoch);
+    EXPECT_EQ(control.onLoss(), OwnerLossAction::suspend);
+    EXPECT_EQ(control.leaseRemaining(), Control::kDefaultLease);
+    ASSERT_TRUE(control.release(kBob, *epoch));
+    EXPECT_TRUE(control.holder().session_id.empty());
+    EXPECT_FALSE(control.leasedBy("bob"));
+}
+
+TEST_F(Controlled, TakesTheLeaseFromAShortestToALongest) {
+    for (const auto lease : {Control::kShortestLease, Control::kLongestLease}) {
+        ASSERT_TRUE(control.acquire(kAlice, lease, OwnerLossAction::halt)) << lease.count();
+        EXPECT_EQ(control.leaseRemaining(), lease);
+    }
+}
+
+TEST_F(Controlled, RefusesWithTheNameOfTheHolder) {
+    ASSERT_TRUE(control.lock(kAlice));
+    EXPECT_EQ(control.checkCommand(kBob).error().message, "\"Alice's client\" has locked it");
+    ASSERT_TRUE(control.acquire(kAlice, 0ms, OwnerLossAction::halt));
+    EXPECT_EQ(control.checkCommand(kBob).error().message, "\"Alice's client\" has control of it");
+    ASSERT_TRUE(control.breakLock());
+    control.sessionClosed("alice");
+    ASSERT_TRUE(control.lock({.session_id = "nameless"}));
+    EXPECT_EQ(control.checkCommand(kBob).error().message, "a client has locked it");
+}
+
+TEST_F(Controlled, IsHeldByNobodyAfterAReleaseByAClientWithoutASession) {
+    const Caller nobody;
+    EXPECT_FALSE(control.heartbeat(nobody, 0));
+    EXPECT_FALSE(control.renewLock(nobody));
+    EXPECT_FALSE(control.unlock(nobody));
+    EXPECT_FALSE(control.leasedBy(nobody.session_id));
+    const auto epoch = control.acquire(nobody, 0ms, OwnerLossAction::halt);
+    ASSERT_TRUE(control.heartbeat(nobody, *epoch));
+    ASSERT_TRUE(control.release(nobody, *epoch));
+    EXPECT_FALSE(control.heartbeat(nobody, *epoch)) << "it was given back";
+    control.sessionClosed(nobody.session_id);
+    EXPECT_THAT(losses.told, IsEmpty());
+}
+
+TEST_F(Controlled, LockIsRenewedAndGivenBackByItsHolderAlone) {
+    ASSERT_TRUE(control.lock(kAlice));
+    executor->advance(30s);
+    EXPECT_EQ(control.renewLock(kBob).error().code, Errc::invalid_state);
+    EXPECT_EQ(control.lockRemaining(), 30s);
+    EXPECT_EQ(control.unlock(kBob).error().code, Errc::invalid_state);
+    control.sessionClosed("bob");
+    EXPECT_TRUE(control.isLocked());
+    ASSERT_TRUE(control.unlock(kAlice));
+    EXPECT_FALSE(control.isLocked());
+    EXPECT_TRUE(control.locker().session_id.empty());
+    EXPECT_EQ(control.lockRemaining(), 0ms);
+    EXPECT_EQ(executor->timerCount(), 0U);
+    EXPECT_EQ(control.breakLock().error().code, Errc::invalid_state);
+}
+
+TEST_F(Controlled, CountsTheLeasesThatWereLostAndNotThoseGivenBack) {
+    const auto epoch = control.acquire(kAlice, 500ms, OwnerLossAction::halt);
+    ASSERT_TRUE(control.release(kAlice, *epoch));
+    EXPECT_EQ(control.losses(), 0U);
+    ASSERT_TRUE(control.acquire(kAlice, 500ms, OwnerLossAction::halt));
+    executor->advance(500ms);
+    EXPECT_EQ(control.losses(), 1U);
+    EXPECT_EQ(executor->timerCount(), 0U);
+}
+
 }  // namespace
 }  // namespace metier::skill::testing

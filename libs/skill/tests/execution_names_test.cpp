@@ -108,6 +108,7 @@ TEST_F(KeptNames, AreWrittenWholeAfterALineForWhichTheDiskHadNoRoom) {
         }
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
+        EXPECT_THAT(refused.error().message, HasSubstr("cannot note a start"));
         EXPECT_FALSE(names->knows("Weld", "too long for what is left"));
         ASSERT_TRUE(keep(*names, "Weld", "next"));
     }
@@ -188,6 +189,69 @@ TEST_F(KeptNames, OfARefusedStartMayBeUsedAgain) {
     EXPECT_FALSE(bench.program->startWith(
         kAlice, {.execution_id = "first", .parameters = {{"Speed", 99.0}}}));
     EXPECT_TRUE(bench.program->startWith(kAlice, {.execution_id = "first"}));
+}
+
+TEST_F(KeptNames, OfAFileThatCannotBeMendedAreAnError) {
+    const auto refused = ExecutionNames::open("/dev/null");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
+    EXPECT_THAT(refused.error().message, HasSubstr("/dev/null: cannot mend it"));
+}
+
+TEST_F(KeptNames, DoNotTakeTheEscapeOfACharacterForTheCharacter) {
+    ASSERT_TRUE(keep(*open(), "Weld", "100%0a"));
+    const auto names = open();
+    EXPECT_TRUE(names->knows("Weld", "100%0a"));
+    EXPECT_FALSE(names->knows("Weld", "100\n"));
+}
+
+TEST_F(KeptNames, AreRefusedWhileTheFileCannotBeginAnewAndTakenOnceItCan) {
+    const auto names = open(1);
+    ASSERT_TRUE(keep(*names, "Weld", "1"));
+    const auto in_the_way = file_.string() + ".old";
+    std::filesystem::create_directories(in_the_way + "/folder");
+    const auto refused = keep(*names, "Weld", "2");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::resource_unavailable);
+    EXPECT_THAT(refused.error().message, HasSubstr("cannot begin it anew"));
+    EXPECT_FALSE(names->knows("Weld", "2"));
+    std::filesystem::remove_all(in_the_way);
+    ASSERT_TRUE(keep(*names, "Weld", "3"));
+    EXPECT_TRUE(std::filesystem::is_regular_file(in_the_way)) << "the file has begun anew";
+}
+
+TEST_F(KeptNames, BeginAnewAlsoIfSomebodyHasRemovedTheFile) {
+    const auto names = open(1);
+    ASSERT_TRUE(keep(*names, "Weld", "1"));
+    std::filesystem::remove(file_);
+    EXPECT_TRUE(keep(*names, "Weld", "2"));
+    EXPECT_TRUE(std::filesystem::exists(file_));
+}
+
+TEST_F(KeptNames, ThatWaitWhenTheServerEndsAreStillWritten) {
+    constexpr int count = 50;
+    {
+        const auto names = open();
+        for (int i = 0; i < count; ++i) {
+            ASSERT_TRUE(names->note("Weld", std::to_string(i),
+                                    [](const Result<void>& kept) { EXPECT_TRUE(kept); }));
+        }
+    }
+    const auto names = open();
+    for (int i = 0; i < count; ++i) {
+        EXPECT_TRUE(names->knows("Weld", std::to_string(i))) << i;
+    }
+}
+
+TEST(NamesInMemory, ThatAreForgottenMayBeUsedAgainAlsoOnceOthersCameAfterThem) {
+    ExecutionNames names(1);
+    ASSERT_TRUE(names.note("Weld", "old", {}));
+    ASSERT_TRUE(names.note("Weld", "new", {}));
+    ASSERT_TRUE(names.knows("Weld", "old"));
+    names.forget("Weld", "old");
+    names.forget("Weld", "new");
+    EXPECT_FALSE(names.knows("Weld", "old"));
+    EXPECT_FALSE(names.knows("Weld", "new"));
 }
 
 }  // namespace

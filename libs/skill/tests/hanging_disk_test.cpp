@@ -177,6 +177,52 @@ TEST_F(HangingDisk, TakesNoLiveValueBeforeTheWorkHasBegun) {
     EXPECT_TRUE(bench_.program->write(kAlice, "Offset", 0.05));
 }
 
+TEST_F(HangingDisk, LeavesADeviceAloneWhoseWorkHasNotBegunWhenItsProgramEnds) {
+    const auto names = namesOn(250ms);
+    ProgramBench bench({.names = names});
+    ASSERT_TRUE(bench.program->startWith(kAlice, {.execution_id = "weld 1"}));
+    bench.program.reset();
+    EXPECT_THAT(bench.script->calls, ElementsAre("destroyed"));
+    disk_.letGo();  // before the names go
+}
+
+TEST_F(HangingDisk, HasNoDeadlineLeftOnceTheWorkHasBegunOrWasGivenUp) {
+    ASSERT_TRUE(start("weld 1"));
+    EXPECT_EQ(bench_.executor->timerCount(), 1U);
+    letGo();
+    EXPECT_EQ(bench_.executor->timerCount(), 0U);
+    disk_.hang();
+    bench_.script->execution.finish();
+    bench_.run();
+    ASSERT_TRUE(start("weld 2"));
+    ASSERT_TRUE(bench_.call(Method::halt));
+    EXPECT_EQ(bench_.executor->timerCount(), 0U);
+}
+
+TEST_F(HangingDisk, BeginsTheWorkOnceAlsoIfItIsSuspendedBeforeAndAfter) {
+    ASSERT_TRUE(start("weld 1"));
+    ASSERT_TRUE(bench_.call(Method::suspend));
+    ASSERT_TRUE(bench_.call(Method::resume));
+    letGo();
+    EXPECT_THAT(calls(), ElementsAre("start"));
+    ASSERT_TRUE(bench_.call(Method::suspend));
+    bench_.script->execution.atRest();
+    bench_.run();
+    ASSERT_TRUE(bench_.call(Method::resume));
+    EXPECT_THAT(calls(), ElementsAre("start", "suspend", "resume"));
+}
+
+TEST_F(HangingDisk, TakesNamesAgainOnceItGoesOn) {
+    ProgramBench bench({.names = namesOn(0ms)});
+    ASSERT_TRUE(bench.program->startWith(kAlice, {.execution_id = "weld 1"}));
+    disk_.letGo();
+    ASSERT_TRUE(bench.executor->awaitPosts(1));
+    bench.run();
+    bench.script->execution.finish();
+    bench.run();
+    EXPECT_TRUE(bench.program->startWith(kAlice, {.execution_id = "weld 2"}));
+}
+
 TEST_F(HangingDisk, RefusesFurtherNamesButNotAStartWithoutOne) {
     ProgramBench bench({.names = namesOn(0ms)});
     ASSERT_TRUE(bench.program->startWith(kAlice, {.execution_id = "weld 1"}));

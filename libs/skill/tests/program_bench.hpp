@@ -30,7 +30,8 @@ struct Script {
     std::function<void(const Execution&)> on_stop{};
 
     std::vector<std::string> calls{};
-    std::optional<UtcTime> meant_for{};  ///< of the last live value
+    std::vector<std::string> refusals{};  ///< of live values
+    std::optional<UtcTime> meant_for{};   ///< of the last live value
     ValueMap snapshot{};
     Execution execution{};
     int bodies_alive = 0;
@@ -69,6 +70,9 @@ public:
         script_->calls.push_back(std::string(parameter) + " = " + toString(live.value));
         script_->meant_for = live.meant_for;
         return script_->input_taken;
+    }
+    void inputRefused(std::string_view parameter, const Error& why) override {
+        script_->refusals.push_back(std::string(parameter) + " refused: " + why.message);
     }
 
 private:

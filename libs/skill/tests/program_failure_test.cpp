@@ -444,5 +444,86 @@ TEST(HastyExecutor, StillGetsRunningBeforeReady) {
     EXPECT_THAT(script->calls, ElementsAre("start", "destroyed"));
 }
 
+TEST(HastyExecutor, TakesNothingMoreOnceTheWorkHasEnded) {
+    const auto script = std::make_shared<Script>();
+    script->on_start = [](const Execution& execution) {
+        execution.finish({{"Length", 0.4}});
+        execution.finish({{"Length", 0.6}});
+        execution.fail(Reason::error, "late");
+        execution.suspend("late");
+        execution.atRest();
+        execution.step("late");
+    };
+    const ManualClock clock;
+    Program program({}, std::make_unique<ScriptedSkill>(weldDescription(), script),
+                    std::make_shared<HastyExecutor>(), clock);
+    RecordingObserver observer;
+    program.attach(observer);
+    ASSERT_TRUE(program.start(kAlice));
+    EXPECT_THAT(observer.transitions(), ElementsAre("ReadyToRunning", "RunningToReady"));
+    EXPECT_EQ(program.finalResult().at("Length"), Value(0.4));
+    EXPECT_THAT(script->calls, ElementsAre("start", "destroyed"));
+    EXPECT_THAT(observer.stops, IsEmpty());
+}
+
+TEST(ProgramEnd, WhileSuspendedLeavesTheDeviceWhichStands) {
+    ProgramBench bench;
+    bench.enter(State::suspended);
+    bench.program.reset();
+    EXPECT_THAT(bench.script->calls, ElementsAre("destroyed"));
+}
+
+TEST(DeviceStopped, LeavesAHaltThatIsUnderWayItsReason) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.program->deviceStopped("nobody watched");
+    EXPECT_THAT(bench.script->calls, ElementsAre("halt"));
+    bench.script->execution.atRest();
+    bench.run();
+    EXPECT_EQ(bench.program->subState(), SubState::halted_by_client);
+    EXPECT_EQ(bench.program->reasonText(), "");
+}
+
+TEST(Start, RefusedWhileHaltedByAClientSaysSo) {
+    ProgramBench bench;
+    bench.enter(State::halted);
+    EXPECT_EQ(bench.program->start(kAlice).error().message,
+              "Start is not possible while Halted (ByClient); Reset makes it Ready");
+}
+
+TEST(Start, WhileItRunsIsRefusedWithTheStateAlone) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    EXPECT_EQ(bench.program->start(kAlice).error().message, "Start is not possible while Running");
+}
+
+class SkillWithoutABody final : public Skill {
+public:
+    const SkillDescription& description() const override { return description_; }
+    Result<std::unique_ptr<Body>> prepare(const ValueMap& /*snapshot*/) override {
+        return std::unique_ptr<Body>();
+    }
+
+private:
+    SkillDescription description_{.name = "EmptySkill"};
+};
+
+TEST(Start, OfASkillThatMakesNoBodyIsRefusedAndLeavesItReady) {
+    const auto executor = std::make_shared<ManualExecutor>();
+    Program program({}, std::make_unique<SkillWithoutABody>(), executor, executor->clock());
+    EXPECT_EQ(program.start(kAlice).error().code, Errc::internal);
+    EXPECT_EQ(program.state(), State::ready);
+}
+
+TEST(ProgramWiring, RefusesResultsThatContradictThemselves) {
+    const auto make = [](SkillDescription description) {
+        const ProgramBench bench({}, std::move(description));
+    };
+    EXPECT_THROW(make({.results = {{.name = "A"}, {.name = "B"}, {.name = "A"}}}),
+                 std::invalid_argument);
+    EXPECT_NO_THROW(make({.parameters = {{.name = "A"}}, .results = {{.name = "A"}}}));
+}
+
 }  // namespace
 }  // namespace metier::skill::testing

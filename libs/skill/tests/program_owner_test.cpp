@@ -280,5 +280,45 @@ TEST_F(Owned, CheckSaysWhatStartWouldSayAndChangesNothing) {
     EXPECT_EQ(script->bodies_alive, 1);
 }
 
+TEST_F(Owned, TheEndOfALeaseLeavesWhatAnotherSessionHasBegunOrConfigured) {
+    ASSERT_TRUE(program.start(kBob));
+    ASSERT_TRUE(control->acquire(kAlice, 500ms, OwnerLossAction::halt));
+    executor->advance(500ms);
+    EXPECT_EQ(program.subState(), SubState::executing);
+    script->execution.finish();
+    executor->run();
+    ASSERT_TRUE(program.write(kBob, "Speed", 1.0));
+    ASSERT_TRUE(control->acquire(kAlice, 500ms, OwnerLossAction::halt));
+    executor->advance(500ms);
+    EXPECT_EQ(program.subState(), SubState::ready_configured);
+    EXPECT_EQ(program.read("Speed"), Value(1.0));
+}
+
+TEST_F(Owned, AnExecutionIdMayHave128Characters) {
+    EXPECT_TRUE(program.startWith(kAlice, {.execution_id = std::string(128, 'x')}));
+}
+
+TEST_F(Owned, StartWithAtItsVeryDeadlineStillBegins) {
+    EXPECT_TRUE(program.startWith(kAlice, {.deadline = executor->clock().utcNow()}));
+}
+
+TEST_F(Owned, CheckIsRefusedToAnotherSessionThanTheOneThatConfigures) {
+    ASSERT_TRUE(program.write(kAlice, "Speed", 1.0));
+    EXPECT_TRUE(program.check(kAlice, {}).possible);
+    const auto refused = program.check(kBob, {});
+    EXPECT_FALSE(refused.possible);
+    EXPECT_THAT(refused.reason, HasSubstr("another session has configured"));
+}
+
+TEST(EpochWithoutControl, IsNobodysAndStartsNothing) {
+    ProgramBench bench;
+    const auto refused = bench.program->startWith(kAlice, {.epoch = 3});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::locked);
+    EXPECT_THAT(refused.error().message, HasSubstr("epoch 3"));
+    EXPECT_EQ(bench.program->state(), State::ready);
+    EXPECT_TRUE(bench.program->startWith(kAlice, {.epoch = 0}));
+}
+
 }  // namespace
 }  // namespace metier::skill::testing

@@ -287,5 +287,68 @@ TEST(Diagnostic, IsCompleteBeforeItsEvent) {
     EXPECT_EQ(transition, bench.observer.events[0].time);
 }
 
+TEST(Binding, OfAnExecutionThatRunsHasNoTimeoutLeft) {
+    ProgramBench bench;
+    ASSERT_TRUE(bench.program->write(kAlice, "Speed", 1.0));
+    ASSERT_TRUE(bench.program->start(kAlice));
+    EXPECT_EQ(bench.executor->timerCount(), 0U);
+    bench.executor->advance(1min);
+    EXPECT_EQ(bench.program->subState(), SubState::executing);
+}
+
+TEST(Binding, IsNobodysOnceItIsReleased) {
+    ParameterSet set(weldDescription().parameters);
+    set.bind("alice");
+    EXPECT_EQ(set.boundSession(), "alice");
+    EXPECT_TRUE(set.release().empty());
+    EXPECT_FALSE(set.isBound());
+    EXPECT_EQ(set.boundSession(), "");
+}
+
+TEST(LiveParameter, IsNotTakenWhileAnotherClientHasControl) {
+    const auto executor = std::make_shared<ManualExecutor>();
+    const auto control = std::make_shared<Control>(executor, executor->clock());
+    ProgramBench bench({.control = control}, weldDescription(), executor);
+    bench.enter(State::running);
+    ASSERT_TRUE(control->acquire(kBob, 0ms, OwnerLossAction::halt));
+    EXPECT_EQ(bench.program->write(kAlice, "Offset", 0.05).error().code, Errc::locked);
+    EXPECT_THAT(bench.script->calls, IsEmpty());
+}
+
+TEST(LiveParameter, ThatIsRefusedIsToldToTheBodyAsWell) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    EXPECT_FALSE(bench.program->write(kAlice, "Offset", 0.2));
+    EXPECT_THAT(bench.script->refusals,
+                ElementsAre("Offset refused: Offset: 0.2 m is over the limit 0.1 m"));
+}
+
+TEST(LiveParameter, WithoutADefaultIsNotTakenAsNull) {
+    auto description = weldDescription();
+    description.parameters.push_back(
+        {.name = "Arc", .type = ValueType::number, .input = Input::live});
+    ProgramBench bench({}, description);
+    ASSERT_TRUE(bench.program->startWith(kAlice, {.parameters = {{"Arc", 3.0}}}));
+    bench.forget();
+    EXPECT_EQ(bench.program->write(kAlice, "Arc", Value{}).error().code, Errc::invalid_argument);
+    EXPECT_THAT(bench.script->refusals, ElementsAre("Arc refused: Arc: a value is needed"));
+    EXPECT_THAT(bench.script->calls, IsEmpty());
+}
+
+TEST(LiveParameter, ComesWithTheTimeThatItIsMeantFor) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    const auto meant_for = bench.executor->clock().utcNow() + 20ms;
+    ASSERT_TRUE(bench.program->write(kAlice, "Offset", 0.05, meant_for));
+    EXPECT_EQ(bench.script->meant_for, meant_for);
+}
+
+TEST(ParameterWrite, OfAParameterThatIsNotLiveIsRefusedWhileItRuns) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    EXPECT_EQ(bench.program->write(kAlice, "Speed", 1.0).error().message,
+              "Speed cannot be written while Running");
+}
+
 }  // namespace
 }  // namespace metier::skill::testing

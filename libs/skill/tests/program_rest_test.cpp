@@ -262,5 +262,25 @@ TEST(Suspend, IsNotExecutableForASkillThatCannot) {
     EXPECT_THAT(bench.script->calls, IsEmpty());
 }
 
+TEST(ComingToRest, OfAHaltTellsTheErrorThatComesMeanwhileAlone) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    ASSERT_TRUE(bench.program->halt(kAlice));
+    bench.script->execution.fail(Reason::force_exceeded, "40 N over 30 N");
+    bench.run();
+    EXPECT_EQ(bench.program->reasonText(), "40 N over 30 N");
+}
+
+TEST(ComingToRest, OfAHaltThatOvertakesASuspendHasTheReasonOfTheHalt) {
+    ProgramBench bench;
+    bench.enter(State::running);
+    bench.script->execution.suspend("left was suspended");
+    bench.run();
+    bench.program->deviceStopped("nobody watched");
+    bench.script->execution.fail(Reason::error, "off its set-point");
+    bench.run();
+    EXPECT_EQ(bench.program->reasonText(), "off its set-point (nobody watched)");
+}
+
 }  // namespace
 }  // namespace metier::skill::testing

@@ -194,5 +194,26 @@ TEST(Body, TakesNoLiveInputUnlessItSaysSo) {
     EXPECT_EQ((*body)->input("Depth", {0.03}).error().code, Errc::not_supported);
 }
 
+TEST(LambdaSkill, CanBeSuspendedOnlyIfItCanBeResumed) {
+    const auto suspend = [](const Execution&) { return Result<void>(); };
+    EXPECT_FALSE(lambdaSkill({.suspend = suspend})->description().suspendable);
+    EXPECT_FALSE(lambdaSkill({.resume = suspend})->description().suspendable);
+    EXPECT_TRUE(lambdaSkill({.suspend = suspend, .resume = suspend})->description().suspendable);
+}
+
+TEST(LambdaSkill, WithoutAStopOfTheDeviceIsHaltedByItsLossAllTheSame) {
+    Bench bench(lambdaSkill({.start = [](const ValueMap&, const Execution&) {}}));
+    ASSERT_TRUE(bench.program.start(kClient));
+    bench.program.deviceLost("gone");
+    EXPECT_EQ(bench.program.state(), State::halted);
+}
+
+TEST(LambdaSkill, TellsWhyItsResetIsRefused) {
+    Bench bench(lambdaSkill(
+        {.reset = [] { return Result<void>(metier::fail(Errc::device_fault, "too hot")); }}));
+    ASSERT_TRUE(bench.program.halt(kClient));
+    EXPECT_EQ(bench.program.reset(kClient).error().message, "too hot");
+}
+
 }  // namespace
 }  // namespace metier::skill::testing

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <limits>
+#include <string>
 
 #include "wire.hpp"
 
@@ -115,6 +117,51 @@ TEST(Messages, RefusesLimitsThatMakeNoSense) {
                 HasSubstr("speed"));
     EXPECT_FALSE(parseLimits(limitValues({110, 5, 420, 100, 5000, nan, 80, 120})));
     EXPECT_FALSE(parseLimits(limitValues({110, 5, 420})));
+}
+
+TEST(Messages, RefusesLimitsWithoutRoomBetweenThem) {
+    struct Case {
+        std::initializer_list<float> values;
+        const char* problem;
+    };
+    for (const auto& [values, problem] :
+         {Case{{-110, 5, 420, 100, 5000, 5, 80, 120}, "width from 0 to -0.11"},
+          Case{{110, 420, 420, 100, 5000, 5, 80, 120}, "speed from 0.42 to 0.42"},
+          Case{{110, -5, 420, 100, 5000, 5, 80, 120}, "speed from -0.005 to 0.42"},
+          Case{{110, 5, 420, 6000, 5000, 5, 80, 120}, "acceleration from 6 to 5"},
+          Case{{110, 5, 420, 100, 5000, 80, 80, 120}, "force from 80 to 80"},
+          Case{{110, 5, 420, 100, 5000, 5, 2e6F, 120}, "force from 5 to 2000000"}}) {
+        const auto limits = parseLimits(limitValues(values));
+        ASSERT_FALSE(limits) << problem;
+        EXPECT_EQ(limits.error().code, Errc::invalid_argument);
+        EXPECT_EQ(limits.error().message, std::string("limits: ") + problem);
+    }
+    const auto widest = parseLimits(limitValues({110, 0, 420, 0, 5000, 0, 1e6F, 120}));
+    ASSERT_TRUE(widest);
+    EXPECT_EQ(widest->min_speed, 0.0);
+    EXPECT_EQ(widest->max_force, 1e6);
+}
+
+TEST(Messages, TakesValuesUpToAMillion) {
+    EXPECT_EQ(*parseForce(f32(1e6F)), 1e6);
+    EXPECT_EQ(*parseForce(f32(-1e6F)), -1e6);
+    EXPECT_EQ(parseForce(f32(1.1e6F)).error().code, Errc::invalid_argument);
+    EXPECT_EQ(parseForce(f32(-1.1e6F)).error().code, Errc::invalid_argument);
+}
+
+TEST(Messages, GraspingStatesHaveNames) {
+    const std::array names{"idle",    "grasping",  "no part found", "part lost",
+                           "holding", "releasing", "positioning",   "error"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const auto state = parseGraspingState(bytes({static_cast<int>(i)}));
+        ASSERT_TRUE(state) << i;
+        EXPECT_EQ(toString(*state), names.at(i));
+    }
+}
+
+TEST(Messages, AStatusHasTwoBytes) {
+    const auto payload = bytes({0x02, 0x01});
+    EXPECT_EQ(static_cast<int>(parseReply({0x25, payload})->status), 0x0102);
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "metier/skill/execution_record.hpp"
 #include "metier/skill/program_observer.hpp"
+#include "metier/skill/skill.hpp"
 
 namespace metier::skill::testing {
 
@@ -41,6 +43,12 @@ public:
     }
 
     void onStopping(const StoppingEvent& event) override { stops.push_back(event); }
+    void onBegin(const ExecutionRecord& execution) override { begun.push_back(execution); }
+    void onStarted(const StartedExecution& child) override { children.push_back(child); }
+    void onCheck(const Caller& caller, const ValueMap& parameters,
+                 const CheckReport& report) override {
+        checks.push_back({caller, parameters, report});
+    }
 
     /// The names of the transitions so far.
     std::vector<std::string> transitions() const {
@@ -59,6 +67,14 @@ public:
     std::vector<std::string> log;
     std::vector<TransitionEvent> events;
     std::vector<StoppingEvent> stops;
+    std::vector<ExecutionRecord> begun;
+    std::vector<StartedExecution> children;
+    struct Check {
+        Caller caller;
+        ValueMap parameters;
+        CheckReport report;
+    };
+    std::vector<Check> checks;
     /// Called with each entry of the log, if set.
     std::function<void(const std::string&)> on_entry;
 
