@@ -110,6 +110,12 @@ Planned<TrackedPath> track(const TrackRequest& request, const PlannerOptions& op
     return TrackedPath{std::move(*path), std::move(bounds)};
 }
 
+Trajectory quickestAlong(const RobotModel& model, TrackedPath path, const Pose& flange_from_tool) {
+    SpeedPlan speed = planSpeed(path.joints.places(), path.bounds,
+                                [&](double s) { return path.joints.at(s, model.kinematics()).q; });
+    return makeTrajectory(model, std::move(path.joints), std::move(speed), flange_from_tool);
+}
+
 Refusal targetRefusal(const Error& error) {
     Refusal refusal = refuse(error.code == Errc::unreachable ? RefusalReason::unreachable
                                                              : RefusalReason::invalid_request,
@@ -211,9 +217,8 @@ Planned<Trajectory> Planner::lin(const LinRequest& request) const {
     for (SpeedBounds& at : path->bounds) {
         at.add({1, 0, 0, limits.velocity, limits.acceleration, limits.jerk});
     }
-    SpeedPlan speed = planSpeed(path->joints.places(), path->bounds);
-    return withoutCollision(*model_, makeTrajectory(*model_, std::move(path->joints),
-                                                    std::move(speed), tool->flange_from_tool));
+    return withoutCollision(*model_,
+                            quickestAlong(*model_, std::move(*path), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::path(const PathRequest& request) const {
@@ -245,9 +250,8 @@ Planned<Trajectory> Planner::path(const PathRequest& request) const {
     if (auto refusal = refuseCrawling(*model_, *path, fastest, options_)) {
         return tl::unexpected(*refusal);
     }
-    SpeedPlan speed = planSpeed(path->joints.places(), path->bounds);
-    return withoutCollision(*model_, makeTrajectory(*model_, std::move(path->joints),
-                                                    std::move(speed), tool->flange_from_tool));
+    return withoutCollision(*model_,
+                            quickestAlong(*model_, std::move(*path), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {

@@ -24,6 +24,11 @@ constexpr double kGoodEnough = 1.15;
 /// share of the third derivative's change from knot to knot.
 constexpr double kUnseenSecond = 1.02;
 constexpr double kUnseenThird = 0.5;
+/// A plan whose derivatives use this share of a limit is checked by its exact positions, with steps
+/// that are not so short that rounding shows [s].
+constexpr double kNear = 0.8;
+constexpr double kShortestStep = 4e-4;
+constexpr double kLongestStep = 1e-3;
 /// Over a limit by no more than this counts as within it.
 constexpr double kTolerance = 3e-4;
 
@@ -165,39 +170,74 @@ std::size_t evenKnots(const std::vector<double>& places, const std::vector<Speed
     return z.size();
 }
 
-/// Checks a plan against every bound.
+/// Checks a plan against every bound: everywhere by the derivatives at the knots, and where these
+/// come near a limit by the exact positions, since a path bends between its knots.
 class Excess {
 public:
     Excess(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-           const SpeedPlan& plan)
-        : places_(places), bounds_(bounds), plan_(plan) {
-        constexpr int parts = 4;
-        constexpr int ramp_parts = 96;
+           const PositionAt& position, const SpeedPlan& plan)
+        : places_(places), bounds_(bounds), position_(position), plan_(plan) {
         double before = 0;
         for (std::size_t k = 1; k < places.size(); ++k) {
-            const double clock = plan.map.clockAt(places[k]);
-            for (int part = 0; part <= parts; ++part) {
-                // Not on the knots: third derivatives jump there.
-                const double u = std::clamp(static_cast<double>(part) / parts, 1e-6, 1 - 1e-6);
-                include({before + u * (clock - before), plan.velocity, 0}, 0);
-            }
-            before = clock;
+            const double time = timeAt(plan.map.clockAt(places[k]));
+            check(before, time);
+            before = time;
         }
         const Profile& profile = plan.profile;
-        for (int part = 0; part < ramp_parts; ++part) {
-            const double u = (part + 0.5) / ramp_parts;
-            for (const double time :
-                 {u * profile.steadyFrom(),
-                  profile.duration() + u * (profile.steadyTo() - profile.duration())}) {
-                include(profile.at(time), profile.jerkAt(time));
-            }
+        constexpr int parts = 96;
+        for (int part = 0; part < parts; ++part) {
+            const double u = (part + 0.5) / parts;
+            include(u * profile.steadyFrom());
+            include(profile.duration() + u * (profile.steadyTo() - profile.duration()));
         }
     }
     /// How many times as long it has to take.
     double factor() const noexcept { return factor_; }
 
 private:
-    void include(const ScalarState& clock, double clock_jerk) noexcept {
+    static constexpr std::size_t kSamples = 4;
+
+    /// When the clock is there [s].
+    double timeAt(double clock) const noexcept {
+        const Profile& profile = plan_.profile;
+        const double steady = profile.at(profile.steadyFrom()).position;
+        const double time = profile.steadyFrom() + (clock - steady) / plan_.velocity;
+        if (clock >= steady && time <= profile.steadyTo()) {
+            return time;
+        }
+        double low = clock < steady ? 0 : profile.steadyTo();
+        double high = clock < steady ? profile.steadyFrom() : profile.duration();
+        constexpr int halvings = 40;
+        for (int i = 0; i < halvings; ++i) {
+            const double middle = low + (high - low) / 2;
+            (profile.at(middle).position < clock ? low : high) = middle;
+        }
+        return high;
+    }
+
+    /// From one time to another [s], between two knots.
+    void check(double from, double to) {
+        constexpr int parts = 4;
+        double share = 0;
+        for (int part = 0; part <= parts; ++part) {
+            // Not on the knots: third derivatives jump there.
+            const double u = std::clamp(static_cast<double>(part) / parts, 1e-6, 1 - 1e-6);
+            share = std::max(share, include(std::lerp(from, to, u)));
+        }
+        if (share < kNear) {
+            return;
+        }
+        const double step = std::clamp((to - from) / kSamples, kShortestStep, kLongestStep);
+        constexpr int windows = 2;
+        for (int window = 0; window < windows; ++window) {
+            includeExact(std::lerp(from, to, static_cast<double>(window) / windows), step);
+        }
+    }
+
+    /// \return the largest share of a limit that a derivative by time uses at `time` [s]
+    double include(double time) noexcept {
+        const ScalarState clock = plan_.profile.at(time);
+        const double clock_jerk = plan_.profile.jerkAt(time);
         const ScalarState s = plan_.map.at(clock.position);
         const double v = clock.velocity;
         const ParameterMotion motion{
@@ -206,11 +246,12 @@ private:
                 plan_.map.jerkAt(clock.position) * v * v * v};
         const auto after = std::upper_bound(places_.begin() + 1, places_.end() - 1, s.position);
         const auto k = static_cast<std::size_t>(after - places_.begin()) - 1;
+        double share = 0;
         for (std::size_t i = 0; i < bounds_[k].count; ++i) {
             SpeedBound bound = between(bounds_[k].values[i], bounds_[k + 1].values[i]);
-            const double share = (s.position - places_[k]) / (places_[k + 1] - places_[k]);
+            const double part = (s.position - places_[k]) / (places_[k + 1] - places_[k]);
             bound.first =
-                std::lerp(bounds_[k].values[i].first, bounds_[k + 1].values[i].first, share);
+                std::lerp(bounds_[k].values[i].first, bounds_[k + 1].values[i].first, part);
             bound.second *= kUnseenSecond;
             const double change = bounds_[k].values[i].third - bounds_[k + 1].values[i].third;
             bound.third += std::copysign(kUnseenThird * change, bound.third);
@@ -219,19 +260,38 @@ private:
             factor_ = std::max({runs_on ? factor_ : kInfinity, d.first / bound.velocity,
                                 std::sqrt(d.second / bound.acceleration),
                                 std::cbrt(d.third / bound.jerk)});
+            share = std::max({share, d.second / bound.acceleration, d.third / bound.jerk});
+        }
+        return share;
+    }
+
+    /// Differences of positions `step` [s] apart, around a time.
+    void includeExact(double time, double step) {
+        std::array<JointVector, kSamples> q;
+        for (std::size_t n = 0; n < kSamples; ++n) {
+            const double at = time + (static_cast<double>(n) - 1.5) * step;
+            q[n] = position_(plan_.map.at(plan_.profile.at(at).position).position);
+        }
+        for (std::size_t i = 0; i < q[0].size(); ++i) {
+            const SpeedBound& bound = bounds_.front().values[i];
+            const double a = (q[2][i] - 2 * q[1][i] + q[0][i]) / (step * step);
+            const double j = (q[3][i] - 3 * q[2][i] + 3 * q[1][i] - q[0][i]) / (step * step * step);
+            factor_ = std::max({factor_, std::sqrt(std::abs(a) / bound.acceleration),
+                                std::cbrt(std::abs(j) / bound.jerk)});
         }
     }
 
     const std::vector<double>& places_;
     const std::vector<SpeedBounds>& bounds_;
+    const PositionAt& position_;
     const SpeedPlan& plan_;
     double factor_ = 1;
 };
 
 /// The plan, slowed down where it would not keep the bounds.
 SpeedPlan withinBounds(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
-                       SpeedPlan plan) {
-    const double factor = Excess(places, bounds, plan).factor();
+                       const PositionAt& position, SpeedPlan plan) {
+    const double factor = Excess(places, bounds, position, plan).factor();
     return factor > 1 + kTolerance ? plan.slowed(factor) : plan;
 }
 
@@ -300,14 +360,15 @@ SpeedPlan evenSpeed(const ScalarLimits& limits) {
     return withClock(SpeedMap::constant(v), LimitsAlong(place));
 }
 
-SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds) {
+SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
+                    const PositionAt& position) {
     const std::vector<double> caps = speedCaps(bounds);
     std::vector<double> reached = caps;
     reached.front() = reached.back() = 0;
     limitSlope(places, bounds, 1.0, reached);
     const double slowest = *std::min_element(caps.begin(), caps.end());
     const double fastest = *std::max_element(reached.begin(), reached.end());
-    SpeedPlan even = withinBounds(places, bounds,
+    SpeedPlan even = withinBounds(places, bounds, position,
                                   planEven(places, bounds, std::sqrt(std::min(slowest, fastest))));
     if (slowest >= fastest || even.profile.duration() <= kGoodEnough * leastTime(places, reached)) {
         return even;
@@ -318,7 +379,7 @@ SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBo
     if (!varying) {
         return even;
     }
-    SpeedPlan within = withinBounds(places, bounds, std::move(*varying));
+    SpeedPlan within = withinBounds(places, bounds, position, std::move(*varying));
     return within.profile.duration() < even.profile.duration() ? within : even;
 }
 

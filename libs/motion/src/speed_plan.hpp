@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "limits_along.hpp"
@@ -23,8 +24,12 @@ struct SpeedPlan {
 /// A path of constant derivatives. \param limits of the path parameter [1/s], [1/s2], [1/s3]
 SpeedPlan evenSpeed(const ScalarLimits& limits);
 
+/// Exact joint position at a path parameter.
+using PositionAt = std::function<JointVector(double)>;
+
 /// The quickest run from rest to rest that keeps every bound.
 /// \param places path parameters of the knots; \param bounds there
-SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds);
+SpeedPlan planSpeed(const std::vector<double>& places, const std::vector<SpeedBounds>& bounds,
+                    const PositionAt& position);
 
 }  // namespace metier::motion
