@@ -60,14 +60,6 @@ void MotionExecution::brakeHarder() noexcept {
     }
 }
 
-/// The stop that the plan's own limits allow, `factor` of them; never beyond the end of the path.
-Profile MotionExecution::brakeByPlan(double factor) const noexcept {
-    ScalarLimits limits = trajectory_.clockLimits();
-    limits.acceleration *= factor;
-    limits.jerk *= factor;
-    return Profile::brake(onClock(), limits);
-}
-
 void MotionExecution::follow(const Profile& profile, Along along, const ScalarState& now) noexcept {
     profile_ = profile;
     along_ = along;
@@ -84,7 +76,7 @@ void MotionExecution::brake(double factor) noexcept {
     if (own.end() <= 1.0) {
         follow(own, Along::path, now);
     } else {
-        follow(brakeByPlan(factor), Along::clock, onClock());
+        follow(trajectory_.brakeClock(onClock(), factor), Along::clock, onClock());
     }
 }
 
@@ -92,12 +84,10 @@ void MotionExecution::brake(double factor) noexcept {
 void MotionExecution::goOn() noexcept {
     const ScalarState now = onClock();
     if (override_ <= 0) {
-        follow(brakeByPlan(1.0), Along::clock, now);
+        follow(trajectory_.brakeClock(onClock(), 1.0), Along::clock, now);
         return;
     }
-    ScalarLimits limits = trajectory_.clockLimits();
-    limits.velocity *= override_;
-    follow(Profile::toRest(now, trajectory_.clockEnd(), limits), Along::clock, now);
+    follow(trajectory_.runClock(now, override_), Along::clock, now);
 }
 
 void MotionExecution::stop() noexcept {
@@ -105,7 +95,7 @@ void MotionExecution::stop() noexcept {
         return;
     }
     mode_ = Mode::stopping;
-    const Profile gentle = brakeByPlan(1.0);
+    const Profile gentle = trajectory_.brakeClock(onClock(), 1.0);
     if (gentle.duration() > kGentleStop.count()) {
         brake(1.0);
     } else {

@@ -10,10 +10,6 @@ namespace metier::motion {
 
 namespace {
 
-constexpr double kKnotDistance = 0.005;  // [m]
-constexpr double kKnotAngle = 0.03;      // [rad]
-constexpr double kKnotsPerCorner = 16;
-constexpr std::size_t kFewestKnots = 16;
 constexpr std::size_t kMostKnots = 4096;
 /// So many are enough to see whether another arm angle helps.
 constexpr std::size_t kKnotsToTryWith = 512;
@@ -33,12 +29,6 @@ struct Track {
     bool too_coarse = false;
     std::optional<Refusal> refusal;
 };
-
-std::size_t knotCount(const ToolPath& path) {
-    const double wanted = std::max({path.distance() / kKnotDistance, path.angle() / kKnotAngle,
-                                    path.isLine() ? 0.0 : kKnotsPerCorner / path.shortestCorner()});
-    return std::clamp(static_cast<std::size_t>(std::ceil(wanted)), kFewestKnots, kMostKnots);
-}
 
 Refusal at(double fraction, Refusal refusal) {
     refusal.fraction = fraction;
@@ -141,14 +131,14 @@ std::optional<Refusal> refuseUnreachableTarget(const TrackRequest& request) {
 }
 
 /// Follows the branch of the start position knot by knot.
-Track follow(const TrackRequest& request, std::size_t count, std::size_t most_knots) {
+Track follow(const TrackRequest& request, const std::vector<double>& places, bool may_halve) {
     const Kinematics& kinematics = request.model->kinematics();
     Track track;
-    track.knots.reserve(count + 1);
+    track.knots.reserve(places.size());
     track.knots.push_back(request.start);
     JointVector guess = request.start;
-    for (std::size_t k = 1; k <= count; ++k) {
-        const double s = static_cast<double>(k) / static_cast<double>(count);
+    for (std::size_t k = 1; k < places.size(); ++k) {
+        const double s = places[k];
         const geometry::Pose flange = request.path.at(s);
         const JointVector q = kinematics.solutionNear(flange, guess, request.path.armAngleAt(s));
         const JointVector& last = track.knots.back();
@@ -159,7 +149,7 @@ Track follow(const TrackRequest& request, std::size_t count, std::size_t most_kn
         }
         const double step = maxDifference(q, last);
         const bool bends = k > 1 && maxDifference(q, guess) > kJointBend;
-        if ((step > kJointStep || bends) && count < most_knots) {
+        if ((step > kJointStep || bends) && may_halve) {
             track.too_coarse = true;
             return track;
         }
@@ -171,7 +161,8 @@ Track follow(const TrackRequest& request, std::size_t count, std::size_t most_kn
             track.refusal = at(s, *refusal);
             return track;
         }
-        guess.view() = 2 * q.view() - last.view();
+        const double longer = k + 1 < places.size() ? (places[k + 1] - s) / (s - places[k - 1]) : 1;
+        guess.view() = q.view() + longer * (q.view() - last.view());
         track.knots.push_back(q);
     }
     return track;
@@ -179,14 +170,13 @@ Track follow(const TrackRequest& request, std::size_t count, std::size_t most_kn
 
 /// The first knot after which the joint line leaves the path, as a hidden flip would.
 std::optional<std::size_t> firstOffPath(const TrackRequest& request,
+                                        const std::vector<double>& places,
                                         const std::vector<JointVector>& knots) {
-    const std::size_t count = knots.size() - 1;
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
         JointVector middle = knots[k];
         middle.view() = 0.5 * (knots[k].view() + knots[k + 1].view());
         const geometry::Pose reached = request.model->kinematics().forward(middle);
-        const geometry::Pose planned =
-            request.path.at((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+        const geometry::Pose planned = request.path.at((places[k] + places[k + 1]) / 2);
         if (geometry::distanceBetween(reached, planned) > kHalfWayDistance ||
             geometry::rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
             return k;
@@ -196,29 +186,29 @@ std::optional<std::size_t> firstOffPath(const TrackRequest& request,
 }
 
 /// The axes turn so quickly that no number of knots shows how.
-Refusal tooCurved(const std::vector<JointVector>& knots, std::size_t k) {
-    const std::size_t axis = largestStep(knots[k], knots[k + 1]);
+Refusal tooCurved(double s, const JointVector& from, const JointVector& to) {
+    const std::size_t axis = largestStep(from, to);
     Refusal refusal = refuse(RefusalReason::singularity, Errc::unreachable,
                              fmt::format("singularity: axis {} cannot follow the path", axis + 1));
     refusal.axis = axis;
-    return at(static_cast<double>(k) / static_cast<double>(knots.size() - 1), refusal);
+    return at(s, refusal);
 }
 
 Planned<JointPath> trackWithArmAngle(const TrackRequest& request, std::size_t most_knots) {
-    Track track;
-    for (std::size_t count = knotCount(request.path.tool); true;
-         count = std::min(2 * count, most_knots)) {
-        most_knots = std::max(most_knots, count);
-        track = follow(request, count, most_knots);
+    for (double density = 1; true; density *= 2) {
+        std::vector<double> places = request.path.tool.places(density);
+        const bool may_halve = 2 * places.size() <= most_knots;
+        Track track = follow(request, places, may_halve);
         if (track.refusal) {
             return tl::unexpected(*track.refusal);
         }
-        const auto off = track.too_coarse ? 0 : firstOffPath(request, track.knots);
+        const auto off = track.too_coarse ? 0 : firstOffPath(request, places, track.knots);
         if (!off) {
-            return JointPath(request.path, std::move(track.knots));
+            return JointPath(request.path, std::move(places), std::move(track.knots));
         }
-        if (count == most_knots) {
-            return tl::unexpected(tooCurved(track.knots, *off));
+        if (!may_halve) {
+            return tl::unexpected(
+                tooCurved(places[*off], track.knots[*off], track.knots[*off + 1]));
         }
     }
 }

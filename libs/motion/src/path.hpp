@@ -35,16 +35,26 @@ struct FlangePath {
     double armAngleAt(double s) const noexcept { return arm_angle + s * arm_angle_turn; }
 };
 
-/// Joint positions of a Cartesian path at equal steps of the path parameter, free of jumps; between
-/// them exact inverse kinematics, guided by interpolation.
+/// Derivatives of the joint position by the path parameter.
+struct JointDerivatives {
+    JointVector first;
+    JointVector second;
+    JointVector third;
+};
+
+/// Joint positions of a Cartesian path at places of the path parameter, free of jumps; between them
+/// exact inverse kinematics, guided by interpolation.
 class JointPath {
 public:
     JointPath() = default;
-    JointPath(FlangePath flange, std::vector<JointVector> knots);
+    /// \param places path parameters of the knots, rising from 0 to 1; at least five
+    JointPath(FlangePath flange, std::vector<double> places, std::vector<JointVector> knots);
 
     const ToolPath& tool() const noexcept { return flange_.tool; }
-    std::size_t intervals() const noexcept { return knots_.size() - 1; }
+    const std::vector<double>& places() const noexcept { return places_; }
     const std::vector<JointVector>& knots() const noexcept { return knots_; }
+    /// At the knots.
+    const std::vector<JointDerivatives>& derivatives() const noexcept { return derivatives_; }
     /// Exact position; derivatives interpolated.
     PathPoint at(double s, const Kinematics& kinematics) const noexcept;
 
@@ -52,8 +62,9 @@ private:
     PathPoint interpolate(double s) const noexcept;
 
     FlangePath flange_;
+    std::vector<double> places_;
     std::vector<JointVector> knots_;
-    std::vector<JointVector> tangents_;  ///< derivative by the path parameter at the knots
+    std::vector<JointDerivatives> derivatives_;
 };
 
 }  // namespace metier::motion

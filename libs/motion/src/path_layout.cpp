@@ -9,6 +9,9 @@ using geometry::Pose;
 
 namespace {
 
+/// A smaller corner is lost in the rounding of joint positions [m].
+constexpr double kLeastBlendRadius = 1e-9;
+
 Refusal atWaypoint(const PathRequest& request, std::size_t index, Refusal refusal) {
     refusal.error.message = fmt::format("waypoint {}: {}", index + 1, refusal.error.message);
     refusal.fraction =
@@ -25,6 +28,11 @@ std::optional<Refusal> refuseCorner(const ToolPath& path, const Pose& corner, co
     if (same) {
         return refuse(RefusalReason::invalid_request, Errc::invalid_argument,
                       "the next waypoint is the same pose: no line leads there");
+    }
+    if (radius < kLeastBlendRadius) {
+        return refuse(RefusalReason::invalid_request, Errc::out_of_range,
+                      fmt::format("blend radius {} m under {} m: no arm could follow the corner",
+                                  radius, kLeastBlendRadius));
     }
     if (const double limit = path.blendLimit(target); radius > limit + rounding) {
         return refuse(RefusalReason::invalid_request, Errc::out_of_range,

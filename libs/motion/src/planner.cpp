@@ -51,9 +51,8 @@ Trajectory makeTrajectory(const RobotModel& model, std::variant<JointLine, Joint
 
 /// A motion that is over as soon as it starts.
 Trajectory standStill(const RobotModel& model, const JointVector& q, const Pose& flange_from_tool) {
-    SpeedPlan speed{SpeedMap::constant(kInfinity), {1, 1, 1}};
-    return makeTrajectory(model, JointLine{q, JointVector(q.size())}, std::move(speed),
-                          flange_from_tool);
+    return makeTrajectory(model, JointLine{q, JointVector(q.size())},
+                          evenSpeed({kInfinity, kInfinity, kInfinity}), flange_from_tool);
 }
 
 Trajectory planJointLine(const RobotModel& model, const PtpRequest& request,
@@ -64,9 +63,7 @@ Trajectory planJointLine(const RobotModel& model, const PtpRequest& request,
     if (limits.velocity == kInfinity) {
         return standStill(model, request.start, flange_from_tool);
     }
-    const double v = limits.velocity;
-    SpeedPlan speed{SpeedMap::constant(v), {1.0, limits.acceleration / v, limits.jerk / v}};
-    return makeTrajectory(model, JointLine{request.start, delta}, std::move(speed),
+    return makeTrajectory(model, JointLine{request.start, delta}, evenSpeed(limits),
                           flange_from_tool);
 }
 
@@ -100,22 +97,23 @@ Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory traject
     return trajectory;
 }
 
-/// A tracked path that is not singular, with what its axes bound.
-struct TrackedPath {
-    JointPath joints;
-    std::vector<SpeedBounds> bounds;
-};
-
+/// Follows a path, unless it is singular.
 Planned<TrackedPath> track(const TrackRequest& request, const PlannerOptions& options) {
     auto path = trackLine(request);
     if (!path) {
         return tl::unexpected(path.error());
     }
-    if (auto refusal = refuseSingular(*request.model, path->knots(), options)) {
+    if (auto refusal = refuseSingular(*request.model, *path, options)) {
         return tl::unexpected(*refusal);
     }
-    auto bounds = axisBounds(*request.model, path->knots());
+    auto bounds = axisBounds(*request.model, *path);
     return TrackedPath{std::move(*path), std::move(bounds)};
+}
+
+Trajectory quickestAlong(const RobotModel& model, TrackedPath path, const Pose& flange_from_tool) {
+    SpeedPlan speed = planSpeed(path.joints.places(), path.bounds,
+                                [&](double s) { return path.joints.at(s, model.kinematics()).q; });
+    return makeTrajectory(model, std::move(path.joints), std::move(speed), flange_from_tool);
 }
 
 Refusal targetRefusal(const Error& error) {
@@ -213,12 +211,14 @@ Planned<Trajectory> Planner::lin(const LinRequest& request) const {
         return tl::unexpected(path.error());
     }
     const ScalarLimits limits = limitsOfLine(*model_, request, wanted.path.tool);
-    if (auto refusal = refuseCrawling(*model_, path->bounds, limits.velocity, options_)) {
+    if (auto refusal = refuseCrawling(*model_, *path, limits.velocity, options_)) {
         return tl::unexpected(*refusal);
     }
-    SpeedPlan speed = planSpeed(path->bounds, limits);
-    return withoutCollision(*model_, makeTrajectory(*model_, std::move(path->joints),
-                                                    std::move(speed), tool->flange_from_tool));
+    for (SpeedBounds& at : path->bounds) {
+        at.add({1, 0, 0, limits.velocity, limits.acceleration, limits.jerk});
+    }
+    return withoutCollision(*model_,
+                            quickestAlong(*model_, std::move(*path), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::path(const PathRequest& request) const {
@@ -246,13 +246,12 @@ Planned<Trajectory> Planner::path(const PathRequest& request) const {
     if (!path) {
         return tl::unexpected(onTheWay(path.error(), wanted.path.tool, request));
     }
-    const ScalarLimits limits = addToolBounds(*model_, request, wanted.path.tool, path->bounds);
-    if (auto refusal = refuseCrawling(*model_, path->bounds, limits.velocity, options_)) {
+    const double fastest = addToolBounds(*model_, request, path->joints, path->bounds);
+    if (auto refusal = refuseCrawling(*model_, *path, fastest, options_)) {
         return tl::unexpected(*refusal);
     }
-    SpeedPlan speed = planSpeed(path->bounds, limits);
-    return withoutCollision(*model_, makeTrajectory(*model_, std::move(path->joints),
-                                                    std::move(speed), tool->flange_from_tool));
+    return withoutCollision(*model_,
+                            quickestAlong(*model_, std::move(*path), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {

@@ -118,9 +118,11 @@ Profile Profile::toRest(const ScalarState& start, double target,
     }
     const bool reaches_limit = cruise >= 0;
     profile.changeVelocity(reaches_limit ? peak : findPeak(start, target, limits), limits);
+    profile.steady_from_ = profile.duration_;
     if (reaches_limit) {
         profile.append(cruise / limits.velocity, 0.0);
     }
+    profile.steady_to_ = profile.duration_;
     profile.changeVelocity(0.0, limits);
     profile.end_ = target;
     return profile;
@@ -130,8 +132,23 @@ Profile Profile::brake(const ScalarState& start, const ScalarLimits& limits) noe
     Profile profile;
     profile.now_ = start;
     profile.changeVelocity(0.0, limits);
+    profile.steady_from_ = profile.steady_to_ = profile.duration_;
     profile.end_ = profile.now_.position;
     return profile;
+}
+
+Profile Profile::slowed(double factor) const noexcept {
+    Profile slow(*this);
+    for (Piece& piece : slow.pieces_) {
+        piece.duration *= factor;
+        piece.jerk /= factor * factor * factor;
+        piece.start.velocity /= factor;
+        piece.start.acceleration /= factor * factor;
+    }
+    slow.duration_ *= factor;
+    slow.steady_from_ *= factor;
+    slow.steady_to_ *= factor;
+    return slow;
 }
 
 ScalarState Profile::at(double time) const noexcept {

@@ -48,9 +48,9 @@ Refusal singular(const Step& step, double value, double limit, double fraction) 
 
 }  // namespace
 
-std::optional<Refusal> refuseSingular(const RobotModel& model,
-                                      const std::vector<JointVector>& knots,
+std::optional<Refusal> refuseSingular(const RobotModel& model, const JointPath& path,
                                       const PlannerOptions& options) {
+    const std::vector<JointVector>& knots = path.knots();
     const Kinematics& kinematics = model.kinematics();
     const double limit = options.smallest_singular_value;
     const bool may_pass = options.singular_places == SingularPlaces::passed_where_axes_follow;
@@ -64,26 +64,26 @@ std::optional<Refusal> refuseSingular(const RobotModel& model,
         }
         const double value = kinematics.smallestSingularValue(knots[k]);
         if (value < limit) {
-            return singular(step, value, limit, static_cast<double>(k) / static_cast<double>(last));
+            return singular(step, value, limit, path.places()[k]);
         }
     }
     return std::nullopt;
 }
 
-std::optional<Refusal> refuseCrawling(const RobotModel& model,
-                                      const std::vector<SpeedBounds>& bounds, double speed,
-                                      const PlannerOptions& options) {
-    const SpeedBottleneck slowest = findBottleneck(model, bounds, speed);
+std::optional<Refusal> refuseCrawling(const RobotModel& model, const TrackedPath& path,
+                                      double speed, const PlannerOptions& options) {
+    const SpeedBottleneck slowest = findBottleneck(model, path.bounds, speed);
     if (slowest.share >= options.slowest_share) {
         return std::nullopt;
     }
+    const double fraction = path.joints.places()[slowest.knot];
     Refusal refusal =
         refuse(RefusalReason::singularity, Errc::unreachable,
                fmt::format("singularity: axis {} slows the path to {:.2f} % of the requested "
                            "speed, limit {:.2f} %, at {:.1f} % of the path",
                            slowest.axis + 1, 100 * slowest.share, 100 * options.slowest_share,
-                           100 * slowest.fraction));
-    refusal.fraction = slowest.fraction;
+                           100 * fraction));
+    refusal.fraction = fraction;
     refusal.axis = slowest.axis;
     return refusal;
 }

@@ -4,20 +4,24 @@
 #include <vector>
 
 #include "metier/motion/planner.hpp"
-#include "speed_map.hpp"
+#include "path.hpp"
+#include "speed_bounds.hpp"
 
 namespace metier::motion {
 
+/// A path that has been followed, with what bounds the speed at its knots.
+struct TrackedPath {
+    JointPath joints;
+    std::vector<SpeedBounds> bounds;
+};
+
 /// Refuses a path on which the arm loses a direction that the path needs.
-/// \param knots joint positions at equal steps of the path parameter
-std::optional<Refusal> refuseSingular(const RobotModel& model,
-                                      const std::vector<JointVector>& knots,
+std::optional<Refusal> refuseSingular(const RobotModel& model, const JointPath& path,
                                       const PlannerOptions& options);
 
 /// Refuses a path that an axis would make too slow to be meant.
 /// \param speed requested, of the path parameter [1/s]
-std::optional<Refusal> refuseCrawling(const RobotModel& model,
-                                      const std::vector<SpeedBounds>& bounds, double speed,
-                                      const PlannerOptions& options);
+std::optional<Refusal> refuseCrawling(const RobotModel& model, const TrackedPath& path,
+                                      double speed, const PlannerOptions& options);
 
 }  // namespace metier::motion

@@ -54,7 +54,7 @@ struct ToolBound {
     double jerk = 0;
 
     SpeedBound at(const ToolDerivatives& d, double max_velocity) const noexcept {
-        return {d.first, d.second, d.third, max_velocity, acceleration, jerk};
+        return {d.first, d.second, d.third, max_velocity, acceleration, jerk, true};
     }
 };
 
@@ -65,14 +65,6 @@ double least(const double* three, double own) {
 
 ToolBound toolBound(double velocity, double acceleration, double own_jerk) {
     return {velocity, acceleration, std::min(own_jerk, kJerkPerAcceleration * acceleration)};
-}
-
-/// Narrows the limits of the path parameter by one bound; its velocity is what any place allows.
-void include(ScalarLimits& limits, const SpeedBound& bound) {
-    if (bound.first > 0) {
-        limits.acceleration = std::min(limits.acceleration, bound.acceleration / bound.first);
-        limits.jerk = std::min(limits.jerk, bound.jerk / bound.first);
-    }
 }
 
 double speedAt(const SpeedBound& bound) {
@@ -103,8 +95,8 @@ ScalarLimits limitsOfLine(const RobotModel& model, const LinRequest& request,
     return limits;
 }
 
-ScalarLimits addToolBounds(const RobotModel& model, const PathRequest& request,
-                           const ToolPath& path, std::vector<SpeedBounds>& bounds) {
+double addToolBounds(const RobotModel& model, const PathRequest& request, const JointPath& path,
+                     std::vector<SpeedBounds>& bounds) {
     const CartesianLimits& own = model.cartesianLimits();
     const LinRequest& lin = request.lin;
     const double* v = lin.max_velocity.data();
@@ -113,24 +105,27 @@ ScalarLimits addToolBounds(const RobotModel& model, const PathRequest& request,
         toolBound(least(v, own.velocity), least(a, own.acceleration), own.jerk);
     const ToolBound angular = toolBound(least(v + 3, own.angular_velocity),
                                         least(a + 3, own.angular_acceleration), own.angular_jerk);
-    ScalarLimits limits{0, kInfinity, kInfinity};
+    double fastest = 0;
     for (std::size_t k = 0; k < bounds.size(); ++k) {
-        const double s = static_cast<double>(k) / static_cast<double>(bounds.size() - 1);
-        const PathWaypoint& waypoint = request.waypoints[path.lineAt(s)];
-        const SpeedBound t =
-            linear.at(path.translationAt(s),
-                      lin.speed_override * capped(waypoint.max_velocity, linear.velocity));
-        const SpeedBound r = angular.at(
-            path.rotationAt(s),
-            lin.speed_override * capped(waypoint.max_angular_velocity, angular.velocity));
-        include(limits, t);
-        include(limits, r);
-        limits.velocity = std::max(limits.velocity, std::min(speedAt(t), speedAt(r)));
-        SpeedBounds& at = bounds[k];
-        at.values[at.count++] = t;
-        at.values[at.count++] = r;
+        const double s = path.places()[k];
+        double velocity = linear.velocity;
+        double angular_velocity = angular.velocity;
+        // Where one line gives way to the next the slower one counts.
+        for (const double beside : {path.places()[k == 0 ? 0 : k - 1],
+                                    path.places()[std::min(k + 1, bounds.size() - 1)]}) {
+            const double near = s + 1e-3 * (beside - s);
+            const PathWaypoint& waypoint = request.waypoints[path.tool().lineAt(near)];
+            velocity = capped(waypoint.max_velocity, velocity);
+            angular_velocity = capped(waypoint.max_angular_velocity, angular_velocity);
+        }
+        const SpeedBound t = linear.at(path.tool().translationAt(s), lin.speed_override * velocity);
+        const SpeedBound r =
+            angular.at(path.tool().rotationAt(s), lin.speed_override * angular_velocity);
+        fastest = std::max(fastest, std::min(speedAt(t), speedAt(r)));
+        bounds[k].add(t);
+        bounds[k].add(r);
     }
-    return limits;
+    return fastest;
 }
 
 }  // namespace metier::motion

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "metier/motion/planner.hpp"
-#include "speed_map.hpp"
+#include "speed_bounds.hpp"
 #include "tool_path.hpp"
 
 namespace metier::motion {
@@ -16,9 +16,9 @@ inline double capped(double requested, double own) noexcept {
 /// Limits of the path parameter on a single line.
 ScalarLimits limitsOfLine(const RobotModel& model, const LinRequest& request, const ToolPath& line);
 
-/// Adds what the tool frame may do at every knot of a path with corners.
-/// \return limits of the path parameter that hold for the whole path
-ScalarLimits addToolBounds(const RobotModel& model, const PathRequest& request,
-                           const ToolPath& path, std::vector<SpeedBounds>& bounds);
+/// Adds what the tool frame may do at the knots of a path with corners.
+/// \return the largest speed of the path parameter that it allows anywhere [1/s]
+double addToolBounds(const RobotModel& model, const PathRequest& request, const JointPath& path,
+                     std::vector<SpeedBounds>& bounds);
 
 }  // namespace metier::motion

@@ -16,6 +16,15 @@ using geometry::Pose;
 /// Length that a rotation counts for where it is more than the translation [m/rad].
 constexpr double kLengthPerAngle = 0.25;
 
+constexpr double kLongestStep = 0.005;      // [m]
+constexpr double kLongestTurn = 0.03;       // [rad]
+constexpr double kFewestStepsOfAPath = 16;  // without corners
+constexpr double kFewestStepsOfACorner = 16;
+constexpr double kFewestStepsOfALine = 4;  // between corners
+constexpr double kShortestStep = 1e-12;    // of the path
+/// How much longer steps may become beside a corner, per way to it.
+constexpr double kGrowth = 0.4;
+
 /// The smooth step from 0 to 1, its first two derivatives and its integral.
 struct Fade {
     double value;
@@ -126,12 +135,60 @@ void ToolPath::append(const Pose& target, double blend_radius) {
     pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(before) + 1, corner);
 }
 
-double ToolPath::shortestCorner() const noexcept {
-    double shortest = 1;
-    for (const Piece& piece : pieces_) {
-        shortest = piece.corner ? std::min(shortest, piece.length / length_) : shortest;
+double ToolPath::longestStep(const Piece& piece) noexcept {
+    const double speed = std::max(piece.in.velocity.norm(), piece.out.velocity.norm());
+    const double spin = std::max(piece.in.spin.norm(), piece.out.spin.norm());
+    return 1 / std::max({speed / kLongestStep, spin / kLongestTurn, 1e-9});
+}
+
+double ToolPath::cornerStep(const Piece& piece) noexcept {
+    return std::min(piece.length / kFewestStepsOfACorner, longestStep(piece));
+}
+
+void ToolPath::addPlaces(std::size_t piece, double density, std::vector<double>& places) const {
+    const Piece& here = pieces_[piece];
+    const double fewest = pieces_.size() == 1 ? kFewestStepsOfAPath : kFewestStepsOfALine;
+    const double longest = std::min(longestStep(here), here.length / fewest);
+    const auto beside = [&](std::size_t i) {
+        return i < pieces_.size() && pieces_[i].corner ? cornerStep(pieces_[i]) : longest;
+    };
+    const double first = beside(piece - 1);
+    const double last = beside(piece + 1);
+    std::vector<double> along;
+    if (here.corner) {
+        // The middle is a place too: there one line gives way to the next.
+        const double half = std::ceil(here.length * density / (2 * cornerStep(here)) - 1e-9);
+        for (int n = 1; n <= 2 * static_cast<int>(half); ++n) {
+            along.push_back(n * here.length / (2 * half));
+        }
     }
-    return shortest;
+    for (double at = 0; !here.corner && at < here.length;) {
+        const double step = std::min(
+            {longest, first + kGrowth * at, last + kGrowth / (1 + kGrowth) * (here.length - at)});
+        at += std::max(step / density, kShortestStep * length_);
+        along.push_back(at);
+    }
+    for (const double at : along) {
+        places.push_back((here.begin + at * here.length / along.back()) / length_);
+    }
+}
+
+std::vector<double> ToolPath::places(double density) const {
+    // A line that its corners have used up may be left with a length of rounding.
+    constexpr double least = 0.05;
+    std::vector<double> places{0.0};
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        double shortest = kShortestStep * length_;
+        for (const std::size_t beside : {i - 1, i + 1}) {
+            const bool corner = beside < pieces_.size() && pieces_[beside].corner;
+            shortest = corner ? std::max(shortest, least * cornerStep(pieces_[beside])) : shortest;
+        }
+        if (pieces_[i].corner || pieces_[i].length > shortest) {
+            addPlaces(i, density, places);
+        }
+    }
+    places.back() = 1.0;
+    return places;
 }
 
 const ToolPath::Piece& ToolPath::pieceAt(double length) const noexcept {

@@ -39,8 +39,10 @@ public:
     /// Of all lines [m] and of all rotations [rad].
     double distance() const noexcept { return distance_; }
     double angle() const noexcept { return angle_; }
-    /// Share of the path that its shortest corner takes; 1 without corners.
-    double shortestCorner() const noexcept;
+    /// Path parameters from 0 to 1 that show how the path bends: no two more than a step apart,
+    /// more of them in a corner, and towards it, the smaller it is. \param density how many times
+    /// as many as are usual, > 0
+    std::vector<double> places(double density) const;
 
     geometry::Pose at(double s) const noexcept;
     ToolDerivatives translationAt(double s) const noexcept;
@@ -72,6 +74,10 @@ private:
     };
 
     const Piece& pieceAt(double length) const noexcept;
+    /// Adds the places of a line after its begin, its end included.
+    void addPlaces(std::size_t piece, double density, std::vector<double>& places) const;
+    static double longestStep(const Piece& piece) noexcept;
+    static double cornerStep(const Piece& piece) noexcept;
     static Piece lineBetween(const geometry::Pose& start, const geometry::Pose& target);
     void appendLine(const geometry::Pose& start, const geometry::Pose& target);
     /// Ways along both lines of a corner, from its point: the first one's is negative [m].

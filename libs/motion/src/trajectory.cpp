@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "metier/geometry/rotation.hpp"
 #include "plan.hpp"
@@ -9,6 +10,8 @@
 namespace metier::motion {
 
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PathDeviation deviationAt(const geometry::Pose& planned, const geometry::Pose& pose, double s) {
     return {geometry::distanceBetween(planned, pose),
@@ -18,7 +21,7 @@ PathDeviation deviationAt(const geometry::Pose& planned, const geometry::Pose& p
 }  // namespace
 
 Seconds Trajectory::duration() const noexcept {
-    return Seconds(plan_->profile().duration());
+    return Seconds(plan_->speed().profile.duration());
 }
 
 std::size_t Trajectory::axisCount() const noexcept {
@@ -26,7 +29,7 @@ std::size_t Trajectory::axisCount() const noexcept {
 }
 
 SetPoint Trajectory::sample(Seconds time) const noexcept {
-    return sampleAt(plan_->profile().at(time.count()));
+    return sampleAt(plan_->speed().profile.at(time.count()));
 }
 
 ScalarState Trajectory::pathParameter(const ScalarState& clock) const noexcept {
@@ -52,7 +55,7 @@ ScalarState Trajectory::clockAt(const ScalarState& path) const noexcept {
 }
 
 Profile Trajectory::brake(const ScalarState& path, double factor) const noexcept {
-    return plan_->braking().brake(path, factor);
+    return plan_->braking().brake(path, factor, kInfinity);
 }
 
 SetPoint Trajectory::sampleAt(const ScalarState& clock) const noexcept {
@@ -114,8 +117,16 @@ PathDeviation Trajectory::deviation(const geometry::Pose& base_from_tool) const 
     return best;
 }
 
-const ScalarLimits& Trajectory::clockLimits() const noexcept {
-    return plan_->speed().limits;
+double Trajectory::clockSpeed() const noexcept {
+    return plan_->speed().velocity;
+}
+
+Profile Trajectory::brakeClock(const ScalarState& clock, double factor) const noexcept {
+    return plan_->speed().clock.brake(clock, factor, clockEnd());
+}
+
+Profile Trajectory::runClock(const ScalarState& clock, double speed_override) const noexcept {
+    return plan_->speed().clock.toRest(clock, clockEnd(), speed_override * clockSpeed());
 }
 
 double Trajectory::clockEnd() const noexcept {
@@ -123,7 +134,7 @@ double Trajectory::clockEnd() const noexcept {
 }
 
 const Profile& Trajectory::profile() const noexcept {
-    return plan_->profile();
+    return plan_->speed().profile;
 }
 
 double Trajectory::length() const noexcept {
@@ -137,7 +148,7 @@ double Trajectory::angle() const noexcept {
 }
 
 Trajectory Trajectory::stretchedTo(Seconds duration) const {
-    const double now = plan_->profile().duration();
+    const double now = plan_->speed().profile.duration();
     if (duration.count() <= now || now <= 0) {
         return *this;
     }

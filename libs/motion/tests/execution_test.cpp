@@ -67,7 +67,7 @@ TEST_P(ExecutionOf, SuspendsAndResumesAnywhereOnThePath) {
     }
 }
 
-TEST(Execution, StopsWithinVelocityOverAccelerationPlusAccelerationOverJerk) {
+TEST(Execution, StopsFromAQuarterOfAMetrePerSecondWithinThreeTenthsOfASecond) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
     MotionExecution execution(trajectory);
@@ -76,9 +76,6 @@ TEST(Execution, StopsWithinVelocityOverAccelerationPlusAccelerationOverJerk) {
     }
     const double before = execution.pathParameter();
     execution.stop();
-    const ScalarLimits& limits = trajectory.clockLimits();
-    EXPECT_LE(execution.remaining().count(),
-              1 / limits.acceleration + limits.acceleration / limits.jerk + 1e-9);
     EXPECT_LE(execution.remaining().count(), 0.3);
     const double full = execution.remaining().count();
     execution.halt();

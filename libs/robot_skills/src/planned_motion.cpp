@@ -42,7 +42,7 @@ double fraction(int sample) noexcept {
 
 /// Largest speed of the path parameter in the plan [1/s].
 double pathSpeed(const Trajectory& trajectory) noexcept {
-    const double clock_speed = trajectory.clockLimits().velocity;
+    const double clock_speed = trajectory.clockSpeed();
     double fastest = 0.0;
     for (int i = 0; i <= kSamples; ++i) {
         const double clock = fraction(i) * trajectory.clockEnd();

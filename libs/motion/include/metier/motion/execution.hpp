@@ -76,7 +76,6 @@ private:
     bool tooLate(Seconds step) const noexcept;
     ScalarState onPath() const noexcept;
     ScalarState onClock() const noexcept;
-    Profile brakeByPlan(double factor) const noexcept;
     void brake(double factor) noexcept;
     void brakeHarder() noexcept;
     void follow(const Profile& profile, Along along, const ScalarState& now) noexcept;

@@ -65,8 +65,8 @@ struct JointLinearRequest {
 /// A place on a path of several lines.
 struct PathWaypoint {
     geometry::Pose target;  ///< of the tool frame
-    /// The corner here may be cut by this much, > 0 [m], at most half of the shorter line beside
-    /// it, where a turn counts for 0.25 m/rad; not used for the last one.
+    /// The corner here may be cut by this much, 1e-9 m or more, at most half of the shorter line
+    /// beside it, where a turn counts for 0.25 m/rad; not used for the last one.
     double blend_radius = 0;
     double max_velocity = 0;          ///< on the way here [m/s]; 0: as the whole path
     double max_angular_velocity = 0;  ///< [rad/s]; 0: as the whole path

@@ -33,12 +33,18 @@ public:
     /// From any state to rest wherever the limits allow it soonest.
     static Profile brake(const ScalarState& start, const ScalarLimits& limits) noexcept;
 
+    /// The same motion in `factor` > 0 times the time.
+    Profile slowed(double factor) const noexcept;
+
     /// [s]
     double duration() const noexcept { return duration_; }
     /// State after `time` [s]; before 0 the start, after duration() exactly the end, at rest.
     ScalarState at(double time) const noexcept;
     double jerkAt(double time) const noexcept;
     double end() const noexcept { return end_; }
+    /// Times [s] between which the velocity stays the same; the same time if it nowhere does.
+    double steadyFrom() const noexcept { return steady_from_; }
+    double steadyTo() const noexcept { return steady_to_; }
 
 private:
     struct Piece {
@@ -55,6 +61,8 @@ private:
     std::size_t piece_count_ = 0;
     ScalarState now_;
     double duration_ = 0;
+    double steady_from_ = 0;
+    double steady_to_ = 0;
     double end_ = 0;
 };
 

@@ -67,9 +67,14 @@ public:
     /// How far a pose (a measured one) is from the path. Not for the cycle thread on PTP paths.
     PathDeviation deviation(const geometry::Pose& base_from_tool) const noexcept;
 
-    /// The clock that runs from 0 to clockEnd() within these limits (1/s, ...).
-    const ScalarLimits& clockLimits() const noexcept;
+    /// Speed of the clock that runs from 0 to clockEnd(), 1 unless the motion was stretched [1].
+    double clockSpeed() const noexcept;
     double clockEnd() const noexcept;
+    /// The clock's way to rest from `clock`, and that to its end, within the limits of the plan.
+    /// \param factor part of these limits that may be used, > 0
+    /// \param speed_override share of clockSpeed(), (0, 1]
+    Profile brakeClock(const ScalarState& clock, double factor) const noexcept;
+    Profile runClock(const ScalarState& clock, double speed_override) const noexcept;
     /// The clock's run as planned.
     const Profile& profile() const noexcept;
     /// Length of the tool frame's path [m] and its turn [rad]; 0 length for PTP.
