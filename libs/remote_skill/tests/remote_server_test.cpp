@@ -523,7 +523,7 @@ TEST_F(DeafChild, LearnsThatItWasResetWhileItWasSuspended) {
     ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
     ASSERT_EQ(call(*panel, move_, "Reset"), "Good");
     ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
     EXPECT_EQ(listener_.end->text, "it was reset while it was suspended");
@@ -532,7 +532,7 @@ TEST_F(DeafChild, LearnsThatItWasResetWhileItWasSuspended) {
 TEST_F(DeafChild, LearnsItsResult) {
     move_.hand->execution().finish({{"Duration", 1.5}});
     ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->result.at("Duration"), skill::Value(1.5));
 }
@@ -542,10 +542,10 @@ TEST_F(DeafChild, IsToldASuspendOnceAlsoIfItIsAskedAgain) {
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
     listener_.suspended = false;
-    deaf_->onDoubt();
+    deaf_->onMissed();
     bool checked = false;
     deaf_->check({}, [&](const auto& /*report*/) { checked = true; });
     EXPECT_TRUE(until([&] { return checked; }));
@@ -556,19 +556,19 @@ TEST_F(DeafChild, IsToldASuspendOnceAlsoIfItIsAskedAgain) {
 TEST_F(DeafChild, SeesTheStateOnceNothingRunsFromHere) {
     move_.hand->execution().finish();
     ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     ASSERT_EQ(call(*connect(), move_, "Halt"), "Good");
     ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
     EXPECT_EQ(deaf_->state(), State::ready);
-    deaf_->onDoubt();
+    deaf_->onMissed();
     EXPECT_TRUE(until([this] { return deaf_->state() == State::halted; }));
 }
 
 TEST_F(DeafChild, TellsAResetThatIsUnderWayWhenItsServerIsLost) {
     move_.hand->execution().fail(Reason::error, "stuck");
     ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
-    deaf_->onDoubt();
+    deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     ASSERT_TRUE(deaf_->reset(listener_));
     deaf_->lost("the cable is cut");
