@@ -349,7 +349,11 @@ TEST_F(RemoteChildTest, NamesTheServerOfItsParent) {
                   executor_)
                   .value();
     child_ = use("here.Test");
-    beginAndAwait("here.Test/1/move/1");
+    skill::StartRequest request{"here.Test/1/move/1",
+                                {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}};
+    request.parent.id = "here.Test/1";
+    child_->begin(std::move(request), listener_);
+    ASSERT_TRUE(move_.hand->await("start"));
     std::promise<std::string> parent;
     server().post(
         [&] { parent.set_value(move_.program->execution("here.Test/1/move/1")->parent.server); });
