@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <future>
 #include <mutex>
 
 #include "connection.hpp"
@@ -340,24 +339,6 @@ TEST_F(RemoteChildTest, TellsItsServersNameAndAddress) {
     const auto nobody = RemoteServer::connect({.url = remote_->url(), .name = "x"}, executor_);
     ASSERT_FALSE(nobody);
     EXPECT_THAT(nobody.error().message, HasSubstr(remote_->url() + ": "));
-}
-
-TEST_F(RemoteChildTest, NamesTheServerOfItsParent) {
-    child_.reset();
-    remote_ = RemoteServer::connect(
-                  {.url = server().endpointUrl(), .name = "other", .own_server = "urn:component"},
-                  executor_)
-                  .value();
-    child_ = use("here.Test");
-    skill::StartRequest request{"here.Test/1/move/1",
-                                {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}};
-    request.parent.id = "here.Test/1";
-    child_->begin(std::move(request), listener_);
-    ASSERT_TRUE(move_.hand->await("start"));
-    std::promise<std::string> parent;
-    server().post(
-        [&] { parent.set_value(move_.program->execution("here.Test/1/move/1")->parent.server); });
-    EXPECT_EQ(parent.get_future().get(), "urn:component");
 }
 
 TEST_F(RemoteChildTest, IsLostWithItsServer) {

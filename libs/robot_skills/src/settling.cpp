@@ -8,6 +8,8 @@ namespace {
 
 // The measured arm has arrived when each axis is this near its set-point [rad].
 constexpr double kArrived = 1e-3;
+// The first cycle may still show an arm that has not begun a short way, as after a late Suspend.
+constexpr int kArrivedCycles = 2;
 // How long it may take for that after the last set-point, and how long rest elsewhere, which may be
 // late news of a motion [s].
 constexpr double kLongest = 10.0;
@@ -18,7 +20,8 @@ constexpr double kLongestRest = 2.0;
 Settling::Status Settling::take(const device::ArmState& state, const device::JointArray& target,
                                 double cycle) noexcept {
     distance_ = device::largestDifference(state.position, target);
-    if (state.standstill && distance_ < kArrived) {
+    arrived_cycles_ = state.standstill && distance_ < kArrived ? arrived_cycles_ + 1 : 0;
+    if (arrived_cycles_ >= kArrivedCycles) {
         return Status::arrived;
     }
     waited_ += cycle;

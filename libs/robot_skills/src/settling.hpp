@@ -26,15 +26,19 @@ public:
                 double cycle) noexcept;
 
     /// Ready for the next end of a motion.
-    void restart() noexcept { waited_ = rested_ = 0.0; }
+    void restart() noexcept {
+        waited_ = rested_ = 0.0;
+        arrived_cycles_ = 0;
+    }
 
     /// Fails `execution` with how far off the arm is.
     void tellOffTarget(const skill::Execution& execution) const;
 
 private:
-    double waited_ = 0.0;    ///< [s]
-    double rested_ = 0.0;    ///< at standstill elsewhere, without a break [s]
-    double distance_ = 0.0;  ///< of the axis farthest off [rad]
+    double waited_ = 0.0;     ///< [s]
+    double rested_ = 0.0;     ///< at standstill elsewhere, without a break [s]
+    int arrived_cycles_ = 0;  ///< without a break
+    double distance_ = 0.0;   ///< of the axis farthest off [rad]
 };
 
 }  // namespace metier::robot_skills

@@ -276,7 +276,8 @@ double worstOfSuspendedLine(Bench& bench, int cycles, double height) {
     auto& line = bench.program(kCartesianLinear);
     auto values = kUp;
     values["TargetPosition"] = Frame{0, 0, height};
-    EXPECT_TRUE(bench.start(kCartesianLinear, values));
+    const auto started = bench.start(kCartesianLinear, values);
+    EXPECT_TRUE(started) << started.error().message;
     double worst = 0;
     int step = 0;
     const auto done = bench.stepUntil([&] {
