@@ -67,6 +67,16 @@ inline const std::string kHeadWithGrip = kHead + R"(
 type = "GraspSkillType"
 )";
 
+/// `a`, then `b`.
+inline const std::string kTwoSteps = kHead + R"(
+[[step]]
+name = "first"
+run = "a"
+[[step]]
+name = "second"
+run = "b"
+)";
+
 /// One step that runs `b`, which may be reset.
 inline const std::string kOneThatIsReset = R"(
 name = "TestSkill"

@@ -16,15 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kHead;
 using testing::kOneThatIsReset;
-
-const std::string kTwoSteps = kHead + R"(
-[[step]]
-name = "first"
-run = "a"
-[[step]]
-name = "second"
-run = "b"
-)";
+using testing::kTwoSteps;
 
 const std::string kBoth = kHead + R"(
 [[step]]

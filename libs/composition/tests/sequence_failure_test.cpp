@@ -18,6 +18,7 @@ using ::testing::IsEmpty;
 using testing::kHead;
 using testing::kHeadWithGrip;
 using testing::kOneThatIsReset;
+using testing::kTwoSteps;
 
 const std::string kBoth = kHead + R"(
 [[step]]
@@ -289,10 +290,6 @@ TEST(DestroyedWhileItRuns, AComposedSkillHaltsWhatRuns) {
     EXPECT_THAT((*bench)["a"].heard(), ElementsAre("begin", "halt"));
     EXPECT_FALSE((*bench)["a"].runs());
 }
-
-const std::string kTwoSteps = kHead +
-                              "[[step]]\nname = \"first\"\nrun = \"a\"\n"
-                              "[[step]]\nname = \"second\"\nrun = \"b\"\n";
 
 TEST(FailureOfAStep, IsASkillThatCannotBeReachedWhenItsTurnComes) {
     Bench bench(kTwoSteps);

@@ -14,15 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kHead;
-
-const std::string kTwoSteps = kHead + R"(
-[[step]]
-name = "first"
-run = "a"
-[[step]]
-name = "second"
-run = "b"
-)";
+using testing::kTwoSteps;
 
 /// `b` is a background step, which the end of `a` has halted.
 class HaltedBackground : public ::testing::Test {
