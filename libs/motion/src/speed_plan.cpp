@@ -26,7 +26,7 @@ constexpr double kUnseenSecond = 1.02;
 constexpr double kUnseenThird = 0.5;
 /// A plan whose derivatives use this share of a limit is checked by its exact positions, with steps
 /// that are not so short that rounding shows [s].
-constexpr double kNear = 0.8;
+constexpr double kNear = 0.5;
 constexpr double kShortestStep = 4e-4;
 constexpr double kLongestStep = 1e-3;
 /// Over a limit by no more than this counts as within it.
@@ -195,7 +195,10 @@ public:
     double factor() const noexcept { return factor_; }
 
 private:
-    static constexpr std::size_t kSamples = 4;
+    /// Positions are taken at no more places than this from knot to knot.
+    static constexpr double kMostSteps = 64;
+    /// How much more jerk there may be than positions at steps show.
+    static constexpr double kBetween = 1.03;
 
     /// When the clock is there [s].
     double timeAt(double clock) const noexcept {
@@ -227,11 +230,7 @@ private:
         if (share < kNear) {
             return;
         }
-        const double step = std::clamp((to - from) / kSamples, kShortestStep, kLongestStep);
-        constexpr int windows = 2;
-        for (int window = 0; window < windows; ++window) {
-            includeExact(std::lerp(from, to, static_cast<double>(window) / windows), step);
-        }
+        includeExact(from, to);
     }
 
     /// \return the largest share of a limit that a derivative by time uses at `time` [s]
@@ -265,19 +264,30 @@ private:
         return share;
     }
 
-    /// Differences of positions `step` [s] apart, around a time.
-    void includeExact(double time, double step) {
-        std::array<JointVector, kSamples> q;
-        for (std::size_t n = 0; n < kSamples; ++n) {
-            const double at = time + (static_cast<double>(n) - 1.5) * step;
-            q[n] = position_(plan_.map.at(plan_.profile.at(at).position).position);
+    /// Differences of positions from one time to another [s], and as far beyond as four of them
+    /// reach.
+    void includeExact(double from, double to) {
+        const double step = std::max((to - from) / kMostSteps,
+                                     std::clamp((to - from) / 4, kShortestStep, kLongestStep));
+        std::array<JointVector, 4> q;
+        int taken = 0;
+        for (double time = from - 1.5 * step; time < to + 1.5 * step; time += step) {
+            std::rotate(q.begin(), q.begin() + 1, q.end());
+            q.back() = position_(plan_.map.at(plan_.profile.at(time).position).position);
+            if (++taken >= 4) {
+                includeDifferences(q, step);
+            }
         }
+    }
+
+    /// \param q four positions, `step` [s] apart
+    void includeDifferences(const std::array<JointVector, 4>& q, double step) noexcept {
         for (std::size_t i = 0; i < q[0].size(); ++i) {
             const SpeedBound& bound = bounds_.front().values[i];
             const double a = (q[2][i] - 2 * q[1][i] + q[0][i]) / (step * step);
             const double j = (q[3][i] - 3 * q[2][i] + 3 * q[1][i] - q[0][i]) / (step * step * step);
             factor_ = std::max({factor_, std::sqrt(std::abs(a) / bound.acceleration),
-                                std::cbrt(std::abs(j) / bound.jerk)});
+                                std::cbrt(kBetween * std::abs(j) / bound.jerk)});
         }
     }
 
