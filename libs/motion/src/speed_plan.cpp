@@ -197,7 +197,8 @@ public:
 private:
     /// Positions are taken at no more places than this from knot to knot.
     static constexpr double kMostSteps = 64;
-    /// How much more jerk there may be than positions at steps show.
+    /// How much more jerk there may be than positions at steps show, where they show too much. A
+    /// clock that changes its speed at exactly the jerk limit is not slowed down for it.
     static constexpr double kBetween = 1.03;
 
     /// When the clock is there [s].
@@ -286,8 +287,10 @@ private:
             const SpeedBound& bound = bounds_.front().values[i];
             const double a = (q[2][i] - 2 * q[1][i] + q[0][i]) / (step * step);
             const double j = (q[3][i] - 3 * q[2][i] + 3 * q[1][i] - q[0][i]) / (step * step * step);
-            factor_ = std::max({factor_, std::sqrt(std::abs(a) / bound.acceleration),
-                                std::cbrt(kBetween * std::abs(j) / bound.jerk)});
+            const double shown = std::abs(j) / bound.jerk;
+            const double jerk = shown > 1 + kTolerance ? kBetween * shown : shown;
+            factor_ = std::max(
+                {factor_, std::sqrt(std::abs(a) / bound.acceleration), std::cbrt(jerk)});
         }
     }
 
