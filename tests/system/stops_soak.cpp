@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "metier/skill_client/kinematics_reader.hpp"
@@ -98,7 +97,10 @@ private:
             throw std::runtime_error(started.error().message);
         }
         awaitMotion(move_.client(), *move_, from);
-        std::this_thread::sleep_for(Seconds(0.3 * part()));  // where on its way it is stopped
+        const auto stop_at = std::chrono::steady_clock::now() + Seconds(0.3 * part());
+        if (move_->awaitRest(std::chrono::time_point_cast<SteadyTime::duration>(stop_at))) {
+            return;  // it had arrived
+        }
         const auto told = move_.client().read(stopping_time_).value().as<double>().value();
         const auto asked = std::chrono::steady_clock::now();
         const auto taken = halts ? move_->halt() : move_->suspend();
