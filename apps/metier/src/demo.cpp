@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kNoDescriptor = -1;
 
-/// What a busy machine let fail is tried again, but never where a real robot would move by itself
-/// after a stop.
+/// Second tries of a move or part that failed, as on a busy machine. None in a cell with a real
+/// device: no real robot shall move by itself after a stop.
 int secondTries(const configuration::CellConfig& cell) {
     constexpr int kOfVirtualCells = 2;
     return cell.isVirtual() ? kOfVirtualCells : 0;

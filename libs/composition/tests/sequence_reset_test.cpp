@@ -1,4 +1,4 @@
-// What a composed skill resets, and when it may start.
+// Reset of a composed skill: which used skills it resets, and when the whole may start again.
 #include <gmock/gmock.h>
 
 #include "bench.hpp"

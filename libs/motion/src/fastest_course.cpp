@@ -100,8 +100,8 @@ private:
         }
         const double z = std::max(course_.ceiling[k], course_.ceiling[k + 1]);
         const double w = std::sqrt(z);
-        // What the axis that is bound most leaves for a change of speed, and for the change of
-        // that.
+        // Limits of the change of speed, and of the change of that: those of the axis that is bound
+        // most.
         const double binding = 0.999 * share_;
         double steepest = kInfinity;
         double sharpest = kInfinity;
@@ -256,7 +256,7 @@ private:
         return sum;
     }
 
-    /// What is minimised; infinite where a row does not hold.
+    /// The objective of the minimisation; infinite where a row does not hold.
     double cost(const std::vector<double>& z, double weight) const noexcept {
         double product = 1;
         double sum = weight * time(z);

@@ -9,7 +9,7 @@
 
 namespace metier::motion {
 
-/// What bounds the speed at one place of a path: the derivatives by the path parameter of an axis,
+/// Bounds of the speed at one place of a path: the derivatives by the path parameter of an axis,
 /// or of the tool frame, and the limits of the same by time.
 struct SpeedBound {
     double first = 0;

@@ -21,7 +21,7 @@ double perLength(double limit, const Eigen::Vector3d& vector) {
     return limit / length;
 }
 
-/// What one half of the six Cartesian limits allows for a vector of the path.
+/// A vector of the path, of position or of rotation, and the three limits of its kind.
 struct HalfLimits {
     const double* requested = nullptr;  ///< three values
     double own = 0;
