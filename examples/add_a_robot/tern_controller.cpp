@@ -30,8 +30,8 @@ constexpr int kLongestSilence = 50;  // [cycles]
 constexpr std::size_t kBuffer = 10;  // [set-points]
 constexpr double kRadian = 180.0 / std::numbers::pi;
 
-std::vector<virtual_robots::AxisLimits> limitsOf(const motion::RobotModel& model) {
-    std::vector<virtual_robots::AxisLimits> limits;
+std::vector<joint_simulator::AxisLimits> limitsOf(const motion::RobotModel& model) {
+    std::vector<joint_simulator::AxisLimits> limits;
     for (const auto& joint : model.chain().joints) {
         // The drives give twice what motions are planned with, since a Halt brakes that hard.
         limits.push_back({joint.limits.lower, joint.limits.upper, joint.limits.velocity,
@@ -154,7 +154,7 @@ private:
 
     const motion::RobotModel model_;
     virtual_controller::WorldLink& world_;
-    virtual_robots::Guard guard_;
+    joint_simulator::Guard guard_;
     JointArray target_;
     std::deque<JointArray> waiting_;
     bool playing_ = false;

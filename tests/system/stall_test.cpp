@@ -120,12 +120,12 @@ protected:
     const motion::RobotModel model_ =
         orThrow(motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/ur5.toml"));
     SystemClock clock_;
-    std::unique_ptr<virtual_robots::JointSimulator> arm_ =
-        orThrow(virtual_robots::JointSimulator::create(virtual_robots::optionsFor(model_)));
+    std::unique_ptr<joint_simulator::JointSimulator> arm_ =
+        orThrow(joint_simulator::JointSimulator::create(joint_simulator::optionsFor(model_)));
     std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(serverOptions()));
     std::unique_ptr<opcua_skill::SkillServer> skills_ =
         orThrow(opcua_skill::SkillServer::create(*server_, clock_));
-    virtual_robots::SimulatorDrive drive_{*arm_};
+    joint_simulator::SimulatorDrive drive_{*arm_};
     std::unique_ptr<robot_skills::StallWatch> watch_;
     std::unique_ptr<opcua::Client> client_;
     std::optional<skill_client::SkillHandle> skill_;

@@ -19,8 +19,8 @@ motion::RobotModel loadModel() {
     return motion::RobotModel::load(std::filesystem::path(METIER_MODELS) / "ur5.toml").value();
 }
 
-virtual_robots::JointSimulatorOptions simulatorOptions(const motion::RobotModel& model) {
-    virtual_robots::JointSimulatorOptions options;
+joint_simulator::JointSimulatorOptions simulatorOptions(const motion::RobotModel& model) {
+    joint_simulator::JointSimulatorOptions options;
     options.name = "ur5";
     for (const auto& joint : model.chain().joints) {
         const auto& limits = joint.limits;
@@ -73,7 +73,7 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm) {
 }  // namespace
 
 ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
-    arm_ = virtual_robots::JointSimulator::create(simulatorOptions(model_)).value();
+    arm_ = joint_simulator::JointSimulator::create(simulatorOptions(model_)).value();
     opcua::ServerOptions options;
     options.port = port;
     options.nodesets = {"device", "robotics", "metier", "universal_robots"};
@@ -90,7 +90,7 @@ ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
     EXPECT_TRUE(opcua_skill::publishArmFigures(
         server_->nodes(), system.kinematics,
         {.standstill = [this] { return std::optional(arm_->state().standstill); }}));
-    drive_ = std::make_unique<virtual_robots::SimulatorDrive>(*arm_);
+    drive_ = std::make_unique<joint_simulator::SimulatorDrive>(*arm_);
     const auto started = server_->start();
     EXPECT_TRUE(started) << (started ? "" : started.error().message);
 }

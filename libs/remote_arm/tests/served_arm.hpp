@@ -29,7 +29,7 @@ public:
 
     std::string url() const { return server_->endpointUrl(); }
     std::uint16_t port() const { return server_->port(); }
-    virtual_robots::JointSimulator& arm() { return *arm_; }
+    joint_simulator::JointSimulator& arm() { return *arm_; }
 
     /// The skill is halted when the arm is stopped, also while it does not run.
     void watchDevice();
@@ -53,12 +53,12 @@ private:
 
     SystemClock clock_;
     motion::RobotModel model_;
-    std::unique_ptr<virtual_robots::JointSimulator> arm_;
+    std::unique_ptr<joint_simulator::JointSimulator> arm_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     skill::Program* program_ = nullptr;
     std::optional<robot_skills::DeviceWatch> watch_;
-    std::unique_ptr<virtual_robots::SimulatorDrive> drive_;
+    std::unique_ptr<joint_simulator::SimulatorDrive> drive_;
     std::mutex mutex_;
     std::condition_variable changed_;
     bool running_ = false;

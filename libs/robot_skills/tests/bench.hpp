@@ -41,10 +41,10 @@ public:
     std::function<void(const skill::TransitionEvent&)> told;
 };
 
-using Change = std::function<void(virtual_robots::JointSimulatorOptions&)>;
+using Change = std::function<void(joint_simulator::JointSimulatorOptions&)>;
 /// What else there is of the simulated arm.
 using MakeFaces =
-    std::function<ArmFaces(virtual_robots::JointSimulator&, const motion::RobotModel&)>;
+    std::function<ArmFaces(joint_simulator::JointSimulator&, const motion::RobotModel&)>;
 
 /// One simulated arm with all its skills as Programs, and time moved by hand.
 class Bench {
@@ -52,11 +52,11 @@ public:
     explicit Bench(const std::string& robot = "ur5", const Change& change = {},
                    const MakeFaces& faces = {})
         : model_(modelOf(robot)), executor_(std::make_shared<skill::testing::ManualExecutor>()) {
-        auto options = virtual_robots::optionsFor(model_);
+        auto options = joint_simulator::optionsFor(model_);
         if (change) {
             change(options);
         }
-        arm_ = virtual_robots::JointSimulator::create(std::move(options)).value();
+        arm_ = joint_simulator::JointSimulator::create(std::move(options)).value();
         auto skills = makeArmSkills(faces ? faces(*arm_, model_) : ArmFaces{*arm_}, model_,
                                     executor_->clock())
                           .value();
@@ -70,7 +70,7 @@ public:
     }
 
     const motion::RobotModel& model() const { return model_; }
-    virtual_robots::JointSimulator& arm() { return *arm_; }
+    joint_simulator::JointSimulator& arm() { return *arm_; }
     skill::testing::ManualExecutor& executor() { return *executor_; }
     std::shared_ptr<skill::Executor> sharedExecutor() { return executor_; }
     skill::Program& program(const std::string& name) { return *programs_.at(name); }
@@ -138,7 +138,7 @@ private:
     motion::RobotModel model_;
     // Shared with the Programs, as they ask for.
     std::shared_ptr<skill::testing::ManualExecutor> executor_;
-    std::unique_ptr<virtual_robots::JointSimulator> arm_;
+    std::unique_ptr<joint_simulator::JointSimulator> arm_;
     std::shared_ptr<skill::Resource> resource_;
     std::shared_ptr<const StreamReport> stream_report_;      // shared with the skill that fills it
     std::shared_ptr<const StoppingReport> stopping_report_;  // likewise

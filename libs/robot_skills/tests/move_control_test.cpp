@@ -139,11 +139,11 @@ TEST_F(MovingArm, IsStoppedByAProtectiveStopWithItsReason) {
 }
 
 TEST_F(MovingArm, StaysHaltedWhileTheEmergencyStopIsPressed) {
-    bench.arm().emergencyStop(virtual_robots::EmergencyStop::pressed);
+    bench.arm().emergencyStop(joint_simulator::EmergencyStop::pressed);
     ASSERT_TRUE(bench.stepUntil(kCartesianLinear, State::halted));
     EXPECT_THAT(line.reset(bench.caller()).error().message, HasSubstr("still pressed"));
     EXPECT_EQ(line.state(), State::halted);
-    bench.arm().emergencyStop(virtual_robots::EmergencyStop::released);
+    bench.arm().emergencyStop(joint_simulator::EmergencyStop::released);
     bench.step();
     EXPECT_TRUE(line.reset(bench.caller()));
 }

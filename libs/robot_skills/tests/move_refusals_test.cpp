@@ -174,7 +174,7 @@ TEST_F(RefusingArm, SaysThatItIsInAProtectiveStop) {
 }
 
 TEST_F(RefusingArm, SaysThatTheEmergencyStopIsPressed) {
-    bench.arm().emergencyStop(virtual_robots::EmergencyStop::pressed);
+    bench.arm().emergencyStop(joint_simulator::EmergencyStop::pressed);
     bench.step();
     EXPECT_EQ(refusal().code, Errc::device_fault);
     EXPECT_EQ(refusal().message, "ur5: emergency stop pressed (emergency stop)");
@@ -190,7 +190,8 @@ TEST_F(RefusingArm, SaysThatItIsDisconnected) {
 TEST(ArmSkills, RefuseAModelWithOtherAxes) {
     const auto model = modelOf("iiwa7");
     const auto arm =
-        virtual_robots::JointSimulator::create(virtual_robots::optionsFor(modelOf("ur5"))).value();
+        joint_simulator::JointSimulator::create(joint_simulator::optionsFor(modelOf("ur5")))
+            .value();
     const ManualClock clock;
     const auto skills = makeArmSkills(*arm, model, clock);
     ASSERT_FALSE(skills);

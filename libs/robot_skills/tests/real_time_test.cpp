@@ -24,7 +24,7 @@ protected:
     }
 
     Bench bench{GetParam()};
-    virtual_robots::SimulatorDrive drive{bench.arm()};
+    joint_simulator::SimulatorDrive drive{bench.arm()};
 };
 
 TEST_P(RunningArm, RunsALineToItsEnd) {

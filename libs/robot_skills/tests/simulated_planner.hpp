@@ -27,7 +27,7 @@ public:
         bool stops_by_itself = false;        ///< in the middle, as by hand at the panel
     };
 
-    SimulatedPlanner(virtual_robots::JointSimulator& arm, const motion::RobotModel& model)
+    SimulatedPlanner(joint_simulator::JointSimulator& arm, const motion::RobotModel& model)
         : arm_(arm), model_(model) {}
 
     Behaviour behaviour;
@@ -151,7 +151,7 @@ private:
         return motion::planPtp(model_, request).value();
     }
 
-    virtual_robots::JointSimulator& arm_;
+    joint_simulator::JointSimulator& arm_;
     const motion::RobotModel& model_;
     std::weak_ptr<Run> run_;
 };

@@ -21,7 +21,7 @@ void CycleTimer::wait() {
         const auto due = time_base_.begin(std::chrono::steady_clock::now());
         cycle_();
         if (next_period_) {
-            time_base_ = virtual_robots::TimeBase(due + *next_period_, *next_period_);
+            time_base_ = joint_simulator::TimeBase(due + *next_period_, *next_period_);
             next_period_.reset();
         }
         wait();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 namespace {
 
@@ -99,4 +99,4 @@ bool Guard::standing() const noexcept {
     return std::all_of(velocity_.begin(), velocity_.end(), [](double v) { return v == 0.0; });
 }
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 using device::EndCause;
 using device::SafetyState;
@@ -356,4 +356,4 @@ void JointSimulator::end(EndCause cause) noexcept {
     ended_.store(true);
 }
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 namespace {
 
@@ -35,4 +35,4 @@ void Lag::advance(const device::JointArray& commanded) noexcept {
     }
 }
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 namespace {
 
@@ -24,4 +24,4 @@ JointSimulatorOptions optionsFor(const motion::RobotModel& model) {
     return options;
 }
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -2,7 +2,7 @@
 
 #include "metier/joint_simulator/time_base.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 SimulatorDrive::SimulatorDrive(JointSimulator& arm)
     : arm_(arm),
@@ -23,4 +23,4 @@ void SimulatorDrive::run(const std::stop_token& stop) {
     }
 }
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -6,7 +6,7 @@
 #include "metier/joint_simulator/joint_simulator.hpp"
 #include "simulated_arm.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 namespace {
 
 std::size_t allocationsOf(JointSimulator& arm, int cycles) {
@@ -40,4 +40,4 @@ TEST(JointSimulatorCycle, IsWatchedByACounterThatWorks) {
 }
 
 }  // namespace
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 namespace {
 
 using device::JointArray;
@@ -99,4 +99,4 @@ TEST(Guard, BrakesEachAxisAtItsAccelerationLimit) {
 }
 
 }  // namespace
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -8,7 +8,7 @@
 
 #include "simulated_arm.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 namespace {
 
 using device::EndCause;
@@ -270,4 +270,4 @@ TEST(JointSimulator, TellsItsSourceWhenItIsShutDown) {
 }
 
 }  // namespace
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 namespace {
 
 using device::JointArray;
@@ -54,4 +54,4 @@ TEST(Lag, ArrivesExactly) {
 }
 
 }  // namespace
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

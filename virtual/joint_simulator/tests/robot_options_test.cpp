@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 namespace {
 
 using namespace std::chrono_literals;
@@ -35,4 +35,4 @@ INSTANTIATE_TEST_SUITE_P(All, RobotOptions,
                          });
 
 }  // namespace
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

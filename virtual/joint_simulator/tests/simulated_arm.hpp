@@ -10,7 +10,7 @@
 
 #include "metier/joint_simulator/joint_simulator.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// Two axes of +-2 rad, 1 rad/s, 10 rad/s2 at 100 Hz, standing at zero.
 inline JointSimulatorOptions twoAxisOptions() {
@@ -87,4 +87,4 @@ inline std::shared_ptr<FunctionSource> cruise(double speed, double cycle = 0.01)
         });
 }
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

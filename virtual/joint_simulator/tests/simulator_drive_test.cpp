@@ -7,7 +7,7 @@
 
 #include "simulated_arm.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 namespace {
 
 using namespace std::chrono_literals;
@@ -93,4 +93,4 @@ TEST(SimulatorDrive, CanBeEndedAndBegunAgain) {
 }
 
 }  // namespace
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

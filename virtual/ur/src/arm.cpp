@@ -36,8 +36,8 @@ Vector6 toVector6(const device::JointArray& values) {
     return result;
 }
 
-ArmViolation toViolation(const virtual_robots::Violation& violation) {
-    const bool position = violation.quantity == virtual_robots::Violation::Quantity::position;
+ArmViolation toViolation(const joint_simulator::Violation& violation) {
+    const bool position = violation.quantity == joint_simulator::Violation::Quantity::position;
     return {position ? kJointLimit : kOffPath, toText(violation)};
 }
 
@@ -67,7 +67,7 @@ private:
 Arm::Arm(const motion::RobotModel& model, const ArmOptions& options)
     : model_(model),
       options_(options),
-      guard_(options.limits, virtual_robots::GuardTolerance{}, options.cycle),
+      guard_(options.limits, joint_simulator::GuardTolerance{}, options.cycle),
       lag_(kDelayCycles, 0.0, options.cycle) {
     reset(options.start);
 }
@@ -186,7 +186,7 @@ void Arm::take(const Vector6& position) {
 ArmViolation Arm::beyondLimit(std::size_t axis) const {
     const double limit = options_.limits[axis].upper;
     return toViolation(
-        {virtual_robots::Violation::Quantity::position, axis, limit + kBeyond, limit});
+        {joint_simulator::Violation::Quantity::position, axis, limit + kBeyond, limit});
 }
 
 bool Arm::withinLimits(const Vector6& position) const {

@@ -11,11 +11,11 @@ namespace metier::simulator_driver {
 namespace {
 
 struct SimulatedArm {
-    explicit SimulatedArm(std::unique_ptr<virtual_robots::JointSimulator> simulator)
+    explicit SimulatedArm(std::unique_ptr<joint_simulator::JointSimulator> simulator)
         : arm(std::move(simulator)), drive(*arm) {}
 
-    std::unique_ptr<virtual_robots::JointSimulator> arm;
-    virtual_robots::SimulatorDrive drive;
+    std::unique_ptr<joint_simulator::JointSimulator> arm;
+    joint_simulator::SimulatorDrive drive;
 };
 
 Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
@@ -25,9 +25,9 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
     if (request.model == nullptr) {
         return fail(Errc::invalid_argument, request.name + ": the simulator is one of arms only");
     }
-    auto options = virtual_robots::optionsFor(*request.model);
+    auto options = joint_simulator::optionsFor(*request.model);
     options.name = request.name;
-    auto arm = virtual_robots::JointSimulator::create(std::move(options));
+    auto arm = joint_simulator::JointSimulator::create(std::move(options));
     if (!arm) {
         return fail(arm.error());
     }

@@ -26,7 +26,7 @@ private:
     void wait();
 
     asio::steady_timer timer_;
-    virtual_robots::TimeBase time_base_;
+    joint_simulator::TimeBase time_base_;
     std::function<void()> cycle_;
     std::optional<std::chrono::nanoseconds> next_period_;
 };

@@ -103,7 +103,7 @@ private:
     AxisValues position_;
     AxisValues offset_{};  // true position less position
     AxisValues target_;
-    virtual_robots::Lag lag_;
+    joint_simulator::Lag lag_;
     std::vector<JointReport> joints_;  // configured ones
     std::deque<Command> commands_;
     int pulse_left_ = 0;

@@ -7,7 +7,7 @@
 
 #include "metier/device/joint_array.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// What the simulated controller allows one axis.
 struct AxisLimits {
@@ -72,4 +72,4 @@ private:
     device::JointArray velocity_;
 };
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -12,7 +12,7 @@
 #include "metier/joint_simulator/guard.hpp"
 #include "metier/joint_simulator/lag.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// What one simulated arm is like.
 struct JointSimulatorOptions {
@@ -145,4 +145,4 @@ private:
     std::uint64_t steps_ = 0;
 };
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

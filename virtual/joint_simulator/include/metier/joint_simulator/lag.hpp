@@ -5,7 +5,7 @@
 
 #include "metier/device/joint_array.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// Most cycles of dead time that the simulated arm may have.
 inline constexpr std::size_t kMaxDelayCycles = 31;
@@ -39,4 +39,4 @@ private:
     device::JointArray velocity_;
 };
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

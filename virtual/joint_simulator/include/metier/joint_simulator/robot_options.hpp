@@ -3,7 +3,7 @@
 #include "metier/joint_simulator/joint_simulator.hpp"
 #include "metier/motion/robot_model.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// A simulated arm of that kind, standing at its home position at its controller's rate.
 ///
@@ -12,4 +12,4 @@ namespace metier::virtual_robots {
 /// guard that judges the set-points is the simulator's own.
 JointSimulatorOptions optionsFor(const motion::RobotModel& model);
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -6,7 +6,7 @@
 #include "metier/device/notifier.hpp"
 #include "metier/joint_simulator/joint_simulator.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// Runs a simulated arm at its real rate: its cycle thread and its notifying thread.
 class SimulatorDrive {
@@ -28,4 +28,4 @@ private:
     std::jthread cycle_thread_;
 };
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

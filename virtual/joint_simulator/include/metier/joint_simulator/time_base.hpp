@@ -5,7 +5,7 @@
 
 #include "metier/base/clock.hpp"
 
-namespace metier::virtual_robots {
+namespace metier::joint_simulator {
 
 /// When the cycles of a controller are due.
 ///
@@ -50,4 +50,4 @@ private:
     std::uint64_t missed_ = 0;
 };
 
-}  // namespace metier::virtual_robots
+}  // namespace metier::joint_simulator

@@ -16,9 +16,9 @@ namespace metier::virtual_ur {
 
 /// What the controller allows the arm, and how it stops it.
 struct ArmOptions {
-    std::vector<virtual_robots::AxisLimits> limits;  ///< six
-    double cycle = 0.008;                            ///< [s]
-    Vector6 start{};                                 ///< [rad]
+    std::vector<joint_simulator::AxisLimits> limits;  ///< six
+    double cycle = 0.008;                             ///< [s]
+    Vector6 start{};                                  ///< [rad]
     double stop_deceleration = 13.0;  ///< of a stop that the controller makes by itself [rad/s2]
 };
 
@@ -78,8 +78,8 @@ private:
 
     const motion::RobotModel& model_;
     const ArmOptions options_;
-    virtual_robots::Guard guard_;
-    virtual_robots::Lag lag_;
+    joint_simulator::Guard guard_;
+    joint_simulator::Lag lag_;
     geometry::Pose flange_from_tool_;
     JointState target_;
     Vector6 acceleration_{};
