@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <random>
 
 #include "folders.hpp"
+#include "metier/base/random.hpp"
 #include "security.hpp"
 
 namespace metier::app {
@@ -30,8 +30,8 @@ std::string applicationUriOf(const configuration::ServerConfig& config) {
     if (config.port != 0) {
         return fmt::format("urn:{}:metier:{}:{}", host, config.name, config.port);
     }
-    std::random_device device;
-    return fmt::format("urn:{}:metier:{}:{:08x}", host, config.name, device());
+    constexpr std::size_t kDigits = 8;
+    return fmt::format("urn:{}:metier:{}:{}", host, config.name, randomHex(kDigits));
 }
 
 Announcement::Announcement(const configuration::ServerConfig& config,

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -12,6 +11,7 @@
 
 #include "commands.hpp"
 #include "metier/audit/audit_log.hpp"
+#include "metier/base/text.hpp"
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
@@ -72,9 +72,8 @@ Result<std::vector<fs::path>> chosenLogs(const AuditOptions& options) {
 Result<std::set<std::string>> anchorsOf(const AuditOptions& options) {
     constexpr std::size_t kDigits = 64;
     std::set<std::string> anchors;
-    for (auto anchor : options.anchors) {
-        std::transform(anchor.begin(), anchor.end(), anchor.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const auto& given : options.anchors) {
+        const auto anchor = inLowerCase(given);
         if (anchor.size() != kDigits ||
             anchor.find_first_not_of("0123456789abcdef") != std::string::npos) {
             return fail(Errc::invalid_argument,

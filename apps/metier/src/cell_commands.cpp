@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <random>
 
+#include "metier/base/random.hpp"
 #include "security.hpp"
 
 namespace metier::app {
@@ -33,9 +33,8 @@ const configuration::DriverChoice* driverOf(const configuration::ServerConfig& s
 
 /// Some address of this machine that nobody else is likely to use.
 std::string freeAddress() {
-    std::random_device random;
-    const auto part = [&random](unsigned low, unsigned high) {
-        return std::uniform_int_distribution<unsigned>(low, high)(random);
+    const auto part = [](std::uint64_t low, std::uint64_t high) {
+        return low + randomNumber() % (high - low + 1);
     };
     return fmt::format("127.{}.{}.{}", part(1, 254), part(0, 255), part(1, 254));
 }

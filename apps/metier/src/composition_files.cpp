@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <random>
 #include <utility>
 
+#include "metier/base/random.hpp"
 #include "metier/composition/definition_file.hpp"
 
 namespace metier::app {
@@ -28,9 +28,8 @@ Result<std::vector<composition::Definition>> loadDefinitions(
 }
 
 std::string newLife() {
-    constexpr unsigned kMask = 0xFFFFFF;
-    std::random_device device;
-    return fmt::format("{:06x}", device() & kMask);
+    constexpr std::size_t kDigits = 6;
+    return randomHex(kDigits);
 }
 
 }  // namespace metier::app

@@ -4,22 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "folders.hpp"
+#include "metier/base/text.hpp"
 #include "robot_argument.hpp"
 
 namespace metier::app {
-namespace {
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-}  // namespace
-
 std::string defaultRecords() {
     const auto folder = userStateFolder();
     return folder.empty() ? std::string() : (folder / "records.db").string();
@@ -55,7 +45,7 @@ Result<motion::RobotModel> robotOf(const records::Execution& execution, const st
     if (!named.empty()) {
         return loadRobot(named);
     }
-    const auto names = lower(execution.device + " " + execution.server_name);
+    const auto names = inLowerCase(execution.device + " " + execution.server_name);
     std::string best;
     for (const auto& name : robotNames()) {
         auto model = loadRobot(name);
@@ -63,7 +53,7 @@ Result<motion::RobotModel> robotOf(const records::Execution& execution, const st
             return model;
         }
         const bool longer = name.size() > best.size();
-        best = longer && names.find(lower(name)) != std::string::npos ? name : best;
+        best = longer && names.find(inLowerCase(name)) != std::string::npos ? name : best;
     }
     if (best.empty()) {
         return fail(Errc::invalid_argument,

@@ -1,4 +1,5 @@
 #include "skill_survey.hpp"
+#include "metier/base/text.hpp"
 
 #include <algorithm>
 #include <condition_variable>
@@ -227,23 +228,13 @@ std::vector<SurveyedServer> survey(const std::vector<discovery::FoundServer>& se
 
 namespace {
 
-char lower(char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](char letter) { return lower(letter); });
-    return text;
-}
-
 /// Its words without "and", each followed by a "-".
 std::string plain(std::string_view text) {
     std::string result;
     std::string word;
-    for (const char letter : std::string(text) + " ") {
+    for (const char letter : inLowerCase(text) + " ") {
         if (letter != '-' && letter != '_' && letter != ' ') {
-            word += lower(letter);
+            word += letter;
             continue;
         }
         if (!word.empty() && word != "and") {
@@ -261,7 +252,7 @@ std::optional<std::string> termOf(const SurveyedSkill& skill, const std::string&
         const auto end = term.find_last_of(":/#");
         const auto last =
             plain(std::string_view(term).substr(end == std::string::npos ? 0 : end + 1));
-        return lower(term) == lower(wish) || (!last.empty() && last == plain(wish));
+        return inLowerCase(term) == inLowerCase(wish) || (!last.empty() && last == plain(wish));
     };
     const auto found = std::find_if(skill.terms.begin(), skill.terms.end(), names);
     return found == skill.terms.end() ? std::nullopt : std::optional(*found);

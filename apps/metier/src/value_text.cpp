@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <optional>
 #include <vector>
+
+#include "metier/base/text.hpp"
 
 namespace metier::app {
 namespace {
@@ -12,32 +14,10 @@ namespace {
 using skill::Value;
 using skill::ValueType;
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    if (text.empty()) {
-        return parts;
-    }
-    for (;;) {
-        const auto end = text.find(separator);
-        parts.push_back(text.substr(0, end));
-        if (end == std::string_view::npos) {
-            return parts;
-        }
-        text.remove_prefix(end + 1);
-    }
-}
-
+/// A number with blanks before it, as people write lists.
 template <typename T>
 std::optional<T> numberIn(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') {
-        text.remove_prefix(1);
-    }
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) {
-        return std::nullopt;
-    }
-    return value;
+    return metier::numberIn<T>(text.substr(std::min(text.find_first_not_of(' '), text.size())));
 }
 
 std::optional<std::vector<double>> numbersIn(std::string_view text) {

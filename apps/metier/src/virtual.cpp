@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 
-#include <charconv>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "metier/base/text.hpp"
 #include "metier/configuration/cell.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "metier/motion/robot_model.hpp"
@@ -102,12 +102,13 @@ Result<std::pair<std::string, std::uint16_t>> controlAddress(const ControlOption
     const auto colon = options.target.find(':');
     std::uint16_t port = kControlPort;
     if (colon != std::string::npos) {
-        const auto text = std::string_view(options.target).substr(colon + 1);
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-        if (error != std::errc{} || end != text.data() + text.size()) {
+        const auto given =
+            numberIn<std::uint16_t>(std::string_view(options.target).substr(colon + 1));
+        if (!given) {
             return fail(Errc::invalid_argument,
                         fmt::format("\"{}\" is not an address with a port", options.target));
         }
+        port = *given;
     }
     return std::pair(options.target.substr(0, colon), port);
 }

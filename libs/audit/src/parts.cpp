@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <string_view>
+
+#include "metier/base/text.hpp"
 
 namespace metier::audit {
 namespace {
@@ -18,10 +19,7 @@ std::uint32_t numberIn(std::string_view name, std::string_view stem, std::string
     }
     const auto digits =
         name.substr(stem.size() + 1, name.size() - stem.size() - extension.size() - 1);
-    std::uint32_t number = 0;
-    const auto* end = digits.data() + digits.size();
-    const auto read = std::from_chars(digits.data(), end, number);
-    return read.ec == std::errc() && read.ptr == end ? number : 0;
+    return metier::numberIn<std::uint32_t>(digits).value_or(0);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "access.hpp"
 #include "files.hpp"
-#include "random_name.hpp"
+#include "metier/base/random.hpp"
 
 namespace metier::dashboard {
 
@@ -17,6 +17,8 @@ using httplib::Response;
 using nlohmann::json;
 
 namespace {
+
+constexpr std::size_t kNameDigits = 32;  // 128 bits: nobody guesses the name of a tab
 
 Reply notLoggedIn() {
     return errorReply(401, "login_required", "log in first");
@@ -130,7 +132,7 @@ void Api::beginStream(const Request& request, Response& response) {
     if (!person) {
         return write(notLoggedIn(), response);
     }
-    const auto tab = randomName();
+    const auto tab = randomHex(kNameDigits);
     tabs_.open(tab, person);
     const auto may_listen = [this, token = tokenOf(request), person] {
         return people_.find(token) == person;

@@ -8,9 +8,9 @@
 #include <future>
 #include <utility>
 
+#include "metier/base/random.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
-#include "random_name.hpp"
 
 namespace metier::dashboard {
 namespace {
@@ -20,6 +20,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMostLogins = 200;
 constexpr std::size_t kMostLoginsOfUser = 20;
 constexpr std::size_t kMostFailures = 1'000;
+constexpr std::size_t kTokenDigits = 32;  // 128 bits: nobody guesses it
 constexpr auto kLongestLogin = 12h;
 constexpr auto kLongestRest = 1h;
 constexpr int kFreeAttempts = 3;  // wrong passwords for one name before waiting begins
@@ -212,7 +213,7 @@ Result<std::string> People::login(const std::string& user, const std::string& pa
 }
 
 Result<std::string> People::keep(std::shared_ptr<Person> person) {
-    auto token = randomName();
+    auto token = randomHex(kTokenDigits);
     const auto now = clock_.now();
     std::vector<std::shared_ptr<Person>> gone;  // destroyed after the lock is
     const std::lock_guard lock(mutex_);

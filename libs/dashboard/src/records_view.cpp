@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "live_values.hpp"
+#include "metier/base/text.hpp"
 #include "skill_shown.hpp"
 
 namespace metier::dashboard {
@@ -69,14 +69,6 @@ json listOf(const std::vector<T>& all) {
         list.push_back(jsonOf(one));
     }
     return list;
-}
-
-template <typename T>
-std::optional<T> numberIn(const std::string& text) {
-    T number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc{} && end == text.data() + text.size() ? std::optional(number)
-                                                                    : std::nullopt;
 }
 
 /// Seconds since 1970 UTC.

@@ -2,53 +2,31 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
+#include "metier/base/text.hpp"
+
 namespace metier::path_evaluation {
 namespace {
 
 using motion::JointVector;
 
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r";
-    const auto first = text.find_first_not_of(blank);
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
-std::optional<double> numberIn(std::string_view text) {
-    const auto word = trimmed(text);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size()) {
-        return std::nullopt;
-    }
-    return value;
-}
-
 /// Time, then joint positions, as one line of CSV has them.
 Result<std::vector<double>> numbersOf(std::string_view line) {
     std::vector<double> values;
-    for (;;) {
-        const auto comma = line.find(',');
-        const auto word = line.substr(0, comma);
-        const auto value = numberIn(word);
+    for (const auto part : split(line, ',')) {
+        const auto word = trimmed(part);
+        const auto value = numberIn<double>(word);
         if (!value) {
-            return fail(Errc::invalid_argument, fmt::format("'{}' is not a number", trimmed(word)));
+            return fail(Errc::invalid_argument, fmt::format("'{}' is not a number", word));
         }
         values.push_back(*value);
-        if (comma == std::string_view::npos) {
-            return values;
-        }
-        line.remove_prefix(comma + 1);
     }
+    return values;
 }
 
 /// Appends to the record, or tells why not.
@@ -86,7 +64,7 @@ Result<MotionRecord> recordOfCsv(std::string_view text, std::string_view name) {
         if (line.empty() || line.front() == '#') {
             continue;
         }
-        const bool heading = first && !numberIn(line.substr(0, line.find(',')));
+        const bool heading = first && !numberIn<double>(trimmed(line.substr(0, line.find(','))));
         first = false;
         if (heading) {
             continue;
@@ -124,8 +102,8 @@ Result<MotionRecord> recordOfJson(std::string_view text, std::string_view name) 
 }  // namespace
 
 Result<MotionRecord> parseRecord(std::string_view text, std::string_view name) {
-    const auto first = text.find_first_not_of(" \t\r\n");
-    const bool json = first != std::string_view::npos && (text[first] == '[' || text[first] == '{');
+    const auto content = trimmed(text);
+    const bool json = content.starts_with('[') || content.starts_with('{');
     auto record = json ? recordOfJson(text, name) : recordOfCsv(text, name);
     if (record && record->size() < kFewestRecorded) {
         return fail(Errc::invalid_argument, fmt::format("{}: {} positions, at least {} needed",

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <random>
 #include <utility>
+
+#include "metier/base/random.hpp"
 
 namespace metier::skill {
 
@@ -15,9 +16,7 @@ using std::chrono::nanoseconds;
 
 /// Random, so that no server that starts again gives the same one out.
 std::uint64_t newEpoch() {
-    std::random_device device;
-    const auto high = static_cast<std::uint64_t>(device()) << 32U;
-    return (high | device()) | 1U;
+    return randomNumber() | 1U;
 }
 
 std::string nameOf(const Caller& caller) {

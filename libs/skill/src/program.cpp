@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "execution_core.hpp"
+#include "metier/base/random.hpp"
 #include "program_turn.hpp"
 
 namespace metier::skill {
@@ -18,9 +18,8 @@ constexpr std::uint16_t kWarning = 400;
 constexpr std::uint16_t kFault = 700;
 
 std::string newBootId() {
-    std::random_device device;
-    const auto high = static_cast<std::uint64_t>(device()) << 32U;
-    return fmt::format("{:016x}", high | device());
+    constexpr std::size_t kDigits = 16;
+    return randomHex(kDigits);
 }
 
 std::uint16_t severityOf(State to, Reason reason) noexcept {

@@ -1,9 +1,9 @@
 // Waiting for what a skill does, also over losses of the connection.
 #include <fmt/format.h>
 
-#include <random>
 #include <utility>
 
+#include "metier/base/random.hpp"
 #include "skill_handle_impl.hpp"
 
 namespace metier::skill_client {
@@ -58,8 +58,8 @@ Failure givenUpFailure(const std::string& skill) {
 
 /// Names an execution so that its client can ask for it even if the answer to Start is lost.
 std::string newExecutionId() {
-    std::random_device random;
-    return fmt::format("{:08x}{:08x}{:08x}", random(), random(), random());
+    constexpr std::size_t kDigits = 24;
+    return randomHex(kDigits);
 }
 
 /// Whether to ask again, once the connection allows it.

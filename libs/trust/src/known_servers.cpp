@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "metier/base/stable_hash.hpp"
+#include "metier/base/text.hpp"
 #include "private_file.hpp"
 
 namespace metier::trust {
@@ -21,9 +22,7 @@ constexpr std::size_t kReadable = 100;  // characters of an address in a file's 
 /// "host:port" in small letters.
 std::string addressIn(const std::string& url) {
     constexpr std::string_view kScheme = "opc.tcp://";
-    auto address = url;
-    std::transform(address.begin(), address.end(), address.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    auto address = inLowerCase(url);
     if (address.starts_with(kScheme)) {
         address.erase(0, kScheme.size());
     }

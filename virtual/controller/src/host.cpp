@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <asio/post.hpp>
-#include <charconv>
 #include <utility>
 
+#include "metier/base/text.hpp"
 #include "metier/virtual_controller/remote_world.hpp"
 #include "open_connections.hpp"
 
@@ -19,15 +19,13 @@ using Json = nlohmann::ordered_json;
 constexpr std::chrono::milliseconds kLookForSolitude{10};
 
 Result<std::uint32_t> wholeNumber(const Injection& injection, std::uint32_t limit) {
-    std::uint32_t number = 0;
-    const auto& text = injection.value;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size() || number > limit) {
+    const auto number = numberIn<std::uint32_t>(injection.value);
+    if (!number || *number > limit) {
         return fail(Errc::invalid_argument,
                     fmt::format("{} needs a whole number, 0 to {}; not \"{}\"", injection.name,
-                                limit, text));
+                                limit, injection.value));
     }
-    return number;
+    return *number;
 }
 
 /// The faults that every controller has.

@@ -1,6 +1,7 @@
-#include <charconv>
 
 #include "metier/virtual_edo/robot.hpp"
+
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -14,15 +15,13 @@ constexpr std::size_t kMostDropped = 1'000'000;
 
 /// Errors: invalid_argument, with the range.
 Result<std::size_t> numberFrom(const Injection& injection, std::size_t low, std::size_t high) {
-    std::size_t number = 0;
-    const char* const end = injection.value.data() + injection.value.size();
-    const auto [read, error] = std::from_chars(injection.value.data(), end, number);
-    if (error != std::errc() || read != end || number < low || number > high) {
+    const auto number = numberIn<std::size_t>(injection.value);
+    if (!number || *number < low || *number > high) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: \"{}\" is no whole number from {} to {}", injection.name,
                                 injection.value, low, high));
     }
-    return number;
+    return *number;
 }
 
 }  // namespace

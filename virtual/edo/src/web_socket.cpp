@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "metier/base/text.hpp"
 #include "metier/virtual_edo/handshake.hpp"
-#include "metier/virtual_edo/utf8.hpp"
 
 namespace metier::virtual_edo {
 namespace {

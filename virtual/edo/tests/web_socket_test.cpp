@@ -5,7 +5,6 @@
 #include "metier/virtual_edo/base64.hpp"
 #include "metier/virtual_edo/handshake.hpp"
 #include "metier/virtual_edo/sha1.hpp"
-#include "metier/virtual_edo/utf8.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -74,15 +73,6 @@ TEST(Base64, GoesThereAndBack) {
     EXPECT_EQ(fromBase64("Zg==").value(), (std::vector<std::uint8_t>{'f'}));
     EXPECT_FALSE(fromBase64("Zm8"));
     EXPECT_FALSE(fromBase64("Z=8="));
-}
-
-TEST(Utf8, RefusesOverlongFormsSurrogatesAndCutSequences) {
-    EXPECT_TRUE(isUtf8("a\xC3\xA4\xE2\x82\xAC\xF0\x9F\xA4\x96"));
-    EXPECT_FALSE(isUtf8("\xC0\x80"));
-    EXPECT_FALSE(isUtf8("\xED\xA0\x80"));
-    EXPECT_FALSE(isUtf8("\xF4\x90\x80\x80"));
-    EXPECT_FALSE(isUtf8("\xE2\x82"));
-    EXPECT_FALSE(isUtf8("\x80"));
 }
 
 TEST(Handshake, AnswersTheKeyOfTheRfc) {

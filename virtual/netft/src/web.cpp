@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "metier/base/error.hpp"
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_netft {
 
@@ -180,16 +180,13 @@ Result<Change> parseChange(std::string_view page, std::string_view text) {
                                                         name.substr(0, kLongestShown), page));
     }
     const auto value = text.substr(std::min(name.size() + 1, text.size()));
-    const auto* const end = value.data() + value.size();
-    int number = 0;
-    const auto [stopped, error] = std::from_chars(value.data(), end, number);
-    if (error != std::errc{} || stopped != end || number < variable->least ||
-        number > variable->most) {
+    const auto number = numberIn<int>(value);
+    if (!number || *number < variable->least || *number > variable->most) {
         return fail(Errc::out_of_range,
                     fmt::format("{}: '{}' is not within {} to {}", name,
                                 value.substr(0, kLongestShown), variable->least, variable->most));
     }
-    return Change{variable->setting, number, variable->gauge};
+    return Change{variable->setting, *number, variable->gauge};
 }
 
 /// \param query "name=value&name=value"

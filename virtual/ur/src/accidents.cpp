@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
+
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_ur {
 
@@ -20,10 +21,8 @@ Result<void> always(Robot& robot, const std::string& /*value*/) {
 }
 
 Result<void> exceedLimit(Robot& robot, const std::string& value) {
-    std::size_t axis = 1;
-    const auto parsed = std::from_chars(value.data(), value.data() + value.size(), axis);
-    const bool whole = parsed.ptr == value.data() + value.size();
-    if ((!value.empty() && !whole) || axis < 1 || axis > kAxes) {
+    const auto axis = value.empty() ? 1 : numberIn<std::size_t>(value).value_or(0);
+    if (axis < 1 || axis > kAxes) {
         return fail(Errc::invalid_argument,
                     fmt::format("limit: axis \"{}\" is not within 1 to 6", value));
     }

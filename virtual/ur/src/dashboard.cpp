@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_ur {
 
@@ -16,24 +17,6 @@ namespace {
 constexpr std::string_view kLocalControl =
     "Command is not allowed due to safety reasons. You might need to enable Remote Control";
 constexpr std::size_t kMostEchoed = 200;
-
-std::string_view trimmed(std::string_view text) {
-    const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
-    while (!text.empty() && is_space(static_cast<unsigned char>(text.back()))) {
-        text.remove_suffix(1);
-    }
-    while (!text.empty() && is_space(static_cast<unsigned char>(text.front()))) {
-        text.remove_prefix(1);
-    }
-    return text;
-}
-
-std::string inUpperCase(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return result;
-}
 
 /// A file's name within the folder of programs, which a client may give whole: as on the
 /// controller, or in URSim.

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "metier/base/text.hpp"
+
 namespace metier::virtual_ur {
 
 namespace {
@@ -22,14 +24,6 @@ constexpr std::int32_t kReadOnlyInterface = 210;
 
 // Which code the controller has for a stop that a program asks for is not known.
 constexpr int kProgramsStop = 0;
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(kSpace);
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
 
 std::uint64_t masked(std::uint64_t bits, std::uint64_t mask, std::uint64_t value) {
     return (bits & ~mask) | (value & mask);

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 #include <vector>
+
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_ur {
 
@@ -94,10 +95,7 @@ RobotDescription describe(const motion::RobotModel& model, const ArmOptions& arm
 }
 
 std::string upperCase(std::string_view name) {
-    std::string text(name.substr(0, name.size() - (name.ends_with("e") ? 1 : 0)));
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return text;
+    return inUpperCase(name.substr(0, name.size() - (name.ends_with("e") ? 1 : 0)));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "metier/base/text.hpp"
+
 namespace metier::virtual_ur {
 
 namespace {
@@ -23,14 +25,10 @@ constexpr std::uint8_t kWarning = 2;
 
 /// Names of a recipe. One comma may follow the last of them: there are clients that write one
 /// behind each name.
-std::vector<std::string> split(std::string_view list) {
-    std::vector<std::string> names;
-    while (!list.empty()) {
-        const auto comma = std::min(list.find(','), list.size());
-        names.emplace_back(list.substr(0, comma));
-        list.remove_prefix(std::min(comma + 1, list.size()));
-    }
-    return names;
+std::vector<std::string> namesIn(std::string_view list) {
+    const auto names = split(list, ',');
+    const bool comma_behind = names.size() > 1 && names.back().empty();
+    return {names.begin(), names.end() - (comma_behind ? 1 : 0)};
 }
 
 std::string join(const std::vector<std::string>& types) {
@@ -124,7 +122,7 @@ void RtdeSession::setUpOutputs(ByteReader payload) {
     std::vector<std::string> types;
     bool valid = payload.complete() && std::isfinite(frequency) && frequency > 0.0 &&
                  list.size() <= kLongestList;
-    for (const auto& name : split(list)) {
+    for (const auto& name : namesIn(list)) {
         const auto variable = RtdeVariable::output(name);
         valid = valid && variable;
         types.emplace_back(variable ? variable->typeName() : "NOT_FOUND");
@@ -147,7 +145,7 @@ void RtdeSession::setUpOutputs(ByteReader payload) {
 }
 
 void RtdeSession::setUpInputs(std::string_view list) {
-    InputRecipe recipe{split(list), {}, 0};
+    InputRecipe recipe{namesIn(list), {}, 0};
     std::vector<std::string> types;
     bool valid =
         !recipe.names.empty() && list.size() <= kLongestList && inputs_.size() < kMostRecipes;

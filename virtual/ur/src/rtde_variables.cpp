@@ -1,10 +1,10 @@
 #include "metier/virtual_ur/rtde_variables.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <type_traits>
 
+#include "metier/base/text.hpp"
 #include "rtde_outputs.hpp"
 
 namespace metier::virtual_ur {
@@ -70,12 +70,8 @@ std::optional<std::size_t> numberAfter(std::string_view name, std::string_view p
         return std::nullopt;
     }
     name.remove_prefix(prefix.size());
-    std::size_t number = 0;
-    const auto* end = name.data() + name.size();
-    const auto parsed = std::from_chars(name.data(), end, number);
-    const bool plain =
-        parsed.ec == std::errc() && parsed.ptr == end && (name.size() == 1 || name.front() != '0');
-    return plain ? std::optional(number) : std::nullopt;
+    const bool leading_zero = name.size() > 1 && name.front() == '0';
+    return leading_zero ? std::nullopt : numberIn<std::size_t>(name);
 }
 
 /// \param name without "input_" or "output_"

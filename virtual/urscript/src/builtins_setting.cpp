@@ -1,7 +1,6 @@
-#include <algorithm>
-#include <cctype>
 
 #include "call.hpp"
+#include "metier/base/text.hpp"
 
 namespace metier::urscript {
 namespace {
@@ -73,12 +72,6 @@ Value forceSensorInput(Call& call) {
     input.offset = call.given(2) ? call.vector3(2) : input.offset;
     input.cog = call.given(3) ? call.vector3(3) : input.cog;
     return call.applies(input);
-}
-
-std::string inLowerCase(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
 }
 
 Value watchdog(Call& call) {

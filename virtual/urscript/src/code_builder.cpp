@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "metier/base/text.hpp"
+
 namespace metier::urscript {
 namespace {
 
@@ -14,16 +16,6 @@ struct Signature {
     std::vector<std::string_view> parameters;
     std::size_t required = 0;
 };
-
-std::vector<std::string_view> split(std::string_view words) {
-    std::vector<std::string_view> result;
-    while (!words.empty()) {
-        const std::size_t end = std::min(words.find(' '), words.size());
-        result.push_back(words.substr(0, end));
-        words.remove_prefix(std::min(end + 1, words.size()));
-    }
-    return result;
-}
 
 /// Which parameter each argument is for. Errors: invalid_argument.
 Result<std::vector<std::uint8_t>> parametersOf(const std::vector<WrittenArgument>& arguments,
@@ -215,7 +207,7 @@ Result<void> CodeBuilder::bind(const OpenCall& call) {
         signature.parameters.assign(function.parameters.begin(), function.parameters.end());
         signature.required = function.required;
     } else if (builtin != nullptr) {
-        signature.parameters = split(builtin->parameters);
+        signature.parameters = split(builtin->parameters, ' ');
         signature.required = builtin->required;
     } else {
         return notDefined(instruction.at, "function", call.name);

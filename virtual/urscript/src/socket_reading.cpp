@@ -1,28 +1,16 @@
 #include "socket_reading.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <utility>
+
+#include "metier/base/text.hpp"
 
 namespace metier::urscript {
 namespace {
 
 constexpr std::size_t kMostText = 1024;
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r\n";
-    const std::size_t first = std::min(text.find_first_not_of(kBlanks), text.size());
-    return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
-}
-
-std::optional<double> numberIn(std::string_view text) {
-    const std::string_view digits = trimmed(text);
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), number);
-    return error == std::errc{} && end == digits.end() ? std::optional(number) : std::nullopt;
-}
 
 }  // namespace
 
@@ -54,7 +42,7 @@ std::optional<Extracted> extractFloats(std::string_view bytes, std::size_t count
     bool more = true;
     while (more && values.size() <= count + 1) {
         const std::size_t comma = std::min(inside.find(','), inside.size());
-        const auto number = numberIn(inside.substr(0, comma));
+        const auto number = numberIn<double>(trimmed(inside.substr(0, comma)));
         more = number && comma < inside.size();
         values.emplace_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
         inside.remove_prefix(std::min(comma + 1, inside.size()));
@@ -104,7 +92,7 @@ std::optional<Extracted> extractVariable(std::string_view bytes, std::string_vie
     }
     const std::string_view text = *line->value.get<std::string>();
     const auto number =
-        text.substr(0, name.size()) == name ? numberIn(text.substr(name.size())) : std::nullopt;
+        text.starts_with(name) ? numberIn<double>(trimmed(text.substr(name.size()))) : std::nullopt;
     const bool fits = number && *number >= std::numeric_limits<std::int32_t>::min() &&
                       *number <= std::numeric_limits<std::int32_t>::max();
     line->value = fits ? static_cast<std::int32_t>(*number) : 0;

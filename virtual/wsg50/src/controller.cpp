@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <string_view>
 #include <utility>
+
+#include "metier/base/text.hpp"
 
 namespace metier::virtual_wsg50 {
 
@@ -40,11 +41,8 @@ Options readOptions(const configuration::Settings& settings) {
 
 /// A width in millimetres as metres; an empty text is 0.
 Result<double> parseWidth(const std::string& text, double stroke) {
-    double width_mm = 0.0;
-    const auto* end = text.data() + text.size();
-    const auto [stopped, error] = std::from_chars(text.data(), end, width_mm);
-    const bool number = text.empty() || (error == std::errc{} && stopped == end);
-    if (!number || !(width_mm >= 0.0 && width_mm * kMillimetre <= stroke)) {
+    const auto width_mm = text.empty() ? 0.0 : numberIn<double>(text).value_or(-1.0);
+    if (!(width_mm >= 0.0 && width_mm * kMillimetre <= stroke)) {
         return fail(Errc::invalid_argument,
                     fmt::format("\"{}\" is no width from 0 to {} mm", text, stroke / kMillimetre));
     }

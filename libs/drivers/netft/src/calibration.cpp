@@ -4,10 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <cctype>
-#include <charconv>
 #include <pugixml.hpp>
 #include <span>
 #include <vector>
+
+#include "metier/base/text.hpp"
 
 namespace metier::netft_driver {
 namespace {
@@ -24,7 +25,6 @@ constexpr double kFoot = 0.3048;
 constexpr double kLargestCounts = 1e12;
 constexpr double kHighestRate = 1e5;  // [1/s]
 constexpr std::size_t kLongestShown = 32;
-constexpr std::string_view kBlanks = " \t\r\n";
 
 constexpr std::array kForceUnits{Unit{"n", 1.0},
                                  Unit{"kn", 1e3},
@@ -70,10 +70,8 @@ std::string textOf(const pugi::xml_document& page, std::span<const char* const> 
     for (const auto* name : names) {
         const auto node = page.find_node(
             [&](const pugi::xml_node& n) { return n.name() == std::string_view(name); });
-        const std::string_view text = node.text().get();
-        const auto begin = text.find_first_not_of(kBlanks);
-        if (begin != std::string_view::npos) {
-            return std::string(text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1));
+        if (const auto text = trimmed(node.text().get()); !text.empty()) {
+            return std::string(text);
         }
     }
     return {};
@@ -87,16 +85,9 @@ constexpr std::array kTorqueUnit{"scfgtu", "scaltu"};
 constexpr std::array kRdt{"comrdte"};
 constexpr std::array kRate{"comrdtrate", "commrdtrate"};
 
-std::optional<double> numberIn(std::string_view text) {
-    double number = 0.0;
-    const auto* const text_end = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), text_end, number);
-    return error == std::errc() && end == text_end ? std::optional(number) : std::nullopt;
-}
-
 Result<double> countsOf(const pugi::xml_document& page, std::span<const char* const> names) {
     const auto text = textOf(page, names);
-    const auto counts = numberIn(text);
+    const auto counts = numberIn<double>(text);
     if (counts && *counts > 0.0 && *counts <= kLargestCounts) {
         return *counts;
     }
@@ -176,7 +167,7 @@ Result<std::optional<double>> parseRate(std::string_view page) {
     if (text.empty()) {
         return std::nullopt;
     }
-    const auto rate = numberIn(text);
+    const auto rate = numberIn<double>(text);
     if (rate && *rate >= 1.0 && *rate <= kHighestRate) {
         return rate;
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "metier/base/text.hpp"
 #include "metier/ur_driver/wire.hpp"
 
 namespace metier::ur_driver::rtde {
@@ -22,14 +23,12 @@ tl::unexpected<Error> malformed(std::string_view what, std::size_t size) {
     return fail(Errc::invalid_argument, fmt::format("RTDE {} of {} bytes", what, size));
 }
 
-std::vector<std::string> split(std::string_view text) {
-    std::vector<std::string> parts;
-    while (!text.empty()) {
-        const auto comma = std::min(text.find(','), text.size());
-        parts.push_back(printable(text.substr(0, comma)));
-        text.remove_prefix(std::min(comma + 1, text.size()));
+std::vector<std::string> typesIn(std::string_view text) {
+    std::vector<std::string> types;
+    for (const auto type : split(text, ',')) {
+        types.push_back(printable(type));
     }
-    return parts;
+    return types;
 }
 
 }  // namespace
@@ -110,7 +109,7 @@ Result<RecipeReply> parseRecipeReply(std::span<const std::byte> payload) {
     if (!reader.ok()) {
         return malformed("recipe", payload.size());
     }
-    reply.types = split(reader.restAsText());
+    reply.types = typesIn(reader.restAsText());
     return reply;
 }
 
