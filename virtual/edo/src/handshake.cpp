@@ -1,103 +1,63 @@
 #include "metier/virtual_edo/handshake.hpp"
 
-#include <algorithm>
-#include <cctype>
-#include <optional>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <span>
 
 #include "metier/virtual_edo/base64.hpp"
-#include "metier/virtual_edo/sha1.hpp"
 
 namespace metier::virtual_edo {
 namespace {
 
-char lower(char character) {
-    return static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
-}
+namespace http = boost::beast::http;
 
-bool equalIgnoringCase(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](char left, char right) { return lower(left) == lower(right); });
-}
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) {
-        return {};
-    }
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// Takes what stands before the separator off the front of `text`; all of it if there is none.
-std::string_view takeUntil(std::string_view& text, std::string_view separator) {
-    const auto end = text.find(separator);
-    const auto part = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + separator.size());
-    return part;
-}
-
-/// The value of a header, those of several with the same name joined by commas.
-std::optional<std::string> header(std::string_view request, std::string_view name) {
-    std::optional<std::string> value;
-    takeUntil(request, "\r\n");
-    while (!request.empty()) {
-        auto line = takeUntil(request, "\r\n");
-        if (equalIgnoringCase(trimmed(takeUntil(line, ":")), name)) {
-            value = (value ? *value + "," : "") + std::string(trimmed(line));
-        }
-    }
-    return value;
-}
-
-bool hasToken(const std::optional<std::string>& list, std::string_view token) {
-    std::string_view left = list ? std::string_view(*list) : std::string_view();
-    while (!left.empty()) {
-        if (equalIgnoringCase(trimmed(takeUntil(left, ",")), token)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool isHttpGet(std::string_view request) {
-    auto line = takeUntil(request, "\r\n");
-    return takeUntil(line, " ") == "GET" && !takeUntil(line, " ").empty() &&
-           line.starts_with("HTTP/1.") && line != "HTTP/1.0";
-}
+constexpr std::size_t kNonceSize = 16;
 
 HandshakeAnswer refused(std::string_view status, std::string_view why) {
-    std::string response = "HTTP/1.1 ";
-    response.append(status).append("\r\nConnection: close\r\nContent-Type: text/plain\r\n");
-    response.append("Sec-WebSocket-Version: 13\r\nContent-Length: ");
-    response.append(std::to_string(why.size())).append("\r\n\r\n").append(why);
-    return {.response = std::move(response), .accepted = false};
+    return {
+        .response = fmt::format("HTTP/1.1 {}\r\nConnection: close\r\nContent-Type: text/plain\r\n"
+                                "Sec-WebSocket-Version: 13\r\nContent-Length: {}\r\n\r\n{}",
+                                status, why.size(), why),
+        .accepted = false};
 }
 
 }  // namespace
 
 std::string acceptKey(std::string_view key) {
-    return toBase64(sha1(std::string(key) + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"));
+    const auto text = fmt::format("{}258EAFA5-E914-47DA-95CA-C5AB0DC85B11", key);
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int size = 0;
+    EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha1(), nullptr);
+    return toBase64(std::span(digest).first(size));
 }
 
 HandshakeAnswer answerHandshake(std::string_view request) {
-    if (!isHttpGet(request)) {
+    http::request_parser<http::empty_body> parser;
+    parser.header_limit(kLongestRequest);
+    boost::system::error_code ignored;
+    parser.put(boost::asio::buffer(request.data(), request.size()), ignored);
+    const auto& head = parser.get();
+    if (!parser.is_header_done() || head.method() != http::verb::get || head.version() < 11) {
         return refused("400 Bad Request", "a WebSocket begins with GET and HTTP/1.1\n");
     }
-    if (!hasToken(header(request, "Upgrade"), "websocket") ||
-        !hasToken(header(request, "Connection"), "upgrade")) {
+    if (!boost::beast::websocket::is_upgrade(head)) {
         return refused("400 Bad Request", "Can \"Upgrade\" only to \"WebSocket\".\n");
     }
-    if (header(request, "Sec-WebSocket-Version") != "13") {
+    if (head[http::field::sec_websocket_version] != "13") {
         return refused("426 Upgrade Required", "only version 13 of WebSocket is spoken\n");
     }
-    const auto key = header(request, "Sec-WebSocket-Key");
-    const auto nonce = key ? fromBase64(*key) : std::nullopt;
-    if (!nonce || nonce->size() != 16) {
+    const auto key = head[http::field::sec_websocket_key].to_string();
+    if (const auto nonce = fromBase64(key); !nonce || nonce->size() != kNonceSize) {
         return refused("400 Bad Request", "Sec-WebSocket-Key is not 16 bytes in base64\n");
     }
-    return {.response =
-                "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\n"
-                "Connection: Upgrade\r\nSec-WebSocket-Accept: " +
-                acceptKey(*key) + "\r\n\r\n",
+    return {.response = fmt::format("HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\n"
+                                    "Connection: Upgrade\r\nSec-WebSocket-Accept: {}\r\n\r\n",
+                                    acceptKey(key)),
             .accepted = true};
 }
 

@@ -111,18 +111,20 @@ WebSocket::Received WebSocket::receive(std::span<const std::byte> bytes) {
 }
 
 void WebSocket::takeHandshake(Received& received) {
-    const auto end = incoming_.find("\r\n\r\n");
+    constexpr std::string_view kEnd = "\r\n\r\n";
+    const auto end = incoming_.find(kEnd);
     if (end == std::string::npos && incoming_.size() <= kLongestRequest) {
         return;
     }
-    const auto answer = answerHandshake(std::string_view(incoming_).substr(0, end));
+    const auto length = end == std::string::npos ? incoming_.size() : end + kEnd.size();
+    const auto answer = answerHandshake(std::string_view(incoming_).substr(0, length));
     received.answer += answer.response;
-    if (end == std::string::npos || !answer.accepted) {
+    if (!answer.accepted) {
         state_ = State::closed;
         received.close = true;
         return;
     }
-    incoming_.erase(0, end + 4);
+    incoming_.erase(0, length);
     state_ = State::open;
 }
 
