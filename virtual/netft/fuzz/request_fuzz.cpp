@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string text(data, data + size);
     for (const std::string before :
          {"", "GET /", "GET /comm.cgi?comrdtrate=", "GET /setting.cgi?"}) {
-        const auto answer = answerWeb(before + text, {});
+        const auto answer = answerWeb(before + text + " HTTP/1.1\r\n\r\n", {});
         if (!answer.text.starts_with("HTTP/1.0 ") ||
             answer.changes.empty() == answer.text.starts_with("HTTP/1.0 302")) {
             std::abort();

@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
 #include <utility>
 
 #include "metier/base/error.hpp"
@@ -12,6 +15,8 @@
 namespace metier::virtual_netft {
 
 namespace {
+
+namespace http = boost::beast::http;
 
 constexpr std::size_t kLongestShown = 32;
 
@@ -211,16 +216,16 @@ WebAnswer change(std::string_view page, std::string_view query) {
 }  // namespace
 
 WebAnswer answerWeb(std::string_view request, const WebPages& pages) {
-    const auto line = request.substr(0, request.find("\r\n"));
-    const auto method = line.substr(0, line.find(' '));
-    if (method.size() == line.size()) {
+    http::request_parser<http::empty_body> parser;
+    boost::system::error_code ignored;
+    parser.put(boost::asio::buffer(request.data(), request.size()), ignored);
+    if (!parser.is_header_done()) {
         return refusal("400 Bad Request", "no HTTP request");
     }
-    if (method != "GET") {
+    if (parser.get().method() != http::verb::get) {
         return refusal("405 Method Not Allowed", "GET only");
     }
-    const auto rest = line.substr(method.size() + 1);
-    const auto target = rest.substr(0, rest.find(' '));
+    const std::string_view target(parser.get().target().data(), parser.get().target().size());
     const auto path = target.substr(0, target.find('?'));
     if (path == "/netftapi2.xml") {
         return {answer("200 OK", "text/xml", configurationPage(pages))};

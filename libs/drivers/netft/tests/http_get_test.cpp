@@ -46,14 +46,19 @@ TEST(HttpGet, RefusesWhatIsNoAnswer) {
     EXPECT_EQ(get("").error().code, Errc::invalid_argument);
     EXPECT_EQ(get("SSH-2.0-x\r\n\r\n").error().code, Errc::invalid_argument);
     EXPECT_EQ(get("HTTP/1.0 200 OK\r\n").error().code, Errc::invalid_argument);
-    EXPECT_EQ(get("HTTP/1.0 OK\r\n\r\n").error().code, Errc::not_found);
-    EXPECT_EQ(get("HTTP/1.0\r\n\r\n").error().code, Errc::not_found);
+    EXPECT_EQ(get("HTTP/1.0 OK\r\n\r\n").error().code, Errc::invalid_argument);
+    EXPECT_EQ(get("HTTP/1.0\r\n\r\n").error().code, Errc::invalid_argument);
 }
 
 TEST(HttpGet, RefusesAnAnswerThatIsCutOrTooLarge) {
     EXPECT_THAT(get("HTTP/1.0 200 OK\r\nContent-Length: 10\r\n\r\nabc").error().message,
                 HasSubstr("3 of 10 bytes"));
     EXPECT_THAT(get(ok(std::string(70'000, 'x'))).error().message, HasSubstr("over 65536 bytes"));
+    EXPECT_THAT(get("HTTP/1.0 200 OK\r\nX: " + std::string(70'000, 'x')).error().message,
+                HasSubstr("over 65536 bytes"));
+    EXPECT_THAT(get("HTTP/1.0 200 OK\r\nContent-Length: 65537\r\n\r\n").error().message,
+                HasSubstr("over 65536 bytes"));
+    EXPECT_EQ(get(ok(std::string(65'536, 'x'))).value().size(), 65'536U);
 }
 
 TEST(HttpGet, GivesUpAtItsDeadline) {

@@ -42,7 +42,7 @@ struct WebAnswer {
 /// /netftcalapi.xml; /comm.cgi and /setting.cgi set what their variables name, all or nothing; 404
 /// for other pages, 405 for all but GET, 400 for what is no HTTP and for variables that are unknown
 /// or beyond their limits.
-/// \param request at least its first line
+/// \param request with its empty line
 WebAnswer answerWeb(std::string_view request, const WebPages& pages);
 
 }  // namespace metier::virtual_netft

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -9,16 +8,10 @@
 
 namespace metier::netft_driver {
 
-/// Most that a page may have, with its header.
-inline constexpr std::size_t kLargestPage = 65'536;
-
 /// The page at http://host:port/path, by HTTP/1.0. Blocks until the deadline at most.
 /// Errors: connection_lost, timeout; not_found if the answer is not 200; invalid_argument if it is
 ///         no HTTP, too large, or shorter than it says.
 Result<std::string> httpGet(const std::string& host, std::uint16_t port, const std::string& path,
                             SteadyTime deadline);
-
-/// The body of a whole answer. Errors: as httpGet().
-Result<std::string> parseHttpAnswer(const std::string& answer);
 
 }  // namespace metier::netft_driver
