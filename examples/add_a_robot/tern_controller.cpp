@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <deque>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 

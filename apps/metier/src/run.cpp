@@ -6,9 +6,9 @@
 #include <optional>
 #include <thread>
 
+#include "metier/skill/json.hpp"
 #include "metier/skill_client/control_handle.hpp"
 #include "metier/skill_client/skill_handle.hpp"
-#include "metier/skill_json/values.hpp"
 #include "printable.hpp"
 #include "skill_run.hpp"
 #include "value_text.hpp"
@@ -83,8 +83,8 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
 
 void printResult(const skill::ValueMap& result, bool as_json) {
     if (as_json) {
-        fmt::print("{}\n", skill_json::toJson(result).dump(
-                               2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", skill::toJson(result).dump(2, ' ', false,
+                                                      nlohmann::json::error_handler_t::replace));
         return;
     }
     fmt::print("done\n");

@@ -7,7 +7,7 @@
 
 #include "access.hpp"
 #include "commands.hpp"
-#include "metier/skill_json/values.hpp"
+#include "metier/skill/json.hpp"
 #include "outbox.hpp"
 #include "records_view.hpp"
 #include "reply.hpp"
@@ -53,7 +53,7 @@ void readBody(std::string_view text) {
         return require(!values.error().message.empty() && values.error().message.size() < 500);
     }
     // What was taken is told back as the same.
-    const auto told = metier::skill_json::toJson(*values);
+    const auto told = metier::skill::toJson(*values);
     const auto again = parametersIn({{"parameters", inLists(told)}}, skill());
     require(again && *again == *values);
     const auto text_of_it = dump(told);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "live_values.hpp"
 #include "metier/geometry/frame.hpp"

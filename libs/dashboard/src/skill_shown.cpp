@@ -1,9 +1,10 @@
 #include "skill_shown.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "metier/skill_json/values.hpp"
+#include "metier/skill/json.hpp"
 
 namespace metier::dashboard {
 namespace {
@@ -36,7 +37,7 @@ std::size_t rankOf(const Field& field, std::size_t axes) {
     if (!isList(field.type)) {
         return 0;
     }
-    const auto value = skill_json::toJson(field.default_value);
+    const auto value = skill::toJson(field.default_value);
     if (value.is_array() && !value.empty()) {
         return value.size();
     }
@@ -83,7 +84,7 @@ json fieldJson(const Field& field, const MovedArm& arm) {
                {"unit", field.unit.symbol},
                {"minimum", nullptr},
                {"maximum", nullptr},
-               {"default", inLists(skill_json::toJson(field.default_value))},
+               {"default", inLists(skill::toJson(field.default_value))},
                {"description", field.description},
                {"kind", field.place == skill::Place::options ? "option" : "parameter"},
                {"role", roleOf(field)}};

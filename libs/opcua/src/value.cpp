@@ -137,15 +137,8 @@ std::string requestedName(const std::vector<T>&) {
     return fmt::format("{}[]", nativeType<T>().typeName);
 }
 
-std::string inQuotes(std::string_view text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') {
-            result += '\\';
-        }
-        result += c;
-    }
-    return result + '"';
+std::string inQuotes(const std::string& text) {
+    return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string unprintable(const UA_DataType& type) {

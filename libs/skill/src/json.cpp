@@ -1,123 +1,91 @@
 #include "metier/skill/json.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <iterator>
+#include <cstdint>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 namespace metier::skill {
 namespace {
 
-constexpr unsigned char kFirstPrintable = 0x20;
+using nlohmann::json;
+using nlohmann::ordered_json;
 
-/// Appends to a buffer; one overload for each alternative of Value.
-class JsonWriter {
-public:
-    std::string take() { return fmt::to_string(buffer_); }
-
-    void operator()(std::monostate /*null*/) { raw("null"); }
-    void operator()(bool value) { raw(value ? "true" : "false"); }
-    void operator()(double value) {
-        if (std::isfinite(value)) {
-            fmt::format_to(std::back_inserter(buffer_), "{}", value);
-        } else {
-            raw("null");
-        }
+/// One overload for each alternative of Value. An ordered_json becomes text.
+template <typename Json>
+struct ToJson {
+    Json operator()(std::monostate) const { return nullptr; }
+    template <typename T>
+    Json operator()(const T& value) const {
+        return value;
     }
-    template <typename Integer>
-    requires std::is_integral_v<Integer>
-    void operator()(Integer value) { fmt::format_to(std::back_inserter(buffer_), "{}", value); }
-    void operator()(const std::string& text) { quoted(text); }
-    void operator()(const Frame& f) {
-        number("{\"x\":", f.x);
-        number(",\"y\":", f.y);
-        number(",\"z\":", f.z);
-        number(",\"a\":", f.a);
-        number(",\"b\":", f.b);
-        number(",\"c\":", f.c);
-        raw("}");
+    Json operator()(double value) const {
+        constexpr double kLargestShort = 1e15;
+        const bool whole = std::trunc(value) == value && std::abs(value) < kLargestShort;
+        return whole && std::is_same_v<Json, ordered_json> ? Json(static_cast<std::int64_t>(value))
+                                                           : Json(value);
     }
-    void operator()(const Vector3& v) {
-        number("{\"x\":", v.x);
-        number(",\"y\":", v.y);
-        number(",\"z\":", v.z);
-        raw("}");
+    Json operator()(const Frame& f) const {
+        return members({{"x", f.x}, {"y", f.y}, {"z", f.z}, {"a", f.a}, {"b", f.b}, {"c", f.c}});
     }
-    void operator()(const Range& range) {
-        number("{\"low\":", range.low);
-        number(",\"high\":", range.high);
-        raw("}");
+    Json operator()(const Vector3& v) const {
+        return members({{"x", v.x}, {"y", v.y}, {"z", v.z}});
+    }
+    Json operator()(const Range& range) const {
+        return members({{"low", range.low}, {"high", range.high}});
     }
     template <typename T>
-    void operator()(const std::vector<T>& list) {
-        raw("[");
-        const char* between = "";
+    Json operator()(const std::vector<T>& list) const {
+        auto elements = Json::array();
         for (const auto& element : list) {
-            raw(between);
-            (*this)(element);
-            between = ",";
+            elements.push_back((*this)(element));
         }
-        raw("]");
+        return elements;
     }
-    void operator()(const ValueMap& values) {
-        raw("{");
-        const char* between = "";
+    Json operator()(const Value& value) const { return std::visit(*this, value); }
+    Json operator()(const ValueMap& values) const {
+        auto named = Json::object();
         for (const auto& [name, value] : values) {
-            raw(between);
-            quoted(name);
-            raw(":");
-            std::visit([this](const auto& one) { (*this)(one); }, value);
-            between = ",";
+            named[name] = (*this)(value);
         }
-        raw("}");
+        return named;
     }
 
-    void quoted(std::string_view text) {
-        raw("\"");
-        for (const char letter : text) {
-            if (letter == '"' || letter == '\\') {
-                buffer_.push_back('\\');
-                buffer_.push_back(letter);
-            } else if (static_cast<unsigned char>(letter) < kFirstPrintable) {
-                fmt::format_to(std::back_inserter(buffer_), "\\u{:04x}",
-                               static_cast<unsigned>(letter));
-            } else {
-                buffer_.push_back(letter);
-            }
+    Json members(std::initializer_list<std::pair<const char*, double>> numbers) const {
+        auto object = Json::object();
+        for (const auto& [name, number] : numbers) {
+            object[name] = (*this)(number);
         }
-        raw("\"");
+        return object;
     }
-
-private:
-    void raw(std::string_view text) { buffer_.append(text.data(), text.data() + text.size()); }
-    void number(std::string_view before, double value) {
-        raw(before);
-        (*this)(value);
-    }
-
-    fmt::memory_buffer buffer_;
 };
+
+std::string textOf(const ordered_json& value) {
+    return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
 
 }  // namespace
 
+json toJson(const Value& value) {
+    return ToJson<json>()(value);
+}
+
+json toJson(const ValueMap& values) {
+    return ToJson<json>()(values);
+}
+
 std::string jsonOf(const Value& value) {
-    JsonWriter writer;
-    std::visit([&](const auto& one) { writer(one); }, value);
-    return writer.take();
+    return textOf(ToJson<ordered_json>()(value));
 }
 
 std::string jsonOf(const ValueMap& values) {
-    JsonWriter writer;
-    writer(values);
-    return writer.take();
+    return textOf(ToJson<ordered_json>()(values));
 }
 
 std::string jsonText(std::string_view text) {
-    JsonWriter writer;
-    writer.quoted(text);
-    return writer.take();
+    return textOf(text);
 }
 
 }  // namespace metier::skill

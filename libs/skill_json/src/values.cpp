@@ -5,10 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace metier::skill_json {
@@ -17,33 +16,6 @@ namespace {
 using nlohmann::json;
 using skill::Value;
 using skill::ValueType;
-
-/// One overload for each alternative of Value.
-struct ToJson {
-    json operator()(std::monostate) const { return nullptr; }
-    template <typename T>
-    json operator()(const T& value) const {
-        return value;
-    }
-    json operator()(const skill::Frame& f) const {
-        return {{"x", f.x}, {"y", f.y}, {"z", f.z}, {"a", f.a}, {"b", f.b}, {"c", f.c}};
-    }
-    json operator()(const skill::Vector3& v) const { return {{"x", v.x}, {"y", v.y}, {"z", v.z}}; }
-    json operator()(const skill::Range& range) const {
-        return {{"low", range.low}, {"high", range.high}};
-    }
-    json operator()(const std::vector<skill::Range>& ranges) const { return list(ranges); }
-    json operator()(const std::vector<skill::Frame>& frames) const { return list(frames); }
-
-    template <typename T>
-    json list(const std::vector<T>& elements) const {
-        auto elements_json = json::array();
-        for (const auto& element : elements) {
-            elements_json.push_back((*this)(element));
-        }
-        return elements_json;
-    }
-};
 
 // Each gives nothing if the JSON is of another kind, or not finite.
 
@@ -186,18 +158,6 @@ std::string shortText(const json& value) {
 }
 
 }  // namespace
-
-json toJson(const Value& value) {
-    return std::visit(ToJson{}, value);
-}
-
-json toJson(const skill::ValueMap& values) {
-    auto named = json::object();
-    for (const auto& [name, value] : values) {
-        named[name] = toJson(value);
-    }
-    return named;
-}
 
 Result<Value> valueFrom(const json& json_value, ValueType type, std::string_view name) {
     if (json_value.is_null()) {

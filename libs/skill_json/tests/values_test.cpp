@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "metier/skill/json.hpp"
 
 namespace metier::skill_json {
 namespace {
@@ -24,7 +27,8 @@ class RoundTrip : public ::testing::TestWithParam<Value> {};
 
 TEST_P(RoundTrip, GivesTheSameValue) {
     const auto& value = GetParam();
-    const auto back = valueFrom(json::parse(toJson(value).dump()), skill::typeOf(value), "V");
+    const auto back =
+        valueFrom(json::parse(skill::toJson(value).dump()), skill::typeOf(value), "V");
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(*back, value);
 }
@@ -40,12 +44,12 @@ INSTANTIATE_TEST_SUITE_P(
                       Value{std::vector<skill::Frame>{{1, 2, 3, 4, 5, 6}}}));
 
 TEST(SkillJson, NamesAllValuesOfAMap) {
-    const auto named = toJson(skill::ValueMap{{"Duration", 2.5}, {"Pose", Value{}}});
+    const auto named = skill::toJson(skill::ValueMap{{"Duration", 2.5}, {"Pose", Value{}}});
     EXPECT_EQ(named, json::parse(R"({"Duration": 2.5, "Pose": null})"));
 }
 
 TEST(SkillJson, WritesAPoseByTheNamesOfAFrame) {
-    EXPECT_EQ(toJson(Value{skill::Frame{1, 2, 3, 4, 5, 6}}),
+    EXPECT_EQ(skill::toJson(Value{skill::Frame{1, 2, 3, 4, 5, 6}}),
               json::parse(R"({"x":1.0,"y":2.0,"z":3.0,"a":4.0,"b":5.0,"c":6.0})"));
 }
 

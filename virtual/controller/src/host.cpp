@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <asio/post.hpp>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "metier/base/text.hpp"

@@ -6,33 +6,18 @@ namespace {
 // Copying JSON goes one call deeper for each level.
 constexpr int kDeepest = 32;
 
-bool isTooDeep(std::string_view text) {
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char character = text[i];
-        if (in_string && character == '\\') {
-            ++i;
-        } else if (character == '"') {
-            in_string = !in_string;
-        } else if (!in_string && (character == '{' || character == '[')) {
-            if (++depth > kDeepest) {
-                return true;
-            }
-        } else if (!in_string && (character == '}' || character == ']')) {
-            --depth;
-        }
-    }
-    return false;
-}
-
 }  // namespace
 
 Json parseJson(std::string_view text) {
-    if (isTooDeep(text)) {
-        return Json(Json::value_t::discarded);
-    }
-    return Json::parse(text, nullptr, false);
+    bool too_deep = false;
+    const auto note = [&too_deep](int depth, Json::parse_event_t event, Json& /*value*/) {
+        const bool begins =
+            event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
+        too_deep = too_deep || (begins && depth >= kDeepest);
+        return !too_deep;
+    };
+    auto parsed = Json::parse(text, note, false);
+    return too_deep ? Json(Json::value_t::discarded) : parsed;
 }
 
 std::string toText(const Json& message) {

@@ -4,7 +4,7 @@
 #include <asio/steady_timer.hpp>
 #include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "metier/base/clock.hpp"
