@@ -24,11 +24,8 @@ Entry note(std::string event, std::string name, std::string value) {
 
 Result<std::unique_ptr<AuditLog>> AuditLog::open(Options options) {
     std::size_t dropped = 0;
-    auto file = File::open(options.file, options.part_size, dropped);
-    if (!file) {
-        return fail(file.error());
-    }
-    std::unique_ptr<AuditLog> log(new AuditLog(std::move(options), std::move(*file)));
+    METIER_ASSIGN(auto file, File::open(options.file, options.part_size, dropped));
+    std::unique_ptr<AuditLog> log(new AuditLog(std::move(options), std::move(file)));
     if (dropped > 0) {
         log->append(note("LineDropped", "bytes", std::to_string(dropped)));
     }

@@ -82,14 +82,9 @@ Result<std::unique_ptr<AuditLog::File>> AuditLog::File::open(const std::filesyst
                                                              std::size_t& dropped) {
     makeFolder(path.parent_path());
     std::unique_ptr<File> file(new File(path, part_size));
-    if (auto locked = file->lock(); !locked) {
-        return fail(locked.error());
-    }
-    const auto read = file->readEnds();
-    if (!read) {
-        return fail(read.error());
-    }
-    dropped = *read;
+    METIER_TRY(file->lock());
+    METIER_ASSIGN(const auto read, file->readEnds());
+    dropped = read;
     return file;
 }
 

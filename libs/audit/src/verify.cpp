@@ -90,9 +90,7 @@ Result<Verified> verify(const std::filesystem::path& file, const std::set<std::s
         if (!lines) {
             return fail(Errc::not_found, fmt::format("{} cannot be read", part.string()));
         }
-        if (auto taken = chain.take(lines, part); !taken) {
-            return fail(taken.error());
-        }
+        METIER_TRY(chain.take(lines, part));
     }
     return chain.verified();
 }

@@ -1,6 +1,7 @@
 #include "metier/base/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace metier {
@@ -53,8 +54,8 @@ std::string inUpperCase(std::string_view text) {
 }
 
 std::optional<Utf8Character> firstCharacter(std::string_view text) noexcept {
-    constexpr std::uint32_t kLeadMask[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
-    constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
+    constexpr std::array<std::uint32_t, 5> kLeadMask{0, 0x7F, 0x1F, 0x0F, 0x07};
+    constexpr std::array<std::uint32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};
     if (text.empty()) {
         return std::nullopt;
     }

@@ -23,9 +23,7 @@ Result<void> connectTo(tcp::socket& socket, const tcp::endpoint& endpoint, Stead
     socket.non_blocking(true, error);
     socket.connect(endpoint, error);
     if (error == asio::error::in_progress || error == asio::error::would_block) {
-        if (auto ready = pollUntil(socket.native_handle(), POLLOUT, deadline, name); !ready) {
-            return ready;
-        }
+        METIER_TRY(pollUntil(socket.native_handle(), POLLOUT, deadline, name));
         int outcome = 0;
         socklen_t size = sizeof(outcome);
         getsockopt(socket.native_handle(), SOL_SOCKET, SO_ERROR, &outcome, &size);
@@ -93,19 +91,14 @@ Result<std::size_t> TcpLink::receive(std::span<std::byte> buffer, SteadyTime dea
         if (error != asio::error::would_block && error != asio::error::interrupted) {
             return fail(Errc::connection_lost, peer_ + ": " + error.message());
         }
-        if (auto ready = waitFor(POLLIN, deadline); !ready) {
-            return fail(ready.error());
-        }
+        METIER_TRY(waitFor(POLLIN, deadline));
     }
 }
 
 Result<void> TcpLink::receiveAll(std::span<std::byte> buffer, SteadyTime deadline) {
     while (!buffer.empty()) {
-        const auto count = receive(buffer, deadline);
-        if (!count) {
-            return fail(count.error());
-        }
-        buffer = buffer.subspan(*count);
+        METIER_ASSIGN(const auto count, receive(buffer, deadline));
+        buffer = buffer.subspan(count);
     }
     return {};
 }
@@ -121,9 +114,7 @@ Result<void> TcpLink::send(std::span<const std::byte> bytes, SteadyTime deadline
         if (error != asio::error::would_block) {
             return fail(Errc::connection_lost, peer_ + ": " + error.message());
         }
-        if (auto ready = waitFor(POLLOUT, deadline); !ready) {
-            return ready;
-        }
+        METIER_TRY(waitFor(POLLOUT, deadline));
     }
     return {};
 }
@@ -191,11 +182,7 @@ Result<TcpLink> TcpListener::accept(SteadyTime deadline) {
         if (error == asio::error::invalid_argument) {
             return fail(Errc::cancelled, "the listener was shut down");
         }
-        if (auto ready =
-                pollUntil(acceptor_.native_handle(), POLLIN, deadline, "nobody dialled in");
-            !ready) {
-            return fail(ready.error());
-        }
+        METIER_TRY(pollUntil(acceptor_.native_handle(), POLLIN, deadline, "nobody dialled in"));
     }
 }
 

@@ -57,9 +57,7 @@ Result<std::size_t> UdpLink::receive(std::span<std::byte> buffer, SteadyTime dea
         if (error != asio::error::would_block && error != asio::error::interrupted) {
             return fail(Errc::connection_lost, fmt::format("{}: {}", peer_, error.message()));
         }
-        if (auto ready = pollUntil(socket_.native_handle(), POLLIN, deadline, peer_); !ready) {
-            return fail(std::move(ready.error()));
-        }
+        METIER_TRY(pollUntil(socket_.native_handle(), POLLIN, deadline, peer_));
     }
 }
 

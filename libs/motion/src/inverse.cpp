@@ -380,9 +380,7 @@ Result<JointVector> Kinematics::inverseNumerically(const Pose& base_from_flange,
 
 Result<JointVector> Kinematics::search(const Pose& base_from_flange, const IkRequest& request,
                                        IkKind method) const {
-    if (auto checked = checkRequest(*this, base_from_flange, request); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(checkRequest(*this, base_from_flange, request));
     NearestChoice choice(*this, request);
     if (method != IkKind::numeric) {
         choice.offer(

@@ -242,9 +242,7 @@ Result<RobotModel> RobotModel::parse(std::string_view text, const std::string& n
 
 Result<RobotModel> RobotModel::read(const TomlFile& toml, const std::string& file_name) {
     ModelFile file = readModel(toml.root());
-    if (const auto finished = toml.finish(); !finished) {
-        return fail(finished.error());
-    }
+    METIER_TRY(toml.finish());
     auto model = fromChain(std::move(file.chain));
     if (!model) {
         return fail(model.error().code, file_name + ": " + model.error().message);

@@ -99,15 +99,12 @@ Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory traject
 
 /// Follows a path, unless it is singular.
 Planned<TrackedPath> track(const TrackRequest& request, const PlannerOptions& options) {
-    auto path = trackLine(request);
-    if (!path) {
-        return tl::unexpected(path.error());
-    }
-    if (auto refusal = refuseSingular(*request.model, *path, options)) {
+    METIER_ASSIGN(auto path, trackLine(request));
+    if (auto refusal = refuseSingular(*request.model, path, options)) {
         return tl::unexpected(*refusal);
     }
-    auto bounds = axisBounds(*request.model, *path);
-    return TrackedPath{std::move(*path), std::move(bounds)};
+    auto bounds = axisBounds(*request.model, path);
+    return TrackedPath{std::move(path), std::move(bounds)};
 }
 
 Trajectory quickestAlong(const RobotModel& model, TrackedPath path, const Pose& flange_from_tool) {
@@ -157,24 +154,18 @@ std::string_view toString(RefusalReason reason) noexcept {
 
 Planned<Trajectory> Planner::ptp(const PtpRequest& request) const {
     const RobotModel& model = *model_;
-    if (auto checked = checkPtp(model, request); !checked) {
-        return tl::unexpected(checked.error());
-    }
+    METIER_TRY(checkPtp(model, request));
     const auto tool = model.tool(request.tool_frame);
     if (!tool) {
         return invalid(tool.error());
     }
     if (const auto* joints = std::get_if<JointVector>(&request.target)) {
-        if (auto checked = checkPosition(model, *joints, "target", 1e-9); !checked) {
-            return tl::unexpected(checked.error());
-        }
+        METIER_TRY(checkPosition(model, *joints, "target", 1e-9));
         return withoutCollision(model,
                                 planJointLine(model, request, *joints, tool->flange_from_tool));
     }
     const Pose& pose = std::get<Pose>(request.target);
-    if (auto checked = checkPose(pose); !checked) {
-        return tl::unexpected(checked.error());
-    }
+    METIER_TRY(checkPose(pose));
     const Pose start = model.kinematics().forward(request.start) * tool->flange_from_tool;
     const Pose flange =
         absoluteTarget(start, pose, request.reference) * tool->flange_from_tool.inverse();
@@ -187,9 +178,7 @@ Planned<Trajectory> Planner::ptp(const PtpRequest& request) const {
 }
 
 Planned<Trajectory> Planner::lin(const LinRequest& request) const {
-    if (auto checked = checkLin(*model_, request); !checked) {
-        return tl::unexpected(checked.error());
-    }
+    METIER_TRY(checkLin(*model_, request));
     const auto tool = model_->tool(request.tool_frame);
     if (!tool) {
         return invalid(tool.error());
@@ -206,25 +195,20 @@ Planned<Trajectory> Planner::lin(const LinRequest& request) const {
     if (wanted.path.tool.isPoint()) {
         return standStill(*model_, request.start, tool->flange_from_tool);
     }
-    auto path = track(wanted, options_);
-    if (!path) {
-        return tl::unexpected(path.error());
-    }
+    METIER_ASSIGN(auto path, track(wanted, options_));
     const ScalarLimits limits = limitsOfLine(*model_, request, wanted.path.tool);
-    if (auto refusal = refuseCrawling(*model_, *path, limits.velocity, options_)) {
+    if (auto refusal = refuseCrawling(*model_, path, limits.velocity, options_)) {
         return tl::unexpected(*refusal);
     }
-    for (SpeedBounds& at : path->bounds) {
+    for (SpeedBounds& at : path.bounds) {
         at.add({1, 0, 0, limits.velocity, limits.acceleration, limits.jerk});
     }
     return withoutCollision(*model_,
-                            quickestAlong(*model_, std::move(*path), tool->flange_from_tool));
+                            quickestAlong(*model_, std::move(path), tool->flange_from_tool));
 }
 
 Planned<Trajectory> Planner::path(const PathRequest& request) const {
-    if (auto checked = checkPath(*model_, request); !checked) {
-        return tl::unexpected(checked.error());
-    }
+    METIER_TRY(checkPath(*model_, request));
     const auto tool = model_->tool(request.lin.tool_frame);
     if (!tool) {
         return invalid(tool.error());
@@ -255,9 +239,7 @@ Planned<Trajectory> Planner::path(const PathRequest& request) const {
 }
 
 Planned<Trajectory> Planner::jointLinear(const JointLinearRequest& request) const {
-    if (auto checked = checkPosition(*model_, request.target, "target", 1e-9); !checked) {
-        return tl::unexpected(checked.error());
-    }
+    METIER_TRY(checkPosition(*model_, request.target, "target", 1e-9));
     const auto tool = model_->tool(request.lin.tool_frame);
     if (!tool) {
         return invalid(tool.error());

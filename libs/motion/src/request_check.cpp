@@ -126,21 +126,16 @@ Checked checkLin(const RobotModel& model, const LinRequest& request) {
 }
 
 Checked checkPath(const RobotModel& model, const PathRequest& request) {
-    if (auto checked = checkLin(model, request.lin); !checked) {
-        return checked;
-    }
+    METIER_TRY(checkLin(model, request.lin));
     if (request.waypoints.empty()) {
         return invalid("a path needs at least one waypoint");
     }
     for (std::size_t i = 0; i < request.waypoints.size(); ++i) {
         const PathWaypoint& waypoint = request.waypoints[i];
-        if (auto checked = all(
-                {checkPose(waypoint.target),
+        METIER_TRY(
+            all({checkPose(waypoint.target),
                  checkLimitValues(std::array{waypoint.max_velocity, waypoint.max_angular_velocity},
-                                  "waypoint velocity")});
-            !checked) {
-            return checked;
-        }
+                                  "waypoint velocity")}));
         const bool last = i + 1 == request.waypoints.size();
         if (!last && !(waypoint.blend_radius > 0 && std::isfinite(waypoint.blend_radius))) {
             return invalid(fmt::format("waypoint {}: blend radius {} m is not over 0 m: to stop "

@@ -88,9 +88,7 @@ Result<void> checkChain(const ChainDescription& chain) {
                     fmt::format("{} axes, not 1 to {}", chain.joints.size(), kMaxAxes));
     }
     for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-        if (auto checked = checkJoint(chain.joints[i], i); !checked) {
-            return checked;
-        }
+        METIER_TRY(checkJoint(chain.joints[i], i));
     }
     return checkRest(chain);
 }
@@ -100,9 +98,7 @@ Result<void> checkChain(const ChainDescription& chain) {
 RobotModel::RobotModel(ChainDescription chain) : chain_(std::move(chain)), kinematics_(chain_) {}
 
 Result<RobotModel> RobotModel::fromChain(ChainDescription chain) {
-    if (auto checked = checkChain(chain); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(checkChain(chain));
     return RobotModel(std::move(chain));
 }
 

@@ -162,29 +162,20 @@ Result<NodeId> AddressSpace::addObject(const ObjectSpec& spec, MethodNodes metho
                                 &UA_TYPES[UA_TYPES_OBJECTATTRIBUTES], nullptr, nullptr);
     const auto code = finish(core_.native(), begun, node.id, spec.children);
     core_.structureChanged();
-    if (auto added = outcome(code, "add Object", node.id); !added) {
-        return fail(added.error());
-    }
+    METIER_TRY(outcome(code, "add Object", node.id));
     if (methods == MethodNodes::own) {
-        if (auto own = giveOwnMethods(node.id); !own) {
-            return fail(own.error());
-        }
+        METIER_TRY(giveOwnMethods(node.id));
     }
     return node.id;
 }
 
 Result<> AddressSpace::giveOwnMethods(const NodeId& object) {
-    const auto components = browse(object, {ids::kHasComponent});
-    if (!components) {
-        return fail(components.error());
-    }
-    for (const auto& component : *components) {
+    METIER_ASSIGN(const auto components, browse(object, {ids::kHasComponent}));
+    for (const auto& component : components) {
         if (component.node_class != NodeClass::method) {
             continue;
         }
-        if (auto copied = copyMethod(object, component); !copied) {
-            return copied;
-        }
+        METIER_TRY(copyMethod(object, component));
     }
     return {};
 }
@@ -192,10 +183,7 @@ Result<> AddressSpace::giveOwnMethods(const NodeId& object) {
 Result<> AddressSpace::copyMethod(const NodeId& object, const Reference& method) {
     UA_Server* server = core_.native();
     const UA_NodeId original = viewOf(method.target);
-    const auto arguments = browse(method.target, {ids::kHasProperty});
-    if (!arguments) {
-        return fail(arguments.error());
-    }
+    METIER_ASSIGN(const auto arguments, browse(method.target, {ids::kHasProperty}));
     Owned<UA_LocalizedText> description(UA_TYPES[UA_TYPES_LOCALIZEDTEXT]);
     UA_Server_readDescription(server, original, description.get());
     NodeSpec spec{
@@ -210,7 +198,7 @@ Result<> AddressSpace::copyMethod(const NodeId& object, const Reference& method)
                                        node.browse_name, attributes, nullptr, 0, nullptr, 0,
                                        nullptr, nullptr, nullptr);
     }
-    for (const auto& argument : *arguments) {
+    for (const auto& argument : arguments) {
         if (code == UA_STATUSCODE_GOOD) {
             code = UA_Server_addReference(server, viewOf(node.id), viewOf(ids::kHasProperty),
                                           UA_EXPANDEDNODEID_NODEID(viewOf(argument.target)), true);
@@ -234,9 +222,7 @@ Result<NodeId> AddressSpace::addVariable(const VariableSpec& spec) {
                                 node.reference, node.browse_name, viewOf(spec.type), &attributes,
                                 &UA_TYPES[UA_TYPES_VARIABLEATTRIBUTES], nullptr, nullptr);
     const auto code = finish(core_.native(), begun, node.id, spec.children);
-    if (auto added = outcome(code, "add Variable", node.id); !added) {
-        return fail(added.error());
-    }
+    METIER_TRY(outcome(code, "add Variable", node.id));
     return node.id;
 }
 
@@ -253,12 +239,8 @@ Result<NodeId> AddressSpace::addMethod(const MethodSpec& spec) {
     if (code == UA_STATUSCODE_GOOD) {
         code = addArguments(core_.native(), node.id, "OutputArguments", spec.outputs);
     }
-    if (auto added = outcome(code, "add Method", node.id); !added) {
-        return fail(added.error());
-    }
-    if (auto set = setMethod(node.id, spec.handler); !set) {
-        return fail(set.error());
-    }
+    METIER_TRY(outcome(code, "add Method", node.id));
+    METIER_TRY(setMethod(node.id, spec.handler));
     return node.id;
 }
 
@@ -397,11 +379,8 @@ Result<> AddressSpace::write(const NodeId& variable, const DataValue& value) {
 }
 
 Result<> AddressSpace::setDataSource(const NodeId& variable, DataSource source) {
-    auto hooks = core_.hooks().of(core_.native(), variable);
-    if (!hooks) {
-        return fail(hooks.error());
-    }
-    (*hooks)->work = std::move(source);
+    METIER_ASSIGN(auto hooks, core_.hooks().of(core_.native(), variable));
+    hooks->work = std::move(source);
     auto code = UA_Server_setVariableNode_dataSource(core_.native(), viewOf(variable),
                                                      dataSourceCallbacks());
     if (code == UA_STATUSCODE_GOOD) {
@@ -432,23 +411,17 @@ Result<> AddressSpace::setAccess(const NodeId& variable, Access access) {
 }
 
 Result<> AddressSpace::setMethod(const NodeId& method, MethodHandler handler, MethodEffect effect) {
-    auto hooks = core_.hooks().of(core_.native(), method);
-    if (!hooks) {
-        return fail(hooks.error());
-    }
-    (*hooks)->methodHooks().handler = std::move(handler);
-    (*hooks)->methodHooks().effect = effect;
+    METIER_ASSIGN(auto hooks, core_.hooks().of(core_.native(), method));
+    hooks->methodHooks().handler = std::move(handler);
+    hooks->methodHooks().effect = effect;
     return outcome(UA_Server_setMethodNodeCallback(core_.native(), viewOf(method), callMethod),
                    "give work to", method);
 }
 
 Result<> AddressSpace::setExecutable(const NodeId& method,
                                      std::function<bool(const Session&)> predicate) {
-    auto hooks = core_.hooks().of(core_.native(), method);
-    if (!hooks) {
-        return fail(hooks.error());
-    }
-    (*hooks)->methodHooks().executable = std::move(predicate);
+    METIER_ASSIGN(auto hooks, core_.hooks().of(core_.native(), method));
+    hooks->methodHooks().executable = std::move(predicate);
     return {};
 }
 

@@ -96,13 +96,9 @@ Client::~Client() {
 }
 
 Answer<std::unique_ptr<Client>> Client::connect(const std::string& url, ClientOptions options) {
-    if (auto checked = checkOptions(url, options); !checked) {
-        return tl::unexpected(std::move(checked.error()));
-    }
+    METIER_TRY(checkOptions(url, options));
     auto core = std::make_shared<ClientCore>(std::move(options), ClientPurpose::session);
-    if (auto connected = core->connect(url); !connected) {
-        return tl::unexpected(std::move(connected.error()));
-    }
+    METIER_TRY(core->connect(url));
     return std::unique_ptr<Client>(new Client(std::move(core)));
 }
 
@@ -152,11 +148,8 @@ void Client::onConnectionLost(std::function<void(const Failure&)> callback) {
 }
 
 Answer<Value> Client::read(const NodeId& node, AttributeId attribute, Timeout timeout) {
-    auto values = readMany({{node, attribute}}, timeout);
-    if (!values) {
-        return tl::unexpected(std::move(values.error()));
-    }
-    auto& value = values->front();
+    METIER_ASSIGN(auto values, readMany({{node, attribute}}, timeout));
+    auto& value = values.front();
     if (value.status.isBad()) {
         return failed(value.status, "reading " + node.toString());
     }
@@ -216,11 +209,8 @@ Answer<std::vector<Answer<NodeId>>> Client::translateMany(std::vector<RelativePa
 }
 
 Answer<std::vector<std::string>> Client::namespaceArray(Timeout timeout) {
-    const auto value = read(kNamespaceArray, AttributeId::value, timeout);
-    if (!value) {
-        return tl::unexpected(value.error());
-    }
-    auto uris = value->as<std::vector<std::string>>();
+    METIER_ASSIGN(const auto value, read(kNamespaceArray, AttributeId::value, timeout));
+    auto uris = value.as<std::vector<std::string>>();
     if (!uris) {
         return tl::unexpected(Failure{uris.error(), status::kBadTypeMismatch, {}});
     }
@@ -228,23 +218,17 @@ Answer<std::vector<std::string>> Client::namespaceArray(Timeout timeout) {
 }
 
 Answer<std::uint16_t> Client::namespaceIndex(std::string_view uri, Timeout timeout) {
-    const auto uris = namespaceArray(timeout);
-    if (!uris) {
-        return tl::unexpected(uris.error());
-    }
-    const auto found = std::find(uris->begin(), uris->end(), uri);
-    if (found == uris->end()) {
+    METIER_ASSIGN(const auto uris, namespaceArray(timeout));
+    const auto found = std::find(uris.begin(), uris.end(), uri);
+    if (found == uris.end()) {
         return failed(status::kBadNotFound, fmt::format("the namespace {}", uri));
     }
-    return static_cast<std::uint16_t>(found - uris->begin());
+    return static_cast<std::uint16_t>(found - uris.begin());
 }
 
 Answer<bool> Client::readUserExecutable(const NodeId& method, Timeout timeout) {
-    const auto value = read(method, AttributeId::user_executable, timeout);
-    if (!value) {
-        return tl::unexpected(value.error());
-    }
-    const auto executable = value->as<bool>();
+    METIER_ASSIGN(const auto value, read(method, AttributeId::user_executable, timeout));
+    const auto executable = value.as<bool>();
     if (!executable) {
         return tl::unexpected(Failure{executable.error(), status::kBadTypeMismatch, {}});
     }

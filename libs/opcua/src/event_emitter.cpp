@@ -31,21 +31,15 @@ struct EventEmitter::State {
     State& operator=(const State&) = delete;
 
     Result<> addField(const BrowsePath& path) {
-        auto id = core.nodes().find(node, path);
-        if (!id) {
-            return fail(id.error());
-        }
-        fields.push_back(std::move(*id));
+        METIER_ASSIGN(auto id, core.nodes().find(node, path));
+        fields.push_back(std::move(id));
         return {};
     }
 
     /// All fields, those that the stack sets too.
     Result<> hideFromOthers() {
-        const auto children = core.nodes().browse(node);
-        if (!children) {
-            return fail(children.error());
-        }
-        for (const auto& child : *children) {
+        METIER_ASSIGN(const auto children, core.nodes().browse(node));
+        for (const auto& child : children) {
             UA_Server_setNodeContext(core.native(), viewOf(child.target), auditorsOnly());
         }
         return {};
@@ -88,15 +82,11 @@ Result<EventEmitter> EventEmitter::create(ServerCore& core, const NodeId& type,
     }
     paths.insert(paths.end(), fields.begin(), fields.end());
     for (const auto& path : paths) {
-        if (auto added = state->addField(path); !added) {
-            return fail(added.error());
-        }
+        METIER_TRY(state->addField(path));
         state->names.push_back(path.back().name);
     }
     if (audience == EventAudience::auditors) {
-        if (auto hidden = state->hideFromOthers(); !hidden) {
-            return fail(hidden.error());
-        }
+        METIER_TRY(state->hideFromOthers());
     }
     return EventEmitter(std::move(state));
 }
@@ -119,9 +109,7 @@ Result<ByteString> EventEmitter::emit(const Event& event) {
                                               Value::of(event.severity), Value::of(event.message)};
     for (std::size_t i = 0; i < state_->fields.size(); ++i) {
         const auto& value = i < kBaseFields ? base[i] : event.fields[i - kBaseFields];
-        if (auto written = state_->write(i, value); !written) {
-            return fail(written.error());
-        }
+        METIER_TRY(state_->write(i, value));
     }
     Owned<UA_ByteString> id(UA_TYPES[UA_TYPES_BYTESTRING]);
     const auto code = UA_Server_triggerEvent(state_->core.native(), viewOf(state_->node),

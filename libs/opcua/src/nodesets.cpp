@@ -80,17 +80,13 @@ Result<> loadNodesets(UA_Server* server, const std::vector<std::string>& names) 
         return {};
     }
     for (const auto& nodeset : kModel) {
-        if (auto loaded = load(server, nodeset); !loaded) {
-            return loaded;
-        }
+        METIER_TRY(load(server, nodeset));
     }
     for (const auto& nodeset : kInstances) {
         if (!named(nodeset, names)) {
             continue;
         }
-        if (auto loaded = load(server, nodeset); !loaded) {
-            return loaded;
-        }
+        METIER_TRY(load(server, nodeset));
     }
     return {};
 }

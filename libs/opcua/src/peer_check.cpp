@@ -78,11 +78,8 @@ struct PeerCheck::Callbacks {
 
 Result<std::unique_ptr<PeerCheck>> PeerCheck::create(const std::filesystem::path& trust_folder,
                                                      OnRefused on_refused) {
-    auto store = trust::TrustStore::open(trust_folder);
-    if (!store) {
-        return fail(store.error());
-    }
-    return std::unique_ptr<PeerCheck>(new PeerCheck(std::move(*store), std::move(on_refused)));
+    METIER_ASSIGN(auto store, trust::TrustStore::open(trust_folder));
+    return std::unique_ptr<PeerCheck>(new PeerCheck(std::move(store), std::move(on_refused)));
 }
 
 PeerCheck::PeerCheck(trust::TrustStore store, OnRefused on_refused)

@@ -18,11 +18,8 @@ void TimerHandle::cancel() noexcept {
 }
 
 Result<std::unique_ptr<Server>> Server::create(ServerOptions options) {
-    auto core = ServerCore::create(std::move(options));
-    if (!core) {
-        return fail(core.error());
-    }
-    return std::unique_ptr<Server>(new Server(std::move(*core)));
+    METIER_ASSIGN(auto core, ServerCore::create(std::move(options)));
+    return std::unique_ptr<Server>(new Server(std::move(core)));
 }
 
 Server::Server(std::unique_ptr<ServerCore> core) : core_(std::move(core)) {}

@@ -145,9 +145,7 @@ Result<> checkOptions(const ServerOptions& options) {
     if (options.discovery && options.discovery->forget_after.count() < 1) {
         return fail(Errc::invalid_argument, "registrations of less than 1 s");
     }
-    if (auto right = checkSecurity(options); !right) {
-        return right;
-    }
+    METIER_TRY(checkSecurity(options));
     const auto& limits = options.limits;
     if (limits.sessions == 0 || limits.secure_channels < limits.sessions) {
         return fail(Errc::invalid_argument,
@@ -162,11 +160,8 @@ Result<> applyOptions(const ServerOptions& options, PeerCheck* peers, UA_ServerC
     if (code != UA_STATUSCODE_GOOD) {
         return fail(errorFrom(StatusCode(code), "configure the server"));
     }
-    auto secured = options.security ? addSecurity(options.security->credentials, *peers, config)
-                                    : addNoSecurity(config);
-    if (!secured) {
-        return secured;
-    }
+    METIER_TRY(options.security ? addSecurity(options.security->credentials, *peers, config)
+                                : addNoSecurity(config));
     setDescription(options, config);
     if (options.discovery) {
         setDiscovery(*options.discovery, config);

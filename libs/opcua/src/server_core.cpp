@@ -96,13 +96,9 @@ ServerCore& ServerCore::of(UA_Server* server) noexcept {
 }
 
 Result<std::unique_ptr<ServerCore>> ServerCore::create(ServerOptions options) {
-    if (auto valid = checkOptions(options); !valid) {
-        return fail(valid.error());
-    }
+    METIER_TRY(checkOptions(options));
     std::unique_ptr<ServerCore> core(new ServerCore(std::move(options)));
-    if (auto built = core->build(); !built) {
-        return fail(built.error());
-    }
+    METIER_TRY(core->build());
     return core;
 }
 
@@ -129,12 +125,8 @@ Result<> ServerCore::build() {
     config.logging = log_.handle();
     config.eventLoop = loop_.handle();
     config.context = this;
-    if (auto checked = checkPeers(); !checked) {
-        return checked;
-    }
-    if (auto applied = applyOptions(options_, peers_.get(), config); !applied) {
-        return applied;
-    }
+    METIER_TRY(checkPeers());
+    METIER_TRY(applyOptions(options_, peers_.get(), config));
     sessions_.install(config);
     config.accessControl.getUserExecutable = userExecutable;
     config.nodeLifecycle.constructor = Callbacks::nodeMade;
@@ -148,15 +140,11 @@ Result<> ServerCore::build() {
     }
     timers_ = std::make_shared<PendingTimers>(
         native(), [this](const std::function<void()>& work) { runGuarded(work); });
-    if (auto loaded = loadNodesets(native(), options_.nodesets); !loaded) {
-        return loaded;
-    }
+    METIER_TRY(loadNodesets(native(), options_.nodesets));
     for (const auto& uri : options_.namespaces) {
         UA_Server_addNamespace(native(), uri.c_str());
     }
-    if (auto guarded = stack_methods_.guard(native()); !guarded) {
-        return guarded;
-    }
+    METIER_TRY(stack_methods_.guard(native()));
     // Certificates of others, and who they are.
     UA_Server_setNodeContext(
         native(),
@@ -178,12 +166,9 @@ Result<> ServerCore::checkPeers() {
     if (!options_.security) {
         return {};
     }
-    auto peers = PeerCheck::create(options_.security->credentials.trust_folder,
-                                   options_.security->on_refused);
-    if (!peers) {
-        return fail(peers.error());
-    }
-    peers_ = std::move(*peers);
+    METIER_ASSIGN(auto peers, PeerCheck::create(options_.security->credentials.trust_folder,
+                                                options_.security->on_refused));
+    peers_ = std::move(peers);
     peers_->onRefusal([this](std::string_view der, StatusCode status, const std::string& why) {
         audit_.peerRefused(der, status, why);
     });
@@ -312,9 +297,7 @@ Result<> ServerCore::renewIdentity(const trust::Identity& identity) {
     }
     auto options = options_;
     options.security->credentials.identity = identity;
-    if (auto right = checkOptions(options); !right) {
-        return right;
-    }
+    METIER_TRY(checkOptions(options));
     auto replaced = replaceIdentity(identity, *UA_Server_getConfig(native()));
     if (replaced) {
         options_.security->credentials.identity = identity;

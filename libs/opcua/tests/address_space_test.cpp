@@ -198,11 +198,8 @@ public:
         return {[this](const Session&) { return DataValue{value_}; },
                 [this](const WriteContext& context, const Value& value) -> Result<> {
                     writer_ = context.session;
-                    const auto speed = value.as<double>();
-                    if (!speed) {
-                        return fail(speed.error());
-                    }
-                    if (!(*speed <= 2.0)) {
+                    METIER_ASSIGN(const auto speed, value.as<double>());
+                    if (!(speed <= 2.0)) {
                         return fail(Errc::out_of_range, "over 2 m/s");
                     }
                     value_ = value;

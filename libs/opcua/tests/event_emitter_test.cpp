@@ -148,9 +148,7 @@ TEST_F(EventEmitterTest, ABurstKeepsItsOrderAndEachEventItsOwnFields) {
     ASSERT_EQ(client_.watchEvents(kSkill, kSelected, events), status::kGood);
     const auto raised = server_->call([&]() -> Result<> {
         for (std::uint32_t i = 0; i < kBurst; ++i) {
-            if (auto id = emitter_.emit(transition(i)); !id) {
-                return fail(id.error());
-            }
+            METIER_TRY(emitter_.emit(transition(i)));
         }
         return {};
     });

@@ -31,16 +31,13 @@ struct Placement {
 };
 
 Result<skill::Value> checked(const Placement& placement, const opcua::Value& value) {
-    auto pose = withPart(placement.field, placement.pose, Part::whole, value);
-    if (!pose) {
-        return pose;
-    }
-    if (skill::isNull(*pose)) {
+    METIER_ASSIGN(auto pose, withPart(placement.field, placement.pose, Part::whole, value));
+    if (skill::isNull(pose)) {
         return fail(Errc::out_of_range, fmt::format("{}: a value is needed", kName));
     }
-    return skill::checkValue(placement.field, *pose)
-        .and_then([&] { return placement.limits.check(0, placement.field, *pose); })
-        .map([&] { return std::move(*pose); });
+    return skill::checkValue(placement.field, pose)
+        .and_then([&] { return placement.limits.check(0, placement.field, pose); })
+        .map([&] { return pose; });
 }
 
 std::string writerIn(const opcua::Session& session) {
@@ -79,13 +76,10 @@ Result<NodeId> nodeOf(const opcua::AddressSpace& nodes, const NodeId& motion_dev
 
 Result<void> serveBasePlacement(opcua::Server& server, const MotionDeviceSystem& system) {
     auto& nodes = server.nodes();
-    const auto node = nodeOf(nodes, system.motion_device);
-    if (!node) {
-        return fail(node.error());
-    }
+    METIER_ASSIGN(const auto node, nodeOf(nodes, system.motion_device));
     // Shared by the functions of the frame's nodes, on the server's thread.
-    const auto placement = std::make_shared<Placement>(Placement{server, *node});
-    return forEachPart(nodes, *node, [&](const NodeId& variable, Part part) {
+    const auto placement = std::make_shared<Placement>(Placement{server, node});
+    return forEachPart(nodes, node, [&](const NodeId& variable, Part part) {
         placement->limits.add(nodes, variable,
                               {Role::parameter, static_cast<std::uint8_t>(part), 0});
         opcua::DataSource source{

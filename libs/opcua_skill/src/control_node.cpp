@@ -39,11 +39,8 @@ Result<std::uint64_t> epochIn(Inputs inputs) {
 template <typename Work>
 opcua::MethodHandler withEpoch(Work work) {
     return [work](const CallContext& context, Inputs inputs) -> Result<std::vector<Value>> {
-        const auto epoch = epochIn(inputs);
-        if (!epoch) {
-            return fail(epoch.error());
-        }
-        return work(callerOf(context.session), *epoch).map([] { return std::vector<Value>(); });
+        METIER_ASSIGN(const auto epoch, epochIn(inputs));
+        return work(callerOf(context.session), epoch).map([] { return std::vector<Value>(); });
     };
 }
 
@@ -70,19 +67,14 @@ void ControlNode::onControlLost(std::string_view session, skill::OwnerLossAction
 
 Result<void> ControlNode::bind(AddressSpace& nodes, const NodeId& controller) {
     controller_ = controller;
-    if (auto bound = bindLease(nodes, controller); !bound) {
-        return bound;
-    }
+    METIER_TRY(bindLease(nodes, controller));
     const auto di = nodes.namespaceIndex(kDiUri);
     const auto lock = di ? nodes.find(controller, {*di, "Lock"}) : Result<NodeId>(fail(di.error()));
     return lock ? bindLock(nodes, *lock) : Result<void>{};
 }
 
 Result<void> ControlNode::bindLease(AddressSpace& nodes, const NodeId& controller) {
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
     struct Call {
         const char* name;
         opcua::MethodHandler handler;
@@ -100,30 +92,21 @@ Result<void> ControlNode::bindLease(AddressSpace& nodes, const NodeId& controlle
              })},
     };
     for (const auto& [name, handler, effect] : calls) {
-        const auto method = nodes.find(controller, {*metier, name});
-        auto set =
-            method ? nodes.setMethod(*method, handler, effect) : Result<void>(fail(method.error()));
-        if (!set) {
-            return set;
-        }
+        const auto method = nodes.find(controller, {metier, name});
+        METIER_TRY(method ? nodes.setMethod(*method, handler, effect)
+                          : Result<void>(fail(method.error())));
     }
     for (const auto& [name, item] : {std::pair{"ControlOwner", Item::control_owner},
                                      {"ControlEpoch", Item::control_epoch},
                                      {"LeaseRemaining", Item::lease_remaining}}) {
-        const auto variable = nodes.find(controller, {*metier, name});
-        auto shown = variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error()));
-        if (!shown) {
-            return shown;
-        }
+        const auto variable = nodes.find(controller, {metier, name});
+        METIER_TRY(variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error())));
     }
     return {};
 }
 
 Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
-    const auto index = nodes.namespaceIndex(kDiUri);
-    if (!index) {
-        return fail(index.error());
-    }
+    METIER_ASSIGN(const auto index, nodes.namespaceIndex(kDiUri));
     struct Call {
         const char* name;
         Result<void> (*work)(skill::Control&, const skill::Caller&);
@@ -143,12 +126,9 @@ Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
                              const skill::Caller& /*caller*/) { return control.breakLock(); }},
     };
     for (const auto& call : kCalls) {
-        const auto method = nodes.find(lock, {*index, call.name});
-        if (!method) {
-            return fail(method.error());
-        }
+        METIER_ASSIGN(const auto method, nodes.find(lock, {index, call.name}));
         auto set = nodes.setMethod(
-            *method,
+            method,
             [control = control_, work = call.work](const CallContext& context, Inputs /*inputs*/) {
                 return Result<std::vector<Value>>(
                     statusOf(work(*control, callerOf(context.session))));
@@ -162,11 +142,8 @@ Result<void> ControlNode::bindLock(AddressSpace& nodes, const NodeId& lock) {
                                      {"LockingClient", Item::locking_client},
                                      {"LockingUser", Item::locking_user},
                                      {"RemainingLockTime", Item::remaining_lock_time}}) {
-        const auto variable = nodes.find(lock, {*index, name});
-        auto shown = variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error()));
-        if (!shown) {
-            return shown;
-        }
+        const auto variable = nodes.find(lock, {index, name});
+        METIER_TRY(variable ? show(nodes, *variable, item) : Result<void>(fail(variable.error())));
     }
     return {};
 }
@@ -183,11 +160,8 @@ Result<ControlNode::Values> ControlNode::acquire(const CallContext& context, Inp
     if (!lease || !action) {
         return fail(lease ? action.error() : lease.error());
     }
-    const auto on_loss = ownerLossActionFrom(*action);
-    if (!on_loss) {
-        return fail(on_loss.error());
-    }
-    return control_->acquire(callerOf(context.session), std::chrono::milliseconds(*lease), *on_loss)
+    METIER_ASSIGN(const auto on_loss, ownerLossActionFrom(*action));
+    return control_->acquire(callerOf(context.session), std::chrono::milliseconds(*lease), on_loss)
         .map([](std::uint64_t epoch) { return Values{Value::of(epoch)}; });
 }
 

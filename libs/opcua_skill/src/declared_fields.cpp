@@ -17,14 +17,11 @@ const NodeId kAnalogUnitRangeType{0, 17570U};
 
 /// The child of that name, whatever namespace it is of.
 Result<Reference> childOf(const AddressSpace& nodes, const NodeId& parent, std::string_view name) {
-    const auto children = nodes.browse(parent);
-    if (!children) {
-        return fail(children.error());
-    }
-    const auto found =
-        std::find_if(children->begin(), children->end(),
-                     [&](const Reference& child) { return child.browse_name.name == name; });
-    return found == children->end()
+    METIER_ASSIGN(const auto children, nodes.browse(parent));
+    const auto found = std::find_if(children.begin(), children.end(), [&](const Reference& child) {
+        return child.browse_name.name == name;
+    });
+    return found == children.end()
                ? Result<Reference>(fail(Errc::not_found, "there is no " + std::string(name)))
                : Result<Reference>(*found);
 }
@@ -47,15 +44,11 @@ public:
         }
         const auto parent = indexOf(std::string(folder.name));
         const auto declared = childOf(nodes_, type_, folder.name);
-        const auto placeholder = declared ? childOf(nodes_, declared->target, folder.placeholder)
-                                          : Result<Reference>(fail(declared.error()));
-        if (!placeholder) {
-            return fail(placeholder.error());
-        }
+        METIER_ASSIGN(const auto placeholder,
+                      declared ? childOf(nodes_, declared->target, folder.placeholder)
+                               : Result<Reference>(fail(declared.error())));
         for (const auto& field : folder.fields) {
-            if (auto added = add(folder, parent, *placeholder, field); !added) {
-                return added;
-            }
+            METIER_TRY(add(folder, parent, placeholder, field));
         }
         return {};
     }
@@ -86,11 +79,8 @@ private:
     Result<void> addMeasure(const std::string& path) {
         const auto parent = layout_.size() - 1;
         for (const auto* name : {"EngineeringUnits", "EURange"}) {
-            const auto declared = inTypes(name);
-            if (!declared) {
-                return fail(declared.error());
-            }
-            layout_.push_back({path + "/" + name, parent, *declared});
+            METIER_ASSIGN(const auto declared, inTypes(name));
+            layout_.push_back({path + "/" + name, parent, declared});
         }
         return {};
     }
@@ -117,9 +107,7 @@ Result<void> addDeclaredFields(const AddressSpace& nodes, const NodeId& type,
     Adder adder(nodes, type, layout);
     for (const auto& folder : {Folder{"ParameterSet", "<Parameter>", description.parameters},
                                Folder{"FinalResultData", "<Result>", description.results}}) {
-        if (auto added = adder.addAll(folder); !added) {
-            return added;
-        }
+        METIER_TRY(adder.addAll(folder));
     }
     return {};
 }

@@ -75,23 +75,15 @@ Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& 
                              back == 0 ? "Latest" : "Latest-" + std::to_string(back)};
     spec.node.description = {"en", "What is kept of one execution."};
     spec.type = type;
-    const auto object = nodes.addObject(spec);
-    if (!object) {
-        return fail(object.error());
-    }
+    METIER_ASSIGN(const auto object, nodes.addObject(spec));
     for (const auto& item : items()) {
-        const auto node = nodes.find(*object, {type.namespaceIndex(), item.name});
-        if (!node) {
-            return fail(node.error());
-        }
+        METIER_ASSIGN(const auto node, nodes.find(object, {type.namespaceIndex(), item.name}));
         const auto read = [&program, back, &item](const opcua::Session& /*reader*/) {
             const auto* record = program.recentExecution(back);
             return record == nullptr ? opcua::DataValue{{}, opcua::status::kBadNoData, {}, {}}
                                      : opcua::DataValue{item.read(*record, program), {}, {}, {}};
         };
-        if (auto set = nodes.setDataSource(*node, {read, nullptr}); !set) {
-            return set;
-        }
+        METIER_TRY(nodes.setDataSource(node, {read, nullptr}));
     }
     return {};
 }
@@ -100,20 +92,15 @@ Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& 
 
 Result<void> publishExecutionRecords(AddressSpace& nodes, const NodeId& skill,
                                      const skill::Program& program) {
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
     const auto type =
-        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "ExecutionRecordType"});
-    const auto folder = folderOf(nodes, skill, *metier);
+        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {metier, "ExecutionRecordType"});
+    const auto folder = folderOf(nodes, skill, metier);
     if (!type || !folder) {
         return fail(type ? folder.error() : type.error());
     }
     for (std::size_t back = 0; back < kBrowsableExecutions; ++back) {
-        if (auto added = addRecord(nodes, *folder, *type, program, back); !added) {
-            return added;
-        }
+        METIER_TRY(addRecord(nodes, *folder, *type, program, back));
     }
     return {};
 }

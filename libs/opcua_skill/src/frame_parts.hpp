@@ -30,21 +30,14 @@ inline constexpr std::array kFrameParts{
 /// Runs `work` for the Variable of a 3DFrame and for each Variable of its parts.
 template <typename Work>
 Result<void> forEachPart(opcua::AddressSpace& nodes, const opcua::NodeId& frame, Work work) {
-    if (auto done = work(frame, Part::whole); !done) {
-        return done;
-    }
+    METIER_TRY(work(frame, Part::whole));
     for (const auto& row : kFrameParts) {
         std::vector<opcua::QualifiedName> path{{0, row.group}};
         if (row.name != nullptr) {
             path.push_back({0, row.name});
         }
-        const auto node = nodes.find(frame, path);
-        if (!node) {
-            return fail(node.error());
-        }
-        if (auto done = work(*node, row.part); !done) {
-            return done;
-        }
+        METIER_ASSIGN(const auto node, nodes.find(frame, path));
+        METIER_TRY(work(node, row.part));
     }
     return {};
 }

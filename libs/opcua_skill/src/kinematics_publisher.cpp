@@ -113,11 +113,8 @@ void wireState(KinematicsNodes& kinematics, const ReadState& state) {
 }
 
 Result<void> setPayload(AddressSpace& nodes, const NodeId& device, double payload) {
-    const auto robotics = nodes.namespaceIndex(kOpcRoboticsUri);
-    if (!robotics) {
-        return fail(robotics.error());
-    }
-    const std::array path{QualifiedName{*robotics, "FlangeLoad"}, QualifiedName{*robotics, "Mass"}};
+    METIER_ASSIGN(const auto robotics, nodes.namespaceIndex(kOpcRoboticsUri));
+    const std::array path{QualifiedName{robotics, "FlangeLoad"}, QualifiedName{robotics, "Mass"}};
     const auto mass = nodes.find(device, path);
     return mass ? nodes.write(*mass, Value::of(payload)) : Result<void>(fail(mass.error()));
 }
@@ -130,25 +127,16 @@ Result<void> wireAxes(AddressSpace& nodes, KinematicsNodes& kinematics, const No
     if (!di || !robotics) {
         return fail(di ? robotics.error() : di.error());
     }
-    const auto axes = nodes.find(device, {*robotics, "Axes"});
-    if (!axes) {
-        return fail(axes.error());
-    }
-    auto children = nodes.browse(*axes, {opcua::ids::kHasComponent});
-    if (!children) {
-        return fail(children.error());
-    }
-    std::sort(children->begin(), children->end(), [](const auto& left, const auto& right) {
+    METIER_ASSIGN(const auto axes, nodes.find(device, {*robotics, "Axes"}));
+    METIER_ASSIGN(auto children, nodes.browse(axes, {opcua::ids::kHasComponent}));
+    std::sort(children.begin(), children.end(), [](const auto& left, const auto& right) {
         return left.browse_name < right.browse_name;  // Axis_1 to Axis_8
     });
-    for (std::size_t axis = 0; axis < children->size(); ++axis) {
+    for (std::size_t axis = 0; axis < children.size(); ++axis) {
         const std::array path{QualifiedName{*di, "ParameterSet"},
                               QualifiedName{*robotics, "ActualPosition"}};
-        const auto position = nodes.find((*children)[axis].target, path);
-        if (!position) {
-            return fail(position.error());
-        }
-        const auto wired = kinematics.source(*position, [state, axis] {
+        METIER_ASSIGN(const auto position, nodes.find(children[axis].target, path));
+        const auto wired = kinematics.source(position, [state, axis] {
             const auto positions = state().joint_position;
             return axis < positions.size() ? Value::of(positions[axis]) : Value();
         });
@@ -163,23 +151,16 @@ Result<void> wireAxes(AddressSpace& nodes, KinematicsNodes& kinematics, const No
 
 Result<void> publishKinematics(AddressSpace& nodes, const MotionDeviceSystem& system,
                                const KinematicsData& data, ReadState state) {
-    if (auto checked = checkLengths(data); !checked) {
-        return checked;
-    }
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
-    KinematicsNodes kinematics(nodes, system.kinematics, *metier);
+    METIER_TRY(checkLengths(data));
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    KinematicsNodes kinematics(nodes, system.kinematics, metier);
     setConstants(kinematics, data);
     wireState(kinematics, state);
     if (!kinematics.outcome()) {
         return kinematics.outcome();
     }
     if (data.payload > 0) {
-        if (auto set = setPayload(nodes, system.motion_device, data.payload); !set) {
-            return set;
-        }
+        METIER_TRY(setPayload(nodes, system.motion_device, data.payload));
     }
     return wireAxes(nodes, kinematics, system.motion_device, state);
 }

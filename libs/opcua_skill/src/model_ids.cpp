@@ -49,11 +49,8 @@ std::string_view machineOf(skill::State state) {
 /// The type of that name below one of the three base types that our own derive from.
 Result<opcua::NodeId> findSubtype(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
                                   const opcua::QualifiedName& name) {
-    auto subtypes = nodes.browse(base, {opcua::ids::kHasSubtype});
-    if (!subtypes) {
-        return fail(std::move(subtypes.error()));
-    }
-    for (const auto& subtype : *subtypes) {
+    METIER_ASSIGN(auto subtypes, nodes.browse(base, {opcua::ids::kHasSubtype}));
+    for (const auto& subtype : subtypes) {
         if (subtype.browse_name == name) {
             return subtype.target;
         }
@@ -104,34 +101,23 @@ Result<ModelIds> ModelIds::of(const opcua::AddressSpace& nodes) {
     ids.device = *device;
     ids.metier = *metier;
     ids.skill_type = opcua::NodeId(*device, kSkillTypeId);
-    auto event_type = findSubtype(nodes, opcua::ids::kProgramTransitionEventType,
-                                  {*device, "SkillTransitionEventType"});
-    if (!event_type) {
-        return fail(std::move(event_type.error()));
-    }
-    ids.transition_event_type = *event_type;
+    METIER_ASSIGN(auto event_type, findSubtype(nodes, opcua::ids::kProgramTransitionEventType,
+                                               {*device, "SkillTransitionEventType"}));
+    ids.transition_event_type = event_type;
     for (const auto& row : kSubStates) {
-        auto machine = findSubtype(nodes, kFiniteStateMachineType,
-                                   {*metier, std::string(machineOf(row.state))});
-        if (!machine) {
-            return fail(std::move(machine.error()));
-        }
-        auto state = nodes.find(*machine, {*metier, std::string(skill::toString(row.sub_state))});
-        if (!state) {
-            return fail(std::move(state.error()));
-        }
-        ids.sub_states.emplace(row.sub_state, *state);
+        METIER_ASSIGN(auto machine, findSubtype(nodes, kFiniteStateMachineType,
+                                                {*metier, std::string(machineOf(row.state))}));
+        METIER_ASSIGN(auto state,
+                      nodes.find(machine, {*metier, std::string(skill::toString(row.sub_state))}));
+        ids.sub_states.emplace(row.sub_state, state);
     }
     return ids;
 }
 
 Result<opcua::NodeId> typeDirectlyBelow(const opcua::AddressSpace& nodes, const opcua::NodeId& base,
                                         const opcua::QualifiedName& name) {
-    const auto types = nodes.browse(base, {opcua::ids::kHasSubtype});
-    if (!types) {
-        return fail(types.error());
-    }
-    for (const auto& type : *types) {
+    METIER_ASSIGN(const auto types, nodes.browse(base, {opcua::ids::kHasSubtype}));
+    for (const auto& type : types) {
         if (type.browse_name == name) {
             return type.target;
         }

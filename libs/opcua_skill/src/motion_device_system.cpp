@@ -46,22 +46,16 @@ struct Namespaces {
             {kMetierUri, &result.metier},
         }};
         for (const auto& [uri, index] : wanted) {
-            auto found = nodes.namespaceIndex(uri);
-            if (!found) {
-                return fail(std::move(found.error()));
-            }
-            *index = *found;
+            METIER_ASSIGN(auto found, nodes.namespaceIndex(uri));
+            *index = found;
         }
         return result;
     }
 };
 
 Result<NodeId> firstOfType(const AddressSpace& nodes, const NodeId& parent, const NodeId& type) {
-    auto children = nodes.browse(parent);
-    if (!children) {
-        return fail(std::move(children.error()));
-    }
-    for (const auto& child : *children) {
+    METIER_ASSIGN(auto children, nodes.browse(parent));
+    for (const auto& child : children) {
         if (child.type_definition == type) {
             return child.target;
         }
@@ -206,11 +200,8 @@ private:
         made.controller = steps_.object(std::move(controller));
         tellMaker(made.controller);
         steps_.check([&]() -> Result<void> {
-            auto skills = makeSkillController(nodes(), made.controller);
-            if (!skills) {
-                return fail(std::move(skills.error()));
-            }
-            made.skills = std::move(*skills);
+            METIER_ASSIGN(auto skills, makeSkillController(nodes(), made.controller));
+            made.skills = std::move(skills);
             return {};
         });
     }
@@ -232,42 +223,34 @@ private:
 }  // namespace
 
 Result<MotionDeviceSystem> findMotionDeviceSystem(const AddressSpace& nodes) {
-    const auto index = Namespaces::of(nodes);
-    if (!index) {
-        return fail(index.error());
-    }
-    const auto system = firstOfType(nodes, NodeId(index->di, kDeviceSet),
-                                    NodeId(index->opc_robotics, kMotionDeviceSystemType));
-    if (!system) {
-        return fail(system.error());
-    }
-    const auto devices = nodes.find(*system, {index->opc_robotics, "MotionDevices"});
-    const auto controllers = nodes.find(*system, {index->opc_robotics, "Controllers"});
+    METIER_ASSIGN(const auto index, Namespaces::of(nodes));
+    METIER_ASSIGN(const auto system,
+                  firstOfType(nodes, NodeId(index.di, kDeviceSet),
+                              NodeId(index.opc_robotics, kMotionDeviceSystemType)));
+    const auto devices = nodes.find(system, {index.opc_robotics, "MotionDevices"});
+    const auto controllers = nodes.find(system, {index.opc_robotics, "Controllers"});
     if (!devices || !controllers) {
         return fail(devices ? controllers.error() : devices.error());
     }
     const auto device =
-        firstOfType(nodes, *devices, NodeId(index->robotics, kSkillMotionDeviceType));
+        firstOfType(nodes, *devices, NodeId(index.robotics, kSkillMotionDeviceType));
     const auto controller =
-        firstOfType(nodes, *controllers, NodeId(index->opc_robotics, kControllerType));
+        firstOfType(nodes, *controllers, NodeId(index.opc_robotics, kControllerType));
     if (!device || !controller) {
         return fail(device ? controller.error() : device.error());
     }
-    const auto skills = nodes.find(*controller, {index->device, "Skills"});
-    const auto kinematics = nodes.find(*device, {index->metier, "Kinematics"});
+    const auto skills = nodes.find(*controller, {index.device, "Skills"});
+    const auto kinematics = nodes.find(*device, {index.metier, "Kinematics"});
     if (!skills || !kinematics) {
         return fail(skills ? kinematics.error() : skills.error());
     }
-    return MotionDeviceSystem{*system, *device, *controller, *skills, *kinematics};
+    return MotionDeviceSystem{system, *device, *controller, *skills, *kinematics};
 }
 
 Result<MotionDeviceSystem> publishMotionDeviceSystem(AddressSpace& nodes,
                                                      const MotionDeviceSystemSpec& spec) {
-    const auto index = Namespaces::of(nodes);
-    if (!index) {
-        return fail(index.error());
-    }
-    return SystemMaker(nodes, spec, *index).make();
+    METIER_ASSIGN(const auto index, Namespaces::of(nodes));
+    return SystemMaker(nodes, spec, index).make();
 }
 
 }  // namespace metier::opcua_skill

@@ -26,64 +26,45 @@ opcua::NodeSpec specOf(const NodeId& parent, const Reference& declaration) {
 
 /// Arguments, units and ranges are the declaration's own.
 Result<void> shareProperties(AddressSpace& nodes, const NodeId& node, const NodeId& declaration) {
-    const auto properties = nodes.browse(declaration, {opcua::ids::kHasProperty});
-    if (!properties) {
-        return fail(properties.error());
-    }
-    for (const auto& property : *properties) {
-        auto shared = nodes.addReference(node, opcua::ids::kHasProperty, property.target);
-        if (!shared) {
-            return shared;
-        }
+    METIER_ASSIGN(const auto properties, nodes.browse(declaration, {opcua::ids::kHasProperty}));
+    for (const auto& property : properties) {
+        METIER_TRY(nodes.addReference(node, opcua::ids::kHasProperty, property.target));
     }
     return {};
 }
 
 Result<NodeId> addVariable(AddressSpace& nodes, const NodeId& parent,
                            const Reference& declaration) {
-    const auto shape = nodes.shapeOf(declaration.target);
-    if (!shape) {
-        return fail(shape.error());
-    }
+    METIER_ASSIGN(const auto shape, nodes.shapeOf(declaration.target));
     opcua::VariableSpec spec;
     spec.node = specOf(parent, declaration);
     spec.type = declaration.type_definition;
-    spec.data_type = shape->data_type;
-    spec.value_rank = shape->value_rank;
+    spec.data_type = shape.data_type;
+    spec.value_rank = shape.value_rank;
     spec.children = opcua::Children::none;
     return nodes.addVariable(spec);
 }
 
 /// What the lease's interface declares, at the controller itself.
 Result<void> addLease(AddressSpace& nodes, const NodeId& controller, const NodeId& interface) {
-    const auto declared = nodes.browse(interface, {opcua::ids::kHasComponent});
-    if (!declared) {
-        return fail(declared.error());
-    }
-    for (const auto& declaration : *declared) {
-        const auto added = declaration.node_class == opcua::NodeClass::method
-                               ? nodes.addMethod({specOf(controller, declaration), {}, {}, {}})
-                               : addVariable(nodes, controller, declaration);
-        if (!added) {
-            return fail(added.error());
-        }
-        if (auto shared = shareProperties(nodes, *added, declaration.target); !shared) {
-            return shared;
-        }
+    METIER_ASSIGN(const auto declared, nodes.browse(interface, {opcua::ids::kHasComponent}));
+    for (const auto& declaration : declared) {
+        METIER_ASSIGN(const auto added,
+                      declaration.node_class == opcua::NodeClass::method
+                          ? nodes.addMethod({specOf(controller, declaration), {}, {}, {}})
+                          : addVariable(nodes, controller, declaration));
+        METIER_TRY(shareProperties(nodes, added, declaration.target));
     }
     return {};
 }
 
 Result<void> addLock(AddressSpace& nodes, const NodeId& controller) {
-    const auto di = nodes.namespaceIndex(kDiUri);
-    if (!di) {
-        return fail(di.error());
-    }
+    METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
     opcua::ObjectSpec lock;
     lock.node.parent = controller;
-    lock.node.browse_name = {*di, "Lock"};
+    lock.node.browse_name = {di, "Lock"};
     lock.node.description = {"en", "Used to lock the controller."};
-    lock.type = NodeId(*di, kLockingServicesType);
+    lock.type = NodeId(di, kLockingServicesType);
     return nodes.addObject(lock, opcua::MethodNodes::own).map([](const NodeId& /*lock*/) {});
 }
 
@@ -97,17 +78,10 @@ Result<NodeId> makeSkillController(AddressSpace& nodes, const NodeId& controller
     }
     const NodeId lease(*metier, kIControlLeaseType);
     for (const auto& interface : {NodeId(*device, kISkillControllerType), lease}) {
-        if (auto added = nodes.addReference(controller, opcua::ids::kHasInterface, interface);
-            !added) {
-            return fail(std::move(added.error()));
-        }
+        METIER_TRY(nodes.addReference(controller, opcua::ids::kHasInterface, interface));
     }
-    if (auto added = addLease(nodes, controller, lease); !added) {
-        return fail(std::move(added.error()));
-    }
-    if (auto locked = addLock(nodes, controller); !locked) {
-        return fail(std::move(locked.error()));
-    }
+    METIER_TRY(addLease(nodes, controller, lease));
+    METIER_TRY(addLock(nodes, controller));
     opcua::ObjectSpec skills;
     skills.node.parent = controller;
     skills.node.browse_name = {*device, "Skills"};
@@ -117,30 +91,17 @@ Result<NodeId> makeSkillController(AddressSpace& nodes, const NodeId& controller
 
 Result<SkillController> publishSkillController(AddressSpace& nodes, const std::string& name,
                                                const std::string& description) {
-    const auto di = nodes.namespaceIndex(kDiUri);
-    if (!di) {
-        return fail(di.error());
-    }
+    METIER_ASSIGN(const auto di, nodes.namespaceIndex(kDiUri));
     opcua::ObjectSpec spec;
     spec.node.id = NodeId(kOwnNamespace, name);
-    spec.node.parent = NodeId(*di, kDeviceSet);
+    spec.node.parent = NodeId(di, kDeviceSet);
     spec.node.browse_name = {kOwnNamespace, name};
     spec.node.description = {"en", description};
     spec.event_notifier = opcua::EventNotifier::subscribable;
-    auto controller = nodes.addObject(spec);
-    if (!controller) {
-        return fail(std::move(controller.error()));
-    }
-    if (auto linked =
-            nodes.addReference(opcua::ids::kServer, opcua::ids::kHasNotifier, *controller);
-        !linked) {
-        return fail(std::move(linked.error()));
-    }
-    auto skills = makeSkillController(nodes, *controller);
-    if (!skills) {
-        return fail(std::move(skills.error()));
-    }
-    return SkillController{std::move(*controller), std::move(*skills)};
+    METIER_ASSIGN(auto controller, nodes.addObject(spec));
+    METIER_TRY(nodes.addReference(opcua::ids::kServer, opcua::ids::kHasNotifier, controller));
+    METIER_ASSIGN(auto skills, makeSkillController(nodes, controller));
+    return SkillController{std::move(controller), std::move(skills)};
 }
 
 Result<SkillController> findSkillController(const opcua::AddressSpace& nodes) {
@@ -149,11 +110,8 @@ Result<SkillController> findSkillController(const opcua::AddressSpace& nodes) {
     if (!di || !device) {
         return fail(di ? device.error() : di.error());
     }
-    const auto objects = nodes.browse(opcua::NodeId(*di, kDeviceSet));
-    if (!objects) {
-        return fail(objects.error());
-    }
-    for (const auto& object : *objects) {
+    METIER_ASSIGN(const auto objects, nodes.browse(opcua::NodeId(*di, kDeviceSet)));
+    for (const auto& object : objects) {
         if (auto skills = nodes.find(object.target, {*device, "Skills"})) {
             return SkillController{object.target, std::move(*skills)};
         }

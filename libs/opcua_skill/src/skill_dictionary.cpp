@@ -58,15 +58,10 @@ const std::vector<Term>& terms() {
 /// All types below `base`, by name.
 Result<void> collectTypes(const AddressSpace& nodes, const NodeId& base,
                           std::map<std::string, NodeId, std::less<>>& types) {
-    const auto subtypes = nodes.browse(base, {opcua::ids::kHasSubtype});
-    if (!subtypes) {
-        return fail(subtypes.error());
-    }
-    for (const auto& subtype : *subtypes) {
+    METIER_ASSIGN(const auto subtypes, nodes.browse(base, {opcua::ids::kHasSubtype}));
+    for (const auto& subtype : subtypes) {
         types.emplace(subtype.browse_name.name, subtype.target);
-        if (auto collected = collectTypes(nodes, subtype.target, types); !collected) {
-            return collected;
-        }
+        METIER_TRY(collectTypes(nodes, subtype.target, types));
     }
     return {};
 }
@@ -102,27 +97,16 @@ Result<void> publishDictionary(AddressSpace& nodes) {
         return fail(metier ? device.error() : metier.error());
     }
     std::map<std::string, NodeId, std::less<>> types;
-    if (auto collected = collectTypes(nodes, NodeId(*device, kSkillTypeId), types); !collected) {
-        return collected;
-    }
-    const auto folder = addFolder(nodes, *metier);
-    if (!folder) {
-        return fail(folder.error());
-    }
+    METIER_TRY(collectTypes(nodes, NodeId(*device, kSkillTypeId), types));
+    METIER_ASSIGN(const auto folder, addFolder(nodes, *metier));
     for (const auto& term : terms()) {
-        const auto entry = addEntry(nodes, *folder, term);
-        if (!entry) {
-            return fail(entry.error());
-        }
+        METIER_ASSIGN(const auto entry, addEntry(nodes, folder, term));
         for (const auto name : term.types) {
             const auto type = types.find(name);
             if (type == types.end()) {
                 continue;
             }
-            if (auto added = nodes.addReference(type->second, kHasDictionaryEntry, *entry);
-                !added) {
-                return added;
-            }
+            METIER_TRY(nodes.addReference(type->second, kHasDictionaryEntry, entry));
         }
     }
     return {};

@@ -113,29 +113,21 @@ SkillInstance declarationsOf(const SkillLayout& layout, const std::vector<UsedNo
 Result<SkillInstance> SkillFactory::make(const NodeId& skills,
                                          const skill::SkillDescription& description,
                                          NodeStyle style) {
-    auto plan = planFor(description, style);
-    if (!plan) {
-        return fail(std::move(plan.error()));
-    }
+    METIER_ASSIGN(auto plan, planFor(description, style));
     const std::string prefix = textOf(skills) + "/" + description.name;
     SkillInstance instance{style == NodeStyle::readable
                                ? NodeId(skills.namespaceIndex(), prefix)
                                : compactId(skills.namespaceIndex(), prefix),
                            {}};
-    if (auto added = addObject(skills, instance.id, description, (*plan)->type); !added) {
-        return fail(std::move(added.error()));
-    }
+    METIER_TRY(addObject(skills, instance.id, description, plan->type));
     std::vector<NodeId> made;
-    made.reserve((*plan)->steps.size());
-    for (const auto& step : (*plan)->steps) {
+    made.reserve(plan->steps.size());
+    for (const auto& step : plan->steps) {
         const NodeId& parent = step.parent == LayoutNode::kSkill ? instance.id : made[step.parent];
-        auto node = addNode(step, parent, prefix, style);
-        if (!node) {
-            return fail(std::move(node.error()));
-        }
-        made.push_back(*node);
+        METIER_ASSIGN(auto node, addNode(step, parent, prefix, style));
+        made.push_back(node);
         if (step.purpose && !step.shared) {
-            instance.nodes.push_back({std::move(*node), *step.purpose});
+            instance.nodes.push_back({std::move(node), *step.purpose});
         }
     }
     return instance;
@@ -146,11 +138,8 @@ Result<const SkillFactory::Plan*> SkillFactory::planFor(const skill::SkillDescri
     auto key = keyOf(description) + (style == NodeStyle::compact ? "\ncompact" : "");
     auto found = plans_.find(key);
     if (found == plans_.end()) {
-        auto plan = makePlan(description, style);
-        if (!plan) {
-            return fail(std::move(plan.error()));
-        }
-        found = plans_.emplace(std::move(key), std::move(*plan)).first;
+        METIER_ASSIGN(auto plan, makePlan(description, style));
+        found = plans_.emplace(std::move(key), std::move(plan)).first;
     }
     return &found->second;
 }
@@ -166,53 +155,37 @@ Result<SkillLayout> SkillFactory::layoutFor(const skill::SkillDescription& descr
     if (description.steps.empty()) {
         return layoutOfType(nodes_, type);
     }
-    const auto sequence = findType(ids_.skill_type, kSequenceSkillType);
-    if (!sequence) {
-        return fail(sequence.error());
-    }
-    auto layout = layoutOfType(nodes_, type, *sequence);
+    METIER_ASSIGN(const auto sequence, findType(ids_.skill_type, kSequenceSkillType));
+    auto layout = layoutOfType(nodes_, type, sequence);
     if (layout) {
-        if (auto added = addDeclaredFields(nodes_, *sequence, description, *layout); !added) {
-            return fail(std::move(added.error()));
-        }
+        METIER_TRY(addDeclaredFields(nodes_, sequence, description, *layout));
     }
     return layout;
 }
 
 Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription& description,
                                                   NodeStyle style) {
-    auto type = typeFor(description);
-    if (!type) {
-        return fail(std::move(type.error()));
-    }
-    auto layout = layoutFor(description, *type);
-    if (!layout) {
-        return fail(std::move(layout.error()));
-    }
+    METIER_ASSIGN(auto type, typeFor(description));
+    METIER_ASSIGN(auto layout, layoutFor(description, type));
     if (style == NodeStyle::compact) {
-        dropWhatCompactLacks(*layout);
+        dropWhatCompactLacks(layout);
     }
-    auto used = assignPurposes(*layout, description);
-    if (!used) {
-        return fail(std::move(used.error()));
-    }
-    if (auto checked = checkTypes(nodes_, declarationsOf(*layout, *used), description); !checked) {
-        return fail(std::move(checked.error()));
-    }
-    const auto needed = neededNodes(*layout, *used);
-    std::vector<std::size_t> step_of(layout->size());
-    std::vector<bool> has_children(layout->size());
-    for (std::size_t i = 0; i < layout->size(); ++i) {
-        if (needed[i] && (*layout)[i].parent != LayoutNode::kSkill) {
-            has_children[(*layout)[i].parent] = true;
+    METIER_ASSIGN(auto used, assignPurposes(layout, description));
+    METIER_TRY(checkTypes(nodes_, declarationsOf(layout, used), description));
+    const auto needed = neededNodes(layout, used);
+    std::vector<std::size_t> step_of(layout.size());
+    std::vector<bool> has_children(layout.size());
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        if (needed[i] && layout[i].parent != LayoutNode::kSkill) {
+            has_children[layout[i].parent] = true;
         }
     }
-    Plan plan{*type, {}};
-    auto next_used = used->begin();
-    for (std::size_t i = 0; i < layout->size(); ++i) {
-        auto& node = (*layout)[i];
+    Plan plan{type, {}};
+    auto next_used = used.begin();
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        auto& node = layout[i];
         Step step;
-        if (next_used != used->end() && next_used->index == i) {
+        if (next_used != used.end() && next_used->index == i) {
             step.purpose = next_used++->purpose;
         }
         if (!needed[i]) {
@@ -221,9 +194,7 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
         step.parent = node.parent == LayoutNode::kSkill ? node.parent : step_of[node.parent];
         step.path = std::move(node.path);
         step.declaration = std::move(node.reference);
-        if (auto described = describe(step); !described) {
-            return fail(std::move(described.error()));
-        }
+        METIER_TRY(describe(step));
         if (node.declared_by_skill) {
             takeFrom(fieldOf(description, *step.purpose), step);
         }
@@ -245,11 +216,8 @@ void SkillFactory::takeFrom(const skill::Field& field, Step& step) {
 }
 
 Result<void> SkillFactory::describe(Step& step) const {
-    auto description = nodes_.descriptionOf(step.declaration.target);
-    if (!description) {
-        return fail(std::move(description.error()));
-    }
-    step.description = std::move(*description);
+    METIER_ASSIGN(auto description, nodes_.descriptionOf(step.declaration.target));
+    step.description = std::move(description);
     if (step.declaration.node_class != NodeClass::variable) {
         return {};
     }
@@ -284,11 +252,8 @@ bool SkillFactory::serves(const Step& step, const skill::SkillDescription& descr
 }
 
 Result<NodeId> SkillFactory::findType(const NodeId& base, std::string_view name) const {
-    auto subtypes = nodes_.browse(base, {opcua::ids::kHasSubtype});
-    if (!subtypes) {
-        return fail(std::move(subtypes.error()));
-    }
-    for (const auto& subtype : *subtypes) {
+    METIER_ASSIGN(auto subtypes, nodes_.browse(base, {opcua::ids::kHasSubtype}));
+    for (const auto& subtype : subtypes) {
         if (subtype.browse_name.name == name || subtype.browse_name.name + "Type" == name) {
             return subtype.target;
         }
@@ -310,9 +275,7 @@ Result<void> SkillFactory::addObject(const NodeId& skills, const NodeId& id,
     spec.type = type;
     spec.event_notifier = opcua::EventNotifier::subscribable;
     spec.children = opcua::Children::none;
-    if (auto added = nodes_.addObject(spec); !added) {
-        return fail(std::move(added.error()));
-    }
+    METIER_TRY(nodes_.addObject(spec));
     auto owners =
         nodes_.browse(skills, {opcua::ids::kHasComponent, opcua::BrowseFilter::Direction::inverse});
     if (!owners || owners->empty()) {

@@ -28,33 +28,21 @@ public:
     /// Adds the children that `type`, its supertypes and its interfaces declare.
     Result<void> addType(std::size_t parent, NodeId type) {
         while (!type.isNull()) {
-            if (auto added = addDeclared(parent, type); !added) {
-                return added;
-            }
-            if (auto added = addInterfaces(parent, type); !added) {
-                return added;
-            }
-            auto super = superType(type);
-            if (!super) {
-                return fail(std::move(super.error()));
-            }
-            type = std::move(*super);
+            METIER_TRY(addDeclared(parent, type));
+            METIER_TRY(addInterfaces(parent, type));
+            METIER_ASSIGN(auto super, superType(type));
+            type = std::move(super);
         }
         return {};
     }
 
     /// Adds what hangs below a node that is an instance.
     Result<void> addExisting(std::size_t parent, const NodeId& node) {
-        auto children = nodes_.browse(node, {kAggregates, Direction::forward});
-        if (!children) {
-            return fail(std::move(children.error()));
-        }
-        for (auto& child : *children) {
+        METIER_ASSIGN(auto children, nodes_.browse(node, {kAggregates, Direction::forward}));
+        for (auto& child : children) {
             const NodeId target = child.target;
             const auto index = place(parent, std::move(child), LayoutNode::Rule::mandatory);
-            if (auto added = addExisting(index, target); !added) {
-                return added;
-            }
+            METIER_TRY(addExisting(index, target));
         }
         return {};
     }
@@ -63,32 +51,23 @@ public:
 
 private:
     Result<NodeId> superType(const NodeId& type) const {
-        auto above = nodes_.browse(type, {opcua::ids::kHasSubtype, Direction::inverse});
-        if (!above) {
-            return fail(std::move(above.error()));
-        }
-        return above->empty() ? NodeId() : above->front().target;
+        METIER_ASSIGN(auto above,
+                      nodes_.browse(type, {opcua::ids::kHasSubtype, Direction::inverse}));
+        return above.empty() ? NodeId() : above.front().target;
     }
 
     Result<void> addInterfaces(std::size_t parent, const NodeId& type) {
-        auto interfaces = nodes_.browse(type, {opcua::ids::kHasInterface, Direction::forward});
-        if (!interfaces) {
-            return fail(std::move(interfaces.error()));
-        }
-        for (const auto& interface : *interfaces) {
-            if (auto added = addType(parent, interface.target); !added) {
-                return added;
-            }
+        METIER_ASSIGN(auto interfaces,
+                      nodes_.browse(type, {opcua::ids::kHasInterface, Direction::forward}));
+        for (const auto& interface : interfaces) {
+            METIER_TRY(addType(parent, interface.target));
         }
         return {};
     }
 
     Result<void> addDeclared(std::size_t parent, const NodeId& declaring) {
-        auto children = nodes_.browse(declaring, {kAggregates, Direction::forward});
-        if (!children) {
-            return fail(std::move(children.error()));
-        }
-        for (auto& child : *children) {
+        METIER_ASSIGN(auto children, nodes_.browse(declaring, {kAggregates, Direction::forward}));
+        for (auto& child : children) {
             const auto rule = ruleOf(child.target);
             if (!rule) {
                 continue;
@@ -96,12 +75,8 @@ private:
             const NodeId target = child.target;
             const NodeId type = child.type_definition;
             const auto index = place(parent, std::move(child), *rule);
-            if (auto added = addDeclared(index, target); !added) {
-                return added;
-            }
-            if (auto added = addType(index, type); !added) {
-                return added;
-            }
+            METIER_TRY(addDeclared(index, target));
+            METIER_TRY(addType(index, type));
         }
         return {};
     }
@@ -145,18 +120,14 @@ Result<SkillLayout> layoutOfType(const AddressSpace& nodes, const NodeId& type,
                                  const NodeId& also) {
     LayoutReader reader(nodes);
     for (const auto& one : {type, also}) {
-        if (auto added = reader.addType(LayoutNode::kSkill, one); !added) {
-            return fail(std::move(added.error()));
-        }
+        METIER_TRY(reader.addType(LayoutNode::kSkill, one));
     }
     return std::move(reader).take();
 }
 
 Result<SkillLayout> layoutOfInstance(const AddressSpace& nodes, const NodeId& instance) {
     LayoutReader reader(nodes);
-    if (auto added = reader.addExisting(LayoutNode::kSkill, instance); !added) {
-        return fail(std::move(added.error()));
-    }
+    METIER_TRY(reader.addExisting(LayoutNode::kSkill, instance));
     return std::move(reader).take();
 }
 

@@ -93,9 +93,7 @@ SkillNode::~SkillNode() {
 Result<void> SkillNode::bind(opcua::AddressSpace& nodes, const std::vector<BoundNode>& bound) {
     slots_.reserve(bound.size());
     for (const auto& [node, purpose] : bound) {
-        if (auto done = bindNode(nodes, node, purpose); !done) {
-            return done;
-        }
+        METIER_TRY(bindNode(nodes, node, purpose));
     }
     return {};
 }
@@ -316,9 +314,7 @@ Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) con
     }
     if (is_field) {
         const auto index = static_cast<std::uint16_t>(field - fields.begin());
-        if (auto within = limits_.check(index, *field, *taken); !within) {
-            return within;
-        }
+        METIER_TRY(limits_.check(index, *field, *taken));
     }
     if (!into.parameters.emplace(name, std::move(*taken)).second) {
         return fail(Errc::invalid_argument, fmt::format("{} is given twice", name));
@@ -334,15 +330,10 @@ Result<void> SkillNode::takeGiven(const opcua::KeyValue& given, Given& into) con
 }
 
 Result<SkillNode::Given> SkillNode::givenIn(const Value& pairs) const {
-    const auto all = pairs.as<std::vector<opcua::KeyValue>>();
-    if (!all) {
-        return fail(all.error());
-    }
+    METIER_ASSIGN(const auto all, pairs.as<std::vector<opcua::KeyValue>>());
     Given given;
-    for (const auto& one : *all) {
-        if (auto taken = takeGiven(one, given); !taken) {
-            return fail(std::move(taken.error()));
-        }
+    for (const auto& one : all) {
+        METIER_TRY(takeGiven(one, given));
     }
     return given;
 }
@@ -408,20 +399,14 @@ Result<std::vector<Value>> SkillNode::check(const Session& session, std::span<co
 }
 
 Result<std::vector<Value>> SkillNode::getExecution(std::span<const Value> inputs) const {
-    const auto id = inputs[0].as<std::string>();
-    if (!id) {
-        return fail(id.error());
-    }
-    const auto record = program_->execution(*id);
-    if (!record) {
-        return fail(record.error());
-    }
-    return std::vector{Value::of(static_cast<std::uint32_t>(record->state)),
-                       Value::of(static_cast<std::int32_t>(record->reason)),
-                       Value::of(record->reason_text),
-                       Value::of(record->start_time),
-                       Value::of(record->end_time),
-                       Value::of(pairsOf(record->result))};
+    METIER_ASSIGN(const auto id, inputs[0].as<std::string>());
+    METIER_ASSIGN(const auto record, program_->execution(id));
+    return std::vector{Value::of(static_cast<std::uint32_t>(record.state)),
+                       Value::of(static_cast<std::int32_t>(record.reason)),
+                       Value::of(record.reason_text),
+                       Value::of(record.start_time),
+                       Value::of(record.end_time),
+                       Value::of(pairsOf(record.result))};
 }
 
 Result<void> SkillNode::remember(const Session& session, Result<void> outcome) {

@@ -56,26 +56,16 @@ public:
             return fail(Errc::already_exists, skill_object.toString() + " has a skill already");
         }
         auto& nodes = server_.nodes();
-        auto instance = wireExisting(nodes, skill_object, skill->description());
-        if (!instance) {
-            return fail(std::move(instance.error()));
-        }
-        auto subscribable =
-            nodes.setEventNotifier(skill_object, opcua::EventNotifier::subscribable);
-        if (!subscribable) {
-            return fail(std::move(subscribable.error()));
-        }
-        return serve(*instance, std::move(skill), std::move(options));
+        METIER_ASSIGN(auto instance, wireExisting(nodes, skill_object, skill->description()));
+        METIER_TRY(nodes.setEventNotifier(skill_object, opcua::EventNotifier::subscribable));
+        return serve(instance, std::move(skill), std::move(options));
     }
 
     Result<skill::Program*> publish(const opcua::NodeId& skills,
                                     std::unique_ptr<skill::Skill> skill,
                                     skill::ProgramOptions options, NodeStyle style) {
-        auto instance = factory_.make(skills, skill->description(), style);
-        if (!instance) {
-            return fail(std::move(instance.error()));
-        }
-        return serve(*instance, std::move(skill), std::move(options));
+        METIER_ASSIGN(auto instance, factory_.make(skills, skill->description(), style));
+        return serve(instance, std::move(skill), std::move(options));
     }
 
     Result<void> serveControl(const opcua::NodeId& controller,
@@ -87,11 +77,7 @@ public:
 
     Result<void> publishRecords() {
         for (const auto& skill : skills_) {
-            if (auto published =
-                    publishExecutionRecords(server_.nodes(), skill->id(), skill->program());
-                !published) {
-                return published;
-            }
+            METIER_TRY(publishExecutionRecords(server_.nodes(), skill->id(), skill->program()));
         }
         return {};
     }
@@ -149,14 +135,11 @@ private:
     /// Its Suspend is there all the same, since every Program has one, and refuses.
     Result<void> tellNotSuspendable(const opcua::NodeId& skill) {
         auto& nodes = server_.nodes();
-        const auto metier = nodes.namespaceIndex(kMetierUri);
-        if (!metier) {
-            return fail(metier.error());
-        }
+        METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
         opcua::VariableSpec spec;
         spec.node.parent = skill;
         spec.node.reference = opcua::ids::kHasProperty;
-        spec.node.browse_name = {*metier, "Suspendable"};
+        spec.node.browse_name = {metier, "Suspendable"};
         spec.node.description = {"en", "False: Suspend is refused, whatever the skill is doing."};
         spec.type = opcua::ids::kPropertyType;
         spec.data_type = opcua::ids::kBoolean;
@@ -190,23 +173,15 @@ private:
 Result<std::unique_ptr<SkillServer>> SkillServer::create(
     opcua::Server& server, const Clock& clock, std::shared_ptr<spdlog::logger> logger,
     std::shared_ptr<skill::Executor> executor) {
-    auto ids = ModelIds::of(server.nodes());
-    if (!ids) {
-        return fail(std::move(ids.error()));
-    }
-    auto emitter =
-        opcua::EventEmitter::create(server, ids->transition_event_type, transitionFields(*ids));
-    if (!emitter) {
-        return fail(std::move(emitter.error()));
-    }
-    auto stopping = opcua::EventEmitter::create(
-        server, opcua::NodeId(ids->metier, kStoppingEventTypeId), stoppingFields(*ids));
-    if (!stopping) {
-        return fail(std::move(stopping.error()));
-    }
-    SkillContext context{std::move(*ids),
-                         std::move(*emitter),
-                         std::move(*stopping),
+    METIER_ASSIGN(auto ids, ModelIds::of(server.nodes()));
+    METIER_ASSIGN(auto emitter, opcua::EventEmitter::create(server, ids.transition_event_type,
+                                                            transitionFields(ids)));
+    METIER_ASSIGN(auto stopping, opcua::EventEmitter::create(
+                                     server, opcua::NodeId(ids.metier, kStoppingEventTypeId),
+                                     stoppingFields(ids)));
+    SkillContext context{std::move(ids),
+                         std::move(emitter),
+                         std::move(stopping),
                          {},
                          server,
                          logger ? std::move(logger) : spdlog::default_logger()};

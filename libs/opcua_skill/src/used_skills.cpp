@@ -32,13 +32,8 @@ Result<void> setProperties(AddressSpace& nodes, const NodeId& object, std::uint1
          {"SkillTypeName", &used.type_name},
          {"ControllerName", &used.controller}}};
     for (const auto& [name, value] : properties) {
-        const auto property = nodes.find(object, {metier, name});
-        if (!property) {
-            return fail(property.error());
-        }
-        if (auto written = nodes.write(*property, opcua::Value::of(*value)); !written) {
-            return written;
-        }
+        METIER_ASSIGN(const auto property, nodes.find(object, {metier, name}));
+        METIER_TRY(nodes.write(property, opcua::Value::of(*value)));
     }
     return {};
 }
@@ -46,22 +41,16 @@ Result<void> setProperties(AddressSpace& nodes, const NodeId& object, std::uint1
 }  // namespace
 
 Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const NodeId& used) {
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
-    const auto uses = typeDirectlyBelow(nodes, kNonHierarchicalReferences, {*metier, "UsesSkill"});
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    const auto uses = typeDirectlyBelow(nodes, kNonHierarchicalReferences, {metier, "UsesSkill"});
     return uses ? nodes.addReference(user, *uses, used) : Result<void>(fail(uses.error()));
 }
 
 Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
-    const auto folder = folderOf(nodes, user, *metier);
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    const auto folder = folderOf(nodes, user, metier);
     const auto type =
-        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {*metier, "UsedSkillType"});
+        typeDirectlyBelow(nodes, opcua::ids::kBaseObjectType, {metier, "UsedSkillType"});
     if (!folder || !type) {
         return fail(folder ? type.error() : folder.error());
     }
@@ -70,36 +59,22 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
     spec.node.browse_name = {folder->namespaceIndex(), used.alias};
     spec.node.description = {"en", "Where the skill is that it calls " + used.alias + "."};
     spec.type = *type;
-    const auto object = nodes.addObject(spec);
-    if (!object) {
-        return fail(object.error());
-    }
-    if (auto set = setProperties(nodes, *object, *metier, used); !set) {
-        return set;
-    }
-    return publishUse(nodes, user, *object);
+    METIER_ASSIGN(const auto object, nodes.addObject(spec));
+    METIER_TRY(setProperties(nodes, object, metier, used));
+    return publishUse(nodes, user, object);
 }
 
 Result<void> updateUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
-    const auto metier = nodes.namespaceIndex(kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
-    const auto folder = nodes.find(user, {*metier, kFolder});
-    if (!folder) {
-        return fail(folder.error());
-    }
-    const auto object = nodes.find(*folder, {folder->namespaceIndex(), used.alias});
-    return object ? setProperties(nodes, *object, *metier, used) : fail(object.error());
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
+    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kFolder}));
+    const auto object = nodes.find(folder, {folder.namespaceIndex(), used.alias});
+    return object ? setProperties(nodes, *object, metier, used) : fail(object.error());
 }
 
 Result<NodeId> findSkillObject(const AddressSpace& nodes, const NodeId& skills,
                                const std::string& name) {
-    const auto children = nodes.browse(skills);
-    if (!children) {
-        return fail(children.error());
-    }
-    for (const auto& child : *children) {
+    METIER_ASSIGN(const auto children, nodes.browse(skills));
+    for (const auto& child : children) {
         if (child.browse_name.name == name) {
             return child.target;
         }

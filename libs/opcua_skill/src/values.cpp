@@ -18,11 +18,8 @@ constexpr std::int32_t kArray = 1;
 
 template <typename T>
 Result<skill::Value> take(const opcua::Value& value) {
-    auto taken = value.as<T>();
-    if (!taken) {
-        return fail(std::move(taken.error()));
-    }
-    return skill::Value(std::move(*taken));
+    METIER_ASSIGN(auto taken, value.as<T>());
+    return skill::Value(std::move(taken));
 }
 
 /// One row per type of value: where to look it up by its data type.

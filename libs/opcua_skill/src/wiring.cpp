@@ -73,30 +73,20 @@ Result<void> checkTypes(const AddressSpace& nodes, const SkillInstance& instance
 
 Result<SkillInstance> wireExisting(AddressSpace& nodes, const NodeId& skill_object,
                                    const skill::SkillDescription& description) {
-    auto layout = layoutOfInstance(nodes, skill_object);
-    if (!layout) {
-        return fail(std::move(layout.error()));
-    }
-    auto used = assignPurposes(*layout, description);
-    if (!used) {
-        return fail(std::move(used.error()));
-    }
+    METIER_ASSIGN(auto layout, layoutOfInstance(nodes, skill_object));
+    METIER_ASSIGN(auto used, assignPurposes(layout, description));
     SkillInstance instance{skill_object, {}};
-    auto next_used = used->begin();
-    for (std::size_t i = 0; i < layout->size(); ++i) {
-        const auto& node = (*layout)[i];
-        if (next_used != used->end() && next_used->index == i) {
+    auto next_used = used.begin();
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        const auto& node = layout[i];
+        if (next_used != used.end() && next_used->index == i) {
             instance.nodes.push_back({node.reference.target, next_used++->purpose});
         } else if (isParameterPath(node.path) &&
                    node.reference.node_class == opcua::NodeClass::variable) {
-            if (auto set = nodes.setAccess(node.reference.target, opcua::Access::read); !set) {
-                return fail(std::move(set.error()));
-            }
+            METIER_TRY(nodes.setAccess(node.reference.target, opcua::Access::read));
         }
     }
-    if (auto checked = checkTypes(nodes, instance, description); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkTypes(nodes, instance, description));
     return instance;
 }
 

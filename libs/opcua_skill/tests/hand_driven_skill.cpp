@@ -112,9 +112,7 @@ Result<void> Hand::mayReset() const {
 }
 
 Result<std::unique_ptr<skill::Body>> HandDrivenSkill::prepare(const skill::ValueMap& snapshot) {
-    if (auto answer = hand_->prepared(snapshot); !answer) {
-        return fail(answer.error());
-    }
+    METIER_TRY(hand_->prepared(snapshot));
     return std::make_unique<HandDrivenBody>(hand_);
 }
 

@@ -59,11 +59,8 @@ skill::Fields fieldsOf(const std::vector<FieldNode>& nodes) {
 }  // namespace
 
 Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address, Watch watch) {
-    auto nodes = readSkillNodes(client, address);
-    if (!nodes) {
-        return tl::unexpected(nodes.error());
-    }
-    auto impl = std::make_unique<Impl>(Impl{client, std::move(address), std::move(*nodes)});
+    METIER_ASSIGN(auto nodes, readSkillNodes(client, address));
+    auto impl = std::make_unique<Impl>(Impl{client, std::move(address), std::move(nodes)});
     impl->description = {.name = impl->address.name,
                          .type = impl->address.type_name,
                          .parameters = fieldsOf(impl->nodes.parameters),
@@ -107,19 +104,16 @@ bool AsyncSkill::knowsExecutions() const noexcept {
 
 Answer<AsyncSkill::Now> AsyncSkill::now() const {
     const auto& nodes = impl_->nodes;
-    const auto values =
-        impl_->client.readMany({{nodes.state_number}, {nodes.reason_text}, {nodes.execution_id}});
-    if (!values) {
-        return tl::unexpected(values.error());
-    }
-    const auto number = (*values)[0].value.as<std::uint32_t>();
+    METIER_ASSIGN(
+        const auto values,
+        impl_->client.readMany({{nodes.state_number}, {nodes.reason_text}, {nodes.execution_id}}));
+    const auto number = values[0].value.as<std::uint32_t>();
     if (!number) {
         return opcua::failed(opcua::status::kBadTypeMismatch,
                              impl_->address.name + ": CurrentState/Number");
     }
-    return Now{static_cast<skill::State>(*number),
-               (*values)[1].value.as<std::string>().value_or(""),
-               (*values)[2].value.as<std::string>().value_or("")};
+    return Now{static_cast<skill::State>(*number), values[1].value.as<std::string>().value_or(""),
+               values[2].value.as<std::string>().value_or("")};
 }
 
 Answer<> AsyncSkill::startWith(const skill::StartRequest& request, Done<std::string> done) const {

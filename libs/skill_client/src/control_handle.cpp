@@ -35,21 +35,15 @@ struct LeaseNodes {
 };
 
 Answer<LeaseNodes> findLease(opcua::Client& client, const NodeId& controller) {
-    const auto index = client.namespaceIndex(opcua_skill::kMetierUri);
-    if (!index) {
-        return tl::unexpected(index.error());
-    }
+    METIER_ASSIGN(const auto index, client.namespaceIndex(opcua_skill::kMetierUri));
     LeaseNodes nodes{controller, {}, {}, {}, {}};
     const std::array<std::pair<const char*, NodeId*>, 4> wanted{{{"AcquireControl", &nodes.acquire},
                                                                  {"Heartbeat", &nodes.heartbeat},
                                                                  {"ReleaseControl", &nodes.release},
                                                                  {"ControlOwner", &nodes.owner}}};
     for (const auto& [name, node] : wanted) {
-        auto found = client.translate(controller, {{*index, name}});
-        if (!found) {
-            return tl::unexpected(found.error());
-        }
-        *node = std::move(*found);
+        METIER_ASSIGN(auto found, client.translate(controller, {{index, name}}));
+        *node = std::move(found);
     }
     return nodes;
 }
@@ -188,22 +182,19 @@ private:
 
 Answer<ControlHandle> ControlHandle::acquire(opcua::Client& client, const NodeId& controller,
                                              const ControlOptions& options) {
-    auto nodes = findLease(client, controller);
-    if (!nodes) {
-        return tl::unexpected(nodes.error());
-    }
-    const auto taken = client.call(controller, nodes->acquire,
+    METIER_ASSIGN(auto nodes, findLease(client, controller));
+    const auto taken = client.call(controller, nodes.acquire,
                                    {Value::of(static_cast<std::uint32_t>(options.lease.count())),
                                     Value::of(static_cast<std::int32_t>(options.on_loss))});
     if (!taken) {
-        return tl::unexpected(refused(client, *nodes, taken.error()));
+        return tl::unexpected(refused(client, nodes, taken.error()));
     }
     const auto epoch = taken->outputs.empty() ? Result<std::uint64_t>(0)
                                               : taken->outputs.front().as<std::uint64_t>();
     if (!epoch || *epoch == 0) {
         return opcua::failed(opcua::status::kBadUnexpectedError, "AcquireControl gave no epoch");
     }
-    return ControlHandle(std::make_unique<Heart>(client, std::move(*nodes), *epoch, options));
+    return ControlHandle(std::make_unique<Heart>(client, std::move(nodes), *epoch, options));
 }
 
 ControlHandle::ControlHandle(std::unique_ptr<Heart> heart) : heart_(std::move(heart)) {}

@@ -22,12 +22,9 @@ using opcua_skill::KinematicsData;
 using Children = std::map<std::string, NodeId, std::less<>>;
 
 Answer<Children> childrenByName(Questions& questions, const NodeId& node) {
-    const auto references = questions.browse({.node = node, .node_classes = {}});
-    if (!references) {
-        return tl::unexpected(references.error());
-    }
+    METIER_ASSIGN(const auto references, questions.browse({.node = node, .node_classes = {}}));
     Children children;
-    for (const auto& reference : *references) {
+    for (const auto& reference : references) {
         children.emplace(reference.browse_name.name, reference.target);
     }
     return children;
@@ -98,10 +95,7 @@ Answer<> checkLengths(const KinematicsData& data) {
 
 Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type& device,
                                 const NodeId& object) {
-    const auto children = childrenByName(questions, object);
-    if (!children) {
-        return tl::unexpected(children.error());
-    }
+    METIER_ASSIGN(const auto children, childrenByName(questions, object));
     KinematicsNodes nodes;
     nodes.device_name = device.first;
     nodes.device = device.second;
@@ -111,8 +105,8 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
          {"SafetyState", &nodes.safety_state},
          {"MissedCycles", &nodes.missed_cycles}}};
     for (const auto& [name, node] : wanted) {
-        const auto found = children->find(name);
-        if (found == children->end()) {
+        const auto found = children.find(name);
+        if (found == children.end()) {
             return failure(Errc::not_found, fmt::format("Kinematics has no {}", name));
         }
         *node = found->second;
@@ -124,8 +118,8 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
          {"FlangeForce", &nodes.flange_force},
          {"FlangeTorque", &nodes.flange_torque}}};
     for (const auto& [name, node] : optional) {
-        const auto found = children->find(name);
-        *node = found == children->end() ? NodeId() : found->second;
+        const auto found = children.find(name);
+        *node = found == children.end() ? NodeId() : found->second;
     }
     return nodes;
 }
@@ -134,12 +128,9 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
 Answer<double> readPayload(Questions& questions, const NodeId& device) {
     NodeId node = device;
     for (const auto* name : {"FlangeLoad", "Mass"}) {
-        const auto children = childrenByName(questions, node);
-        if (!children) {
-            return tl::unexpected(children.error());
-        }
-        const auto found = children->find(name);
-        if (found == children->end()) {
+        METIER_ASSIGN(const auto children, childrenByName(questions, node));
+        const auto found = children.find(name);
+        if (found == children.end()) {
             return 0.0;
         }
         node = found->second;
@@ -151,21 +142,12 @@ Answer<double> readPayload(Questions& questions, const NodeId& device) {
 
 /// The Kinematics object below a folder `MotionDevices`; nothing if no device has one.
 Answer<std::optional<KinematicsNodes>> searchDevices(Questions& questions, const NodeId& folder) {
-    const auto devices = childrenByName(questions, folder);
-    if (!devices) {
-        return tl::unexpected(devices.error());
-    }
-    for (const auto& device : *devices) {
-        const auto parts = childrenByName(questions, device.second);
-        if (!parts) {
-            return tl::unexpected(parts.error());
-        }
-        if (const auto found = parts->find("Kinematics"); found != parts->end()) {
-            auto nodes = nodesOf(questions, device, found->second);
-            if (!nodes) {
-                return tl::unexpected(nodes.error());
-            }
-            return std::optional(std::move(*nodes));
+    METIER_ASSIGN(const auto devices, childrenByName(questions, folder));
+    for (const auto& device : devices) {
+        METIER_ASSIGN(const auto parts, childrenByName(questions, device.second));
+        if (const auto found = parts.find("Kinematics"); found != parts.end()) {
+            METIER_ASSIGN(auto nodes, nodesOf(questions, device, found->second));
+            return std::optional(std::move(nodes));
         }
     }
     return std::optional<KinematicsNodes>();
@@ -176,20 +158,14 @@ Answer<std::optional<KinematicsNodes>> searchDevices(Questions& questions, const
 Answer<KinematicsNodes> findKinematics(Client& client, const SkillAddress& skill) {
     Questions questions(client);
     for (auto object = skill.above.rbegin(); object != skill.above.rend(); ++object) {
-        const auto children = childrenByName(questions, object->node);
-        if (!children) {
-            return tl::unexpected(children.error());
-        }
-        const auto devices = children->find("MotionDevices");
-        if (devices == children->end()) {
+        METIER_ASSIGN(const auto children, childrenByName(questions, object->node));
+        const auto devices = children.find("MotionDevices");
+        if (devices == children.end()) {
             continue;
         }
-        auto found = searchDevices(questions, devices->second);
-        if (!found) {
-            return tl::unexpected(found.error());
-        }
-        if (*found) {
-            return std::move(**found);
+        METIER_ASSIGN(auto found, searchDevices(questions, devices->second));
+        if (found) {
+            return std::move(*found);
         }
     }
     return failure(Errc::not_found, skill.name + " belongs to no arm that publishes Kinematics");
@@ -197,11 +173,8 @@ Answer<KinematicsNodes> findKinematics(Client& client, const SkillAddress& skill
 
 Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nodes) {
     Questions questions(client);
-    auto children = childrenByName(questions, nodes.object);
-    if (!children) {
-        return tl::unexpected(children.error());
-    }
-    NamedReader reader(questions, std::move(*children));
+    METIER_ASSIGN(auto children, childrenByName(questions, nodes.object));
+    NamedReader reader(questions, std::move(children));
     KinematicsData data;
     reader.read("BaseFromFirstJoint", data.base_from_first_joint);
     reader.read("LastJointFromFlange", data.last_joint_from_flange);
@@ -220,23 +193,15 @@ Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nod
     if (reader.problem()) {
         return tl::unexpected(*reader.problem());
     }
-    if (auto checked = checkLengths(data); !checked) {
-        return tl::unexpected(checked.error());
-    }
-    const auto payload = readPayload(questions, nodes.device);
-    if (!payload) {
-        return tl::unexpected(payload.error());
-    }
-    data.payload = *payload;
+    METIER_TRY(checkLengths(data));
+    METIER_ASSIGN(const auto payload, readPayload(questions, nodes.device));
+    data.payload = payload;
     return data;
 }
 
 Answer<std::vector<double>> readJointPosition(Client& client, const KinematicsNodes& nodes) {
-    const auto value = client.read(nodes.actual_joint_position);
-    if (!value) {
-        return tl::unexpected(value.error());
-    }
-    auto joints = value->as<std::vector<double>>();
+    METIER_ASSIGN(const auto value, client.read(nodes.actual_joint_position));
+    auto joints = value.as<std::vector<double>>();
     if (!joints) {
         return failure(joints.error().code, "ActualJointPosition: " + joints.error().message);
     }
@@ -244,11 +209,8 @@ Answer<std::vector<double>> readJointPosition(Client& client, const KinematicsNo
 }
 
 Answer<std::uint64_t> readMissedCycles(Client& client, const KinematicsNodes& nodes) {
-    const auto value = client.read(nodes.missed_cycles);
-    if (!value) {
-        return tl::unexpected(value.error());
-    }
-    const auto missed = value->as<std::uint64_t>();
+    METIER_ASSIGN(const auto value, client.read(nodes.missed_cycles));
+    const auto missed = value.as<std::uint64_t>();
     if (!missed) {
         return failure(missed.error().code, "MissedCycles: " + missed.error().message);
     }

@@ -17,23 +17,17 @@ Answer<> Questions::next() {
 }
 
 Answer<std::vector<opcua::ReferenceDescription>> Questions::browse(opcua::BrowseQuery query) {
-    if (auto may = next(); !may) {
-        return tl::unexpected(may.error());
-    }
+    METIER_TRY(next());
     return client_.browse(std::move(query));
 }
 
 Answer<opcua::Value> Questions::read(const opcua::NodeId& node, opcua::AttributeId attribute) {
-    if (auto may = next(); !may) {
-        return tl::unexpected(may.error());
-    }
+    METIER_TRY(next());
     return client_.read(node, attribute);
 }
 
 Answer<std::vector<opcua::DataValue>> Questions::readMany(std::vector<opcua::ReadItem> items) {
-    if (auto may = next(); !may) {
-        return tl::unexpected(may.error());
-    }
+    METIER_TRY(next());
     return client_.readMany(std::move(items));
 }
 

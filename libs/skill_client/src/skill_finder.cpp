@@ -34,14 +34,10 @@ public:
         if (above.size() > kMaxDepth) {
             return {};
         }
-        auto children = questions_.browse({.node = node, .node_classes = {NodeClass::object}});
-        if (!children) {
-            return tl::unexpected(children.error());
-        }
-        for (const auto& child : *children) {
-            if (auto visited = visit(child, above); !visited) {
-                return visited;
-            }
+        METIER_ASSIGN(auto children,
+                      questions_.browse({.node = node, .node_classes = {NodeClass::object}}));
+        for (const auto& child : children) {
+            METIER_TRY(visit(child, above));
         }
         return {};
     }
@@ -53,11 +49,8 @@ private:
         if (child.target == opcua::ids::kServer || !seen_.insert(child.target).second) {
             return {};
         }
-        const auto is_program = isProgram(child.type_definition);
-        if (!is_program) {
-            return tl::unexpected(is_program.error());
-        }
-        if (*is_program) {
+        METIER_ASSIGN(const auto is_program, isProgram(child.type_definition));
+        if (is_program) {
             return add(child, above);
         }
         above.push_back({sanitise(child.browse_name.name), child.target});
@@ -67,12 +60,9 @@ private:
     }
 
     Answer<> add(const ReferenceDescription& skill, const std::vector<SkillAddress::Above>& above) {
-        const auto type_name =
-            questions_.read(skill.type_definition, opcua::AttributeId::browse_name);
-        if (!type_name) {
-            return tl::unexpected(type_name.error());
-        }
-        const auto type = type_name->as<opcua::QualifiedName>().value_or(opcua::QualifiedName{});
+        METIER_ASSIGN(const auto type_name,
+                      questions_.read(skill.type_definition, opcua::AttributeId::browse_name));
+        const auto type = type_name.as<opcua::QualifiedName>().value_or(opcua::QualifiedName{});
         found.push_back({sanitise(skill.browse_name.name), sanitise(skill.display_name.text),
                          skill.target, skill.type_definition, sanitise(type.name), above});
         return {};
@@ -87,15 +77,12 @@ private:
             answer = known(next, chain.size());
             if (!answer) {
                 chain.push_back(next);
-                const auto parents =
-                    questions_.browse({.node = next,
-                                       .reference_type = opcua::ids::kHasSubtype,
-                                       .direction = BrowseQuery::Direction::inverse,
-                                       .node_classes = {}});
-                if (!parents) {
-                    return tl::unexpected(parents.error());
-                }
-                next = parents->empty() ? NodeId{} : parents->front().target;
+                METIER_ASSIGN(const auto parents,
+                              questions_.browse({.node = next,
+                                                 .reference_type = opcua::ids::kHasSubtype,
+                                                 .direction = BrowseQuery::Direction::inverse,
+                                                 .node_classes = {}}));
+                next = parents.empty() ? NodeId{} : parents.front().target;
             }
         }
         for (const auto& derived : chain) {
@@ -154,41 +141,34 @@ std::string SkillAddress::controllerName() const {
 Answer<std::vector<SkillAddress>> findSkills(Client& client) {
     Walk walk(client);
     std::vector<SkillAddress::Above> above;
-    if (auto walked = walk.below(opcua::ids::kObjectsFolder, above); !walked) {
-        return tl::unexpected(walked.error());
-    }
+    METIER_TRY(walk.below(opcua::ids::kObjectsFolder, above));
     return std::move(walk.found);
 }
 
 Answer<std::vector<SkillType>> typeChain(Client& client, const SkillAddress& skill) {
     std::vector<SkillType> types{{skill.type_name, skill.type}};
     while (types.size() <= kMaxDepth) {
-        const auto parents = client.browse({.node = types.back().node,
-                                            .reference_type = opcua::ids::kHasSubtype,
-                                            .direction = BrowseQuery::Direction::inverse,
-                                            .node_classes = {}});
-        if (!parents) {
-            return tl::unexpected(parents.error());
-        }
-        if (parents->empty() || parents->front().target == opcua::ids::kProgramStateMachineType) {
+        METIER_ASSIGN(const auto parents,
+                      client.browse({.node = types.back().node,
+                                     .reference_type = opcua::ids::kHasSubtype,
+                                     .direction = BrowseQuery::Direction::inverse,
+                                     .node_classes = {}}));
+        if (parents.empty() || parents.front().target == opcua::ids::kProgramStateMachineType) {
             break;
         }
-        types.push_back({sanitise(parents->front().browse_name.name), parents->front().target});
+        types.push_back({sanitise(parents.front().browse_name.name), parents.front().target});
     }
     return types;
 }
 
 Answer<SkillAddress> findSkill(Client& client, std::string_view name) {
-    auto skills = findSkills(client);
-    if (!skills) {
-        return tl::unexpected(skills.error());
-    }
+    METIER_ASSIGN(auto skills, findSkills(client));
     std::vector<SkillAddress> matching;
-    std::copy_if(skills->begin(), skills->end(), std::back_inserter(matching),
+    std::copy_if(skills.begin(), skills.end(), std::back_inserter(matching),
                  [&](const auto& skill) { return matches(skill, name); });
     if (matching.empty()) {
         return refusal(Errc::not_found, fmt::format("no skill '{}'; there are: {}", name,
-                                                    fmt::join(namesOf(*skills), ", ")));
+                                                    fmt::join(namesOf(skills), ", ")));
     }
     if (matching.size() > 1) {
         return refusal(Errc::invalid_argument,

@@ -81,11 +81,8 @@ std::uint16_t deviceNamespace(opcua::Client& client) {
 }  // namespace
 
 Answer<> SkillHandle::Impl::readNodes() {
-    auto read = readSkillNodes(client, address);
-    if (!read) {
-        return tl::unexpected(read.error());
-    }
-    nodes = std::move(*read);
+    METIER_ASSIGN(auto read, readSkillNodes(client, address));
+    nodes = std::move(read);
     parameters = fieldsOf(nodes.parameters);
     results = fieldsOf(nodes.results);
     return {};
@@ -109,19 +106,14 @@ Answer<> SkillHandle::Impl::refresh() {
         return {};
     }
     const auto controller = address.controllerName();
-    auto found = findSkill(
-        client, controller.empty() ? address.name : fmt::format("{}/{}", controller, address.name));
-    if (!found) {
-        return tl::unexpected(found.error());
-    }
-    const bool moved = found->node != address.node;
-    address = std::move(*found);
-    if (auto read = readNodes(); !read) {
-        return read;
-    }
-    if (auto subscribed = moved ? subscribe() : Answer<>(); !subscribed) {
-        return subscribed;
-    }
+    METIER_ASSIGN(
+        auto found,
+        findSkill(client, controller.empty() ? address.name
+                                             : fmt::format("{}/{}", controller, address.name)));
+    const bool moved = found.node != address.node;
+    address = std::move(found);
+    METIER_TRY(readNodes());
+    METIER_TRY(moved ? subscribe() : Answer<>());
     boot = now;
     return {};
 }
@@ -171,12 +163,8 @@ Answer<const FieldNode*> SkillHandle::Impl::parameter(std::string_view name) con
 
 Answer<SkillHandle> SkillHandle::open(opcua::Client& client, SkillAddress address) {
     auto impl = std::make_unique<Impl>(Impl{client, std::move(address), client.boot()});
-    if (auto read = impl->readNodes(); !read) {
-        return tl::unexpected(read.error());
-    }
-    if (auto subscribed = impl->subscribe(); !subscribed) {
-        return tl::unexpected(subscribed.error());
-    }
+    METIER_TRY(impl->readNodes());
+    METIER_TRY(impl->subscribe());
     return SkillHandle(std::move(impl));
 }
 
@@ -210,21 +198,16 @@ Answer<> SkillHandle::refresh() {
 }
 
 Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
-    if (auto current = impl_->refresh(); !current) {
-        return current;
-    }
-    const auto node = impl_->parameter(name);
-    if (!node) {
-        return tl::unexpected(node.error());
-    }
+    METIER_TRY(impl_->refresh());
+    METIER_ASSIGN(const auto node, impl_->parameter(name));
     const auto written =
-        impl_->client.writeMany({{(*node)->node, opcua_skill::toOpcua(value), {}, impl_->boot}});
+        impl_->client.writeMany({{node->node, opcua_skill::toOpcua(value), {}, impl_->boot}});
     if (!written) {
         return tl::unexpected(impl_->refused(written.error(), name));
     }
     if (written->front() == opcua::status::kBadTypeMismatch) {
         return tl::unexpected(
-            impl_->wrongType(opcua::failed(written->front(), "").value(), **node, value));
+            impl_->wrongType(opcua::failed(written->front(), "").value(), *node, value));
     }
     return written->front().isBad()
                ? tl::unexpected(impl_->refused(opcua::failed(written->front(), "").value(), name))
@@ -233,18 +216,13 @@ Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
 
 Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
                                std::function<void(Answer<>)> done) {
-    const auto node = impl_->parameter(name);
-    if (!node) {
-        return tl::unexpected(node.error());
-    }
+    METIER_ASSIGN(const auto node, impl_->parameter(name));
     return impl_->client.writeAsync(
-        {(*node)->node, opcua_skill::toOpcua(value), meant_for, impl_->boot}, std::move(done));
+        {node->node, opcua_skill::toOpcua(value), meant_for, impl_->boot}, std::move(done));
 }
 
 Answer<> SkillHandle::call(Method method) {
-    if (auto current = impl_->refresh(); !current) {
-        return current;
-    }
+    METIER_TRY(impl_->refresh());
     const auto& node = impl_->nodes.methods.at(static_cast<std::size_t>(method));
     const auto ask = [&] {
         return impl_->client.call(opcua::MethodCall{impl_->address.node, node, {}, impl_->boot});
@@ -257,9 +235,7 @@ Answer<> SkillHandle::call(Method method) {
 Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId SkillNodes::*method,
                                                                 std::string_view name,
                                                                 std::vector<opcua::Value> inputs) {
-    if (auto current = refresh(); !current) {
-        return tl::unexpected(current.error());
-    }
+    METIER_TRY(refresh());
     if (nodes.*method == opcua::NodeId{}) {
         return tl::unexpected(
             Failure{{Errc::not_supported, fmt::format("{} has no {}", address.name, name)},
@@ -286,11 +262,9 @@ Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
 }
 
 Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters) {
-    const auto outputs = impl_->callMetier(&SkillNodes::check, "Check", {pairsOf(parameters)});
-    if (!outputs) {
-        return tl::unexpected(outputs.error());
-    }
-    return checkReportFrom(*outputs, impl_->address.name);
+    METIER_ASSIGN(const auto outputs,
+                  impl_->callMetier(&SkillNodes::check, "Check", {pairsOf(parameters)}));
+    return checkReportFrom(outputs, impl_->address.name);
 }
 
 Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
@@ -298,12 +272,9 @@ Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
 }
 
 Answer<skill::ExecutionRecord> SkillHandle::Impl::execution(const std::string& id) {
-    const auto outputs =
-        callMetier(&SkillNodes::get_execution, "GetExecution", {opcua::Value::of(id)});
-    if (!outputs) {
-        return tl::unexpected(outputs.error());
-    }
-    return executionFrom(*outputs, id, results, address.name);
+    METIER_ASSIGN(const auto outputs,
+                  callMetier(&SkillNodes::get_execution, "GetExecution", {opcua::Value::of(id)}));
+    return executionFrom(outputs, id, results, address.name);
 }
 
 Answer<> SkillHandle::start() {
@@ -332,9 +303,7 @@ Answer<> SkillHandle::reset() {
 }
 
 Answer<bool> SkillHandle::executable(Method method) {
-    if (auto current = impl_->refresh(); !current) {
-        return tl::unexpected(current.error());
-    }
+    METIER_TRY(impl_->refresh());
     return impl_->client.readUserExecutable(
         impl_->nodes.methods.at(static_cast<std::size_t>(method)));
 }
@@ -344,14 +313,9 @@ Answer<State> SkillHandle::state() {
 }
 
 Answer<State> SkillHandle::Impl::state() {
-    if (auto current = refresh(); !current) {
-        return tl::unexpected(current.error());
-    }
-    const auto value = client.read(nodes.state_number);
-    if (!value) {
-        return tl::unexpected(value.error());
-    }
-    const auto number = value->as<std::uint32_t>();
+    METIER_TRY(refresh());
+    METIER_ASSIGN(const auto value, client.read(nodes.state_number));
+    const auto number = value.as<std::uint32_t>();
     if (!number || *number < static_cast<std::uint32_t>(State::halted) ||
         *number > static_cast<std::uint32_t>(State::suspended)) {
         return opcua::failed(opcua::status::kBadTypeMismatch,
@@ -369,22 +333,17 @@ Answer<skill::ValueMap> SkillHandle::Impl::readResults() const {
     if (items.empty()) {
         return values;
     }
-    const auto read = client.readMany(std::move(items));
-    if (!read) {
-        return tl::unexpected(read.error());
-    }
+    METIER_ASSIGN(const auto read, client.readMany(std::move(items)));
     for (std::size_t i = 0; i < nodes.results.size(); ++i) {
         const auto& field = nodes.results[i].field;
         values[field.name] =
-            opcua_skill::fromOpcua((*read)[i].value, field.type).value_or(skill::Value{});
+            opcua_skill::fromOpcua(read[i].value, field.type).value_or(skill::Value{});
     }
     return values;
 }
 
 Answer<skill::ValueMap> SkillHandle::result() {
-    if (auto current = impl_->refresh(); !current) {
-        return tl::unexpected(current.error());
-    }
+    METIER_TRY(impl_->refresh());
     return impl_->readResults();
 }
 

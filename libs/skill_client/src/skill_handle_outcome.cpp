@@ -175,12 +175,9 @@ Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(AwaitedExecution awaited
             return tl::unexpected(unknownOutcome("transitions may have been missed"));
         }
         awaited.from.doubts = log->mark().doubts;  // before it is asked for
-        const auto record = learn(*awaited.id, awaited.boot, deadline);
-        if (!record) {
-            return tl::unexpected(record.error());
-        }
-        if (isOver(record->state)) {
-            return outcomeOf(*record);
+        METIER_ASSIGN(const auto record, learn(*awaited.id, awaited.boot, deadline));
+        if (isOver(record.state)) {
+            return outcomeOf(record);
         }
     }
 }
@@ -285,9 +282,7 @@ Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& parameters, Stea
 
 Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
                                              SteadyTime deadline) {
-    if (auto current = impl_->refresh(); !current) {
-        return tl::unexpected(current.error());
-    }
+    METIER_TRY(impl_->refresh());
     auto named = request;
     if (named.execution_id.empty() && impl_->tellsExecutions()) {
         named.execution_id = newExecutionId();

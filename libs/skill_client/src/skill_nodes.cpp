@@ -42,18 +42,13 @@ public:
 
     /// All fields directly below `folder`; none of types that skills do not have.
     Answer<std::vector<FieldNode>> read(const NodeId& folder) {
-        auto variables = questions_.browse({.node = folder, .node_classes = {NodeClass::variable}});
-        if (!variables) {
-            return tl::unexpected(variables.error());
-        }
+        METIER_ASSIGN(auto variables,
+                      questions_.browse({.node = folder, .node_classes = {NodeClass::variable}}));
         std::vector<FieldNode> fields;
-        for (const auto& variable : *variables) {
-            auto field = readOne(variable);
-            if (!field) {
-                return tl::unexpected(field.error());
-            }
-            if (field->field.type != skill::ValueType::null) {
-                fields.push_back(std::move(*field));
+        for (const auto& variable : variables) {
+            METIER_ASSIGN(auto field, readOne(variable));
+            if (field.field.type != skill::ValueType::null) {
+                fields.push_back(std::move(field));
             }
         }
         return fields;
@@ -62,25 +57,20 @@ public:
 private:
     Answer<FieldNode> readOne(const ReferenceDescription& variable) {
         const auto& node = variable.target;
-        auto attributes = questions_.readMany({{node, AttributeId::value},
-                                               {node, AttributeId::description},
-                                               {node, AttributeId::data_type},
-                                               {node, AttributeId::value_rank}});
-        if (!attributes) {
-            return tl::unexpected(attributes.error());
-        }
+        METIER_ASSIGN(auto attributes, questions_.readMany({{node, AttributeId::value},
+                                                            {node, AttributeId::description},
+                                                            {node, AttributeId::data_type},
+                                                            {node, AttributeId::value_rank}}));
         FieldNode result{{.name = opcua::sanitise(variable.browse_name.name), .place = place_},
                          node};
         auto& field = result.field;
-        const auto& value = (*attributes)[0].value;
-        field.type = typeOf(value, (*attributes)[2].value, (*attributes)[3].value);
+        const auto& value = attributes[0].value;
+        field.type = typeOf(value, attributes[2].value, attributes[3].value);
         field.default_value = opcua_skill::fromOpcua(value, field.type).value_or(skill::Value{});
-        if (const auto text = (*attributes)[1].value.as<opcua::LocalizedText>()) {
+        if (const auto text = attributes[1].value.as<opcua::LocalizedText>()) {
             field.description = opcua::sanitise(text->text);
         }
-        if (auto read = readProperties(node, field); !read) {
-            return tl::unexpected(read.error());
-        }
+        METIER_TRY(readProperties(node, field));
         return result;
     }
 
@@ -97,17 +87,14 @@ private:
     }
 
     Answer<> readProperties(const NodeId& variable, Field& field) {
-        const auto children = childrenOf(questions_, variable);
-        if (!children) {
-            return tl::unexpected(children.error());
-        }
-        if (const auto* range = findNamed(*children, "EURange")) {
+        METIER_ASSIGN(const auto children, childrenOf(questions_, variable));
+        if (const auto* range = findNamed(children, "EURange")) {
             const auto value = questions_.read(range->target);
             if (const auto read = value ? value->as<opcua::Range>() : Result<opcua::Range>{}) {
                 field.range = skill::Range{read->low, read->high};
             }
         }
-        if (const auto* unit = findNamed(*children, "EngineeringUnits")) {
+        if (const auto* unit = findNamed(children, "EngineeringUnits")) {
             const auto value = questions_.read(unit->target);
             const auto read =
                 value ? value->as<opcua::EuInformation>() : Result<opcua::EuInformation>{};
@@ -142,11 +129,8 @@ Answer<> appendFields(Questions& questions, const ReferenceDescription* folder, 
     if (folder == nullptr) {
         return {};
     }
-    auto read = FieldReader(questions, place).read(folder->target);
-    if (!read) {
-        return tl::unexpected(read.error());
-    }
-    std::move(read->begin(), read->end(), std::back_inserter(fields));
+    METIER_ASSIGN(auto read, FieldReader(questions, place).read(folder->target));
+    std::move(read.begin(), read.end(), std::back_inserter(fields));
     return {};
 }
 
@@ -188,15 +172,10 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
 
 Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     Questions questions(client);
-    const auto children = childrenOf(questions, address.node);
-    if (!children) {
-        return tl::unexpected(children.error());
-    }
+    METIER_ASSIGN(const auto children, childrenOf(questions, address.node));
     SkillNodes nodes;
-    if (auto found = findProgramNodes(client, address, *children, nodes); !found) {
-        return tl::unexpected(found.error());
-    }
-    if (const auto* suspendable = findNamed(*children, "Suspendable")) {
+    METIER_TRY(findProgramNodes(client, address, children, nodes));
+    if (const auto* suspendable = findNamed(children, "Suspendable")) {
         const auto value = questions.read(suspendable->target);
         nodes.suspendable = (value ? value->as<bool>() : Result<bool>(true)).value_or(true);
     }
@@ -208,11 +187,8 @@ Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     for (const auto& folder : {Folder{"ParameterSet", Place::parameter_set, nodes.parameters},
                                Folder{"Options", Place::options, nodes.parameters},
                                Folder{"FinalResultData", Place::final_result, nodes.results}}) {
-        if (auto read = appendFields(questions, findNamed(*children, folder.name), folder.place,
-                                     folder.fields);
-            !read) {
-            return tl::unexpected(read.error());
-        }
+        METIER_TRY(
+            appendFields(questions, findNamed(children, folder.name), folder.place, folder.fields));
     }
     return nodes;
 }

@@ -35,22 +35,16 @@ Answer<ReferenceReader> ReferenceReader::create(opcua::Client& client) {
 }
 
 Answer<SkillReferences> ReferenceReader::read(const NodeId& node) const {
-    const auto references =
-        client_->browse({.node = node, .reference_type = kNonHierarchicalReferences});
-    if (!references) {
-        return tl::unexpected(references.error());
-    }
+    METIER_ASSIGN(const auto references,
+                  client_->browse({.node = node, .reference_type = kNonHierarchicalReferences}));
     SkillReferences result;
-    for (const auto& reference : *references) {
+    for (const auto& reference : references) {
         if (reference.reference_type == kHasDictionaryEntry) {
             result.terms.push_back(reference.browse_name.name);
         } else if (metier_ && reference.reference_type == NodeId(*metier_, kUsesSkill) &&
                    result.uses.size() < kMostUses) {
-            auto use = readUse(reference);
-            if (!use) {
-                return tl::unexpected(std::move(use.error()));
-            }
-            result.uses.push_back(std::move(*use));
+            METIER_ASSIGN(auto use, readUse(reference));
+            result.uses.push_back(std::move(use));
         }
     }
     return result;
@@ -71,27 +65,21 @@ Answer<UsedSkill> ReferenceReader::readUse(const opcua::ReferenceDescription& us
     for (const auto& [name, target] : properties) {
         paths.push_back({used.target, {{*metier_, name}}});
     }
-    const auto nodes = client_->translateMany(std::move(paths));
-    if (!nodes) {
-        return tl::unexpected(nodes.error());
-    }
+    METIER_ASSIGN(const auto nodes, client_->translateMany(std::move(paths)));
     std::vector<opcua::ReadItem> items;
     std::vector<std::string*> targets;
     for (std::size_t i = 0; i < properties.size(); ++i) {
-        if ((*nodes)[i]) {
-            items.push_back({*(*nodes)[i]});
+        if (nodes[i]) {
+            items.push_back({*nodes[i]});
             targets.push_back(properties[i].second);
         }
     }
     if (items.empty()) {
         return use;
     }
-    const auto values = client_->readMany(std::move(items));
-    if (!values) {
-        return tl::unexpected(values.error());
-    }
+    METIER_ASSIGN(const auto values, client_->readMany(std::move(items)));
     for (std::size_t i = 0; i < targets.size(); ++i) {
-        *targets[i] = (*values)[i].value.as<std::string>().value_or("");
+        *targets[i] = values[i].value.as<std::string>().value_or("");
     }
     return use;
 }

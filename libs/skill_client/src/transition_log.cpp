@@ -93,17 +93,14 @@ opcua::Answer<opcua::Subscription> watchStopping(
     if (!on_stopping) {
         return opcua::Subscription();
     }
-    const auto metier = client.namespaceIndex(opcua_skill::kMetierUri);
-    if (!metier) {
-        return tl::unexpected(metier.error());
-    }
+    METIER_ASSIGN(const auto metier, client.namespaceIndex(opcua_skill::kMetierUri));
     const opcua::EventFilter filter{
         .fields = {{{0, "Time"}},
-                   {{*metier, "ExecutionId"}},
-                   {{*metier, "StateAtRest"}},
-                   {{*metier, "Reason"}},
-                   {{*metier, "ReasonText"}}},
-        .of_type = opcua::NodeId(*metier, opcua_skill::kStoppingEventTypeId)};
+                   {{metier, "ExecutionId"}},
+                   {{metier, "StateAtRest"}},
+                   {{metier, "Reason"}},
+                   {{metier, "ReasonText"}}},
+        .of_type = opcua::NodeId(metier, opcua_skill::kStoppingEventTypeId)};
     return client.subscribeEvents(
         skill, filter, [on_stopping = std::move(on_stopping)](const opcua::EventNotice& notice) {
             if (const auto event = stoppingFrom(notice)) {

@@ -152,14 +152,11 @@ Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now) {
         return fail(Errc::invalid_argument, fmt::format("a key of {} bit is not within {} to {}",
                                                         options.key_bits, kLeastBits, kMostBits));
     }
-    const auto names = alternativeNames(options);
-    if (!names) {
-        return fail(names.error());
-    }
+    METIER_ASSIGN(const auto names, alternativeNames(options));
     return makeFor(
         [&](X509* certificate) {
             return setName(certificate, options.application_name) &&
-                   addExtension(certificate, NID_subject_alt_name, *names);
+                   addExtension(certificate, NID_subject_alt_name, names);
         },
         {options.lifetime, options.key_bits}, now);
 }
@@ -182,12 +179,9 @@ Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetim
 
 Result<Identity> loadIdentity(const std::filesystem::path& folder) {
     const auto file = folder / kIdentityFile;
-    const auto text = readPrivate(file);
-    if (!text) {
-        return fail(text.error());
-    }
-    const KeyPtr key(PEM_read_bio_PrivateKey(reading(*text).get(), nullptr, nullptr, nullptr));
-    const auto parsed = parsePemOrDer(*text);
+    METIER_ASSIGN(const auto text, readPrivate(file));
+    const KeyPtr key(PEM_read_bio_PrivateKey(reading(text).get(), nullptr, nullptr, nullptr));
+    const auto parsed = parsePemOrDer(text);
     if (!key || !parsed || X509_check_private_key(parsed.get(), key.get()) != 1) {
         ERR_clear_error();
         return fail(Errc::invalid_argument,
@@ -203,9 +197,7 @@ Result<Identity> loadIdentity(const std::filesystem::path& folder) {
 
 Result<void> saveIdentity(const std::filesystem::path& folder, const Identity& identity) {
     const auto both = keyPem(identity.private_key) + identity.certificate.pem();
-    if (auto written = writeWhole(folder / kIdentityFile, both, Readers::owner); !written) {
-        return written;
-    }
+    METIER_TRY(writeWhole(folder / kIdentityFile, both, Readers::owner));
     return writeWhole(folder / kCertificateFile, identity.certificate.der(), Readers::everybody);
 }
 
@@ -219,9 +211,7 @@ Result<Identity> ensureIdentity(const std::filesystem::path& folder, const Ident
     if (!identity) {
         return identity;
     }
-    if (auto saved = saveIdentity(folder, *identity); !saved) {
-        return fail(saved.error());
-    }
+    METIER_TRY(saveIdentity(folder, *identity));
     return identity;
 }
 

@@ -37,11 +37,8 @@ const std::string& hashOfNobody() {
 
 Result<LoginGuard> LoginGuard::open(std::filesystem::path file, const Clock& clock) {
     const auto changed = changeOf(file);
-    auto users = UserTable::load(file);
-    if (!users) {
-        return fail(users.error());
-    }
-    return LoginGuard(file, clock, {std::move(*users), changed});
+    METIER_ASSIGN(auto users, UserTable::load(file));
+    return LoginGuard(file, clock, {std::move(users), changed});
 }
 
 LoginGuard::LoginGuard(const std::filesystem::path& file, const Clock& clock, Users users)
@@ -65,9 +62,7 @@ Result<Role> LoginGuard::check(const std::string& user, const std::string& passw
                                const std::string& thumbprint) {
     const auto users = users_->get();
     const Who who{user.substr(0, kLongestName), thumbprint};
-    if (auto free = checkBar(who); !free) {
-        return fail(free.error());
-    }
+    METIER_TRY(checkBar(who));
     const auto* known = users->table.find(user);
     const bool right = isPassword(password, known ? known->password_hash : hashOfNobody());
     if (known == nullptr || !right) {

@@ -79,9 +79,7 @@ Result<void> checkReaders(const std::filesystem::path& file) {
 
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
                         Readers readers) {
-    if (auto made = makeFolder(file.parent_path()); !made) {
-        return made;
-    }
+    METIER_TRY(makeFolder(file.parent_path()));
     auto pattern = file.string() + ".XXXXXX";
     const Descriptor descriptor(::mkstemp(pattern.data()));  // for its owner alone
     if (descriptor.number() < 0) {
@@ -99,9 +97,7 @@ Result<void> writeWhole(const std::filesystem::path& file, std::string_view cont
 }
 
 Result<std::string> readPrivate(const std::filesystem::path& file) {
-    if (auto right = checkReaders(file); !right) {
-        return fail(right.error());
-    }
+    METIER_TRY(checkReaders(file));
     return readFile(file.string());
 }
 

@@ -50,9 +50,7 @@ Result<SecurityFolder> SecurityFolder::open(fs::path folder) {
         return fail(Errc::access_denied,
                     fmt::format("others may write to {}: chmod 700", folder.string()));
     }
-    if (const auto trust = TrustStore::open(folder / "trust"); !trust) {
-        return fail(trust.error());
-    }
+    METIER_TRY(TrustStore::open(folder / "trust"));
     return SecurityFolder(std::move(folder));
 }
 
@@ -61,25 +59,16 @@ fs::path SecurityFolder::identityFolder(const std::string& name) const {
 }
 
 Result<Identity> SecurityFolder::makeKnown(Identity identity) {
-    auto store = TrustStore::open(trustFolder());
-    if (!store) {
-        return fail(store.error());
-    }
-    if (auto trusted = store->trust(identity.certificate); !trusted) {
-        return fail(trusted.error());
-    }
-    if (auto allowed = setRole(identity.certificate, Role::operator_); !allowed) {
-        return fail(allowed.error());
-    }
+    METIER_ASSIGN(auto store, TrustStore::open(trustFolder()));
+    METIER_TRY(store.trust(identity.certificate));
+    METIER_TRY(setRole(identity.certificate, Role::operator_));
     return identity;
 }
 
 /// It is known before it is saved: whoever finds it saved may rely on that.
 Result<Identity> SecurityFolder::identity(const std::string& name, const IdentityOptions& options,
                                           UtcTime now) {
-    if (auto right = checkName(name); !right) {
-        return fail(right.error());
-    }
+    METIER_TRY(checkName(name));
     auto identity = loadIdentity(identityFolder(name));
     if (identity || identity.error().code != Errc::not_found) {
         return identity;
@@ -89,28 +78,19 @@ Result<Identity> SecurityFolder::identity(const std::string& name, const Identit
     if (!identity) {
         return identity;
     }
-    if (auto saved = saveIdentity(identityFolder(name), *identity); !saved) {
-        return fail(saved.error());
-    }
+    METIER_TRY(saveIdentity(identityFolder(name), *identity));
     return identity;
 }
 
 Result<Identity> SecurityFolder::renew(const std::string& name, UtcTime now) {
-    if (auto right = checkName(name); !right) {
-        return fail(right.error());
-    }
-    const auto former = loadIdentity(identityFolder(name));
-    if (!former) {
-        return former;
-    }
-    auto identity = makeSuccessor(*former, IdentityOptions().lifetime, now);
+    METIER_TRY(checkName(name));
+    METIER_ASSIGN(const auto former, loadIdentity(identityFolder(name)));
+    auto identity = makeSuccessor(former, IdentityOptions().lifetime, now);
     identity = identity ? makeKnown(std::move(*identity)) : std::move(identity);
     if (!identity) {
         return identity;
     }
-    if (auto saved = saveIdentity(identityFolder(name), *identity); !saved) {
-        return fail(saved.error());
-    }
+    METIER_TRY(saveIdentity(identityFolder(name), *identity));
     return identity;
 }
 

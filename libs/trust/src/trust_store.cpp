@@ -98,9 +98,7 @@ tl::expected<Certificate, CertificateRefusal> TrustStore::check(std::string_view
         return tl::unexpected(
             CertificateRefusal{RefusalKind::malformed, certificate.error().message});
     }
-    if (auto verdict = checkCertificate(*certificate, *holdings(), now); !verdict) {
-        return tl::unexpected(std::move(verdict.error()));
-    }
+    METIER_TRY(checkCertificate(*certificate, *holdings(), now));
     return std::move(*certificate);
 }
 
@@ -163,13 +161,8 @@ Result<Certificate> TrustStore::distrust(std::string_view name) {
 }
 
 Result<Certificate> TrustStore::trustRejected(std::string_view name) {
-    auto certificate = find(name, rejected(), "rejected");
-    if (!certificate) {
-        return certificate;
-    }
-    if (auto done = trust(*certificate); !done) {
-        return fail(done.error());
-    }
+    METIER_ASSIGN(auto certificate, find(name, rejected(), "rejected"));
+    METIER_TRY(trust(certificate));
     return certificate;
 }
 

@@ -134,20 +134,13 @@ const User* UserTable::find(std::string_view name) const noexcept {
 }
 
 Result<void> UserTable::add(std::string name, Role role, const std::string& password) {
-    if (auto right = checkName(name); !right) {
-        return right;
-    }
+    METIER_TRY(checkName(name));
     if (find(name) != nullptr) {
         return fail(Errc::already_exists, fmt::format("there is a user \"{}\"", name));
     }
-    if (auto right = checkPassword(password); !right) {
-        return right;
-    }
-    auto hash = hashPassword(password);
-    if (!hash) {
-        return fail(hash.error());
-    }
-    users_.push_back({std::move(name), role, std::move(*hash)});
+    METIER_TRY(checkPassword(password));
+    METIER_ASSIGN(auto hash, hashPassword(password));
+    users_.push_back({std::move(name), role, std::move(hash)});
     return {};
 }
 
@@ -157,14 +150,9 @@ Result<void> UserTable::setPassword(std::string_view name, const std::string& pa
     if (user == users_.end()) {
         return noUser(name);
     }
-    if (auto right = checkPassword(password); !right) {
-        return right;
-    }
-    auto hash = hashPassword(password);
-    if (!hash) {
-        return fail(hash.error());
-    }
-    user->password_hash = std::move(*hash);
+    METIER_TRY(checkPassword(password));
+    METIER_ASSIGN(auto hash, hashPassword(password));
+    user->password_hash = std::move(hash);
     return {};
 }
 

@@ -67,13 +67,10 @@ Result<std::unique_ptr<Host>> Host::start(HostOptions options,
         host->world_ =
             std::make_unique<RemoteWorld>(host->context_, options.name, options.world_address);
     }
-    auto controller =
-        type->start({host->context_, options.name, options.address, std::move(options.settings),
-                     options.model, host->faults_, *host->world_});
-    if (!controller) {
-        return fail(controller.error());
-    }
-    host->controller_ = std::move(*controller);
+    METIER_ASSIGN(auto controller, type->start({host->context_, options.name, options.address,
+                                                std::move(options.settings), options.model,
+                                                host->faults_, *host->world_}));
+    host->controller_ = std::move(controller);
     auto control = TcpServer::listen(
         host->context_, options.address, options.control_port, host->no_faults_,
         {.on_connected = {},
@@ -155,11 +152,8 @@ Result<void> Host::inject(const Injection& injection) {
         controller_->restart();
     } else if (injection.name == "delay" || injection.name == "garble") {
         const bool delay = injection.name == "delay";
-        const auto number = wholeNumber(injection, delay ? 10'000 : 1'000);
-        if (!number) {
-            return fail(number.error());
-        }
-        (delay ? faults_.delay_ms : faults_.garble) = *number;
+        METIER_ASSIGN(const auto number, wholeNumber(injection, delay ? 10'000 : 1'000));
+        (delay ? faults_.delay_ms : faults_.garble) = number;
     } else {
         const auto all = injections();
         const auto known = std::any_of(all.begin(), all.end(), [&](const auto& entry) {

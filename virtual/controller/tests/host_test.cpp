@@ -35,9 +35,7 @@ private:
 };
 
 Result<std::unique_ptr<Controller>> startLamp(const ControllerRequest& request) {
-    if (auto checked = request.settings.finish(); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(request.settings.finish());
     return std::make_unique<Lamp>();
 }
 

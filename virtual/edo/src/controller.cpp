@@ -37,9 +37,7 @@ Result<Options> readOptions(const ControllerRequest& request) {
                   .kinematics_services = settings.flagOr("kinematics_services", false)},
         .port = static_cast<std::uint16_t>(settings.numberOr("port", kDefaultPort, 0, 65535)),
         .time_scale = settings.numberOr("time_scale", 1.0, 0.01, 100.0)};
-    if (auto read = settings.finish(); !read) {
-        return fail(read.error());
-    }
+    METIER_TRY(settings.finish());
     if (request.model == nullptr || request.model->axisCount() != kArmAxes) {
         return fail(Errc::invalid_argument, request.name + ": an e.DO is an arm of six axes");
     }
@@ -99,11 +97,9 @@ private:
     }
 
     Result<void> openPort() {
-        auto port = BridgePort::open(context_, address_, options_.port, faults_, *bridge_);
-        if (!port) {
-            return fail(port.error());
-        }
-        port_ = std::move(*port);
+        METIER_ASSIGN(auto port,
+                      BridgePort::open(context_, address_, options_.port, faults_, *bridge_));
+        port_ = std::move(port);
         return {};
     }
 
@@ -131,14 +127,9 @@ private:
 };
 
 Result<std::unique_ptr<Controller>> startEdo(const ControllerRequest& request) {
-    auto options = readOptions(request);
-    if (!options) {
-        return fail(options.error());
-    }
-    auto controller = std::make_unique<EdoController>(request, std::move(*options));
-    if (auto started = controller->start(); !started) {
-        return fail(started.error());
-    }
+    METIER_ASSIGN(auto options, readOptions(request));
+    auto controller = std::make_unique<EdoController>(request, std::move(options));
+    METIER_TRY(controller->start());
     return controller;
 }
 

@@ -166,11 +166,8 @@ Result<Json> MessageTypes::completeArray(std::string_view type, const Json& valu
     }
     Json list = Json::array();
     for (const auto& item : value) {
-        auto completed = completeValue(element, item, place);
-        if (!completed) {
-            return completed;
-        }
-        list.push_back(std::move(*completed));
+        METIER_ASSIGN(auto completed, completeValue(element, item, place));
+        list.push_back(std::move(completed));
     }
     return list;
 }
@@ -191,12 +188,10 @@ Result<Json> MessageTypes::completeObject(std::string_view type, const Json& val
         }
         for (const auto& field : fields) {
             if (field.name == name) {
-                auto completed =
-                    completeValue(field.type, member, {.root = place.root, .field = prefix + name});
-                if (!completed) {
-                    return completed;
-                }
-                whole[name] = std::move(*completed);
+                METIER_ASSIGN(auto completed,
+                              completeValue(field.type, member,
+                                            {.root = place.root, .field = prefix + name}));
+                whole[name] = std::move(completed);
             }
         }
     }

@@ -61,13 +61,12 @@ geometry::Pose MovePlanner::flangeGoal(const CartesianPose& target) const {
 
 Result<AxisValues> MovePlanner::inverse(const AxisValues& near,
                                         const geometry::Pose& base_from_flange) const {
-    auto solution = model_.kinematics().inverse(
-        base_from_flange, {.reference = armRadians(near), .bounds = {}, .redundancy_angle = {}});
-    if (!solution) {
-        return fail(solution.error());
-    }
+    METIER_ASSIGN(auto solution,
+                  model_.kinematics().inverse(
+                      base_from_flange,
+                      {.reference = armRadians(near), .bounds = {}, .redundancy_angle = {}}));
     AxisValues values = near;
-    setArm(values, *solution);
+    setArm(values, solution);
     return values;
 }
 
@@ -110,18 +109,15 @@ Result<Segment> MovePlanner::planMove(const AxisValues& start, std::size_t axes,
     if (movement.override_percent > 0) {
         override_ = std::min(movement.override_percent / 100.0, 1.0);
     }
-    const auto target = moveTarget(start, axes, movement.target);
-    if (!target) {
-        return fail(target.error());
-    }
+    METIER_ASSIGN(const auto target, moveTarget(start, axes, movement.target));
     if (movement.type == move_type::kJoint) {
-        return planJoints(start, *target);
+        return planJoints(start, target);
     }
     if (movement.type == move_type::kLinear) {
-        return planLine(start, *target, baseFromFlange(*target));
+        return planLine(start, target, baseFromFlange(target));
     }
     const auto via = moveTarget(start, axes, movement.via);
-    return via ? planArc(start, *via, *target) : fail(via.error());
+    return via ? planArc(start, *via, target) : fail(via.error());
 }
 
 Result<Segment> MovePlanner::planJoints(const AxisValues& start, const AxisValues& target) const {

@@ -236,13 +236,11 @@ Result<Json> Robot::directKinematics(const Json& arguments) const {
 }
 
 Result<Json> Robot::inverseKinematics(const Json& arguments) const {
-    const auto values =
-        node_.planner().inverse(node_.target(), toPose(cartesianFrom(arguments["cartesian_pose"])));
-    if (!values) {
-        return fail(values.error());
-    }
+    METIER_ASSIGN(const auto values,
+                  node_.planner().inverse(node_.target(),
+                                          toPose(cartesianFrom(arguments["cartesian_pose"]))));
     const auto count = static_cast<std::ptrdiff_t>(node_.axes());
-    const std::vector<double> positions(values->begin(), values->begin() + count);
+    const std::vector<double> positions(values.begin(), values.begin() + count);
     return Json::object({{"positions", Json::object({{"joints_mask", maskOf(node_.axes())},
                                                      {"positions", positions}})}});
 }

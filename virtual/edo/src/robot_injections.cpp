@@ -68,11 +68,8 @@ Result<void> Robot::inject(const Injection& injection) {
     } else if (name == "lost-part") {
         part_lost_ = true;
     } else if (name == "drop-next") {
-        const auto count = numberFrom(injection, 1, kMostDropped);
-        if (!count) {
-            return fail(count.error());
-        }
-        commands_to_drop_ = *count;
+        METIER_ASSIGN(const auto count, numberFrom(injection, 1, kMostDropped));
+        commands_to_drop_ = count;
     } else {
         return fail(Errc::not_found, fmt::format("an e.DO has no injection \"{}\"", name));
     }
@@ -81,12 +78,9 @@ Result<void> Robot::inject(const Injection& injection) {
 
 Result<void> Robot::setJointFault(const Injection& injection,
                                   std::initializer_list<JointFlag> flags) {
-    const auto axis = numberFrom(injection, 1, kArmAxes);
-    if (!axis) {
-        return fail(axis.error());
-    }
+    METIER_ASSIGN(const auto axis, numberFrom(injection, 1, kArmAxes));
     for (const auto flag : flags) {
-        bus_.setFlag(*axis - 1, flag);
+        bus_.setFlag(axis - 1, flag);
     }
     return {};
 }
@@ -96,11 +90,8 @@ Result<void> Robot::silence(const Injection& injection) {
         bus_.silence(0, JointBus::Bus::silent);
         return {};
     }
-    const auto axis = numberFrom(injection, 0, kMostAxes);
-    if (!axis) {
-        return fail(axis.error());
-    }
-    bus_.silence(*axis == 0 ? 0 : std::uint64_t{1} << (*axis - 1), JointBus::Bus::speaking);
+    METIER_ASSIGN(const auto axis, numberFrom(injection, 0, kMostAxes));
+    bus_.silence(axis == 0 ? 0 : std::uint64_t{1} << (axis - 1), JointBus::Bus::speaking);
     return {};
 }
 

@@ -84,46 +84,35 @@ Result<void> Rosbridge::perform(Client& client, const Json& request) {
 }
 
 Result<void> Rosbridge::establish(const std::string& topic, const Json& request) {
-    const auto type = optionalText(request, "type");
-    if (!type) {
-        return fail(type.error());
-    }
+    METIER_ASSIGN(const auto type, optionalText(request, "type"));
     const auto known = graph_.topics.find(topic);
     if (known != graph_.topics.end()) {
-        if (!type->empty() && *type != known->second) {
+        if (!type.empty() && type != known->second) {
             return fail(Errc::type_mismatch,
                         fmt::format("Tried to register topic {} with type {} but it is already "
                                     "established with type {}",
-                                    topic, *type, known->second));
+                                    topic, type, known->second));
         }
         return {};
     }
-    if (type->empty()) {
+    if (type.empty()) {
         return fail(Errc::not_found,
                     fmt::format("Cannot infer topic type for topic {} as it is not "
                                 "yet advertised",
                                 topic));
     }
-    if (!types_.has(*type) || graph_.topics.size() > kMost) {
-        return fail(Errc::not_found, fmt::format("Unable to import {}", *type));
+    if (!types_.has(type) || graph_.topics.size() > kMost) {
+        return fail(Errc::not_found, fmt::format("Unable to import {}", type));
     }
-    graph_.topics.emplace(topic, *type);
+    graph_.topics.emplace(topic, type);
     return {};
 }
 
 Result<void> Rosbridge::advertise(Client& client, const Json& request) {
-    const auto topic = requiredText(request, "topic");
-    if (!topic) {
-        return fail(topic.error());
-    }
-    const auto type = requiredText(request, "type");
-    if (!type) {
-        return fail(type.error());
-    }
-    if (auto established = establish(*topic, request); !established) {
-        return established;
-    }
-    auto& ids = client.advertised[*topic];
+    METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
+    METIER_TRY(requiredText(request, "type"));
+    METIER_TRY(establish(topic, request));
+    auto& ids = client.advertised[topic];
     if (ids.size() < kMost) {
         ids.insert(requestId(request));
     }
@@ -131,11 +120,8 @@ Result<void> Rosbridge::advertise(Client& client, const Json& request) {
 }
 
 Result<void> Rosbridge::unadvertise(Client& client, const Json& request) {
-    const auto topic = requiredText(request, "topic");
-    if (!topic) {
-        return fail(topic.error());
-    }
-    const auto advertised = client.advertised.find(*topic);
+    METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
+    const auto advertised = client.advertised.find(topic);
     if (advertised == client.advertised.end()) {
         return {};
     }
@@ -148,38 +134,26 @@ Result<void> Rosbridge::unadvertise(Client& client, const Json& request) {
 }
 
 Result<void> Rosbridge::publishFrom(Client&, const Json& request) {
-    const auto topic = requiredText(request, "topic");
-    if (!topic) {
-        return fail(topic.error());
-    }
-    if (auto established = establish(*topic, request); !established) {
-        return established;
-    }
-    const auto message = types_.complete(graph_.topics.find(*topic)->second,
-                                         request.contains("msg") ? request["msg"] : Json::object());
-    if (!message) {
-        return fail(message.error());
-    }
-    publish(*topic, *message);
-    graph_.on_message(*topic, *message);
+    METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
+    METIER_TRY(establish(topic, request));
+    METIER_ASSIGN(const auto message,
+                  types_.complete(graph_.topics.find(topic)->second,
+                                  request.contains("msg") ? request["msg"] : Json::object()));
+    publish(topic, message);
+    graph_.on_message(topic, message);
     return {};
 }
 
 Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
-    const auto topic = requiredText(request, "topic");
-    if (!topic) {
-        return fail(topic.error());
-    }
+    METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
     const auto throttle = optionalCount(request, "throttle_rate");
     const auto queue = optionalCount(request, "queue_length");
     const auto compression = optionalText(request, "compression");
     if (!throttle || !queue || !compression) {
         return fail(!throttle ? throttle.error() : (!queue ? queue.error() : compression.error()));
     }
-    if (auto established = establish(*topic, request); !established) {
-        return established;
-    }
-    auto& wishes = client.subscriptions[*topic].wishes;
+    METIER_TRY(establish(topic, request));
+    auto& wishes = client.subscriptions[topic].wishes;
     if (wishes.size() < kMost) {
         wishes[requestId(request)] = {.throttle_ms = *throttle, .queue_length = *queue};
     }
@@ -187,18 +161,15 @@ Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
         // Clients tell a compressed message by its op: they understand one that is not.
         sendStatus(client,
                    fmt::format("subscribe: there is no compression {}: {} is sent without",
-                               *compression, *topic),
+                               *compression, topic),
                    request);
     }
     return {};
 }
 
 Result<void> Rosbridge::unsubscribe(Client& client, const Json& request) {
-    const auto topic = requiredText(request, "topic");
-    if (!topic) {
-        return fail(topic.error());
-    }
-    const auto subscription = client.subscriptions.find(*topic);
+    METIER_ASSIGN(const auto topic, requiredText(request, "topic"));
+    const auto subscription = client.subscriptions.find(topic);
     if (subscription == client.subscriptions.end()) {
         return {};
     }
@@ -211,13 +182,10 @@ Result<void> Rosbridge::unsubscribe(Client& client, const Json& request) {
 }
 
 Result<void> Rosbridge::callService(Client& client, const Json& request) {
-    const auto named = requiredText(request, "service");
-    if (!named) {
-        return fail(named.error());
-    }
-    const std::string service = named->substr(0, named->find('#'));
+    METIER_ASSIGN(const auto named, requiredText(request, "service"));
+    const std::string service = named.substr(0, named.find('#'));
     const auto answer = call(service, request.contains("args") ? request["args"] : Json::object());
-    Json response{{"op", "service_response"}, {"service", *named}};
+    Json response{{"op", "service_response"}, {"service", named}};
     response["values"] = answer ? *answer : Json(answer.error().message);
     response["result"] = answer.has_value();
     if (request.contains("id") && request["id"].is_primitive()) {
@@ -236,20 +204,15 @@ Result<Json> Rosbridge::call(const std::string& service, const Json& arguments) 
     if (known == graph_.services.end()) {
         return fail(Errc::not_found, fmt::format("Service {} does not exist", service));
     }
-    const auto whole = types_.completeArguments(known->second.type + ".Request", arguments);
-    if (!whole) {
-        return whole;
-    }
-    const auto answer = known->second.call(*whole);
+    METIER_ASSIGN(const auto whole,
+                  types_.completeArguments(known->second.type + ".Request", arguments));
+    const auto answer = known->second.call(whole);
     return answer ? types_.complete(known->second.type + ".Response", *answer) : answer;
 }
 
 Result<void> Rosbridge::setLevel(Client& client, const Json& request) {
-    const auto level = requiredText(request, "level");
-    if (!level) {
-        return fail(level.error());
-    }
-    const auto* const known = std::find(kLevels.begin(), kLevels.end(), *level);
+    METIER_ASSIGN(const auto level, requiredText(request, "level"));
+    const auto* const known = std::find(kLevels.begin(), kLevels.end(), level);
     if (known == kLevels.end()) {
         return fail(Errc::invalid_argument, "level is none, error, warning or info");
     }

@@ -54,14 +54,10 @@ Result<std::unique_ptr<IiwaController>> IiwaController::start(
                     request.name + ": an iiwa needs the model of an arm with 7 axes");
     }
     auto options = readOptions(request);
-    if (auto finished = request.settings.finish(); !finished) {
-        return fail(finished.error());
-    }
+    METIER_TRY(request.settings.finish());
     auto controller =
         std::unique_ptr<IiwaController>(new IiwaController(request, std::move(options)));
-    if (auto made = controller->makeDialer(request); !made) {
-        return fail(made.error());
-    }
+    METIER_TRY(controller->makeDialer(request));
     return controller;
 }
 

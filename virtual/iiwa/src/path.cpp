@@ -135,9 +135,7 @@ ScalarLimits axisLimits(const motion::RobotModel& model, std::size_t axis,
 
 Planned planPtp(const motion::RobotModel& model, const JointVector& start,
                 const JointVector& target, const MotionLimits& limits) {
-    if (auto checked = check(limits); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(check(limits));
     if (!model.kinematics().withinLimits(target)) {
         return fail(Errc::out_of_range, "the target is outside of the joint limits");
     }
@@ -170,9 +168,7 @@ Planned planLinear(const MovingFrame& frame, const JointVector& start, const Pos
     if (!finite(base_from_tool)) {
         return fail(Errc::invalid_argument, "the target is not finite");
     }
-    if (auto checked = check(limits); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(check(limits));
     const Pose from = frame.model->kinematics().forward(start) * frame.flange_from_tool;
     const double length = std::max(geometry::distanceBetween(from, base_from_tool), kNoWay);
     const double angle =
@@ -193,9 +189,7 @@ Planned planLinear(const MovingFrame& frame, const JointVector& start, const Pos
 
 Planned planCircle(const MovingFrame& frame, const JointVector& start, const CirclePoints& points,
                    const MotionLimits& limits) {
-    if (auto checked = check(limits); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(check(limits));
     const Pose from = frame.model->kinematics().forward(start) * frame.flange_from_tool;
     const Eigen::Vector3d to_auxiliary = points.auxiliary - from.translation;
     const Eigen::Vector3d to_end = points.end - from.translation;

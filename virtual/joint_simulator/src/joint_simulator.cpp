@@ -49,10 +49,7 @@ Result<void> check(const JointSimulatorOptions& options) {
                                 options.cycle.count(), options.delay_cycles, kMaxDelayCycles));
     }
     for (std::size_t axis = 0; axis < axes; ++axis) {
-        if (auto checked = checkAxis(options.limits[axis], options.start_position[axis], axis);
-            !checked) {
-            return checked;
-        }
+        METIER_TRY(checkAxis(options.limits[axis], options.start_position[axis], axis));
     }
     return {};
 }
@@ -60,9 +57,7 @@ Result<void> check(const JointSimulatorOptions& options) {
 }  // namespace
 
 Result<std::unique_ptr<JointSimulator>> JointSimulator::create(JointSimulatorOptions options) {
-    if (auto checked = check(options); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(check(options));
     return std::unique_ptr<JointSimulator>(new JointSimulator(std::move(options)));
 }
 

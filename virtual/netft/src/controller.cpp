@@ -113,14 +113,10 @@ Result<Number> parseNumber(std::string_view text, int base) {
 Result<std::unique_ptr<NetFtController>> NetFtController::start(
     const virtual_controller::ControllerRequest& request) {
     auto options = readOptions(request.settings);
-    if (auto finished = request.settings.finish(); !finished) {
-        return fail(finished.error());
-    }
+    METIER_TRY(request.settings.finish());
     auto controller =
         std::unique_ptr<NetFtController>(new NetFtController(request, std::move(options)));
-    if (auto opened = controller->open(request); !opened) {
-        return fail(opened.error());
-    }
+    METIER_TRY(controller->open(request));
     return controller;
 }
 

@@ -132,12 +132,9 @@ Result<void> ProgramRunner::load(const std::filesystem::path& file, std::string 
         return fail(Errc::not_found, file.string());
     }
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    auto program = Program::parse(text);
-    if (!program) {
-        return fail(program.error());
-    }
+    METIER_ASSIGN(auto program, Program::parse(text));
     stop();
-    loaded_ = *std::move(program);
+    loaded_ = std::move(program);
     loaded_name_ = std::move(name);
     return {};
 }

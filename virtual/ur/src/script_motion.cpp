@@ -138,12 +138,9 @@ private:
         return {move.velocity, move.acceleration, move.time};
     }
     Result<void> joint(const urscript::Move& move, const PathSpeed& speed) {
-        auto target = jointTarget(move.target);
-        if (!target) {
-            return fail(target.error());
-        }
+        METIER_ASSIGN(auto target, jointTarget(move.target));
         arm_.beginStanding(
-            [to = *target, speed](const Vector6& start) { return moveJ(start, to, speed); },
+            [to = target, speed](const Vector6& start) { return moveJ(start, to, speed); },
             kStopBeforeMove);
         return {};
     }

@@ -308,15 +308,10 @@ Result<std::unique_ptr<Controller>> start(const ControllerRequest& request) {
     if (request.model == nullptr) {
         return fail(Errc::invalid_argument, request.name + ": a UR controller needs a model");
     }
-    auto options = readOptions(request.settings, *request.model);
-    if (!options) {
-        return fail(options.error());
-    }
-    options->address = request.address;
-    auto controller = std::make_unique<UrController>(request, *options);
-    if (auto listening = controller->listen(); !listening) {
-        return fail(listening.error());
-    }
+    METIER_ASSIGN(auto options, readOptions(request.settings, *request.model));
+    options.address = request.address;
+    auto controller = std::make_unique<UrController>(request, options);
+    METIER_TRY(controller->listen());
     controller->run();
     return controller;
 }

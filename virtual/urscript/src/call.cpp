@@ -163,11 +163,8 @@ Value Call::moves(const Motion& motion) {
         return failed(std::move(begun.error()));
     }
     return waits([&context = context_]() -> Result<std::optional<Value>> {
-        const auto done = context.motionDone();
-        if (!done) {
-            return fail(done.error());
-        }
-        return *done ? std::optional<Value>(Value()) : std::nullopt;
+        METIER_ASSIGN(const auto done, context.motionDone());
+        return done ? std::optional<Value>(Value()) : std::nullopt;
     });
 }
 

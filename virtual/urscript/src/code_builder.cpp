@@ -160,13 +160,9 @@ void CodeBuilder::run(std::string_view name, Position at) {
 Result<Code> CodeBuilder::finish(Position end) {
     endFunction(end);
     for (const OpenCall& open_call : open_calls_) {
-        if (auto bound = bind(open_call); !bound) {
-            return fail(std::move(bound.error()));
-        }
+        METIER_TRY(bind(open_call));
     }
-    if (auto checked = checkGlobals(); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkGlobals());
     return std::move(code_);
 }
 
@@ -212,18 +208,15 @@ Result<void> CodeBuilder::bind(const OpenCall& call) {
     } else {
         return notDefined(instruction.at, "function", call.name);
     }
-    auto parameters = parametersOf(call.arguments, signature, instruction.at);
-    if (!parameters) {
-        return fail(std::move(parameters.error()));
-    }
+    METIER_ASSIGN(auto parameters, parametersOf(call.arguments, signature, instruction.at));
     if (builtin == nullptr) {
         instruction.a = static_cast<std::int32_t>(code_.calls.size());
-        code_.calls.push_back({found->second, *std::move(parameters)});
+        code_.calls.push_back({found->second, std::move(parameters)});
     } else {
         instruction.op = Op::call_builtin;
         instruction.a = static_cast<std::int32_t>(code_.builtin_calls.size());
         code_.builtin_calls.push_back(
-            {builtin, signature.parameters.size(), *std::move(parameters)});
+            {builtin, signature.parameters.size(), std::move(parameters)});
     }
     return {};
 }

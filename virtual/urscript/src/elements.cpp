@@ -30,11 +30,9 @@ Result<Value> oneElementOf(const Value& value, const Value& index) {
     if (list == nullptr && pose == nullptr) {
         return fail(Errc::type_mismatch, fmt::format("{} has no elements", value.typeName()));
     }
-    const auto i = indexOf(index, list != nullptr ? list->size() : pose->value.size());
-    if (!i) {
-        return fail(i.error());
-    }
-    return list != nullptr ? list->elements()[*i] : Value(pose->value[*i]);
+    METIER_ASSIGN(const auto i,
+                  indexOf(index, list != nullptr ? list->size() : pose->value.size()));
+    return list != nullptr ? list->elements()[i] : Value(pose->value[i]);
 }
 
 }  // namespace
@@ -56,28 +54,24 @@ Result<void> setElement(Value& target, std::span<const Value> indices, Value val
     if (list == nullptr && pose == nullptr) {
         return fail(Errc::type_mismatch, fmt::format("{} has no elements", target.typeName()));
     }
-    const auto i = indexOf(indices[0], list != nullptr ? list->size() : pose->value.size());
-    if (!i) {
-        return fail(i.error());
-    }
+    METIER_ASSIGN(const auto i,
+                  indexOf(indices[0], list != nullptr ? list->size() : pose->value.size()));
     if (pose != nullptr) {
         if (indices.size() > 1 || !value.isNumber()) {
             return fail(Errc::type_mismatch, "an element of a pose has to be a number");
         }
-        pose->value[*i] = value.number();
+        pose->value[i] = value.number();
         return {};
     }
     if (indices.size() > 1) {
-        Value inner = list->elements()[*i];
-        if (auto set = setElement(inner, indices.subspan(1), std::move(value)); !set) {
-            return set;
-        }
+        Value inner = list->elements()[i];
+        METIER_TRY(setElement(inner, indices.subspan(1), std::move(value)));
         value = std::move(inner);
     }
     if (const List* inner = value.get<List>(); inner != nullptr && inner->depth() >= kDeepestList) {
         return fail(Errc::out_of_range, fmt::format("more than {} lists in lists", kDeepestList));
     }
-    list->set(*i, std::move(value));
+    list->set(i, std::move(value));
     return {};
 }
 

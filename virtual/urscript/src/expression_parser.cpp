@@ -138,14 +138,11 @@ Result<void> Parser::primary() {
     auto done = value();
     while (done && peek().kind == Kind::left_bracket) {
         const Position at = take().at;
-        const auto indices = expressions(Kind::right_bracket, 2);
-        if (!indices) {
-            return fail(indices.error());
-        }
-        if (*indices == 0) {
+        METIER_ASSIGN(const auto indices, expressions(Kind::right_bracket, 2));
+        if (indices == 0) {
             return failAt(at, "an index is missing");
         }
-        builder_.emit(Op::element, at, 0, *indices);
+        builder_.emit(Op::element, at, 0, indices);
     }
     return done;
 }
@@ -161,9 +158,7 @@ Result<void> Parser::value() {
             return runThread();
         case Kind::left_paren:
             take();
-            if (auto done = nested(&Parser::expression); !done) {
-                return done;
-            }
+            METIER_TRY(nested(&Parser::expression));
             return expect(Kind::right_paren, "')'");
         case Kind::integer:
             builder_.constant(static_cast<std::int32_t>(token.number), token.at);
@@ -253,12 +248,9 @@ std::size_t Parser::valuesWithin(std::size_t ahead) const {
 Result<void> Parser::pose() {
     const Position at = take().at;
     take();
-    const auto elements = expressions(Kind::right_bracket, kPoseElements);
-    if (!elements) {
-        return fail(elements.error());
-    }
-    if (*elements != kPoseElements) {
-        return failAt(at, fmt::format("a pose has 6 numbers, not {}", *elements));
+    METIER_ASSIGN(const auto elements, expressions(Kind::right_bracket, kPoseElements));
+    if (elements != kPoseElements) {
+        return failAt(at, fmt::format("a pose has 6 numbers, not {}", elements));
     }
     builder_.emit(Op::make_pose, at);
     return {};
@@ -266,11 +258,8 @@ Result<void> Parser::pose() {
 
 Result<void> Parser::list() {
     const Position at = take().at;
-    const auto elements = expressions(Kind::right_bracket, kMostElements);
-    if (!elements) {
-        return fail(elements.error());
-    }
-    builder_.emit(Op::make_list, at, static_cast<std::int32_t>(*elements));
+    METIER_ASSIGN(const auto elements, expressions(Kind::right_bracket, kMostElements));
+    builder_.emit(Op::make_list, at, static_cast<std::int32_t>(elements));
     return {};
 }
 

@@ -169,11 +169,8 @@ Result<Value> dotProduct(const List& row, std::size_t size, Column column) {
     Value sum(0);
     for (std::size_t i = 0; i < size; ++i) {
         const auto product = applyBinary(Op::multiply, row.elements()[i], column(i));
-        auto next = product ? applyBinary(Op::add, sum, *product) : product;
-        if (!next) {
-            return next;
-        }
-        sum = *std::move(next);
+        METIER_ASSIGN(auto next, product ? applyBinary(Op::add, sum, *product) : product);
+        sum = std::move(next);
     }
     return sum;
 }
@@ -227,12 +224,10 @@ Result<Value> ofLists(Op op, const Value& left, const Value& right) {
     std::vector<Value> result;
     result.reserve(size);
     for (std::size_t i = 0; i < size; ++i) {
-        auto element = applyBinary(op, left_list != nullptr ? left_list->elements()[i] : left,
-                                   right_list != nullptr ? right_list->elements()[i] : right);
-        if (!element) {
-            return element;
-        }
-        result.push_back(*std::move(element));
+        METIER_ASSIGN(auto element,
+                      applyBinary(op, left_list != nullptr ? left_list->elements()[i] : left,
+                                  right_list != nullptr ? right_list->elements()[i] : right));
+        result.push_back(std::move(element));
     }
     return Value(List(std::move(result)));
 }
@@ -252,11 +247,8 @@ Result<Value> ofPoses(Op op, const Value& left, const Value& right) {
     for (std::size_t i = 0; i < result.value.size(); ++i) {
         const double left_part = left_pose != nullptr ? left_pose->value[i] : left.number();
         const double right_part = right_pose != nullptr ? right_pose->value[i] : right.number();
-        const auto part = ofNumbers(op, left_part, right_part);
-        if (!part) {
-            return part;
-        }
-        result.value[i] = part->number();
+        METIER_ASSIGN(const auto part, ofNumbers(op, left_part, right_part));
+        result.value[i] = part.number();
     }
     return Value(result);
 }

@@ -41,9 +41,7 @@ Result<Code> Parser::program() {
         for (const auto& [kind, what] :
              {std::pair(Kind::name, "the program's name"), std::pair(Kind::left_paren, "'('"),
               std::pair(Kind::right_paren, "')'"), std::pair(Kind::colon, "':'")}) {
-            if (auto found = expect(kind, what); !found) {
-                return fail(std::move(found.error()));
-            }
+            METIER_TRY(expect(kind, what));
         }
     }
     auto done = block();
@@ -69,9 +67,7 @@ Result<void> Parser::block() {
         if (endsBlock(peek().kind)) {
             return {};
         }
-        if (auto done = nested(&Parser::statement); !done) {
-            return done;
-        }
+        METIER_TRY(nested(&Parser::statement));
         const Kind kind = peek().kind;
         if (kind != Kind::new_line && kind != Kind::semicolon && !endsBlock(kind)) {
             return unexpected("the end of the line");
@@ -196,13 +192,9 @@ Result<void> Parser::conditional() {
     do {
         take();
         const Position at = peek().at;
-        if (auto done = condition(); !done) {
-            return done;
-        }
+        METIER_TRY(condition());
         const std::size_t otherwise = builder_.emit(Op::jump_if_false, at);
-        if (auto done = block(); !done) {
-            return done;
-        }
+        METIER_TRY(block());
         ends.push_back(builder_.emit(Op::jump, peek().at));
         builder_.patch(otherwise);
     } while (peek().kind == Kind::word_elif);
@@ -225,13 +217,9 @@ Result<void> Parser::loop() {
     take();
     const Position at = peek().at;
     const std::size_t begin = builder_.here();
-    if (auto done = condition(); !done) {
-        return done;
-    }
+    METIER_TRY(condition());
     loops_.push_back({begin, {builder_.emit(Op::jump_if_false, at)}});
-    if (auto done = block(); !done) {
-        return done;
-    }
+    METIER_TRY(block());
     builder_.emit(Op::jump, at, static_cast<std::int32_t>(begin));
     for (const std::size_t leave : loops_.back().breaks) {
         builder_.patch(leave);
@@ -282,12 +270,9 @@ Result<void> Parser::elementAssignment(const Token& name) {
     constexpr std::size_t kMostIndices = 8;
     std::size_t indices = 0;
     while (takeIf(Kind::left_bracket)) {
-        const auto more = expressions(Kind::right_bracket, kMostIndices);
-        if (!more) {
-            return fail(more.error());
-        }
-        indices += *more;
-        if (*more == 0 || indices > kMostIndices) {
+        METIER_ASSIGN(const auto more, expressions(Kind::right_bracket, kMostIndices));
+        indices += more;
+        if (more == 0 || indices > kMostIndices) {
             return unexpected("an index");
         }
     }

@@ -15,15 +15,9 @@ Result<Program> Program::parse(std::string_view text) {
                     fmt::format("line 1, column 1: the script has {} bytes, more than {}",
                                 text.size(), kMaxText));
     }
-    const auto tokens = tokenize(text);
-    if (!tokens) {
-        return fail(tokens.error());
-    }
-    auto code = Parser(*tokens).program();
-    if (!code) {
-        return fail(std::move(code.error()));
-    }
-    return Program(std::make_shared<const Code>(*std::move(code)));
+    METIER_ASSIGN(const auto tokens, tokenize(text));
+    METIER_ASSIGN(auto code, Parser(tokens).program());
+    return Program(std::make_shared<const Code>(std::move(code)));
 }
 
 const std::string& Program::name() const {

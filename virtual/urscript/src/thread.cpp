@@ -250,16 +250,13 @@ Result<void> Thread::callBuiltin(const BuiltinCall& call, ThreadContext& context
 }
 
 Result<void> Thread::join(ThreadContext& context) {
-    const auto handle = handleOf(pop());
-    if (!handle) {
-        return fail(handle.error());
-    }
-    if (!context.isAlive(*handle)) {
+    METIER_ASSIGN(const auto handle, handleOf(pop()));
+    if (!context.isAlive(handle)) {
         stack_.emplace_back();
         return {};
     }
     return waitFor(
-        [&context, wanted = *handle] {
+        [&context, wanted = handle] {
             return Result<std::optional<Value>>(context.isAlive(wanted) ? std::optional<Value>()
                                                                         : Value());
         },

@@ -209,16 +209,13 @@ Result<std::vector<Token>> tokenize(std::string_view text) {
     std::vector<Token> tokens;
     int brackets = 0;
     while (tokens.empty() || tokens.back().kind != Kind::end_of_text) {
-        const auto token = tokenizer.next();
-        if (!token) {
-            return fail(token.error());
-        }
-        brackets += token->kind == Kind::left_paren || token->kind == Kind::left_bracket ? 1 : 0;
-        brackets -= token->kind == Kind::right_paren || token->kind == Kind::right_bracket ? 1 : 0;
-        const bool dropped = token->kind == Kind::new_line &&
+        METIER_ASSIGN(const auto token, tokenizer.next());
+        brackets += token.kind == Kind::left_paren || token.kind == Kind::left_bracket ? 1 : 0;
+        brackets -= token.kind == Kind::right_paren || token.kind == Kind::right_bracket ? 1 : 0;
+        const bool dropped = token.kind == Kind::new_line &&
                              (brackets > 0 || tokens.empty() || goesOn(tokens.back().kind));
         if (!dropped) {
-            tokens.push_back(*token);
+            tokens.push_back(token);
         }
     }
     return tokens;

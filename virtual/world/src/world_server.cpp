@@ -111,13 +111,9 @@ Result<std::unique_ptr<Controller>> startWorld(const ControllerRequest& request)
     auto options = readOptions(request.settings);
     const auto port = static_cast<std::uint16_t>(
         request.settings.numberOr("port", virtual_controller::RemoteWorld::kPort, 0, 65535));
-    if (auto checked = request.settings.finish(); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(request.settings.finish());
     auto server = std::make_unique<WorldServer>(std::move(options));
-    if (auto listening = server->listen(request, port); !listening) {
-        return fail(listening.error());
-    }
+    METIER_TRY(server->listen(request, port));
     return server;
 }
 

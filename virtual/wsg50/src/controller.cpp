@@ -55,14 +55,10 @@ Result<double> parseWidth(const std::string& text, double stroke) {
 Result<std::unique_ptr<WsgController>> WsgController::start(
     const virtual_controller::ControllerRequest& request) {
     auto options = readOptions(request.settings);
-    if (auto finished = request.settings.finish(); !finished) {
-        return fail(finished.error());
-    }
+    METIER_TRY(request.settings.finish());
     auto controller =
         std::unique_ptr<WsgController>(new WsgController(request, std::move(options)));
-    if (auto listening = controller->listen(request); !listening) {
-        return fail(listening.error());
-    }
+    METIER_TRY(controller->listen(request));
     return controller;
 }
 
@@ -168,11 +164,8 @@ std::vector<InjectionHelp> WsgController::injections() const {
 
 Result<void> WsgController::inject(const virtual_controller::Injection& injection) {
     if (injection.name == "part" || injection.name == "block") {
-        const auto width = parseWidth(injection.value, options_.capability.stroke);
-        if (!width) {
-            return fail(width.error());
-        }
-        (injection.name == "part" ? part_width_ : block_width_) = *width;
+        METIER_ASSIGN(const auto width, parseWidth(injection.value, options_.capability.stroke));
+        (injection.name == "part" ? part_width_ : block_width_) = width;
         part_slipped_ = injection.name == "part" ? false : part_slipped_;
         return {};
     }

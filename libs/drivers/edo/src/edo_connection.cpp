@@ -142,9 +142,7 @@ Result<void> EdoConnection::serve(WebSocketLink& link, const std::stop_token& st
     LinkWire wire(link);
     session_.linkUp(now(), wire);
     while (!stop.stop_requested()) {
-        if (auto stepped = step(link, wire); !stepped) {
-            return stepped;
-        }
+        METIER_TRY(step(link, wire));
     }
     close(link, wire);
     return {};

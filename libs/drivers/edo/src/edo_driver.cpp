@@ -20,12 +20,9 @@ struct Edo {
 };
 
 Result<OpenDevice> open(const OpenRequest& request) {
-    auto options = edo_driver::readOptions(request);
-    if (!options) {
-        return fail(options.error());
-    }
-    const bool has_gripper = options->layout.gripper;
-    auto edo = std::make_shared<Edo>(std::move(*options));
+    METIER_ASSIGN(auto options, edo_driver::readOptions(request));
+    const bool has_gripper = options.layout.gripper;
+    auto edo = std::make_shared<Edo>(std::move(options));
     OpenDevice device;
     device.arm = &edo->arm;
     device.gripper = has_gripper ? &edo->gripper : nullptr;

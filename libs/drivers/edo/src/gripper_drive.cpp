@@ -57,11 +57,8 @@ Result<GripperTask> taskFor(GripperTask::Kind kind, const device::GripperRequest
     if (kind == GripperTask::Kind::move && !request.width) {
         return fail(Errc::invalid_argument, "a width to move to is missing");
     }
-    auto percent = overrideFor(request.speed, options);
-    if (!percent) {
-        return fail(percent.error());
-    }
-    return GripperTask{kind, targetFor(kind, request.width, options), *percent};
+    METIER_ASSIGN(auto percent, overrideFor(request.speed, options));
+    return GripperTask{kind, targetFor(kind, request.width, options), percent};
 }
 
 void GripperDrive::start(const GripperTask& task, const JointSetPoint& holding, SteadyTime now,

@@ -102,9 +102,7 @@ Result<EdoOptions> readOptions(const driver::OpenRequest& request) {
                                 request.model->axisCount(), kMaxJoints - 1));
     }
     readAxes(request.model, options);
-    if (auto finished = settings.finish(); !finished) {
-        return fail(finished.error());
-    }
+    METIER_TRY(settings.finish());
     return options;
 }
 

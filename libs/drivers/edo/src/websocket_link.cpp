@@ -143,15 +143,11 @@ struct WebSocketLink::Impl {
 
     Result<void> open(const std::vector<Tcp::endpoint>& endpoints, SteadyTime deadline) {
         boost::asio::async_connect(stream.next_layer(), endpoints, begin(writer));
-        if (auto connected = finish(writer, deadline); !connected) {
-            return connected;
-        }
+        METIER_TRY(finish(writer, deadline));
         error_code ignored;
         stream.next_layer().set_option(Tcp::no_delay(true), ignored);
         stream.async_handshake(peer, "/", begin(writer));
-        if (auto accepted = finish(writer, deadline); !accepted) {
-            return accepted;
-        }
+        METIER_TRY(finish(writer, deadline));
         stream.text(true);
         stream.auto_fragment(false);
         stream.read_message_max(kLongestMessage);
@@ -183,9 +179,7 @@ Result<WebSocketLink> WebSocketLink::connect(const std::string& host, std::uint1
     for (const auto& address : *found) {
         endpoints.emplace_back(boost::asio::ip::make_address(address.to_string()), port);
     }
-    if (auto opened = impl->open(endpoints, deadline); !opened) {
-        return fail(opened.error());
-    }
+    METIER_TRY(impl->open(endpoints, deadline));
     return WebSocketLink(std::move(impl));
 }
 
@@ -212,9 +206,7 @@ Result<std::string_view> WebSocketLink::receive(SteadyTime deadline) {
         }
         impl.stream.async_read(impl.buffer, begin(impl.reader));
     }
-    if (auto received = impl.finish(impl.reader, deadline); !received) {
-        return fail(received.error());
-    }
+    METIER_TRY(impl.finish(impl.reader, deadline));
     impl.delivered = true;
     const auto bytes = impl.buffer.cdata();
     return std::string_view(static_cast<const char*>(bytes.data()), bytes.size());

@@ -34,18 +34,13 @@ IiwaOptions read(const driver::OpenRequest& request) {
 
 Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
     const auto options = read(request);
-    if (auto finished = request.settings.finish(); !finished) {
-        return fail(std::move(finished.error()));
-    }
+    METIER_TRY(request.settings.finish());
     if (request.model == nullptr) {
         return fail(Errc::invalid_argument, request.name + ": an iiwa needs a model");
     }
-    auto arm = IiwaArm::create(options, *request.model);
-    if (!arm) {
-        return fail(std::move(arm.error()));
-    }
+    METIER_ASSIGN(auto arm, IiwaArm::create(options, *request.model));
     // Shared, as OpenDevice asks for.
-    const std::shared_ptr<IiwaArm> owner = std::move(*arm);
+    const std::shared_ptr<IiwaArm> owner = std::move(arm);
     driver::OpenDevice device;
     device.owner = owner;
     device.arm = owner.get();

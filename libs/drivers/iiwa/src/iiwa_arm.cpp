@@ -79,9 +79,7 @@ private:
 
 Result<std::unique_ptr<IiwaArm>> IiwaArm::create(const IiwaOptions& options,
                                                  const motion::RobotModel& model) {
-    if (auto checked = check(options, model); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(check(options, model));
     auto listener = link::TcpListener::listen(options.address, options.port);
     if (!listener) {
         return fail(listener.error().code, options.name + ": " + listener.error().message);

@@ -38,9 +38,7 @@ Result<void> checkForces(const std::optional<device::ForceCondition>& until) {
         return {};
     }
     for (const auto& limit : until->force) {
-        if (auto checked = checkAmount(limit.value_or(0.0), "force limit [N]"); !checked) {
-            return checked;
-        }
+        METIER_TRY(checkAmount(limit.value_or(0.0), "force limit [N]"));
     }
     return {};
 }

@@ -28,9 +28,7 @@ Result<void> Pilot::move(const device::PlannedMotion& motion, MotionSlot::Done d
         return fail(lost ? Errc::connection_lost : Errc::device_fault,
                     fmt::format("{} ({})", safety.text, device::toString(safety.state)));
     }
-    if (auto possible = checkMotion(model_, motion); !possible) {
-        return possible;
-    }
+    METIER_TRY(checkMotion(model_, motion));
     if (core_.active() != nullptr || !slot_.post(motion, std::move(done))) {
         return fail(Errc::resource_unavailable, core_.info().name + ": another motion runs");
     }

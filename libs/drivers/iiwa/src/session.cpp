@@ -55,26 +55,19 @@ void Session::serve(link::TcpLink& link, const std::stop_token& stop) {
 
 Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
     auto& pilot = clients_.pilot;
-    auto first = exchange(link, askState(), kFirstTimeout);
-    if (!first) {
-        return fail(std::move(first.error()));
-    }
+    METIER_ASSIGN(auto first, exchange(link, askState(), kFirstTimeout));
     answered_ = true;
-    pilot.connected(*first, steady_clock::now());
+    pilot.connected(first, steady_clock::now());
     auto scheduled = steady_clock::now();
     while (!stop.stop_requested()) {
-        if (auto guarded = keepGuard(link); !guarded) {
-            return guarded;
-        }
+        METIER_TRY(keepGuard(link));
         const auto command = pilot.command();
-        const auto answer =
-            exchange(link, command, pilot.settlingIn() ? kFirstTimeout : options_.answer_timeout);
-        if (!answer) {
-            return fail(answer.error());
-        }
+        METIER_ASSIGN(
+            const auto answer,
+            exchange(link, command, pilot.settlingIn() ? kFirstTimeout : options_.answer_timeout));
         const auto now = steady_clock::now();
-        clients_.force.take(*answer, now);
-        pilot.take(command, *answer, now);
+        clients_.force.take(answer, now);
+        pilot.take(command, answer, now);
         if (pilot.toTell()) {
             clients_.signal();
         }
@@ -102,17 +95,13 @@ Result<CabinetState> Session::exchange(link::TcpLink& link, const Command& comma
                                        std::chrono::nanoseconds timeout) {
     const auto deadline = steady_clock::now() + timeout;
     const auto encoded = encode(command, options_.precision);
-    if (auto sent = link.send(encoded.bytes(), deadline); !sent) {
-        return fail(std::move(sent.error()));
-    }
+    METIER_TRY(link.send(encoded.bytes(), deadline));
     const std::size_t expected = stateSize(options_.precision);
     std::size_t received = 0;
     while (received < expected) {
-        const auto count = link.receive(std::span(buffer_).subspan(received), deadline);
-        if (!count) {
-            return fail(count.error());
-        }
-        received += *count;
+        METIER_ASSIGN(const auto count,
+                      link.receive(std::span(buffer_).subspan(received), deadline));
+        received += count;
     }
     const auto state = parseState(std::span(buffer_).first(received), options_.precision);
     if (!state) {

@@ -29,9 +29,7 @@ protected:
     }
     Result<MotionOutcome> run(const PlannedMotion& motion) {
         Outcome outcome;
-        if (auto begun = bench.arm->move(motion, outcome.taker()); !begun) {
-            return fail(begun.error());
-        }
+        METIER_TRY(bench.arm->move(motion, outcome.taker()));
         EXPECT_TRUE(until([&] { return outcome.told(); }));
         EXPECT_EQ(outcome.count(), 1);
         return outcome.get();

@@ -128,34 +128,19 @@ Result<double> torqueUnit(std::string_view text) {
 
 Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fallback) {
     pugi::xml_document document;
-    if (const auto loaded = load(document, page); !loaded) {
-        return fail(loaded.error());
-    }
-    const auto force_counts = countsOf(document, kForceCounts);
-    if (!force_counts) {
-        return fail(force_counts.error());
-    }
-    const auto torque_counts = countsOf(document, kTorqueCounts);
-    if (!torque_counts) {
-        return fail(torque_counts.error());
-    }
-    const auto force = unitOf(textOf(document, kForceUnit), fallback.force, forceUnit, "force");
-    if (!force) {
-        return fail(force.error());
-    }
-    const auto torque =
-        unitOf(textOf(document, kTorqueUnit), fallback.torque, torqueUnit, "torque");
-    if (!torque) {
-        return fail(torque.error());
-    }
-    return Calibration{*force / *force_counts, *torque / *torque_counts};
+    METIER_TRY(load(document, page));
+    METIER_ASSIGN(const auto force_counts, countsOf(document, kForceCounts));
+    METIER_ASSIGN(const auto torque_counts, countsOf(document, kTorqueCounts));
+    METIER_ASSIGN(const auto force,
+                  unitOf(textOf(document, kForceUnit), fallback.force, forceUnit, "force"));
+    METIER_ASSIGN(const auto torque,
+                  unitOf(textOf(document, kTorqueUnit), fallback.torque, torqueUnit, "torque"));
+    return Calibration{force / force_counts, torque / torque_counts};
 }
 
 Result<std::optional<double>> parseRate(std::string_view page) {
     pugi::xml_document document;
-    if (const auto loaded = load(document, page); !loaded) {
-        return fail(loaded.error());
-    }
+    METIER_TRY(load(document, page));
     const auto rdt = textOf(document, kRdt);
     if (!rdt.empty() && plain(rdt) != "enabled" && rdt != "1") {
         return fail(Errc::device_fault,

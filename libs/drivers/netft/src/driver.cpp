@@ -52,11 +52,8 @@ std::string unitText(const configuration::Settings& settings, std::string_view n
 }
 
 Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
-    auto options = readOptions(request);
-    if (!options) {
-        return fail(std::move(options.error()));
-    }
-    auto sensor = std::make_shared<NetftSensor>(std::move(*options));
+    METIER_ASSIGN(auto options, readOptions(request));
+    auto sensor = std::make_shared<NetftSensor>(std::move(options));
     driver::OpenDevice device;
     device.force_torque_sensor = sensor.get();
     device.owner = std::move(sensor);

@@ -91,18 +91,13 @@ void NetftSensor::Session::run(const std::stop_token& stop) {
 }
 
 Result<void> NetftSensor::Session::connection(const std::stop_token& stop) {
-    const auto scale = calibration();
-    if (!scale) {
-        return fail(scale.error());
-    }
-    auto link = link::UdpLink::connect(options_.host, options_.port, now() + kConnectTimeout);
-    if (!link) {
-        return fail(link.error());
-    }
-    RecordStream stream(*scale);
-    auto ended = begin(stop, *link, stream).and_then([&] { return follow(stop, *link, stream); });
+    METIER_ASSIGN(const auto scale, calibration());
+    METIER_ASSIGN(auto link,
+                  link::UdpLink::connect(options_.host, options_.port, now() + kConnectTimeout));
+    RecordStream stream(scale);
+    auto ended = begin(stop, link, stream).and_then([&] { return follow(stop, link, stream); });
     lost_before_ += stream.lost();
-    static_cast<void>(link->send(rdtRequest(RdtCommand::stop)));
+    static_cast<void>(link.send(rdtRequest(RdtCommand::stop)));
     return ended;
 }
 
@@ -111,16 +106,10 @@ Result<Calibration> NetftSensor::Session::calibration() {
         setSilence(std::nullopt);
         return *options_.calibration;
     }
-    const auto text = readPage();
-    if (!text) {
-        return fail(text.error());
-    }
-    const auto rate = parseRate(*text);
-    if (!rate) {
-        return fail(rate.error());
-    }
-    setSilence(*rate);
-    return parseCalibration(*text, options_.units);
+    METIER_ASSIGN(const auto text, readPage());
+    METIER_ASSIGN(const auto rate, parseRate(text));
+    setSilence(rate);
+    return parseCalibration(text, options_.units);
 }
 
 Result<std::string> NetftSensor::Session::readPage() const {
@@ -141,9 +130,7 @@ Result<void> NetftSensor::Session::begin(const std::stop_token& stop, link::UdpL
                                          RecordStream& stream) {
     std::array<std::byte, kLargestDatagram> buffer{};
     for (int attempt = 0; attempt < kStartAttempts && !stop.stop_requested(); ++attempt) {
-        if (auto sent = link.send(rdtRequest(RdtCommand::real_time)); !sent) {
-            return sent;
-        }
+        METIER_TRY(link.send(rdtRequest(RdtCommand::real_time)));
         const auto count = link.receive(buffer, now() + kFirstRecordTimeout);
         if (!count && count.error().code != Errc::timeout) {
             return fail(count.error());
@@ -176,9 +163,7 @@ Result<void> NetftSensor::Session::follow(const std::stop_token& stop, link::Udp
         if (sample) {
             last = sample->stamp;
             take(*sample, stream);
-            if (auto worked = workOnTare(link, *sample); !worked) {
-                return worked;
-            }
+            METIER_TRY(workOnTare(link, *sample));
         } else if (now() >= last + silence) {
             return fail(Errc::timeout,
                         fmt::format("{}: no record for {} ms", link.peer(), silence.count()));

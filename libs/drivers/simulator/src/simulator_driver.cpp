@@ -19,19 +19,14 @@ struct SimulatedArm {
 };
 
 Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
-    if (auto checked = request.settings.finish(); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(request.settings.finish());
     if (request.model == nullptr) {
         return fail(Errc::invalid_argument, request.name + ": the simulator is one of arms only");
     }
     auto options = joint_simulator::optionsFor(*request.model);
     options.name = request.name;
-    auto arm = joint_simulator::JointSimulator::create(std::move(options));
-    if (!arm) {
-        return fail(arm.error());
-    }
-    auto owner = std::make_shared<SimulatedArm>(std::move(*arm));
+    METIER_ASSIGN(auto arm, joint_simulator::JointSimulator::create(std::move(options)));
+    auto owner = std::make_shared<SimulatedArm>(std::move(arm));
     driver::OpenDevice device;
     device.arm = owner->arm.get();
     device.owner = std::move(owner);

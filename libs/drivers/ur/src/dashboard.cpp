@@ -44,39 +44,28 @@ Result<bool> parseFlag(std::string_view reply) {
 Client::Client(link::TcpLink link) : link_(std::move(link)), buffer_(4 * kLongestLine) {}
 
 Result<Client> Client::connect(const std::string& host, std::uint16_t port, SteadyTime deadline) {
-    auto link = link::TcpLink::connect(host, port, deadline);
-    if (!link) {
-        return fail(link.error());
-    }
-    Client client(std::move(*link));
-    const auto greeting = client.line(deadline);
-    if (!greeting) {
-        return fail(greeting.error());
-    }
-    if (greeting->substr(0, kGreeting.size()) != kGreeting) {
+    METIER_ASSIGN(auto link, link::TcpLink::connect(host, port, deadline));
+    Client client(std::move(link));
+    METIER_ASSIGN(const auto greeting, client.line(deadline));
+    if (greeting.substr(0, kGreeting.size()) != kGreeting) {
         return fail(Errc::invalid_argument,
-                    fmt::format("{}: no dashboard server: \"{}\"", client.link_.peer(), *greeting));
+                    fmt::format("{}: no dashboard server: \"{}\"", client.link_.peer(), greeting));
     }
     return client;
 }
 
 Result<std::string> Client::ask(std::string_view command, SteadyTime deadline) {
     const std::string line_out = std::string(command) + "\n";
-    if (auto sent = link_.send(std::as_bytes(std::span(line_out)), deadline); !sent) {
-        return fail(sent.error());
-    }
+    METIER_TRY(link_.send(std::as_bytes(std::span(line_out)), deadline));
     return line(deadline);
 }
 
 Result<void> Client::command(std::string_view command, std::string_view expected,
                              SteadyTime deadline) {
-    const auto reply = ask(command, deadline);
-    if (!reply) {
-        return fail(reply.error());
-    }
-    if (reply->substr(0, expected.size()) != expected) {
+    METIER_ASSIGN(const auto reply, ask(command, deadline));
+    if (reply.substr(0, expected.size()) != expected) {
         return fail(Errc::device_fault, fmt::format("\"{}\" was answered with \"{}\", not \"{}\"",
-                                                    command, *reply, expected));
+                                                    command, reply, expected));
     }
     return {};
 }
@@ -90,11 +79,8 @@ Result<std::string> Client::line(SteadyTime deadline) {
         if (*line) {
             return std::move(**line);
         }
-        const auto count = link_.receive(buffer_.space(), deadline);
-        if (!count) {
-            return fail(count.error());
-        }
-        buffer_.filled(*count);
+        METIER_ASSIGN(const auto count, link_.receive(buffer_.space(), deadline));
+        buffer_.filled(count);
     }
 }
 

@@ -49,24 +49,21 @@ double frequencyOf(const motion::RobotModel& model, const ControllerDescription&
 }
 
 Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
-    auto settings = UrSettings::read(request.settings);
-    if (!settings) {
-        return fail(settings.error());
-    }
+    METIER_ASSIGN(auto settings, UrSettings::read(request.settings));
     if (request.model == nullptr || request.model->axisCount() != kAxes) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: driver ur needs the model of an arm with {} axes",
                                 request.name, kAxes));
     }
-    const auto description = describe(request, *settings);
+    const auto description = describe(request, settings);
     auto model = modelOf(request, description);
-    if (settings->frequency == 0.0) {
-        settings->frequency = frequencyOf(model, description);
+    if (settings.frequency == 0.0) {
+        settings.frequency = frequencyOf(model, description);
     }
     const auto max_velocity =
         description.configuration ? description.configuration->max_velocity : Joints{};
     auto arm = std::make_shared<UrArm>(
-        UrArmOptions{request.name, request.address, model, *settings, max_velocity});
+        UrArmOptions{request.name, request.address, model, settings, max_velocity});
     driver::OpenDevice device;
     device.arm = arm.get();
     device.owner = std::move(arm);

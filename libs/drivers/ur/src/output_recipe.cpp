@@ -133,9 +133,7 @@ Result<bool> OutputRecipe::take(const RecipeReply& reply) {
                                                         reply.types.size(), fields_.size()));
     }
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-        if (auto checked = check(fields_[i], reply.types[i]); !checked) {
-            return fail(checked.error());
-        }
+        METIER_TRY(check(fields_[i], reply.types[i]));
     }
     if (std::find(reply.types.begin(), reply.types.end(), kNotFound) != reply.types.end()) {
         withoutMissing(reply);

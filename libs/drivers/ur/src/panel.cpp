@@ -62,20 +62,14 @@ void Panel::handle(const PanelJob& job) {
 }
 
 Result<void> Panel::upload(std::int32_t token) {
-    if (auto checked = checkRemoteControl(); !checked) {
-        return checked;
-    }
+    METIER_TRY(checkRemoteControl());
     script_link_.reset();
     const auto now = std::chrono::steady_clock::now();
-    auto link = link::TcpLink::connect(peer_.host, settings_.secondary_port, now + kUploadTimeout);
-    if (!link) {
-        return fail(link.error());
-    }
+    METIER_ASSIGN(auto link, link::TcpLink::connect(peer_.host, settings_.secondary_port,
+                                                    now + kUploadTimeout));
     const std::string script = servojScript(script_, token);
-    if (auto sent = link->send(std::as_bytes(std::span(script)), now + kUploadTimeout); !sent) {
-        return sent;
-    }
-    script_link_ = std::move(*link);
+    METIER_TRY(link.send(std::as_bytes(std::span(script)), now + kUploadTimeout));
+    script_link_ = std::move(link);
     close_script_link_ = now + kScriptLinkLife;
     return {};
 }

@@ -110,9 +110,7 @@ Result<Package> readRobotState(ByteReader reader) {
         if (!reader.ok()) {
             return malformed(fmt::format("sub-package {}", type), size);
         }
-        if (auto read = readSubPackage(type, body, package); !read) {
-            return fail(read.error());
-        }
+        METIER_TRY(readSubPackage(type, body, package));
     }
     return package;
 }

@@ -22,11 +22,8 @@ PrimarySession::PrimarySession(link::TcpLink link)
 
 Result<PrimarySession> PrimarySession::connect(const std::string& host, std::uint16_t port,
                                                SteadyTime deadline) {
-    auto link = link::TcpLink::connect(host, port, deadline);
-    if (!link) {
-        return fail(link.error());
-    }
-    return PrimarySession(std::move(*link));
+    METIER_ASSIGN(auto link, link::TcpLink::connect(host, port, deadline));
+    return PrimarySession(std::move(link));
 }
 
 Result<primary::Package> PrimarySession::next(SteadyTime deadline) {
@@ -43,11 +40,8 @@ Result<primary::Package> PrimarySession::next(SteadyTime deadline) {
             }
             return package;
         }
-        const auto count = link_.receive(buffer_.space(), deadline);
-        if (!count) {
-            return fail(count.error());
-        }
-        buffer_.filled(*count);
+        METIER_ASSIGN(const auto count, link_.receive(buffer_.space(), deadline));
+        buffer_.filled(count);
     }
 }
 
@@ -65,13 +59,10 @@ void ControllerDescription::take(const primary::Package& package) {
 
 Result<ControllerDescription> readDescription(const std::string& host, std::uint16_t port,
                                               SteadyTime deadline) {
-    auto session = PrimarySession::connect(host, port, deadline);
-    if (!session) {
-        return fail(session.error());
-    }
+    METIER_ASSIGN(auto session, PrimarySession::connect(host, port, deadline));
     ControllerDescription description;
     while (!description.complete() && std::chrono::steady_clock::now() < deadline) {
-        const auto package = session->next(deadline);
+        const auto package = session.next(deadline);
         if (!package && !description.version && !description.kinematics) {
             return fail(package.error());
         }

@@ -85,15 +85,12 @@ Result<void> Recovery::unlock(const std::stop_token& stop) {
         return refuse(fmt::format("the protective stop can be unlocked in {:.1f} s",
                                   std::chrono::duration<double>(left).count()));
     }
-    auto client = dial();
-    if (!client) {
-        return fail(client.error());
-    }
+    METIER_ASSIGN(auto client, dial());
     // Their replies tell only whether there was a popup; a link that fails now also fails below.
-    (void)client->ask("close safety popup", commandDeadline());
-    (void)client->ask("close popup", commandDeadline());
-    if (auto unlocked = client->command("unlock protective stop", "Protective stop releasing",
-                                        commandDeadline());
+    (void)client.ask("close safety popup", commandDeadline());
+    (void)client.ask("close popup", commandDeadline());
+    if (auto unlocked = client.command("unlock protective stop", "Protective stop releasing",
+                                       commandDeadline());
         !unlocked) {
         return refuse(unlocked.error().message);
     }
@@ -116,12 +113,9 @@ Result<void> Recovery::powerOn(const std::stop_token& stop) {
             "lets Reset do it)",
             toText(mode)));
     }
-    auto client = dial();
-    if (!client) {
-        return fail(client.error());
-    }
+    METIER_ASSIGN(auto client, dial());
     if (mode != RobotMode::idle) {
-        if (auto on = client->command("power on", "Powering on", commandDeadline()); !on) {
+        if (auto on = client.command("power on", "Powering on", commandDeadline()); !on) {
             return refuse(on.error().message);
         }
         auto powered = await(
@@ -134,7 +128,7 @@ Result<void> Recovery::powerOn(const std::stop_token& stop) {
             return powered;
         }
     }
-    if (auto released = client->command("brake release", "Brake releasing", commandDeadline());
+    if (auto released = client.command("brake release", "Brake releasing", commandDeadline());
         !released) {
         return refuse(released.error().message);
     }
@@ -146,20 +140,15 @@ Result<void> Recovery::endPausedProgram(const std::stop_token& stop) {
     if (newest_().state.runtime_state != RuntimeState::paused) {
         return {};
     }
-    if (auto stopped = stopProgram(); !stopped) {
-        return stopped;
-    }
+    METIER_TRY(stopProgram());
     return await(
         [](const ControllerState& state) { return state.runtime_state == RuntimeState::stopped; },
         kStopTimeout, "the paused program was not stopped", stop);
 }
 
 Result<void> Recovery::stopProgram() {
-    auto client = dial();
-    if (!client) {
-        return fail(client.error());
-    }
-    if (auto stopped = client->command("stop", "Stopped", commandDeadline()); !stopped) {
+    METIER_ASSIGN(auto client, dial());
+    if (auto stopped = client.command("stop", "Stopped", commandDeadline()); !stopped) {
         return refuse(stopped.error().message);
     }
     return {};

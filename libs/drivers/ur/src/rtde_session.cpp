@@ -21,11 +21,8 @@ RtdeSession::RtdeSession(link::TcpLink link, std::int32_t register_base)
     : link_(std::move(link)), buffer_(2 * rtde::kMaxPackageSize + 2), outputs_(register_base) {}
 
 Result<RtdeSession> RtdeSession::open(const RtdeRequest& request, SteadyTime deadline) {
-    auto link = link::TcpLink::connect(request.host, request.port, deadline);
-    if (!link) {
-        return fail(link.error());
-    }
-    RtdeSession session(std::move(*link), request.register_base);
+    METIER_ASSIGN(auto link, link::TcpLink::connect(request.host, request.port, deadline));
+    RtdeSession session(std::move(link), request.register_base);
     if (auto agreed = session.negotiate(request, deadline); !agreed) {
         return fail(session.atPeer(agreed.error()));
     }
@@ -98,45 +95,34 @@ Result<void> RtdeSession::setUpInputs(std::int32_t register_base, SteadyTime dea
 }
 
 Result<rtde::Bytes> RtdeSession::ask(const rtde::Bytes& request, SteadyTime deadline) {
-    if (auto sent = link_.send(request, deadline); !sent) {
-        return fail(sent.error());
-    }
+    METIER_TRY(link_.send(request, deadline));
     const auto wanted = static_cast<PackageType>(request[2]);
-    const auto package = nextPackage(deadline);
-    if (!package) {
-        return fail(package.error());
-    }
-    if (package->type != wanted) {
+    METIER_ASSIGN(const auto package, nextPackage(deadline));
+    if (package.type != wanted) {
         return fail(Errc::invalid_argument,
                     fmt::format("RTDE answered '{:c}' with package {}", static_cast<char>(wanted),
-                                static_cast<int>(package->type)));
+                                static_cast<int>(package.type)));
     }
-    return rtde::Bytes(package->payload.begin(), package->payload.end());
+    return rtde::Bytes(package.payload.begin(), package.payload.end());
 }
 
 Result<rtde::Package> RtdeSession::nextPackage(SteadyTime deadline) {
     for (;;) {
         buffer_.consume(std::exchange(to_consume_, 0));
-        const auto package = rtde::firstPackage(buffer_);
-        if (!package) {
-            return fail(package.error());
-        }
-        if (package->has_value()) {
-            to_consume_ = rtde::kHeaderSize + (*package)->payload.size();
-            if ((*package)->type != PackageType::text_message) {
-                return **package;
+        METIER_ASSIGN(const auto package, rtde::firstPackage(buffer_));
+        if (package.has_value()) {
+            to_consume_ = rtde::kHeaderSize + package->payload.size();
+            if (package->type != PackageType::text_message) {
+                return *package;
             }
-            tell(**package);
+            tell(*package);
             if (std::chrono::steady_clock::now() >= deadline) {
                 return fail(Errc::timeout, "RTDE sends nothing but text messages");
             }
             continue;
         }
-        const auto count = link_.receive(buffer_.space(), deadline);
-        if (!count) {
-            return fail(count.error());
-        }
-        buffer_.filled(*count);
+        METIER_ASSIGN(const auto count, link_.receive(buffer_.space(), deadline));
+        buffer_.filled(count);
     }
 }
 

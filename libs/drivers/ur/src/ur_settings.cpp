@@ -52,9 +52,7 @@ Result<UrSettings> UrSettings::read(const configuration::Settings& settings) {
     read.open_wait = seconds(settings.numberOr("open_wait", 3.0, 0.0, 30.0));
     read.standstill_speed = settings.numberOr("standstill_speed", 0.005, 1e-4, 0.1);
     read.follow_tolerance = settings.numberOr("follow_tolerance", 0.05, 0.001, 1.0);
-    if (auto finished = settings.finish(); !finished) {
-        return fail(finished.error());
-    }
+    METIER_TRY(settings.finish());
     return read;
 }
 

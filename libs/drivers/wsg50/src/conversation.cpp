@@ -37,25 +37,19 @@ Command Conversation::stepCommand() const {
 }
 
 Result<void> Conversation::take(const Frame& frame, SteadyTime now) {
-    const auto reply = parseReply(frame);
-    if (!reply) {
-        return fail(reply.error());
-    }
-    if (reply->status == Status::success) {
-        const auto update = seen_.take(*reply, now);
-        if (!update) {
-            return fail(update.error());
-        }
-        if (*update && started_) {
+    METIER_ASSIGN(const auto reply, parseReply(frame));
+    if (reply.status == Status::success) {
+        METIER_ASSIGN(const auto update, seen_.take(reply, now));
+        if (update && started_) {
             listener_.onState(seen_.state(now));
             follow(now);
             return {};
         }
     }
     if (!started_) {
-        return takeStart(*reply, now);
+        return takeStart(reply, now);
     }
-    takeAnswer(*reply, now);
+    takeAnswer(reply, now);
     return {};
 }
 
@@ -63,9 +57,7 @@ Result<void> Conversation::takeStart(const Reply& reply, SteadyTime now) {
     if (reply.id != stepCommand().id()) {
         return {};
     }
-    if (auto taken = takeStep(reply); !taken) {
-        return taken;
-    }
+    METIER_TRY(takeStep(reply));
     nextStep(now);
     return {};
 }

@@ -18,11 +18,8 @@ std::optional<double> optionalNumber(const configuration::Settings& settings, st
 }
 
 Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
-    auto options = readOptions(request);
-    if (!options) {
-        return fail(std::move(options.error()));
-    }
-    auto gripper = std::make_shared<Wsg50Gripper>(std::move(*options));
+    METIER_ASSIGN(auto options, readOptions(request));
+    auto gripper = std::make_shared<Wsg50Gripper>(std::move(options));
     driver::OpenDevice device;
     device.gripper = gripper.get();
     device.owner = std::move(gripper);

@@ -87,9 +87,7 @@ double f32At(std::span<const std::byte> data, std::size_t offset) noexcept {
 }
 
 Result<double> parseFloat(std::span<const std::byte> data, std::string_view what) {
-    if (auto checked = checkSize(data, kFloatSize, what); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSize(data, kFloatSize, what));
     const double value = f32At(data, 0);
     if (!(std::abs(value) <= kLargestValue)) {
         return fail(Errc::invalid_argument, fmt::format("{}: {} is no value", what, value));
@@ -137,16 +135,12 @@ std::string_view toString(GraspingState state) noexcept {
 }
 
 Result<SystemState> parseSystemState(std::span<const std::byte> data) {
-    if (auto checked = checkSize(data, 4, "system state"); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSize(data, 4, "system state"));
     return SystemState(u32At(data, 0));
 }
 
 Result<GraspingState> parseGraspingState(std::span<const std::byte> data) {
-    if (auto checked = checkSize(data, 1, "grasping state"); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSize(data, 1, "grasping state"));
     const auto number = std::to_integer<std::size_t>(data[0]);
     if (number >= kGraspingNames.size()) {
         return fail(Errc::invalid_argument, fmt::format("grasping state: {} is none", number));
@@ -164,9 +158,7 @@ Result<double> parseForce(std::span<const std::byte> data) {
 
 Result<Limits> parseLimits(std::span<const std::byte> data) {
     constexpr std::size_t kCount = 8;
-    if (auto checked = checkSize(data, kCount * kFloatSize, "limits"); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSize(data, kCount * kFloatSize, "limits"));
     const auto value = [&](std::size_t index) { return f32At(data, index * kFloatSize); };
     const Limits limits{
         .stroke = value(0) * kMillimetre,

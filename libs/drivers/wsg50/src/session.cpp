@@ -98,13 +98,11 @@ void Wsg50Gripper::Session::run(const std::stop_token& stop) {
 }
 
 Result<void> Wsg50Gripper::Session::connection(const std::stop_token& stop) {
-    auto link = link::TcpLink::connect(options_.host, options_.port, now() + kConnectTimeout);
-    if (!link) {
-        return fail(link.error());
-    }
+    METIER_ASSIGN(auto link,
+                  link::TcpLink::connect(options_.host, options_.port, now() + kConnectTimeout));
     // What was asked before belongs to the connection before.
     resets_.answer(fail(Errc::connection_lost, named("the connection was lost")));
-    link_ = &*link;
+    link_ = &link;
     sent_ = {};
     auto conversation_options = options_.conversation;
     conversation_options.home = conversation_options.home && known_.read().force_limit == 0.0;
@@ -121,9 +119,7 @@ Result<void> Wsg50Gripper::Session::talk(const std::stop_token& stop, Conversati
     FrameReader reader;
     while (!stop.stop_requested()) {
         passOrders(conversation);
-        if (auto taken = takeBytes(conversation, reader); !taken) {
-            return taken;
-        }
+        METIER_TRY(takeBytes(conversation, reader));
         if (auto ticked = conversation.tick(now()); !ticked) {
             return atPeer(ticked.error());
         }

@@ -99,9 +99,7 @@ Result<std::vector<OpenAcceptor>> openAcceptors(asio::io_context& io,
     auto port = parameters.port;
     std::vector<OpenAcceptor> opened;
     for (const auto& host : hosts) {
-        if (auto listening = listenOn(io, host, port, opened); !listening) {
-            return fail(listening.error());
-        }
+        METIER_TRY(listenOn(io, host, port, opened));
     }
     return opened;
 }

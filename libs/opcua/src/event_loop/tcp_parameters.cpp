@@ -48,11 +48,8 @@ Result<TcpParameters> readTcpParameters(const UA_KeyValueMap* map) {
     if (port == nullptr) {
         return fail(Errc::invalid_argument, "TCP parameter port is missing");
     }
-    auto addresses = readAddresses(map);
-    if (!addresses) {
-        return fail(addresses.error());
-    }
-    TcpParameters parameters{.addresses = std::move(*addresses),
+    METIER_ASSIGN(auto addresses, readAddresses(map));
+    TcpParameters parameters{.addresses = std::move(addresses),
                              .port = *port,
                              .listen = readFlag(map, "listen"),
                              .validate = readFlag(map, "validate")};

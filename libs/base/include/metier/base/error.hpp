@@ -56,3 +56,37 @@ inline tl::unexpected<Error> fail(Error error) {
 }
 
 }  // namespace metier
+
+/// Leaves the function with the error of a Result, or goes on if it has a value:
+///
+///     METIER_TRY(arm.halt());
+///
+/// The expression is evaluated once. Works for every tl::expected in functions that return one
+/// whose error can be made of it.
+#define METIER_TRY(...) METIER_TRY_AS(METIER_NEW_NAME(__COUNTER__), __VA_ARGS__)
+
+/// Gives a variable the value of a Result, or leaves the function with its error:
+///
+///     METIER_ASSIGN(const auto plan, planner.plan(request));
+///
+/// The first argument is what stands before the `=` of a declaration or an assignment. The value is
+/// moved; a Result that the expression names is copied before. It is a statement of a block: alone
+/// behind an `if` it does not compile.
+#define METIER_ASSIGN(variable, ...) \
+    METIER_ASSIGN_AS(METIER_NEW_NAME(__COUNTER__), variable, __VA_ARGS__)
+
+// NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot be in parentheses
+#define METIER_TRY_AS(result, ...)                          \
+    if (auto result = (__VA_ARGS__); !result) {             \
+        return ::tl::unexpected(std::move(result).error()); \
+    }                                                       \
+    static_assert(true)
+#define METIER_ASSIGN_AS(result, variable, ...)             \
+    auto result = (__VA_ARGS__);                            \
+    if (!result) {                                          \
+        return ::tl::unexpected(std::move(result).error()); \
+    }                                                       \
+    variable = *std::move(result)
+#define METIER_NEW_NAME(number) METIER_JOINED(metier_result_, number)
+#define METIER_JOINED(left, right) left##right
+// NOLINTEND(bugprone-macro-parentheses)

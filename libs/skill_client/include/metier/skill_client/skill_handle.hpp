@@ -139,11 +139,8 @@ opcua::Answer<Results> SkillHandle::run(const skill::FieldList<Parameters>& para
                                         const Parameters& parameters,
                                         const skill::FieldList<Results>& result_list,
                                         SteadyTime deadline) {
-    auto values = run(parameter_list.write(parameters), deadline);
-    if (!values) {
-        return tl::unexpected(values.error());
-    }
-    auto results = result_list.read(*values);
+    METIER_ASSIGN(auto values, run(parameter_list.write(parameters), deadline));
+    auto results = result_list.read(values);
     if (!results) {
         return tl::unexpected(opcua::Failure{results.error(), opcua::status::kBadTypeMismatch, {}});
     }
