@@ -59,7 +59,8 @@ function(metier_use_precompiled_headers target)
 endfunction()
 
 # metier_add_library(<name> SOURCES ... [PUBLIC libs] [PRIVATE libs])
-# A library of libs/<name>: target metier_<name>, alias metier::<name>, headers in include/.
+# A library of libs/<name>: target metier_<name>, alias metier::<name>. In include/ are the headers that other
+# libraries include (tools/lint/public_headers.py), in src/ the others.
 # Without SOURCES it is header-only.
 function(metier_add_library name)
     cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
@@ -79,7 +80,8 @@ function(metier_add_library name)
 endfunction()
 
 # metier_add_test(<name> SOURCES ... LIBRARIES ... [LABELS ...] [TIMEOUT seconds] [ALONE])
-# A GoogleTest program; each of its tests is a ctest of its own. ALONE: no other test runs beside one of them.
+# A GoogleTest program; each of its tests is a ctest of its own, and sees the headers of the library's src/.
+# ALONE: no other test runs beside one of them.
 function(metier_add_test name)
     if(NOT METIER_TESTS)
         return()
@@ -90,6 +92,7 @@ function(metier_add_test name)
     endif()
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gmock_main metier::warnings)
+    target_include_directories(${name} PRIVATE src)
     metier_use_precompiled_headers(${name} REUSE_FROM metier_test_headers)
     gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST
         PROPERTIES TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${arg_ALONE} LABELS "${arg_LABELS}")
@@ -103,6 +106,7 @@ function(metier_add_benchmark name)
     cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} benchmark::benchmark metier::warnings)
+    target_include_directories(${name} PRIVATE src)
 endfunction()
 
 option(METIER_FUZZ "Build the fuzz targets as libFuzzer programs; needs clang" OFF)
@@ -133,7 +137,7 @@ function(metier_add_fuzz_target name)
     list(TRANSFORM arg_SEEDS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} metier::warnings)
-    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/fuzz)
+    target_include_directories(${name} PRIVATE src ${PROJECT_SOURCE_DIR}/tests/fuzz)
     target_compile_definitions(${name} PRIVATE METIER_MODELS_DIR="${PROJECT_SOURCE_DIR}/models")
     if(NOT TARGET fuzzers)
         add_custom_target(fuzzers)

@@ -21,8 +21,8 @@
 #include "metier/motion/execution.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "metier/motion/planner.hpp"
-#include "metier/motion/self_collision.hpp"
 #include "metier/motion/stream_follower.hpp"
+#include "self_collision.hpp"
 
 namespace metier::motion {
 namespace {

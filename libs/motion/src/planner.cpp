@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "line_tracker.hpp"
-#include "metier/motion/self_collision.hpp"
 #include "path_layout.hpp"
 #include "plan.hpp"
 #include "request_check.hpp"
+#include "self_collision.hpp"
 #include "singularity.hpp"
 #include "tool_limits.hpp"
 

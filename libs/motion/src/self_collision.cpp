@@ -1,4 +1,4 @@
-#include "metier/motion/self_collision.hpp"
+#include "self_collision.hpp"
 
 #include <algorithm>
 #include <array>

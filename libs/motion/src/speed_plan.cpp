@@ -289,8 +289,8 @@ private:
             const double j = (q[3][i] - 3 * q[2][i] + 3 * q[1][i] - q[0][i]) / (step * step * step);
             const double shown = std::abs(j) / bound.jerk;
             const double jerk = shown > 1 + kTolerance ? kBetween * shown : shown;
-            factor_ = std::max(
-                {factor_, std::sqrt(std::abs(a) / bound.acceleration), std::cbrt(jerk)});
+            factor_ =
+                std::max({factor_, std::sqrt(std::abs(a) / bound.acceleration), std::cbrt(jerk)});
         }
     }
 

@@ -1,4 +1,4 @@
-#include "metier/opcua_skill/execution_records.hpp"
+#include "execution_records.hpp"
 
 #include <array>
 #include <string>

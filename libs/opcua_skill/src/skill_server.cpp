@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "control_node.hpp"
-#include "metier/opcua_skill/execution_records.hpp"
+#include "execution_records.hpp"
 #include "metier/opcua_skill/server_executor.hpp"
 #include "model_ids.hpp"
 #include "skill_factory.hpp"

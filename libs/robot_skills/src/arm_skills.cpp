@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "metier/robot_skills/force_move_skill.hpp"
-#include "metier/robot_skills/move_skills.hpp"
-#include "metier/robot_skills/planned_move_skills.hpp"
+#include "force_move_skill.hpp"
+#include "move_skills.hpp"
+#include "planned_move_skills.hpp"
 
 namespace metier::robot_skills {
 

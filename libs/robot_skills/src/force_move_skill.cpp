@@ -1,4 +1,4 @@
-#include "metier/robot_skills/force_move_skill.hpp"
+#include "force_move_skill.hpp"
 
 #include <fmt/format.h>
 

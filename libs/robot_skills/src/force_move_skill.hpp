@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "metier/device/force_torque_sensor.hpp"
-#include "metier/robot_skills/planned_move_skills.hpp"
+#include "planned_move_skills.hpp"
 
 namespace metier::robot_skills {
 

@@ -1,4 +1,4 @@
-#include "metier/robot_skills/move_skills.hpp"
+#include "move_skills.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "metier/robot_skills/planned_move_skills.hpp"
+#include "planned_move_skills.hpp"
 
 #include <utility>
 

@@ -7,9 +7,9 @@
 #include "arm_skill.hpp"
 #include "conversions.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
-#include "metier/robot_skills/stream_input.hpp"
 #include "metier/skill/typed_skill.hpp"
 #include "source_body.hpp"
+#include "stream_input.hpp"
 #include "stream_source.hpp"
 
 namespace metier::robot_skills {

@@ -1,4 +1,4 @@
-#include "metier/robot_skills/stream_input.hpp"
+#include "stream_input.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -8,9 +8,9 @@
 #include "execution_source.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "metier/robot_skills/position_stream_skill.hpp"
-#include "metier/robot_skills/stream_input.hpp"
 #include "metier/robot_skills/stream_report.hpp"
 #include "settling.hpp"
+#include "stream_input.hpp"
 
 namespace metier::robot_skills {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "metier/motion/trajectory.hpp"
-#include "metier/robot_skills/move_skills.hpp"
+#include "move_skills.hpp"
 #include "move_source.hpp"
 #include "path_deviation.hpp"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "bench.hpp"
-#include "metier/robot_skills/stream_input.hpp"
+#include "stream_input.hpp"
 
 namespace metier::robot_skills {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "bench.hpp"
-#include "metier/robot_skills/stream_input.hpp"
+#include "stream_input.hpp"
 
 namespace metier::robot_skills {
 namespace {

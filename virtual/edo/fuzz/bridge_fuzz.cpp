@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 using namespace metier;
 using namespace metier::virtual_edo;

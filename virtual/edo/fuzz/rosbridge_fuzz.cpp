@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "input.hpp"
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 using namespace metier;
 using namespace metier::virtual_edo;

@@ -3,8 +3,8 @@
 #include <span>
 #include <string_view>
 
-#include "metier/virtual_edo/handshake.hpp"
-#include "metier/virtual_edo/web_socket.hpp"
+#include "handshake.hpp"
+#include "web_socket.hpp"
 
 using namespace metier::virtual_edo;
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/axes.hpp"
+#include "axes.hpp"
 
 namespace metier::virtual_edo {
 

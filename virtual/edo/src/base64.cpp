@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/base64.hpp"
+#include "base64.hpp"
 
 #include <openssl/evp.h>
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/bridge_port.hpp"
+#include "bridge_port.hpp"
 
 #include <utility>
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "metier/virtual_edo/rosbridge.hpp"
-#include "metier/virtual_edo/web_socket.hpp"
+#include "rosbridge.hpp"
+#include "web_socket.hpp"
 
 namespace metier::virtual_edo {
 

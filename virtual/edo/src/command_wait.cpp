@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/command_wait.hpp"
+#include "command_wait.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "metier/virtual_edo/joint_bus.hpp"
+#include "joint_bus.hpp"
 
 namespace metier::virtual_edo {
 

@@ -3,10 +3,10 @@
 #include <memory>
 #include <utility>
 
+#include "bridge_port.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
 #include "metier/virtual_controller/standing_time.hpp"
-#include "metier/virtual_edo/bridge_port.hpp"
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_edo {
 namespace {

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/handshake.hpp"
+#include "handshake.hpp"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
@@ -9,7 +9,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <span>
 
-#include "metier/virtual_edo/base64.hpp"
+#include "base64.hpp"
 
 namespace metier::virtual_edo {
 namespace {

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/joint_bus.hpp"
+#include "joint_bus.hpp"
 
 #include <algorithm>
 #include <bit>

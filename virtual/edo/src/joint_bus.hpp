@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "axes.hpp"
+#include "codes.hpp"
 #include "metier/joint_simulator/lag.hpp"
-#include "metier/virtual_edo/axes.hpp"
-#include "metier/virtual_edo/codes.hpp"
 
 namespace metier::virtual_edo {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "metier/virtual_edo/message_types.hpp"
+#include "message_types.hpp"
 
 namespace metier::virtual_edo {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/machine.hpp"
+#include "machine.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -5,10 +5,10 @@
 #include <deque>
 #include <optional>
 
-#include "metier/virtual_edo/codes.hpp"
-#include "metier/virtual_edo/command_wait.hpp"
-#include "metier/virtual_edo/joint_bus.hpp"
-#include "metier/virtual_edo/movement.hpp"
+#include "codes.hpp"
+#include "command_wait.hpp"
+#include "joint_bus.hpp"
+#include "movement.hpp"
 
 namespace metier::virtual_edo {
 

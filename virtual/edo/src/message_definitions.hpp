@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/virtual_edo/message_types.hpp"
+#include "message_types.hpp"
 
 namespace metier::virtual_edo {
 

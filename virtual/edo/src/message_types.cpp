@@ -1,12 +1,12 @@
-#include "metier/virtual_edo/message_types.hpp"
+#include "message_types.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "base64.hpp"
 #include "message_definitions.hpp"
-#include "metier/virtual_edo/base64.hpp"
 
 namespace metier::virtual_edo {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/virtual_edo/software.hpp"
+#include "software.hpp"
 
 namespace metier::virtual_edo {
 

@@ -1,12 +1,12 @@
-#include "metier/virtual_edo/move_planner.hpp"
+#include "move_planner.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
+#include "codes.hpp"
 #include "metier/geometry/rotation.hpp"
-#include "metier/virtual_edo/codes.hpp"
 
 namespace metier::virtual_edo {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
+#include "axes.hpp"
 #include "metier/base/error.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "metier/virtual_edo/axes.hpp"
-#include "metier/virtual_edo/movement.hpp"
-#include "metier/virtual_edo/segment.hpp"
+#include "movement.hpp"
+#include "segment.hpp"
 
 namespace metier::virtual_edo {
 

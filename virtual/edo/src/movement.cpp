@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/movement.hpp"
+#include "movement.hpp"
 
 #include <cmath>
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "axes.hpp"
+#include "message_types.hpp"
 #include "metier/geometry/pose.hpp"
-#include "metier/virtual_edo/axes.hpp"
-#include "metier/virtual_edo/message_types.hpp"
 
 namespace metier::virtual_edo {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "message_types.hpp"
 #include "metier/base/error.hpp"
-#include "metier/virtual_edo/message_types.hpp"
 
 namespace metier::virtual_edo {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 #include <utility>
 

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "joint_bus.hpp"
+#include "machine.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/virtual_controller/controller.hpp"
-#include "metier/virtual_edo/joint_bus.hpp"
-#include "metier/virtual_edo/machine.hpp"
-#include "metier/virtual_edo/rosbridge.hpp"
-#include "metier/virtual_edo/software.hpp"
-#include "metier/virtual_edo/trajectory_node.hpp"
+#include "rosbridge.hpp"
+#include "software.hpp"
+#include "trajectory_node.hpp"
 
 namespace metier::virtual_edo {
 

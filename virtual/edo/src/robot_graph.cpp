@@ -2,7 +2,7 @@
 #include <array>
 #include <string_view>
 
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_edo {
 namespace {

@@ -1,5 +1,5 @@
 
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 #include "metier/base/text.hpp"
 

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "metier/base/clock.hpp"
-#include "metier/virtual_edo/rosbridge.hpp"
+#include "rosbridge.hpp"
 
 namespace metier::virtual_edo {
 

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "message_types.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/virtual_edo/message_types.hpp"
 
 namespace metier::virtual_edo {
 

@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "json_text.hpp"
-#include "metier/virtual_edo/rosbridge.hpp"
 #include "request_fields.hpp"
+#include "rosbridge.hpp"
 
 namespace metier::virtual_edo {
 namespace {

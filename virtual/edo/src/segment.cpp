@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/segment.hpp"
+#include "segment.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "metier/virtual_edo/axes.hpp"
+#include "axes.hpp"
 
 namespace metier::virtual_edo {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/software.hpp"
+#include "software.hpp"
 
 namespace metier::virtual_edo {
 

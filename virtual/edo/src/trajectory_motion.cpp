@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "metier/virtual_edo/trajectory_node.hpp"
+#include "trajectory_node.hpp"
 
 namespace metier::virtual_edo {
 namespace {

@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/trajectory_node.hpp"
+#include "trajectory_node.hpp"
 
 #include <algorithm>
 #include <utility>

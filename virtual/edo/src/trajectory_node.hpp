@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "metier/virtual_edo/codes.hpp"
-#include "metier/virtual_edo/joint_bus.hpp"
-#include "metier/virtual_edo/move_planner.hpp"
-#include "metier/virtual_edo/movement.hpp"
-#include "metier/virtual_edo/software.hpp"
+#include "codes.hpp"
+#include "joint_bus.hpp"
+#include "move_planner.hpp"
+#include "movement.hpp"
+#include "software.hpp"
 
 namespace metier::virtual_edo {
 

@@ -1,9 +1,9 @@
-#include "metier/virtual_edo/web_socket.hpp"
+#include "web_socket.hpp"
 
 #include <utility>
 
+#include "handshake.hpp"
 #include "metier/base/text.hpp"
-#include "metier/virtual_edo/handshake.hpp"
 
 namespace metier::virtual_edo {
 namespace {

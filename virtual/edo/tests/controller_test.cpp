@@ -12,7 +12,7 @@
 #include <future>
 #include <thread>
 
-#include "metier/virtual_edo/message_types.hpp"
+#include "message_types.hpp"
 #include "rig.hpp"
 
 namespace metier::virtual_controller {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "metier/virtual_edo/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_edo {
 

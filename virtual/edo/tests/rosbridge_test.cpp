@@ -1,4 +1,4 @@
-#include "metier/virtual_edo/rosbridge.hpp"
+#include "rosbridge.hpp"
 
 #include <gmock/gmock.h>
 

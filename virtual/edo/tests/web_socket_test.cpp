@@ -1,9 +1,9 @@
-#include "metier/virtual_edo/web_socket.hpp"
+#include "web_socket.hpp"
 
 #include <gmock/gmock.h>
 
-#include "metier/virtual_edo/base64.hpp"
-#include "metier/virtual_edo/handshake.hpp"
+#include "base64.hpp"
+#include "handshake.hpp"
 
 namespace metier::virtual_edo {
 namespace {

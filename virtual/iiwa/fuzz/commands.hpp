@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-#include "metier/virtual_iiwa/robot_application.hpp"
+#include "robot_application.hpp"
 
 /// What the fuzz targets of the cabinet share: an arm, and commands read from an input.
 namespace metier::virtual_iiwa {

@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/arm.hpp"
+#include "arm.hpp"
 
 #include <cmath>
 #include <utility>

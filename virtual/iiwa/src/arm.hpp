@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "metier/virtual_iiwa/path.hpp"
-#include "metier/virtual_iiwa/servo.hpp"
+#include "path.hpp"
+#include "servo.hpp"
 
 namespace metier::virtual_iiwa {
 

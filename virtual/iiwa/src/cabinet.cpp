@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/cabinet.hpp"
+#include "cabinet.hpp"
 
 namespace metier::virtual_iiwa {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "arm.hpp"
 #include "metier/geometry/twist.hpp"
-#include "metier/virtual_iiwa/arm.hpp"
 
 namespace metier::virtual_iiwa {
 

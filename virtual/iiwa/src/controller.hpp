@@ -13,7 +13,7 @@
 #include "metier/virtual_controller/cycle_timer.hpp"
 #include "metier/virtual_controller/standing_time.hpp"
 #include "metier/virtual_controller/tcp_dialer.hpp"
-#include "metier/virtual_iiwa/robot_application.hpp"
+#include "robot_application.hpp"
 
 namespace metier::virtual_iiwa {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/impedance.hpp"
+#include "impedance.hpp"
 
 #include <cstddef>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/path.hpp"
+#include "path.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "metier/virtual_iiwa/robot_application.hpp"
+#include "robot_application.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "metier/virtual_iiwa/impedance.hpp"
+#include "impedance.hpp"
 
 namespace metier::virtual_iiwa {
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <optional>
 
-#include "metier/virtual_iiwa/cabinet.hpp"
-#include "metier/virtual_iiwa/wire.hpp"
+#include "cabinet.hpp"
+#include "wire.hpp"
 
 namespace metier::virtual_iiwa {
 

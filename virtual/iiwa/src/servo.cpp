@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/servo.hpp"
+#include "servo.hpp"
 
 #include <algorithm>
 

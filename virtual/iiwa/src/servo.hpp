@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "metier/motion/profile.hpp"
-#include "metier/virtual_iiwa/path.hpp"
+#include "path.hpp"
 
 namespace metier::virtual_iiwa {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/controller.hpp"
+#include "controller.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/robot_application.hpp"
+#include "robot_application.hpp"
 
 #include <gmock/gmock.h>
 

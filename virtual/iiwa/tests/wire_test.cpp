@@ -1,4 +1,4 @@
-#include "metier/virtual_iiwa/wire.hpp"
+#include "wire.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "metier/virtual_netft/rdt.hpp"
-#include "metier/virtual_netft/web.hpp"
+#include "rdt.hpp"
+#include "web.hpp"
 
 // A datagram to the sensor, and the same bytes as a request for a web page.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -10,9 +10,9 @@
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "metier/virtual_netft/sensor.hpp"
-#include "metier/virtual_netft/udp_port.hpp"
-#include "metier/virtual_netft/web.hpp"
+#include "sensor.hpp"
+#include "udp_port.hpp"
+#include "web.hpp"
 
 namespace metier::virtual_netft {
 

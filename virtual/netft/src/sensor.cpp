@@ -1,4 +1,4 @@
-#include "metier/virtual_netft/sensor.hpp"
+#include "sensor.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "metier/geometry/twist.hpp"
-#include "metier/virtual_netft/rdt.hpp"
+#include "rdt.hpp"
 
 namespace metier::virtual_netft {
 

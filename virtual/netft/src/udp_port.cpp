@@ -1,4 +1,4 @@
-#include "metier/virtual_netft/udp_port.hpp"
+#include "udp_port.hpp"
 
 #include <fmt/format.h>
 

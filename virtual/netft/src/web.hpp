@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "metier/virtual_netft/sensor.hpp"
+#include "sensor.hpp"
 
 namespace metier::virtual_netft {
 

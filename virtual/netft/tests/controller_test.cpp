@@ -1,4 +1,4 @@
-#include "metier/virtual_netft/controller.hpp"
+#include "controller.hpp"
 
 #include <gmock/gmock.h>
 #include <poll.h>

@@ -1,4 +1,4 @@
-#include "metier/virtual_netft/rdt.hpp"
+#include "rdt.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_netft/web.hpp"
+#include "web.hpp"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "metier/virtual_ur/dashboard.hpp"
+#include "dashboard.hpp"
 #include "table.hpp"
 
 // Lines of the dashboard: as they come, and behind each command that takes an argument.

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "../tests/fake_peer.hpp"
-#include "metier/virtual_ur/rtde_session.hpp"
 #include "reads.hpp"
+#include "rtde_session.hpp"
 
 // Bytes as they come on port 30004, in any reads, with a cycle after each; and the same bytes as
 // the payload of each package type, in both versions.

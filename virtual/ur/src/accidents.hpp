@@ -4,7 +4,7 @@
 #include <string>
 
 #include "metier/base/error.hpp"
-#include "metier/virtual_ur/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/arm.hpp"
+#include "arm.hpp"
 
 #include <fmt/format.h>
 

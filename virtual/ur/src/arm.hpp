@@ -9,8 +9,8 @@
 #include "metier/joint_simulator/guard.hpp"
 #include "metier/joint_simulator/lag.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "metier/virtual_ur/motions.hpp"
-#include "metier/virtual_ur/robot_state.hpp"
+#include "motions.hpp"
+#include "robot_state.hpp"
 
 namespace metier::virtual_ur {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "metier/virtual_ur/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/motions.hpp"
+#include "motions.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -6,7 +6,7 @@
 
 #include "metier/geometry/pose.hpp"
 #include "metier/motion/kinematics.hpp"
-#include "metier/virtual_ur/robot_state.hpp"
+#include "robot_state.hpp"
 
 namespace metier::virtual_ur {
 

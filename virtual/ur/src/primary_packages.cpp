@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/primary_packages.hpp"
+#include "primary_packages.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

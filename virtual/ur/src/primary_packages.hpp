@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "metier/motion/robot_model.hpp"
-#include "metier/virtual_ur/robot_state.hpp"
-#include "metier/virtual_ur/rtde_session.hpp"
-#include "metier/virtual_ur/wire_bytes.hpp"
+#include "robot_state.hpp"
+#include "rtde_session.hpp"
+#include "wire_bytes.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/program_runner.hpp"
+#include "program_runner.hpp"
 
 #include <fmt/format.h>
 

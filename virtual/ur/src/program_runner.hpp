@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "metier/urscript/interpreter.hpp"
-#include "metier/virtual_ur/primary_packages.hpp"
-#include "metier/virtual_ur/script_robot.hpp"
+#include "primary_packages.hpp"
+#include "script_robot.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/realtime_package.hpp"
+#include "realtime_package.hpp"
 
 #include <algorithm>
 

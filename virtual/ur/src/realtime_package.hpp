@@ -1,7 +1,7 @@
 #pragma once
 
-#include "metier/virtual_ur/robot_state.hpp"
-#include "metier/virtual_ur/wire_bytes.hpp"
+#include "robot_state.hpp"
+#include "wire_bytes.hpp"
 
 namespace metier::virtual_ur {
 

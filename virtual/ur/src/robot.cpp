@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/robot.hpp"
+#include "robot.hpp"
 
 #include <fmt/format.h>
 

@@ -9,9 +9,9 @@
 
 #include "metier/virtual_controller/link_faults.hpp"
 #include "metier/virtual_controller/world_link.hpp"
-#include "metier/virtual_ur/program_runner.hpp"
-#include "metier/virtual_ur/robot_options.hpp"
-#include "metier/virtual_ur/script_sockets.hpp"
+#include "program_runner.hpp"
+#include "robot_options.hpp"
+#include "script_sockets.hpp"
 
 namespace metier::virtual_ur {
 

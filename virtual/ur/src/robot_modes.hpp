@@ -1,7 +1,7 @@
 #pragma once
 
 #include "metier/base/error.hpp"
-#include "metier/virtual_ur/robot_state.hpp"
+#include "robot_state.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/robot_options.hpp"
+#include "robot_options.hpp"
 
 #include <fmt/format.h>
 

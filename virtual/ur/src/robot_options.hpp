@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <string>
 
+#include "arm.hpp"
 #include "metier/base/error.hpp"
 #include "metier/configuration/settings.hpp"
-#include "metier/virtual_ur/arm.hpp"
-#include "metier/virtual_ur/primary_packages.hpp"
-#include "metier/virtual_ur/robot_modes.hpp"
+#include "primary_packages.hpp"
+#include "robot_modes.hpp"
 
 namespace metier::virtual_ur {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "metier/virtual_ur/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_ur {
 

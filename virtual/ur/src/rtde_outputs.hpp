@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "metier/virtual_ur/rtde_variables.hpp"
+#include "rtde_variables.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/rtde_session.hpp"
+#include "rtde_session.hpp"
 
 #include <fmt/format.h>
 

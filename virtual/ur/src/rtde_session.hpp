@@ -10,7 +10,7 @@
 
 #include "metier/base/error.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "metier/virtual_ur/rtde_variables.hpp"
+#include "rtde_variables.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/rtde_variables.hpp"
+#include "rtde_variables.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "metier/virtual_ur/robot_state.hpp"
-#include "metier/virtual_ur/wire_bytes.hpp"
+#include "robot_state.hpp"
+#include "wire_bytes.hpp"
 
 namespace metier::virtual_ur {
 

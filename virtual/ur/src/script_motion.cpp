@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metier/virtual_ur/script_robot.hpp"
+#include "script_robot.hpp"
 
 namespace metier::virtual_ur {
 

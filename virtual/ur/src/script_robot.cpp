@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/script_robot.hpp"
+#include "script_robot.hpp"
 
 #include <fmt/format.h>
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "arm.hpp"
 #include "metier/urscript/robot.hpp"
-#include "metier/virtual_ur/arm.hpp"
-#include "metier/virtual_ur/robot_state.hpp"
-#include "metier/virtual_ur/script_sockets.hpp"
+#include "robot_state.hpp"
+#include "script_sockets.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/script_sockets.hpp"
+#include "script_sockets.hpp"
 
 #include <utility>
 

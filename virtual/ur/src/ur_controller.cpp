@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "accidents.hpp"
+#include "dashboard.hpp"
 #include "metier/urscript/script_splitter.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/standing_time.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "metier/virtual_ur/dashboard.hpp"
-#include "metier/virtual_ur/pacer.hpp"
-#include "metier/virtual_ur/realtime_package.hpp"
-#include "metier/virtual_ur/robot.hpp"
+#include "pacer.hpp"
+#include "realtime_package.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_ur {
 namespace {

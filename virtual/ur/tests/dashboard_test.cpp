@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/dashboard.hpp"
+#include "dashboard.hpp"
 
 #include <gmock/gmock.h>
 

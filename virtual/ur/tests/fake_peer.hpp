@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "metier/virtual_ur/wire_bytes.hpp"
+#include "wire_bytes.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/pacer.hpp"
+#include "pacer.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,10 @@
-#include "metier/virtual_ur/primary_packages.hpp"
+#include "primary_packages.hpp"
 
 #include <gmock/gmock.h>
 
 #include <map>
 
-#include "metier/virtual_ur/realtime_package.hpp"
+#include "realtime_package.hpp"
 #include "robot_fixture.hpp"
 
 namespace metier::virtual_ur {

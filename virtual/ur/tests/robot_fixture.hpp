@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/virtual_ur/robot.hpp"
+#include "robot.hpp"
 
 namespace metier::virtual_ur {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_ur/robot_modes.hpp"
+#include "robot_modes.hpp"
 
 #include <gmock/gmock.h>
 

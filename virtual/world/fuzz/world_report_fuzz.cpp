@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "metier/virtual_controller/world_messages.hpp"
-#include "metier/virtual_world/world.hpp"
+#include "world.hpp"
 
 namespace {
 

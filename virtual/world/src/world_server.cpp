@@ -13,7 +13,7 @@
 #include "metier/virtual_controller/remote_world.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
 #include "metier/virtual_controller/world_messages.hpp"
-#include "metier/virtual_world/world.hpp"
+#include "world.hpp"
 #include "world_settings.hpp"
 
 namespace metier::virtual_world {

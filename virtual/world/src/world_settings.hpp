@@ -1,7 +1,7 @@
 #pragma once
 
 #include "metier/configuration/settings.hpp"
-#include "metier/virtual_world/world.hpp"
+#include "world.hpp"
 
 namespace metier::virtual_world {
 

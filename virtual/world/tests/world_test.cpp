@@ -1,4 +1,4 @@
-#include "metier/virtual_world/world.hpp"
+#include "world.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "metier/virtual_wsg50/session.hpp"
 #include "reads.hpp"
+#include "session.hpp"
 
 // Bytes as they come over the wire, with time passing between the reads; and the same bytes as the
 // payload of a sound frame, so that the commands behind the checksum are reached.

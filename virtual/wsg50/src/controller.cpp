@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/controller.hpp"
+#include "controller.hpp"
 
 #include <fmt/format.h>
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "gripper.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/cycle_timer.hpp"
 #include "metier/virtual_controller/tcp_server.hpp"
-#include "metier/virtual_wsg50/gripper.hpp"
-#include "metier/virtual_wsg50/session.hpp"
+#include "session.hpp"
 
 namespace metier::virtual_wsg50 {
 

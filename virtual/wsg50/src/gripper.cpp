@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/gripper.hpp"
+#include "gripper.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "metier/virtual_wsg50/jaws.hpp"
-#include "metier/virtual_wsg50/protocol.hpp"
+#include "jaws.hpp"
+#include "protocol.hpp"
 
 namespace metier::virtual_wsg50 {
 

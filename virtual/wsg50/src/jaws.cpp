@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/jaws.hpp"
+#include "jaws.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/payload.hpp"
+#include "payload.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,10 +1,10 @@
-#include "metier/virtual_wsg50/session.hpp"
+#include "session.hpp"
 
 #include <algorithm>
 #include <string_view>
 #include <utility>
 
-#include "metier/virtual_wsg50/payload.hpp"
+#include "payload.hpp"
 
 namespace metier::virtual_wsg50 {
 

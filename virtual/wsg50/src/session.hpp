@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "metier/virtual_wsg50/frame.hpp"
-#include "metier/virtual_wsg50/gripper.hpp"
+#include "frame.hpp"
+#include "gripper.hpp"
 
 namespace metier::virtual_wsg50 {
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/controller.hpp"
+#include "controller.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +9,7 @@
 
 #include "metier/link/tcp_link.hpp"
 #include "metier/virtual_controller/testing/running_controller.hpp"
-#include "metier/virtual_wsg50/payload.hpp"
+#include "payload.hpp"
 
 namespace metier::virtual_controller {
 ControllerType wsg50Controller();

@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/frame.hpp"
+#include "frame.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "metier/virtual_wsg50/session.hpp"
+#include "session.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/virtual_wsg50/payload.hpp"
+#include "payload.hpp"
 
 namespace metier::virtual_wsg50 {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "metier/edo_driver/decoder.hpp"
+#include "decoder.hpp"
 #include "metier/edo_driver/generation.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "metier/edo_driver/arm_drive.hpp"
+#include "arm_drive.hpp"
 
 #include <algorithm>
 #include <cmath>

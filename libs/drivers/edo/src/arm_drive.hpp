@@ -1,10 +1,10 @@
 #pragma once
 
+#include "commanded_motion.hpp"
+#include "handover.hpp"
 #include "metier/device/arm_core.hpp"
-#include "metier/edo_driver/commanded_motion.hpp"
 #include "metier/edo_driver/encoder.hpp"
-#include "metier/edo_driver/handover.hpp"
-#include "metier/edo_driver/safety_keeper.hpp"
+#include "safety_keeper.hpp"
 
 namespace metier::edo_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/edo_driver/commanded_motion.hpp"
+#include "commanded_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

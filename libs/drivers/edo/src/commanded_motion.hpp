@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "metier/edo_driver/options.hpp"
+#include "options.hpp"
 
 namespace metier::edo_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/edo_driver/decoder.hpp"
+#include "decoder.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,10 +1,10 @@
-#include "metier/edo_driver/edo_connection.hpp"
+#include "edo_connection.hpp"
 
 #include <algorithm>
 #include <condition_variable>
 #include <utility>
 
-#include "metier/edo_driver/wire.hpp"
+#include "wire.hpp"
 
 namespace metier::edo_driver {
 

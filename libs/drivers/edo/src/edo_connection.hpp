@@ -8,8 +8,8 @@
 #include "metier/device/arm_core.hpp"
 #include "metier/device/gripper.hpp"
 #include "metier/device/notifier.hpp"
-#include "metier/edo_driver/session.hpp"
 #include "metier/edo_driver/websocket_link.hpp"
+#include "session.hpp"
 
 namespace metier::edo_driver {
 

@@ -1,8 +1,8 @@
 #include <memory>
 #include <utility>
 
+#include "edo_connection.hpp"
 #include "metier/driver/driver.hpp"
-#include "metier/edo_driver/edo_connection.hpp"
 
 namespace metier::driver {
 

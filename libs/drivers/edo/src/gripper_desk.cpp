@@ -1,4 +1,4 @@
-#include "metier/edo_driver/gripper_desk.hpp"
+#include "gripper_desk.hpp"
 
 namespace metier::edo_driver {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "metier/edo_driver/gripper_drive.hpp"
+#include "gripper_drive.hpp"
 
 namespace metier::edo_driver {
 

@@ -1,9 +1,9 @@
-#include "metier/edo_driver/gripper_drive.hpp"
+#include "gripper_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "metier/edo_driver/machine_text.hpp"
+#include "machine_text.hpp"
 
 namespace metier::edo_driver {
 namespace {

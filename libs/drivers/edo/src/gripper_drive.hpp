@@ -4,8 +4,8 @@
 
 #include "metier/device/gripper.hpp"
 #include "metier/edo_driver/encoder.hpp"
-#include "metier/edo_driver/options.hpp"
-#include "metier/edo_driver/wire.hpp"
+#include "options.hpp"
+#include "wire.hpp"
 
 namespace metier::edo_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/edo_driver/handover.hpp"
+#include "handover.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -6,7 +6,7 @@
 #include "metier/base/error.hpp"
 #include "metier/edo_driver/generation.hpp"
 #include "metier/edo_driver/messages.hpp"
-#include "metier/edo_driver/wire.hpp"
+#include "wire.hpp"
 
 namespace metier::edo_driver {
 

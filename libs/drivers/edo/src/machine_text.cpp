@@ -1,4 +1,4 @@
-#include "metier/edo_driver/machine_text.hpp"
+#include "machine_text.hpp"
 
 #include <fmt/format.h>
 

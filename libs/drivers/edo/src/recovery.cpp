@@ -1,7 +1,7 @@
-#include "metier/edo_driver/recovery.hpp"
+#include "recovery.hpp"
 
+#include "machine_text.hpp"
 #include "metier/edo_driver/encoder.hpp"
-#include "metier/edo_driver/machine_text.hpp"
 
 namespace metier::edo_driver {
 namespace {

@@ -1,6 +1,6 @@
-#include "metier/edo_driver/safety_keeper.hpp"
+#include "safety_keeper.hpp"
 
-#include "metier/edo_driver/machine_text.hpp"
+#include "machine_text.hpp"
 
 namespace metier::edo_driver {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "metier/device/arm_core.hpp"
-#include "metier/edo_driver/options.hpp"
+#include "options.hpp"
 
 namespace metier::edo_driver {
 

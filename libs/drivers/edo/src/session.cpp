@@ -1,4 +1,4 @@
-#include "metier/edo_driver/session.hpp"
+#include "session.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "metier/edo_driver/decoder.hpp"
+#include "decoder.hpp"
 
 namespace metier::edo_driver {
 

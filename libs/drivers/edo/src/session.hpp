@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
+#include "arm_drive.hpp"
+#include "gripper_desk.hpp"
 #include "metier/device/reset_desk.hpp"
 #include "metier/device/shared_value.hpp"
-#include "metier/edo_driver/arm_drive.hpp"
-#include "metier/edo_driver/gripper_desk.hpp"
-#include "metier/edo_driver/recovery.hpp"
+#include "recovery.hpp"
 
 namespace metier::edo_driver {
 

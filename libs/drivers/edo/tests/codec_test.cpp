@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "decoder.hpp"
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/edo_driver/decoder.hpp"
 #include "metier/edo_driver/encoder.hpp"
 
 namespace metier::edo_driver {

@@ -1,11 +1,11 @@
-#include "metier/edo_driver/commanded_motion.hpp"
+#include "commanded_motion.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "metier/edo_driver/machine_text.hpp"
+#include "machine_text.hpp"
 
 namespace metier::edo_driver {
 namespace {

@@ -6,9 +6,9 @@
 #include <future>
 #include <mutex>
 
+#include "edo_connection.hpp"
 #include "fake_edo.hpp"
 #include "metier/driver/driver.hpp"
-#include "metier/edo_driver/edo_connection.hpp"
 #include "rosbridge_server.hpp"
 
 namespace metier::driver {

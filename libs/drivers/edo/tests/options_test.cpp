@@ -1,4 +1,4 @@
-#include "metier/edo_driver/options.hpp"
+#include "options.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fake_edo.hpp"
-#include "metier/edo_driver/session.hpp"
+#include "session.hpp"
 
 namespace metier::edo_driver::testing {
 

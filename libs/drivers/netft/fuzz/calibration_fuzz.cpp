@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "metier/netft_driver/calibration.hpp"
-#include "metier/netft_driver/http_answer.hpp"
+#include "calibration.hpp"
+#include "http_answer.hpp"
 
 namespace {
 

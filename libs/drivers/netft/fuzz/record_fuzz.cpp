@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "metier/netft_driver/record_stream.hpp"
+#include "record_stream.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace metier;

@@ -1,4 +1,4 @@
-#include "metier/netft_driver/calibration.hpp"
+#include "calibration.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

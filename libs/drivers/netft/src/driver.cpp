@@ -2,7 +2,7 @@
 #include <cmath>
 #include <memory>
 
-#include "metier/netft_driver/netft_sensor.hpp"
+#include "netft_sensor.hpp"
 
 namespace metier::netft_driver {
 namespace {

@@ -1,4 +1,4 @@
-#include "metier/netft_driver/http_answer.hpp"
+#include "http_answer.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "metier/netft_driver/http_get.hpp"
+#include "http_get.hpp"
 
 #include <fmt/format.h>
 
 #include <span>
 
+#include "http_answer.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/netft_driver/http_answer.hpp"
 
 namespace metier::netft_driver {
 

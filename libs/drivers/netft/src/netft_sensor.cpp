@@ -1,4 +1,4 @@
-#include "metier/netft_driver/netft_sensor.hpp"
+#include "netft_sensor.hpp"
 
 #include <utility>
 

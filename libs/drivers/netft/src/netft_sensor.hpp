@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "calibration.hpp"
 #include "metier/device/force_torque_sensor.hpp"
 #include "metier/driver/driver.hpp"
-#include "metier/netft_driver/calibration.hpp"
 
 namespace metier::netft_driver {
 

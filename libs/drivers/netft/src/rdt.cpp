@@ -1,4 +1,4 @@
-#include "metier/netft_driver/rdt.hpp"
+#include "rdt.hpp"
 
 #include <fmt/format.h>
 

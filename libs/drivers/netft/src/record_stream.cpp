@@ -1,4 +1,4 @@
-#include "metier/netft_driver/record_stream.hpp"
+#include "record_stream.hpp"
 
 #include <cstddef>
 

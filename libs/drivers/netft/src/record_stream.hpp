@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
+#include "calibration.hpp"
 #include "metier/device/force_torque_sensor.hpp"
-#include "metier/netft_driver/calibration.hpp"
-#include "metier/netft_driver/rdt.hpp"
+#include "rdt.hpp"
 
 namespace metier::netft_driver {
 

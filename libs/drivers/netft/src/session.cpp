@@ -5,8 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "http_get.hpp"
 #include "metier/link/back_off.hpp"
-#include "metier/netft_driver/http_get.hpp"
 
 namespace metier::netft_driver {
 namespace {

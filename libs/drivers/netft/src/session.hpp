@@ -12,9 +12,9 @@
 #include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/link/udp_link.hpp"
-#include "metier/netft_driver/netft_sensor.hpp"
-#include "metier/netft_driver/record_stream.hpp"
-#include "metier/netft_driver/tare_task.hpp"
+#include "netft_sensor.hpp"
+#include "record_stream.hpp"
+#include "tare_task.hpp"
 
 namespace metier::netft_driver {
 

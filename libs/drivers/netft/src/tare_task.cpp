@@ -1,4 +1,4 @@
-#include "metier/netft_driver/tare_task.hpp"
+#include "tare_task.hpp"
 
 #include <fmt/format.h>
 

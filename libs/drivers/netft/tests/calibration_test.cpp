@@ -1,4 +1,4 @@
-#include "metier/netft_driver/calibration.hpp"
+#include "calibration.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "metier/netft_driver/netft_sensor.hpp"
+#include "netft_sensor.hpp"
 
 namespace metier::driver {
 Driver netftDriver();

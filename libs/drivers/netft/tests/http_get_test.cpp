@@ -1,4 +1,4 @@
-#include "metier/netft_driver/http_get.hpp"
+#include "http_get.hpp"
 
 #include <gmock/gmock.h>
 

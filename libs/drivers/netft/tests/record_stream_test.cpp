@@ -1,9 +1,9 @@
-#include "metier/netft_driver/record_stream.hpp"
+#include "record_stream.hpp"
 
 #include <gmock/gmock.h>
 
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/netft_driver/tare_task.hpp"
+#include "tare_task.hpp"
 #include "wire.hpp"
 
 namespace metier::netft_driver::testing {

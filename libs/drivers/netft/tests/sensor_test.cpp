@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "fake_sensor.hpp"
-#include "metier/netft_driver/netft_sensor.hpp"
+#include "netft_sensor.hpp"
 #include "web_page.hpp"
 
 namespace metier::netft_driver::testing {

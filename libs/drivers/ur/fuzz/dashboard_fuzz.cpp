@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "metier/ur_driver/dashboard.hpp"
+#include "dashboard.hpp"
 #include "reads.hpp"
 
 using namespace metier::ur_driver;

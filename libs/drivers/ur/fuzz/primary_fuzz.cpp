@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "metier/ur_driver/primary.hpp"
+#include "primary.hpp"
 #include "reads.hpp"
 
 using namespace metier::ur_driver;

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "metier/ur_driver/rtde.hpp"
 #include "reads.hpp"
+#include "rtde.hpp"
 
 using namespace metier::ur_driver;
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "metier/link/tcp_link.hpp"
-#include "metier/ur_driver/rtde_session.hpp"
+#include "rtde_session.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/controller_state.hpp"
+#include "controller_state.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/dashboard.hpp"
+#include "dashboard.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "metier/ur_driver/wire.hpp"
+#include "wire.hpp"
 
 namespace metier::ur_driver::dashboard {
 

@@ -8,7 +8,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/ur_driver/stream_buffer.hpp"
+#include "stream_buffer.hpp"
 
 /// The dashboard server of Universal Robots: what a person does at the pendant, as lines of text.
 /// Source of every command and reply: docs/protocols/ur.md#dashboard.

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/described_model.hpp"
+#include "described_model.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "metier/motion/robot_model.hpp"
-#include "metier/ur_driver/primary_session.hpp"
+#include "primary_session.hpp"
 
 namespace metier::ur_driver {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <utility>
 
-#include "metier/ur_driver/described_model.hpp"
-#include "metier/ur_driver/primary_session.hpp"
-#include "metier/ur_driver/ur_arm.hpp"
+#include "described_model.hpp"
+#include "primary_session.hpp"
+#include "ur_arm.hpp"
 
 namespace metier::ur_driver {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <variant>
 
-#include "metier/ur_driver/rtde.hpp"
-#include "metier/ur_driver/wire.hpp"
+#include "rtde.hpp"
+#include "wire.hpp"
 
 namespace metier::ur_driver::rtde {
 

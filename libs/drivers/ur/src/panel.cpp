@@ -1,4 +1,4 @@
-#include "metier/ur_driver/panel.hpp"
+#include "panel.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -8,9 +8,9 @@
 #include "metier/base/queue.hpp"
 #include "metier/device/reset_desk.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/ur_driver/recovery.hpp"
-#include "metier/ur_driver/servoj_script.hpp"
-#include "metier/ur_driver/streamer.hpp"
+#include "recovery.hpp"
+#include "servoj_script.hpp"
+#include "streamer.hpp"
 
 namespace metier::ur_driver {
 

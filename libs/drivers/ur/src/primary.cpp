@@ -1,4 +1,4 @@
-#include "metier/ur_driver/primary.hpp"
+#include "primary.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "metier/ur_driver/wire.hpp"
+#include "wire.hpp"
 
 namespace metier::ur_driver::primary {
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
+#include "controller_state.hpp"
 #include "metier/base/error.hpp"
-#include "metier/ur_driver/controller_state.hpp"
-#include "metier/ur_driver/stream_buffer.hpp"
+#include "stream_buffer.hpp"
 
 /// The primary client interface of Universal Robots: bytes, no socket.
 /// Source of every layout: docs/protocols/ur.md#primary.

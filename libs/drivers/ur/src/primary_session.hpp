@@ -9,7 +9,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/ur_driver/primary.hpp"
+#include "primary.hpp"
 
 namespace metier::ur_driver {
 

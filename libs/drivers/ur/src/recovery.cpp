@@ -1,4 +1,4 @@
-#include "metier/ur_driver/recovery.hpp"
+#include "recovery.hpp"
 
 #include <fmt/format.h>
 

@@ -4,12 +4,12 @@
 #include <stop_token>
 #include <string>
 
+#include "controller_state.hpp"
+#include "dashboard.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/ur_driver/controller_state.hpp"
-#include "metier/ur_driver/dashboard.hpp"
-#include "metier/ur_driver/safety_reporter.hpp"
-#include "metier/ur_driver/ur_settings.hpp"
+#include "safety_reporter.hpp"
+#include "ur_settings.hpp"
 
 namespace metier::ur_driver {
 

@@ -1,10 +1,10 @@
-#include "metier/ur_driver/rtde.hpp"
+#include "rtde.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "metier/base/text.hpp"
-#include "metier/ur_driver/wire.hpp"
+#include "wire.hpp"
 
 namespace metier::ur_driver::rtde {
 

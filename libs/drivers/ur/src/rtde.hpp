@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
+#include "controller_state.hpp"
 #include "metier/base/error.hpp"
-#include "metier/ur_driver/controller_state.hpp"
-#include "metier/ur_driver/stream_buffer.hpp"
+#include "stream_buffer.hpp"
 
 /// The real-time data exchange of Universal Robots, version 2: bytes, no socket.
 /// Source of every layout: docs/protocols/ur.md#rtde.

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/rtde_session.hpp"
+#include "rtde_session.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -6,7 +6,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/ur_driver/rtde.hpp"
+#include "rtde.hpp"
 
 namespace metier::ur_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/safety_reporter.hpp"
+#include "safety_reporter.hpp"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "controller_state.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/device/arm_core.hpp"
-#include "metier/ur_driver/controller_state.hpp"
-#include "metier/ur_driver/primary.hpp"
+#include "primary.hpp"
 
 namespace metier::ur_driver {
 

@@ -1,10 +1,10 @@
-#include "metier/ur_driver/servoj_script.hpp"
+#include "servoj_script.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "metier/ur_driver/controller_state.hpp"
+#include "controller_state.hpp"
 
 namespace metier::ur_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/streamer.hpp"
+#include "streamer.hpp"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <string>
 
+#include "controller_state.hpp"
 #include "metier/device/arm_core.hpp"
-#include "metier/ur_driver/controller_state.hpp"
-#include "metier/ur_driver/rtde.hpp"
-#include "metier/ur_driver/set_point_pace.hpp"
+#include "rtde.hpp"
+#include "set_point_pace.hpp"
 
 namespace metier::ur_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/ur_arm.hpp"
+#include "ur_arm.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -7,8 +7,8 @@
 #include <chrono>
 #include <utility>
 
+#include "described_model.hpp"
 #include "metier/link/back_off.hpp"
-#include "metier/ur_driver/described_model.hpp"
 
 namespace metier::ur_driver {
 

@@ -10,13 +10,13 @@
 #include "metier/device/reset_desk.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "metier/ur_driver/panel.hpp"
-#include "metier/ur_driver/primary_session.hpp"
-#include "metier/ur_driver/recovery.hpp"
-#include "metier/ur_driver/rtde_session.hpp"
-#include "metier/ur_driver/safety_reporter.hpp"
-#include "metier/ur_driver/streamer.hpp"
-#include "metier/ur_driver/ur_settings.hpp"
+#include "panel.hpp"
+#include "primary_session.hpp"
+#include "recovery.hpp"
+#include "rtde_session.hpp"
+#include "safety_reporter.hpp"
+#include "streamer.hpp"
+#include "ur_settings.hpp"
 
 namespace metier::ur_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/ur_settings.hpp"
+#include "ur_settings.hpp"
 
 #include <cmath>
 #include <string_view>

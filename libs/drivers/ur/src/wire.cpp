@@ -1,4 +1,4 @@
-#include "metier/ur_driver/wire.hpp"
+#include "wire.hpp"
 
 namespace metier::ur_driver {
 

@@ -8,8 +8,8 @@
 
 #include "fake_controller.hpp"
 #include "metier/driver/driver.hpp"
-#include "metier/ur_driver/ur_arm.hpp"
 #include "moving_source.hpp"
+#include "ur_arm.hpp"
 
 namespace metier::driver {
 Driver urDriver();

@@ -1,4 +1,4 @@
-#include "metier/ur_driver/dashboard.hpp"
+#include "dashboard.hpp"
 
 #include <gmock/gmock.h>
 

@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 
-#include "metier/ur_driver/described_model.hpp"
-#include "metier/ur_driver/safety_reporter.hpp"
-#include "metier/ur_driver/servoj_script.hpp"
-#include "metier/ur_driver/ur_settings.hpp"
+#include "described_model.hpp"
+#include "safety_reporter.hpp"
+#include "servoj_script.hpp"
+#include "ur_settings.hpp"
 
 namespace metier::ur_driver {
 namespace {

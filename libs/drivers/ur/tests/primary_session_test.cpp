@@ -1,4 +1,4 @@
-#include "metier/ur_driver/primary_session.hpp"
+#include "primary_session.hpp"
 
 #include <gmock/gmock.h>
 

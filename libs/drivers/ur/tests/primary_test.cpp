@@ -1,4 +1,4 @@
-#include "metier/ur_driver/primary.hpp"
+#include "primary.hpp"
 
 #include <gmock/gmock.h>
 

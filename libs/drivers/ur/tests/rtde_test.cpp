@@ -1,4 +1,4 @@
-#include "metier/ur_driver/rtde.hpp"
+#include "rtde.hpp"
 
 #include <gmock/gmock.h>
 

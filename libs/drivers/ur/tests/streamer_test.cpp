@@ -1,6 +1,6 @@
 // The stream of set-points cycle by cycle, with the controller's state moved by hand.
 
-#include "metier/ur_driver/streamer.hpp"
+#include "streamer.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,8 @@
-#include "metier/ur_driver/wire.hpp"
+#include "wire.hpp"
 
 #include <gmock/gmock.h>
 
-#include "metier/ur_driver/stream_buffer.hpp"
+#include "stream_buffer.hpp"
 #include "wire_bytes.hpp"
 
 namespace metier::ur_driver {

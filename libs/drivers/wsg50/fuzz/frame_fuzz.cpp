@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "metier/wsg50_driver/conversation.hpp"
-#include "metier/wsg50_driver/crc.hpp"
+#include "conversation.hpp"
+#include "crc.hpp"
 #include "reads.hpp"
 
 namespace {

@@ -6,8 +6,8 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/device/gripper.hpp"
-#include "metier/wsg50_driver/motion_task.hpp"
-#include "metier/wsg50_driver/observation.hpp"
+#include "motion_task.hpp"
+#include "observation.hpp"
 
 namespace metier::wsg50_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/crc.hpp"
+#include "crc.hpp"
 
 #include <array>
 

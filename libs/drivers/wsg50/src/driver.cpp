@@ -2,7 +2,7 @@
 #include <cmath>
 #include <memory>
 
-#include "metier/wsg50_driver/wsg50_gripper.hpp"
+#include "wsg50_gripper.hpp"
 
 namespace metier::wsg50_driver {
 namespace {

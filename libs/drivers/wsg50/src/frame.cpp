@@ -1,11 +1,11 @@
-#include "metier/wsg50_driver/frame.hpp"
+#include "frame.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstring>
 
-#include "metier/wsg50_driver/crc.hpp"
+#include "crc.hpp"
 
 namespace metier::wsg50_driver {
 namespace {

@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/messages.hpp"
+#include "messages.hpp"
 
 #include <fmt/format.h>
 

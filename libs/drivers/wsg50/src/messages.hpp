@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "frame.hpp"
 #include "metier/base/error.hpp"
-#include "metier/wsg50_driver/frame.hpp"
 
 namespace metier::wsg50_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/motion_task.hpp"
+#include "motion_task.hpp"
 
 #include <fmt/format.h>
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "messages.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/device/gripper.hpp"
-#include "metier/wsg50_driver/messages.hpp"
-#include "metier/wsg50_driver/observation.hpp"
+#include "observation.hpp"
 
 namespace metier::wsg50_driver {
 

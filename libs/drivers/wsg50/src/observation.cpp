@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/observation.hpp"
+#include "observation.hpp"
 
 #include <cstddef>
 #include <utility>

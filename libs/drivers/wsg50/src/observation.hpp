@@ -5,9 +5,9 @@
 #include <optional>
 #include <string_view>
 
+#include "messages.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/device/gripper.hpp"
-#include "metier/wsg50_driver/messages.hpp"
 
 namespace metier::wsg50_driver {
 

@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/order_desk.hpp"
+#include "order_desk.hpp"
 
 #include <utility>
 

@@ -6,7 +6,7 @@
 
 #include "metier/base/error.hpp"
 #include "metier/device/gripper.hpp"
-#include "metier/wsg50_driver/motion_task.hpp"
+#include "motion_task.hpp"
 
 namespace metier::wsg50_driver {
 

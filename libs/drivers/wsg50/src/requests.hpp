@@ -1,6 +1,6 @@
 #pragma once
 
-#include "metier/wsg50_driver/wsg50_gripper.hpp"
+#include "wsg50_gripper.hpp"
 
 namespace metier::wsg50_driver {
 

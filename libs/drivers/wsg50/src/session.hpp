@@ -8,9 +8,9 @@
 #include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/wsg50_driver/order_desk.hpp"
-#include "metier/wsg50_driver/wsg50_gripper.hpp"
+#include "order_desk.hpp"
 #include "requests.hpp"
+#include "wsg50_gripper.hpp"
 
 namespace metier::wsg50_driver {
 

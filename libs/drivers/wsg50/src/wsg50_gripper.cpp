@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/wsg50_gripper.hpp"
+#include "wsg50_gripper.hpp"
 
 #include <utility>
 

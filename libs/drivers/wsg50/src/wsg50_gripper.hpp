@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "conversation.hpp"
 #include "metier/device/gripper.hpp"
 #include "metier/driver/driver.hpp"
-#include "metier/wsg50_driver/conversation.hpp"
 
 namespace metier::wsg50_driver {
 

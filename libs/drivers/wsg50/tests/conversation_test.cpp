@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/conversation.hpp"
+#include "conversation.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/wsg50_driver/wsg50_gripper.hpp"
 #include "talk.hpp"
+#include "wsg50_gripper.hpp"
 
 namespace metier::driver {
 Driver wsg50Driver();

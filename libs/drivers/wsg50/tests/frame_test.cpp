@@ -1,4 +1,4 @@
-#include "metier/wsg50_driver/frame.hpp"
+#include "frame.hpp"
 
 #include <gmock/gmock.h>
 

@@ -5,7 +5,7 @@
 
 #include "fake_gripper.hpp"
 #include "metier/device/reset_desk.hpp"
-#include "metier/wsg50_driver/wsg50_gripper.hpp"
+#include "wsg50_gripper.hpp"
 
 namespace metier::wsg50_driver::testing {
 namespace {

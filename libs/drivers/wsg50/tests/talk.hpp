@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/wsg50_driver/conversation.hpp"
+#include "conversation.hpp"
 #include "wire.hpp"
 
 namespace metier::wsg50_driver::testing {
