@@ -7,8 +7,8 @@
 
 namespace metier::records {
 
-/// Which servers record into a SQLite file: each holds a lock on the byte of its name in a file
-/// beside it. The kernel frees it with its process, also after kill -9.
+/// Signs of the servers that record into a SQLite file: each holds a lock on the byte of its name
+/// in a file beside it. The kernel frees it with its process, also after kill -9.
 ///
 /// Threading: one thread at a time.
 class ServerLocks {

@@ -26,19 +26,15 @@ public:
 
     const Dialect& dialect() const noexcept override;
     Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) override;
-    Result<std::int64_t> insert(std::string_view sql, std::string_view key,
-                                std::span<const Argument> parameters) override;
     Result<void> script(const std::string& sql) override;
     Result<void> begin() override { return script("BEGIN IMMEDIATE"); }
+    Result<void> beginReading() override { return script("BEGIN"); }
     Result<void> commit() override { return script("COMMIT"); }
     void rollBack() noexcept override;
     /// Ends with what is returned alone.
     Result<Presence> attend(const std::string& server) override;
     Result<bool> isAttendedByOthers(const std::string& server) override;
-    Result<bool> hasTable(std::string_view name) override;
-    Result<bool> isEmpty() override;
-    Result<std::uint64_t> bytes() override;
-    Result<void> shrink() override;
+    bool isCurrent() override;
     const std::string& name() const noexcept override { return name_; }
 
 private:
@@ -55,7 +51,6 @@ private:
     Result<void> connect(Store::Access access);
     Result<void> setUp(Store::Access access);
     Result<const Statement*> prepared(std::string_view sql);
-    Result<std::int64_t> number(std::string_view sql);
     tl::unexpected<Error> failed() const;
 
     std::string name_;

@@ -1,17 +1,17 @@
-#include "metier/recording/path_sampler.hpp"
+#include "metier/records/path_sampler.hpp"
 
 #include <gmock/gmock.h>
 
 #include "recording_bench.hpp"
 
-namespace metier::recording {
+namespace metier::records {
 namespace {
 
 using testing::PlacedArm;
 using testing::RecordedFile;
 
 struct SampledArm : ::testing::Test {
-    records::Recorder::Key begin(const char* id) {
+    Recorder::Key begin(const char* id) {
         const auto key = file.recorder().begin({.id = id,
                                                 .skill = "Move",
                                                 .started = std::chrono::system_clock::now(),
@@ -19,14 +19,14 @@ struct SampledArm : ::testing::Test {
         sampler.begin(key);
         return key;
     }
-    std::uint64_t end(records::Recorder::Key key) {
+    std::uint64_t end(Recorder::Key key) {
         const auto missed = sampler.end(key);
         file.recorder().end(
             key,
             {.time = std::chrono::system_clock::now(), .state = "Ready", .reason = "Finished"});
         return missed;
     }
-    std::vector<records::PathSample> path(const char* id) {
+    std::vector<PathSample> path(const char* id) {
         const auto store = file.store();
         const auto execution = store->find(id);
         EXPECT_TRUE(execution) << id;
@@ -102,4 +102,4 @@ TEST_F(SampledArm, IsNotReadWhileNothingRuns) {
 }
 
 }  // namespace
-}  // namespace metier::recording
+}  // namespace metier::records

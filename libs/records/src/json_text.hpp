@@ -7,7 +7,7 @@
 
 namespace metier::records {
 
-/// Text that should be JSON; as text if it is not, null if it is empty.
+/// The value that a text of JSON has; the text itself if it is none, null if it is empty.
 nlohmann::ordered_json parsed(const std::string& text);
 nlohmann::ordered_json jsonOf(const Execution& execution);
 /// Without line breaks; what is no UTF-8 is replaced.

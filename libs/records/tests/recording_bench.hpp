@@ -10,11 +10,10 @@
 
 #include "metier/device/arm.hpp"
 #include "metier/device/shared_value.hpp"
-#include "metier/recording/packed_json.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/records/store.hpp"
 
-namespace metier::recording::testing {
+namespace metier::records::testing {
 
 /// An arm that is where the test puts it.
 class PlacedArm final : public device::Arm {
@@ -63,7 +62,7 @@ private:
     mutable std::atomic<int> reads_{0};
 };
 
-/// A recorder with a file of its own, and what is in it.
+/// A recorder with a file of its own, and the store in it.
 class RecordedFile {
 public:
     RecordedFile() = default;
@@ -74,11 +73,11 @@ public:
     RecordedFile(const RecordedFile&) = delete;
     RecordedFile& operator=(const RecordedFile&) = delete;
 
-    records::Recorder& recorder() { return *recorder_; }
+    Recorder& recorder() { return *recorder_; }
     /// With all that was recorded up to now.
-    std::unique_ptr<records::Store> store() {
+    std::unique_ptr<Store> store() {
         EXPECT_TRUE(recorder_->flush(std::chrono::steady_clock::now() + std::chrono::seconds(20)));
-        auto store = records::Store::open(file_);
+        auto store = Store::open(file_);
         EXPECT_TRUE(store) << store.error().message;
         return store ? std::move(*store) : nullptr;
     }
@@ -95,12 +94,11 @@ private:
     }
 
     const std::string file_ = freshFile();
-    std::unique_ptr<records::Recorder> recorder_ =
-        std::move(*records::Recorder::create({.url = file_,
-                                              .server = "urn:test",
-                                              // The Programs live in 1970.
-                                              .keep = {.age = {}, .bytes = 0},
-                                              .to_json = packedJson}));
+    std::unique_ptr<Recorder> recorder_ =
+        std::move(*Recorder::create({.url = file_,
+                                     .server = "urn:test",
+                                     // The Programs live in 1970.
+                                     .keep = {.age = {}, .bytes = 0}}));
 };
 
-}  // namespace metier::recording::testing
+}  // namespace metier::records::testing

@@ -1,4 +1,4 @@
-#include "metier/recording/program_recorder.hpp"
+#include "metier/records/program_recorder.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -10,14 +10,12 @@
 #include "metier/skill/testing/manual_work.hpp"
 #include "recording_bench.hpp"
 
-namespace metier::recording {
+namespace metier::records {
 namespace {
 
-using namespace std::chrono_literals;
 using skill::Reason;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using testing::PlacedArm;
 using testing::RecordedFile;
 
@@ -34,7 +32,7 @@ struct RecordedProgram : ::testing::Test {
         description.results = {{.name = "Length", .type = skill::ValueType::number}};
         return description;
     }
-    records::Execution only() {
+    Execution only() {
         const auto listed = file.store()->list({}, {});
         EXPECT_TRUE(listed);
         EXPECT_EQ(listed->executions.size(), 1U);
@@ -65,7 +63,7 @@ struct RecordedProgram : ::testing::Test {
         *program, file.recorder(), &sampler, ProgramRecorder::Place{"ur5", "Controller", "UR5"});
 };
 
-TEST_F(RecordedProgram, TellsWhoStartedWhatAndWhatCameOfIt) {
+TEST_F(RecordedProgram, IsRecordedWithItsClientParametersAndResult) {
     const auto id = program->startWith(
         kAlice, {.parameters = {{"Speed", 0.25}}, .parent = {"parent 7", "urn:cell:pick"}});
     ASSERT_TRUE(id);
@@ -93,7 +91,7 @@ TEST_F(RecordedProgram, TellsWhoStartedWhatAndWhatCameOfIt) {
                 ElementsAre("Ready>Running Executing", "Running>Ready ReadyNotConfigured"));
 }
 
-TEST_F(RecordedProgram, TellsOfSuspendAndHalt) {
+TEST_F(RecordedProgram, IsRecordedWhenItIsSuspendedAndHalted) {
     ASSERT_TRUE(program->start(kAlice));
     ASSERT_TRUE(program->suspend(kAlice));
     executor->run();
@@ -110,7 +108,7 @@ TEST_F(RecordedProgram, TellsOfSuspendAndHalt) {
                             "Running>Running Stopping", "Running>Halted HaltedByClient"));
 }
 
-TEST_F(RecordedProgram, TellsStepsProgressAndWhatItHasStarted) {
+TEST_F(RecordedProgram, IsRecordedWithStepsProgressAndChildren) {
     ASSERT_TRUE(program->start(kAlice));
     execution.step("approach");
     execution.progress(0.5);
@@ -124,25 +122,25 @@ TEST_F(RecordedProgram, TellsStepsProgressAndWhatItHasStarted) {
     EXPECT_THAT(ways(record.number),
                 ElementsAre("Ready>Running Executing", "Running>Running at approach Executing",
                             "Running>Halted HaltedError"));
-    const auto told = file.store()->intermediates(record.number);
-    ASSERT_TRUE(told);
-    ASSERT_EQ(told->size(), 2U);
-    EXPECT_EQ(told->at(0).value, "0.5");
+    const auto found = file.store()->intermediates(record.number);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->size(), 2U);
+    EXPECT_EQ(found->at(0).value, "0.5");
     EXPECT_EQ(
-        told->at(1).value,
+        found->at(1).value,
         R"({"started":{"id":"pick/1","skill":"GraspGripperSkill","server_url":"opc.tcp://10.0.0.2:4840"}})");
 }
 
-TEST_F(RecordedProgram, TellsWhatCheckSaidOfTheSameValuesToTheSameSession) {
+TEST_F(RecordedProgram, HasTheCheckOfTheSameValuesForTheSameSession) {
     static_cast<void>(program->check(kAlice, {{"Speed", 0.25}}));
     ASSERT_TRUE(program->startWith(kAlice, {.parameters = {{"Speed", 0.25}}}));
     executor->run();
     EXPECT_EQ(only().check,
-              R"({"possible":true,"reason":"","first_failing_fraction":1,"planned_duration":0,)"
-              R"("stopping_time":0,"stopping_distance":0})");
+              R"({"possible":true,"reason":"","first_failing_fraction":1.0,"planned_duration":0.0,)"
+              R"("stopping_time":0.0,"stopping_distance":0.0})");
 }
 
-TEST_F(RecordedProgram, TellsNothingOfACheckOfOtherValuesOrAnotherSession) {
+TEST_F(RecordedProgram, HasNoCheckOfOtherValuesOrForAnotherSession) {
     static_cast<void>(program->check(kAlice, {{"Speed", 0.75}}));
     ASSERT_TRUE(program->startWith(kAlice, {.parameters = {{"Speed", 0.25}}}));
     execution.finish();
@@ -177,129 +175,57 @@ TEST_F(RecordedProgram, CountsTheMissedCyclesOfItsArm) {
     EXPECT_EQ(only().missed_cycles, 2U);
 }
 
-/// Of a Program that moves no arm.
+/// A Program that moves no arm.
 struct ArmlessProgram : RecordedProgram {
     ArmlessProgram() {
         recorder = std::make_unique<ProgramRecorder>(
             *program, file.recorder(), nullptr, ProgramRecorder::Place{"ur5", "Controller", ""});
     }
-    std::vector<records::Execution> all() {
+    std::vector<Execution> all() {
         const auto listed = file.store()->list({}, {.count = 500});
         EXPECT_TRUE(listed);
-        return listed->executions;
+        auto executions = listed->executions;
+        std::sort(executions.begin(), executions.end(),
+                  [](const auto& a, const auto& b) { return a.number < b.number; });
+        return executions;
     }
-    std::string runOnce() {
-        const auto id = program->startWith(kAlice, {});
-        EXPECT_TRUE(id);
-        execution.finish({{"Length", ++length}});
-        executor->run();
-        return *id;
-    }
-
-    double length = 0;
 };
 
-TEST_F(ArmlessProgram, IsToldOfALittleLater) {
-    const auto id = runOnce();
-    executor->advance(ProgramRecorder::kLater - 1ms);
-    EXPECT_THAT(all(), IsEmpty());
-    executor->advance(1ms);
-    const auto record = only();
-    EXPECT_EQ(record.id, id);
-    EXPECT_EQ(record.server_name, "ur5");
-    EXPECT_EQ(record.user, "alice");
-    EXPECT_EQ(record.parameters, R"({"Speed":0.5})");
-    EXPECT_EQ(record.state, "Ready");
-    EXPECT_EQ(record.reason, "Finished");
-    EXPECT_EQ(record.result, R"({"Length":1})");
-    EXPECT_TRUE(record.isOver());
-    EXPECT_THAT(ways(record.number),
-                ElementsAre("Ready>Running Executing", "Running>Ready ReadyNotConfigured"));
-    executor->advance(1s);
-    EXPECT_EQ(executor->timerCount(), 0U);
-}
-
-TEST_F(ArmlessProgram, IsToldOfInItsOrderHoweverOftenItRuns) {
+TEST_F(ArmlessProgram, IsRecordedInItsOrderHoweverOftenItRuns) {
     std::vector<std::string> ids;
-    for (int i = 0; i < 200; ++i) {
-        ids.push_back(runOnce());
+    for (int i = 1; i <= 200; ++i) {
+        const auto id = program->startWith(kAlice, {});
+        ASSERT_TRUE(id);
+        ids.push_back(*id);
+        execution.finish({{"Length", static_cast<double>(i)}});
+        executor->run();
     }
-    EXPECT_GE(all().size(), 100U) << "the history of a Program is short";
-    executor->advance(ProgramRecorder::kLater);
-    auto records = all();
+    const auto records = all();
     ASSERT_EQ(records.size(), ids.size());
-    std::sort(records.begin(), records.end(),
-              [](const auto& a, const auto& b) { return a.number < b.number; });
     for (std::size_t i = 0; i < ids.size(); ++i) {
         EXPECT_EQ(records[i].id, ids[i]);
         EXPECT_EQ(records[i].result, fmt::format(R"({{"Length":{}}})", i + 1));
     }
+    EXPECT_THAT(ways(records.back().number),
+                ElementsAre("Ready>Running Executing", "Running>Ready ReadyNotConfigured"));
 }
 
-TEST_F(ArmlessProgram, IsToldOfWhileItRuns) {
-    const auto first = runOnce();
+TEST_F(ArmlessProgram, IsRecordedWhileItRunsAndWithItsReasonOnceItFailed) {
     ASSERT_TRUE(program->startWith(kAlice, {.parameters = {{"Speed", 0.25}}}));
-    executor->advance(ProgramRecorder::kLater);
-    auto records = all();
-    ASSERT_EQ(records.size(), 2U);
-    EXPECT_EQ(records[1].id, first);
-    EXPECT_EQ(records[0].state, "Running");
-    EXPECT_FALSE(records[0].isOver());
-    execution.fail(Reason::error, "no wire");
-    executor->run();
-    records = all();
-    EXPECT_EQ(records[0].state, "Halted");
-    EXPECT_EQ(records[0].reason_text, "no wire");
-    EXPECT_EQ(records[0].parameters, R"({"Speed":0.25})");
-    EXPECT_EQ(records[1].parameters, R"({"Speed":0.5})");
-    EXPECT_THAT(ways(records[0].number),
-                ElementsAre("Ready>Running Executing", "Running>Halted HaltedError"));
-}
-
-TEST_F(ArmlessProgram, ThatFailsAtOnceIsToldOfWithItsReason) {
-    ASSERT_TRUE(program->start(kAlice));
+    EXPECT_EQ(only().state, "Running");
+    EXPECT_FALSE(only().isOver());
     execution.fail(Reason::error, "no wire");
     executor->run();
     ASSERT_TRUE(program->reset(kAlice));
-    executor->advance(ProgramRecorder::kLater);
     const auto record = only();
     EXPECT_EQ(record.state, "Halted");
     EXPECT_EQ(record.reason, "Error");
     EXPECT_EQ(record.reason_text, "no wire");
     EXPECT_EQ(record.result, "");
+    EXPECT_EQ(record.parameters, R"({"Speed":0.25})");
+    EXPECT_EQ(record.missed_cycles, 0U);
     EXPECT_THAT(ways(record.number),
                 ElementsAre("Ready>Running Executing", "Running>Halted HaltedError"));
-}
-
-TEST_F(ArmlessProgram, IsToldOfAtOnceIfThereIsMoreToTell) {
-    runOnce();
-    ASSERT_TRUE(program->start(kAlice));
-    execution.step("approach");
-    execution.progress(0.5);
-    executor->run();
-    auto records = all();
-    ASSERT_EQ(records.size(), 2U);
-    EXPECT_EQ(records[0].state, "Running");
-    EXPECT_EQ(file.store()->intermediates(records[0].number)->size(), 1U);
-    ASSERT_TRUE(program->suspend(kAlice));
-    executor->run();
-    EXPECT_EQ(all()[0].state, "Suspended");
-    ASSERT_TRUE(program->reset(kAlice));
-    EXPECT_THAT(ways(all()[0].number),
-                ElementsAre("Ready>Running Executing", "Running>Running at approach Executing",
-                            "Running>Running at approach Stopping", "Running>Suspended",
-                            "Suspended>Ready ReadyNotConfigured"));
-}
-
-TEST_F(ArmlessProgram, IsToldOfWithItsServersEnd) {
-    runOnce();
-    ASSERT_TRUE(program->start(kAlice));
-    recorder.reset();
-    const auto records = all();
-    ASSERT_EQ(records.size(), 2U);
-    EXPECT_EQ(records[0].state, "Halted");
-    EXPECT_THAT(records[0].reason_text, HasSubstr("the server was stopped"));
-    EXPECT_EQ(records[1].state, "Ready");
 }
 
 TEST_F(RecordedProgram, ThatEndsWithItsServerWasHalted) {
@@ -312,4 +238,4 @@ TEST_F(RecordedProgram, ThatEndsWithItsServerWasHalted) {
 }
 
 }  // namespace
-}  // namespace metier::recording
+}  // namespace metier::records

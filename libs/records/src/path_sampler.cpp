@@ -1,16 +1,13 @@
-#include "metier/recording/path_sampler.hpp"
+#include "metier/records/path_sampler.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace metier::recording {
+namespace metier::records {
 namespace {
 
-using records::Recorder;
-using records::SampleValues;
-
-// What is less than that is no motion.
+// Smaller differences are no motion.
 constexpr double kAngle = 1e-4;   // [rad]
 constexpr double kForce = 0.5;    // [N]
 constexpr double kTorque = 0.05;  // [Nm]
@@ -62,7 +59,7 @@ void PathSampler::begin(Recorder::Key key) {
         const std::lock_guard lock(mutex_);
         paths_.push_back(
             {.key = key, .begin = reading.time, .missed_at_begin = reading.arm.missed_cycles});
-        tell(paths_.back(), reading);
+        send(paths_.back(), reading);
     }
     changed_.notify_all();
 }
@@ -75,11 +72,11 @@ std::uint64_t PathSampler::end(Recorder::Key key) {
         return 0;
     }
     const auto reading = read();
-    if (reading.arm.stamp != path->told->arm.stamp) {
+    if (reading.arm.stamp != path->sent->arm.stamp) {
         if (path->skipped && path->skipped->arm.stamp != reading.arm.stamp) {
-            tell(*path, *path->skipped);
+            send(*path, *path->skipped);
         }
-        tell(*path, reading);
+        send(*path, reading);
     }
     const auto before = path->missed_at_begin;
     paths_.erase(path);
@@ -113,33 +110,33 @@ PathSampler::Reading PathSampler::read() const {
     return reading;
 }
 
-/// Of a pause its end is told too, so that what is drawn between two samples is true.
+/// The end of a pause is recorded too, so that what is drawn between two samples is true.
 void PathSampler::take(Path& path, const Reading& reading) {
-    const auto& told = *path.told;
+    const auto& sent = *path.sent;
     const bool moves =
-        device::largestDifference(told.arm.position, reading.arm.position) > kAngle ||
-        device::largestDifference(told.arm.commanded_position, reading.arm.commanded_position) >
+        device::largestDifference(sent.arm.position, reading.arm.position) > kAngle ||
+        device::largestDifference(sent.arm.commanded_position, reading.arm.commanded_position) >
             kAngle ||
-        told.force.has_value() != reading.force.has_value() ||
-        (told.force && differs(*told.force, *reading.force));
-    if (!moves && reading.time - told.time < kLongestPause) {
+        sent.force.has_value() != reading.force.has_value() ||
+        (sent.force && differs(*sent.force, *reading.force));
+    if (!moves && reading.time - sent.time < kLongestPause) {
         path.skipped = reading;
         return;
     }
     if (const auto skipped = path.skipped; moves && skipped) {
-        tell(path, *skipped);
+        send(path, *skipped);
     }
-    tell(path, reading);
+    send(path, reading);
 }
 
-void PathSampler::tell(Path& path, const Reading& reading) {
+void PathSampler::send(Path& path, const Reading& reading) {
     const std::chrono::duration<double> time = reading.time - path.begin;
     recorder_.sample(path.key, {.time = time.count(),
                                 .actual = valuesOf(reading.arm.position),
                                 .commanded = valuesOf(reading.arm.commanded_position),
                                 .force = valuesOf(reading.force)});
-    path.told = reading;
+    path.sent = reading;
     path.skipped.reset();
 }
 
-}  // namespace metier::recording
+}  // namespace metier::records

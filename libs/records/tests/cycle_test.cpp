@@ -2,10 +2,10 @@
 
 #include "bench.hpp"
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/recording/program_recorder.hpp"
+#include "metier/records/program_recorder.hpp"
 #include "recording_bench.hpp"
 
-namespace metier::recording {
+namespace metier::records {
 namespace {
 
 using robot_skills::Bench;
@@ -44,4 +44,4 @@ TEST(RecordedCycle, DoesNotAllocateFromTheFirstToTheLast) {
 }
 
 }  // namespace
-}  // namespace metier::recording
+}  // namespace metier::records

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "database.hpp"
+#include "filter_sql.hpp"
 #include "metier/records/store.hpp"
 
 namespace metier::records {
@@ -16,9 +16,9 @@ inline constexpr std::size_t kLargestPage = 10'000;
 
 /// Finds the newest executions that fit a filter.
 ///
-/// What the filter says of names, states and reasons is answered by the few rows of `kinds`, what
-/// it says of texts by those of `notes` as well. Of each that fits, an index has the newest
-/// executions ready: no more rows are looked at than are wanted, whatever the filter.
+/// The few rows of `kinds` answer what the filter says of names, states and reasons, those of
+/// `notes` what it says of texts as well. An index has the newest executions of each ready: no more
+/// rows are looked at than are wanted, whatever the filter.
 class Search {
 public:
     Search(Database& database, const Filter& filter, const Page& page);
@@ -28,19 +28,18 @@ public:
 
 private:
     using Found = std::pair<std::int64_t, std::int64_t>;  // started, number
+    using Numbers = std::vector<std::int64_t>;
 
     Result<bool> findBounds();
-    Result<std::vector<std::int64_t>> kinds(bool with_text);
-    Result<std::vector<std::int64_t>> notes();
-    Result<void> takeAll();
-    Result<void> takeChildren(const std::string& of_kinds);
+    Result<Numbers> kinds(const std::string& condition, const Values& values);
+    Result<void> takeChildren();
     Result<void> takeKinds();
     Result<void> takeText();
     Result<void> takeNotes(const std::string& of_kinds);
-    Result<void> takeOfEach(const std::string& column, const std::vector<std::int64_t>& values,
+    Result<void> takeOfEach(const std::string& column, const Numbers& numbers,
                             const std::string& condition);
-    Result<void> take(const std::string& sql, std::vector<Cell> more = {});
-    static std::string newest(const std::string& condition);
+    Result<void> take(const std::string& sql, const Values& values);
+    Values bounds() const;
     bool namesKinds() const;
 
     Database& database_;

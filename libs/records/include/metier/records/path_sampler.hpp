@@ -13,7 +13,7 @@
 #include "metier/device/force_torque_sensor.hpp"
 #include "metier/records/recorder.hpp"
 
-namespace metier::recording {
+namespace metier::records {
 
 /// Records where an arm is while executions are under way: at their begin, at their end, and every
 /// 10 ms as long as it moves; an arm that stands is recorded once a second.
@@ -28,15 +28,15 @@ public:
     /// \param arm      must outlive this, as the sensor and the recorder
     /// \param sensor   may be null
     PathSampler(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
-                records::Recorder& recorder);
+                Recorder& recorder);
     ~PathSampler();
     PathSampler(const PathSampler&) = delete;
     PathSampler& operator=(const PathSampler&) = delete;
 
-    void begin(records::Recorder::Key key);
+    void begin(Recorder::Key key);
     /// No sample of it comes after this.
     /// \return cycles that the arm has missed since begin()
-    std::uint64_t end(records::Recorder::Key key);
+    std::uint64_t end(Recorder::Key key);
 
 private:
     struct Reading {
@@ -46,21 +46,21 @@ private:
     };
     /// An execution that is under way.
     struct Path {
-        records::Recorder::Key key = 0;
+        Recorder::Key key = 0;
         SteadyTime begin{};
         std::uint64_t missed_at_begin = 0;
-        std::optional<Reading> told{};     ///< the last sample
+        std::optional<Reading> sent{};     ///< the last sample
         std::optional<Reading> skipped{};  ///< after it, and as good as the same
     };
 
     void run(const std::stop_token& stop);
     Reading read() const;
     void take(Path& path, const Reading& reading);
-    void tell(Path& path, const Reading& reading);
+    void send(Path& path, const Reading& reading);
 
     const device::Arm& arm_;
     const device::ForceTorqueSensor* sensor_;
-    records::Recorder& recorder_;
+    Recorder& recorder_;
 
     std::mutex mutex_;
     std::condition_variable_any changed_;
@@ -68,4 +68,4 @@ private:
     std::jthread thread_;
 };
 
-}  // namespace metier::recording
+}  // namespace metier::records
