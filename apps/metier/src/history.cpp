@@ -35,6 +35,7 @@ struct HistoryOptions {
     std::string since;
     std::string until;
     std::string id;
+    std::string file;
     bool follow = false;
     bool json = false;
 };
@@ -262,6 +263,17 @@ Exit runShow(const HistoryOptions& options) {
     return Exit::success;
 }
 
+Exit runExport(const HistoryOptions& options) {
+    const auto store = openRecords(options.records);
+    const auto count =
+        store ? (*store)->exportTo(options.file) : Result<std::uint64_t>(fail(store.error()));
+    if (!count) {
+        return report(count.error());
+    }
+    fmt::print("{} executions are in {}\n", *count, printable(options.file));
+    return Exit::success;
+}
+
 void addFilter(CLI::App& command, HistoryOptions& options) {
     auto& filter = options.filter;
     command.add_option("--server", filter.server, "Of this server: name or ApplicationUri");
@@ -316,8 +328,12 @@ void addHistory(CLI::App& app, Exit& exit) {
     command->add_flag("--json", options->json, "Print one JSON object per line");
     auto* show = command->add_subcommand("show", "All that is known of one execution");
     show->add_option("ID", options->id, "Its number or its id")->required();
-    command->callback([options, show, &exit] {
+    auto* copy = command->add_subcommand(
+        "export", "Write a copy of all records into a new SQLite file, also while servers record");
+    copy->add_option("FILE", options->file, "The new file")->required();
+    command->callback([options, show, copy, &exit] {
         exit = show->parsed()    ? runShow(*options)
+               : copy->parsed()  ? runExport(*options)
                : options->follow ? runFollow(*options)
                                  : runList(*options);
     });

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "database.hpp"
+#include "export.hpp"
 #include "filter_sql.hpp"
 #include "parts.hpp"
 #include "retention.hpp"
@@ -177,6 +178,10 @@ Result<std::uint64_t> Store::bytes() {
     return database_->number(database_->dialect().bytes).map([](std::int64_t bytes) {
         return static_cast<std::uint64_t>(bytes);
     });
+}
+
+Result<std::uint64_t> Store::exportTo(const std::string& file) {
+    return records::exportTo(*database_, file);
 }
 
 bool Store::isCurrent() {

@@ -107,6 +107,9 @@ public:
     Result<std::uint64_t> retain(const Retention& keep, UtcTime now);
     /// Space of executions and their paths [byte], about.
     Result<std::uint64_t> bytes();
+    /// Writes a copy of all records, as they are at one moment, into a SQLite file that is made.
+    /// \return how many executions. Errors: already_exists; the file is removed after any other.
+    Result<std::uint64_t> exportTo(const std::string& file);
     /// Whether another open() would lead to the same store: false once a file was removed or
     /// replaced.
     bool isCurrent();
