@@ -75,6 +75,7 @@ private:
     void takeWaiting();
     Result<void> openStore();
     Result<void> trim();
+    Result<void> trimPart();
     void finishRound(const Result<void>& done);
     bool isIdle() const;
 
@@ -241,10 +242,8 @@ Result<void> Recorder::Impl::writeRound() {
     if (done) {
         done = writer_.write(*database_);
     }
-    if (const auto trimmed = done ? trim() : done; !trimmed) {
-        // Others that were in the way of trimming lose nothing: it goes on in the next round.
-        const bool goes_on = trimmed.error().code == Errc::timeout;
-        done = done && goes_on ? done : trimmed;
+    if (done) {
+        done = trim();
     }
     if (!done && done.error().code != Errc::timeout) {
         database_.reset();  // after a timeout it is as good as before, and shows that this is there
@@ -283,8 +282,14 @@ Result<void> Recorder::Impl::openStore() {
     return {};
 }
 
-/// A part of it: what comes meanwhile is written in between.
+/// If others are in the way nothing is lost: it goes on in the next round.
 Result<void> Recorder::Impl::trim() {
+    auto done = trimPart();
+    return !done && done.error().code == Errc::timeout ? Result<void>() : done;
+}
+
+/// Messages that come meanwhile are written between two parts.
+Result<void> Recorder::Impl::trimPart() {
     if (!trimming_ && now() >= next_trim_) {
         if (auto closed = closeLostOfOthers(*database_, options_.server); !closed) {
             return closed;

@@ -5,8 +5,8 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <mutex>
 #include <system_error>
@@ -102,18 +102,6 @@ int bind(sqlite3_stmt* statement, int index, const Argument& argument) {
     return sqlite3_bind_blob64(statement, index,
                                bytes.empty() ? "" : static_cast<const void*>(bytes.data()),
                                bytes.size(), SQLITE_STATIC);
-}
-
-/// Numbers n of each $n, in the order in which SQLite counts them.
-std::vector<std::size_t> parametersOf(sqlite3_stmt* statement) {
-    std::vector<std::size_t> numbers;
-    for (int i = 1; i <= sqlite3_bind_parameter_count(statement); ++i) {
-        const std::string_view name(sqlite3_bind_parameter_name(statement, i));
-        std::size_t number = 0;
-        std::from_chars(name.data() + 1, name.data() + name.size(), number);
-        numbers.push_back(number);
-    }
-    return numbers;
 }
 
 Cell column(sqlite3_stmt* statement, int index) {
@@ -232,22 +220,22 @@ tl::unexpected<Error> SqliteDatabase::failed() const {
                                                         : fmt::format("{}: {}", name_, why));
 }
 
-Result<const SqliteDatabase::Statement*> SqliteDatabase::prepared(std::string_view sql) {
+Result<sqlite3_stmt*> SqliteDatabase::prepared(std::string_view sql) {
     if (const auto known = statements_.find(sql); known != statements_.end()) {
-        return &known->second;
+        return known->second.get();
     }
     if (statements_.size() >= kMostStatements) {
         statements_.clear();
     }
+    // SQLite counts parameters named $1 as they come, and ?1 by its number.
+    std::string numbered(sql);
+    std::replace(numbered.begin(), numbered.end(), '$', '?');
     sqlite3_stmt* made = nullptr;
-    if (sqlite3_prepare_v2(connection_.get(), sql.data(), static_cast<int>(sql.size()), &made,
-                           nullptr) != SQLITE_OK) {
+    if (sqlite3_prepare_v2(connection_.get(), numbered.c_str(), -1, &made, nullptr) != SQLITE_OK) {
         return failed();
     }
-    auto& statement = statements_[std::string(sql)];
-    statement.prepared.reset(made);
-    statement.parameters = parametersOf(made);
-    return &statement;
+    statements_[std::string(sql)].reset(made);
+    return made;
 }
 
 Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argument> parameters) {
@@ -255,12 +243,9 @@ Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argum
     if (!found) {
         return fail(found.error());
     }
-    auto* const statement = (*found)->prepared.get();
-    const auto& numbers = (*found)->parameters;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const bool given = numbers[i] >= 1 && numbers[i] <= parameters.size();
-        if (given &&
-            bind(statement, static_cast<int>(i) + 1, parameters[numbers[i] - 1]) != SQLITE_OK) {
+    auto* const statement = *found;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        if (bind(statement, static_cast<int>(i) + 1, parameters[i]) != SQLITE_OK) {
             return failed();
         }
     }
@@ -288,15 +273,14 @@ void SqliteDatabase::rollBack() noexcept {
 }
 
 Result<Presence> SqliteDatabase::attend(const std::string& server) {
-    return ServerLocks::open(name_ + "-servers").and_then([&](ServerLocks locks) {
-        const auto presence = std::make_shared<ServerLocks>(std::move(locks));
-        return presence->hold(server).map([&] { return Presence(presence); });
+    return ServerLocks::open(name_ + "-servers").and_then([&](const auto& locks) {
+        return locks->hold(server).map([&] { return Presence(locks); });
     });
 }
 
 Result<bool> SqliteDatabase::isAttendedByOthers(const std::string& server) {
-    return ServerLocks::open(name_ + "-servers").and_then([&](const ServerLocks& locks) {
-        return locks.isHeldByOthers(server);
+    return ServerLocks::open(name_ + "-servers").and_then([&](const auto& locks) {
+        return locks->isHeldByOthers(server);
     });
 }
 

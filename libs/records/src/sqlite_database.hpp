@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "database.hpp"
 #include "server_locks.hpp"
@@ -42,20 +41,17 @@ private:
         void operator()(sqlite3* connection) const noexcept;
         void operator()(sqlite3_stmt* statement) const noexcept;
     };
-    struct Statement {
-        std::unique_ptr<sqlite3_stmt, Close> prepared;
-        std::vector<std::size_t> parameters;  // the number n of each $n, in SQLite's order
-    };
 
     explicit SqliteDatabase(std::string name) : name_(std::move(name)) {}
     Result<void> connect(Store::Access access);
     Result<void> setUp(Store::Access access);
-    Result<const Statement*> prepared(std::string_view sql);
+    Result<sqlite3_stmt*> prepared(std::string_view sql);
     tl::unexpected<Error> failed() const;
 
     std::string name_;
     std::unique_ptr<sqlite3, Close> connection_;
-    std::map<std::string, Statement, std::less<>> statements_;  // end before the connection
+    // By their SQL; end before the connection.
+    std::map<std::string, std::unique_ptr<sqlite3_stmt, Close>, std::less<>> statements_;
 };
 
 }  // namespace metier::records
