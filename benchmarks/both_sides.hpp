@@ -44,7 +44,8 @@ inline constexpr std::chrono::milliseconds kPublishingInterval{100};
 /// Errors of the functions that they hold: exceptions.
 Side metierSide(opcua_skill::NodeStyle style = opcua_skill::NodeStyle::readable);
 /// The same, which records every execution while `recording`, which must outlive it, is on.
-Side recordingSide(const RecordingSwitch& recording);
+/// \param work time that an execution keeps the server's thread busy
+Side recordingSide(const RecordingSwitch& recording, std::chrono::microseconds work);
 Side bareSide();
 /// metier's server with open62541 alone as its client; can only call().
 Side metierServerBareClient();

@@ -12,8 +12,7 @@
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
-#include "metier/recording/packed_json.hpp"
-#include "metier/recording/program_recorder.hpp"
+#include "metier/records/program_recorder.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/skill/lambda_skill.hpp"
 #include "metier/skill_client/skill_finder.hpp"
@@ -72,8 +71,10 @@ skill::SkillDescription moveDescription(std::string name) {
 class SkillServers {
 public:
     /// \param recording of executions; null: none
+    /// \param work time that an execution keeps the server's thread busy
     SkillServers(std::size_t idle, opcua_skill::NodeStyle style,
-                 const RecordingSwitch* recording = nullptr) {
+                 const RecordingSwitch* recording = nullptr, std::chrono::microseconds work = {})
+        : work_(work) {
         auto& nodes = server_->nodes();
         const auto index = orThrow(nodes.namespaceIndex("urn:benchmark"));
         const auto system = orThrow(opcua_skill::publishMotionDeviceSystem(
@@ -83,10 +84,8 @@ public:
             publish(system.skills, fmt::format("JointPtpMoveSkill{}", i), style);
         }
         if (recording != nullptr) {
-            recorder_ = orThrow(records::Recorder::create({.url = recording->file(),
-                                                           .server = "urn:benchmark",
-                                                           .to_json = recording::packedJson,
-                                                           .most_waiting = 100'000}));
+            recorder_ = orThrow(
+                records::Recorder::create({.url = recording->file(), .server = "urn:benchmark"}));
         }
         orThrow(server_->start().map([] { return true; }));
         if (recording != nullptr) {
@@ -124,23 +123,31 @@ private:
             return;
         }
         for (auto* program : skills_->programs()) {
-            program_recorders_.push_back(std::make_unique<recording::ProgramRecorder>(
+            program_recorders_.push_back(std::make_unique<records::ProgramRecorder>(
                 *program, *recorder_, nullptr,
-                recording::ProgramRecorder::Place{"benchmark", "Benchmark", ""}));
+                records::ProgramRecorder::Place{"benchmark", "Benchmark", ""}));
         }
     }
     void publish(const opcua::NodeId& folder, std::string name, opcua_skill::NodeStyle style) {
+        skill::SkillFunctions functions;
+        functions.start = [work = work_](const auto& /*parameters*/, const auto& execution) {
+            const auto end = steady_clock::now() + work;
+            while (steady_clock::now() < end) {
+            }
+            execution.finish();
+        };
         auto skill = std::make_unique<skill::LambdaSkill>(moveDescription(std::move(name)),
-                                                          skill::SkillFunctions{});
+                                                          std::move(functions));
         orThrow(skills_->publish(folder, std::move(skill), {}, style));
     }
 
+    const std::chrono::microseconds work_;
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(options()));
     std::unique_ptr<opcua_skill::SkillServer> skills_ = orThrow(opcua_skill::SkillServer::create(
         *server_, clock_, std::make_shared<spdlog::logger>("quiet")));
     std::unique_ptr<records::Recorder> recorder_;
-    std::vector<std::unique_ptr<recording::ProgramRecorder>> program_recorders_;
+    std::vector<std::unique_ptr<records::ProgramRecorder>> program_recorders_;
     RecordingSwitch::Serving recording_switch_;
 };
 
@@ -243,11 +250,11 @@ Side metierSide(opcua_skill::NodeStyle style) {
             [](const std::string& url) { return std::make_unique<MetierCaller>(url); }};
 }
 
-Side recordingSide(const RecordingSwitch& recording) {
+Side recordingSide(const RecordingSwitch& recording, std::chrono::microseconds work) {
     auto side = metierSide();
-    side.serve = [&recording](std::size_t idle) {
-        const auto server =
-            std::make_shared<SkillServers>(idle, opcua_skill::NodeStyle::readable, &recording);
+    side.serve = [&recording, work](std::size_t idle) {
+        const auto server = std::make_shared<SkillServers>(idle, opcua_skill::NodeStyle::readable,
+                                                           &recording, work);
         return Served{server->url(), server};
     };
     return side;

@@ -98,14 +98,13 @@ void fill(const std::string& url, std::int64_t count) {
         options.url = url;
         options.server = fmt::format("urn:cell:metier:robot{}", server);
         options.keep = {.age = 0h, .bytes = 0};
-        options.most_waiting = 100'000;
         recorders.push_back(orExit(records::Recorder::create(std::move(options))));
     }
     const auto begin = std::chrono::steady_clock::now();
     const auto processor = processorSeconds();
     for (std::int64_t i = 0; i < count; ++i) {
         recordOne(*recorders[static_cast<std::size_t>(i % kServers)], i);
-        if (i % 20'000 == 19'999 || i == count - 1) {
+        if (i % 10'000 == 9'999 || i == count - 1) {
             for (auto& recorder : recorders) {
                 recorder->flush(std::chrono::steady_clock::now() + 600s);
             }

@@ -1,6 +1,7 @@
 #include "server_process.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -93,14 +94,14 @@ std::chrono::nanoseconds cpuTimeOf(const std::filesystem::path& task) {
     return std::chrono::nanoseconds(nanoseconds);
 }
 
-/// Field 19 of proc(5), the 17th after the name in brackets.
-int niceOf(const std::filesystem::path& task) {
+/// Scheduling policy: field 41 of proc(5), the 39th after the name in brackets.
+int policyOf(const std::filesystem::path& task) {
     std::ifstream file(task / "stat");
     std::string text;
     std::getline(file, text);
     std::istringstream fields(text.substr(text.rfind(')') + 1));
     std::string field;
-    for (int i = 0; i < 17; ++i) {
+    for (int i = 0; i < 39; ++i) {
         fields >> field;
     }
     return std::atoi(field.c_str());
@@ -156,7 +157,7 @@ std::chrono::nanoseconds ServerProcess::busiestThreadTime() const {
 std::chrono::nanoseconds ServerProcess::yieldingThreadsTime() const {
     std::chrono::nanoseconds sum{0};
     for (const auto& task : tasksOf(pid_)) {
-        sum += niceOf(task) > 0 ? cpuTimeOf(task) : 0ns;
+        sum += policyOf(task) == SCHED_BATCH ? cpuTimeOf(task) : 0ns;
     }
     return sum;
 }

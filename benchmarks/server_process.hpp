@@ -38,7 +38,7 @@ public:
     std::chrono::nanoseconds cpuTime() const;
     /// CPU time of the thread that used most: of a server that is busy, the one that owns it.
     std::chrono::nanoseconds busiestThreadTime() const;
-    /// CPU time of the threads that yield to others: those with a nice value above 0.
+    /// CPU time of the threads that yield to others: those of the policy SCHED_BATCH.
     std::chrono::nanoseconds yieldingThreadsTime() const;
 
 private:

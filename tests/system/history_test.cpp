@@ -268,6 +268,23 @@ TEST_F(History, ExportsATraceWithChildrenOfOtherServers) {
     EXPECT_EQ(run({"trace", "nobody"}).status, kFailed);
 }
 
+TEST_F(History, ExportsACopyThatIsWholeWhileServersRecord) {
+    const auto recording = recorder();
+    recording->end(recording->begin(move("m-1")), finished(1s));
+    recording->begin(move("m-2", 2s));
+    ASSERT_TRUE(recording->flush(inAMinute()));
+    const auto copy = (folder_ / "copy.db").string();
+    const auto done = run({"history", "export", copy});
+    EXPECT_EQ(done.status, kSuccess) << done.output;
+    EXPECT_THAT(done.output, HasSubstr("2 executions are in " + copy));
+    const auto list = runMetier({"history", "--json", "--records", copy}, Errors::left_out);
+    EXPECT_THAT(lines(list.output), ElementsAre(HasSubstr("\"m-2\""), HasSubstr("\"m-1\"")));
+    const auto again = run({"history", "export", copy});
+    EXPECT_EQ(again.status, kFailed);
+    EXPECT_THAT(again.output, AllOf(HasSubstr(copy), HasSubstr("exists already")));
+    EXPECT_EQ(run({"history", "export"}).status, kUsage);
+}
+
 TEST_F(History, RunsTheSameAgainAfterCheck) {
     const ServerProcess server("iiwa");
     const auto client = connectTo(server.url());

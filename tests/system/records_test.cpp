@@ -120,7 +120,7 @@ TEST_F(RecordedArm, TellsWhatCheckSaidBefore) {
     const auto record = file_.awaitEnd(kMove);
     EXPECT_EQ(record.id, "checked");
     EXPECT_THAT(record.check, AllOf(HasSubstr("\"possible\":true"),
-                                    HasSubstr("\"planned_duration\":"), Not(HasSubstr(":0}"))));
+                                    HasSubstr("\"planned_duration\":"), Not(HasSubstr(":0.0}"))));
 }
 
 TEST_F(RecordedArm, IsRecordedWhenItIsSuspendedResumedAndHalted) {

@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "metier/records/json.hpp"
+#include "metier/records/kept_store.hpp"
 #include "metier/records/trace.hpp"
 #include "printable.hpp"
 #include "recorded.hpp"
@@ -34,6 +35,7 @@ struct HistoryOptions {
     std::string since;
     std::string until;
     std::string id;
+    std::string file;
     bool follow = false;
     bool json = false;
 };
@@ -117,49 +119,38 @@ Exit runList(const HistoryOptions& options) {
     return Exit::success;
 }
 
-/// Prints what comes or changes, also after the store was away for a while.
+/// Prints executions that come or change, also after the store was away for a while.
 class Follower {
 public:
     Follower(const HistoryOptions& options, records::Filter filter)
-        : options_(options), filter_(std::move(filter)) {}
+        : options_(options), filter_(std::move(filter)), store_(options.records) {}
 
     /// One look.
     Result<void> look() {
-        if (store_ == nullptr) {
-            if (auto opened = open(); !opened) {
-                return opened;
-            }
-        }
-        const auto changes = store_->changes(revision_);
+        return store_.use([this](Store& store) {
+            auto done = revision_ < 0 ? printLast(store) : printChanges(store);
+            std::fflush(stdout);
+            return done;
+        });
+    }
+
+private:
+    Result<void> printChanges(Store& store) {
+        const auto changes = store.changes(revision_, filter_);
         if (!changes) {
-            store_.reset();
             return fail(changes.error());
         }
         revision_ = changes->revision;
         for (const auto& execution : changes->executions) {
-            if (records::fits(execution, filter_)) {
-                printLine(execution, options_);
-            }
+            printLine(execution, options_);
         }
-        std::fflush(stdout);
         return {};
     }
-
-private:
-    Result<void> open() {
-        auto store = openRecords(options_.records);
-        if (!store) {
-            return fail(store.error());
-        }
-        store_ = std::move(*store);
-        return revision_ < 0 ? printLast() : Result<void>();
-    }
     /// The last ones, oldest first, to begin with.
-    Result<void> printLast() {
-        const auto revision = store_->latestRevision();
-        auto last = store_->list(filter_, options_.page);
+    Result<void> printLast(Store& store) {
+        const auto revision = store.latestRevision();
+        auto last = store.list(filter_, options_.page);
         if (!revision || !last) {
-            store_.reset();
             return fail(revision ? last.error() : revision.error());
         }
         std::reverse(last->executions.begin(), last->executions.end());
@@ -172,11 +163,11 @@ private:
 
     const HistoryOptions& options_;
     const records::Filter filter_;
-    std::unique_ptr<Store> store_;
+    records::KeptStore store_;
     std::int64_t revision_ = -1;
 };
 
-/// Whether whoever read the output has gone: without output nothing else would tell.
+/// Whether the reader of the output has gone: without output nothing else would show it.
 bool isOutputClosed() {
     pollfd output{STDOUT_FILENO, 0, 0};
     return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
@@ -197,7 +188,7 @@ Exit runFollow(const HistoryOptions& options) {
         // A file that nobody has written to yet may come.
         if (!looked && looked.error().code != Errc::not_found &&
             looked.error().code != Errc::resource_unavailable &&
-            looked.error().code != Errc::connection_lost) {
+            looked.error().code != Errc::timeout && looked.error().code != Errc::connection_lost) {
             return report(looked.error());
         }
         if (problem != std::exchange(told, problem) && !problem.empty()) {
@@ -272,6 +263,17 @@ Exit runShow(const HistoryOptions& options) {
     return Exit::success;
 }
 
+Exit runExport(const HistoryOptions& options) {
+    const auto store = openRecords(options.records);
+    const auto count =
+        store ? (*store)->exportTo(options.file) : Result<std::uint64_t>(fail(store.error()));
+    if (!count) {
+        return report(count.error());
+    }
+    fmt::print("{} executions are in {}\n", *count, printable(options.file));
+    return Exit::success;
+}
+
 void addFilter(CLI::App& command, HistoryOptions& options) {
     auto& filter = options.filter;
     command.add_option("--server", filter.server, "Of this server: name or ApplicationUri");
@@ -326,12 +328,14 @@ void addHistory(CLI::App& app, Exit& exit) {
     command->add_flag("--json", options->json, "Print one JSON object per line");
     auto* show = command->add_subcommand("show", "All that is known of one execution");
     show->add_option("ID", options->id, "Its number or its id")->required();
-    command->callback([options, command, &exit] {
-        if (!command->get_subcommands().empty()) {
-            exit = runShow(*options);
-            return;
-        }
-        exit = options->follow ? runFollow(*options) : runList(*options);
+    auto* copy = command->add_subcommand(
+        "export", "Write a copy of all records into a new SQLite file, also while servers record");
+    copy->add_option("FILE", options->file, "The new file")->required();
+    command->callback([options, show, copy, &exit] {
+        exit = show->parsed()    ? runShow(*options)
+               : copy->parsed()  ? runExport(*options)
+               : options->follow ? runFollow(*options)
+                                 : runList(*options);
     });
 }
 

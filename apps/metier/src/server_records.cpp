@@ -3,13 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "metier/recording/packed_json.hpp"
-
 namespace metier::app {
 namespace {
-
-// Up to about 25 MB; ten thousands of executions in a burst, hours of what an arm does.
-constexpr std::size_t kMostWaiting = 100'000;
 
 records::Retention retentionOf(const configuration::Records& config) {
     constexpr double kHoursPerDay = 24.0;
@@ -30,14 +25,11 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
         {.url = config.records.url,
          .server = server,
          .keep = retentionOf(config.records),
-         .to_json = recording::packedJson,
-         .on_health =
-             [&alarm = made->alarm_](const records::HealthReport& report) {
-                 alarm.tell(report.health == records::Health::failing ? ServerAlarm::Kind::begins
-                                                                      : ServerAlarm::Kind::over,
-                            report.text);
-             },
-         .most_waiting = kMostWaiting});
+         .on_health = [&alarm = made->alarm_](const records::HealthReport& report) {
+             alarm.tell(report.health == records::Health::failing ? ServerAlarm::Kind::begins
+                                                                  : ServerAlarm::Kind::over,
+                        report.text);
+         }});
     if (!recorder) {
         return fail(recorder.error());
     }
@@ -61,9 +53,9 @@ void ServerRecords::record(const std::vector<skill::Program*>& programs,
         sampler_.emplace(*device.arm, device.sensor, *recorder_);
     }
     for (auto* program : programs) {
-        programs_.push_back(std::make_unique<recording::ProgramRecorder>(
+        programs_.push_back(std::make_unique<records::ProgramRecorder>(
             *program, *recorder_, sampler_ ? &*sampler_ : nullptr,
-            recording::ProgramRecorder::Place{name_, controller, device.name}));
+            records::ProgramRecorder::Place{name_, controller, device.name}));
     }
 }
 

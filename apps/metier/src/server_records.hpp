@@ -10,8 +10,8 @@
 #include "metier/device/arm.hpp"
 #include "metier/device/force_torque_sensor.hpp"
 #include "metier/opcua/server.hpp"
-#include "metier/recording/path_sampler.hpp"
-#include "metier/recording/program_recorder.hpp"
+#include "metier/records/path_sampler.hpp"
+#include "metier/records/program_recorder.hpp"
 #include "metier/records/recorder.hpp"
 #include "server_alarm.hpp"
 
@@ -57,8 +57,8 @@ private:
     const std::string name_;
     ServerAlarm alarm_;
     std::unique_ptr<records::Recorder> recorder_;
-    std::optional<recording::PathSampler> sampler_;
-    std::vector<std::unique_ptr<recording::ProgramRecorder>> programs_;
+    std::optional<records::PathSampler> sampler_;
+    std::vector<std::unique_ptr<records::ProgramRecorder>> programs_;
 };
 
 }  // namespace metier::app

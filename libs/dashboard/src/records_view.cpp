@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,12 +12,15 @@
 
 #include "live_values.hpp"
 #include "metier/base/text.hpp"
+#include "metier/records/json.hpp"
+#include "metier/records/members.hpp"
 #include "skill_shown.hpp"
 
 namespace metier::dashboard {
 
 using nlohmann::json;
 using records::Execution;
+using records::Member;
 using records::Store;
 
 namespace {
@@ -31,10 +35,29 @@ json timeOrNull(UtcTime time) {
     return time == UtcTime{} ? json() : json(secondsOf(time));
 }
 
-json jsonOf(const records::Transition& one) {
-    return {{"time", secondsOf(one.time)},   {"from", one.from}, {"to", one.to},
-            {"sub_state", one.sub_state},    {"step", one.step}, {"reason", one.reason},
-            {"reason_text", one.reason_text}};
+json valueOf(const Member& member, const std::string& text) {
+    return member.form == records::Form::json ? parsed(text) : json(text);
+}
+json valueOf(const Member& /*member*/, UtcTime time) {
+    return timeOrNull(time);
+}
+template <std::integral T>
+json valueOf(const Member& /*member*/, T number) {
+    return number;
+}
+
+/// An object with the members of a record.
+template <typename Record>
+json objectOf(const Record& record) {
+    auto shown = json::object();
+    records::visitMembers(record, [&shown](const Member& member, const auto& value) {
+        shown[std::string(member.name)] = valueOf(member, value);
+    });
+    return shown;
+}
+
+json jsonOf(const records::Transition& transition) {
+    return objectOf(transition);
 }
 
 json valuesOf(const records::SampleValues& values) {
@@ -132,85 +155,57 @@ Result<std::pair<records::Filter, records::Page>> recordsQuery(const httplib::Re
 }
 
 RecordsView::RecordsView(std::string url, Board& board)
-    : url_(std::move(url)),
+    : recorded_(!url.empty()),
+      store_(std::move(url)),
       board_(board),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
-Result<std::unique_ptr<Store>> RecordsView::open() const {
-    return url_.empty() ? fail(Errc::not_found, "nothing is recorded") : Store::open(url_);
-}
-
 json RecordsView::recordJson(const Execution& execution) const {
     const auto arm = board_.armOf(execution.server, execution.controller, execution.skill);
-    return {{"number", execution.number},
-            {"id", execution.id},
-            {"server", execution.server},
-            {"server_name", execution.server_name},
-            {"skill", execution.skill},
-            {"controller", execution.controller},
-            {"device", execution.device},
-            {"arm", arm.empty() ? json() : json(arm)},
-            {"parent", execution.parent},
-            {"parent_server", execution.parent_server},
-            {"session", execution.session},
-            {"client_name", execution.client_name},
-            {"user", execution.user},
-            {"thumbprint", execution.thumbprint},
-            {"parameters", parsed(execution.parameters)},
-            {"check", parsed(execution.check)},
-            {"started", secondsOf(execution.started)},
-            {"ended", timeOrNull(execution.ended)},
-            {"state", execution.state},
-            {"reason", execution.reason},
-            {"reason_text", execution.reason_text},
-            {"result", parsed(execution.result)},
-            {"missed_cycles", execution.missed_cycles}};
+    auto shown = objectOf(execution);
+    shown["arm"] = arm.empty() ? json() : json(arm);
+    return shown;
 }
 
-Reply RecordsView::list(const httplib::Request& request) const {
+Reply RecordsView::list(const httplib::Request& request) {
     const auto query = recordsQuery(request);
     if (!query) {
         return errorReply(query.error());
     }
-    auto store = open();
-    if (!store && store.error().code == Errc::not_found) {
-        return {200, {{"records", json::array()}, {"more", false}}};  // nothing yet
-    }
-    const auto listing = store ? (*store)->list(query->first, query->second)
-                               : Result<records::Listing>(fail(store.error()));
-    if (!listing) {
+    const auto listing =
+        recorded_
+            ? store_.use([&](Store& store) { return store.list(query->first, query->second); })
+            : Result<records::Listing>(fail(Errc::not_found, "nothing is recorded"));
+    if (!listing && listing.error().code != Errc::not_found) {
         return errorReply(listing.error());
     }
     auto list = json::array();
-    for (const auto& execution : listing->executions) {
+    for (const auto& execution : listing ? listing->executions : std::vector<Execution>()) {
         list.push_back(recordJson(execution));
     }
-    return {200, {{"records", std::move(list)}, {"more", listing->more}}};
+    return {200, {{"records", std::move(list)}, {"more", listing && listing->more}}};
 }
 
-Reply RecordsView::one(std::int64_t number) const {
-    auto store = open();
-    const auto execution =
-        store ? (*store)->find(std::to_string(number)) : Result<Execution>(fail(store.error()));
-    if (!execution) {
-        return errorReply(execution.error());
+Result<json> RecordsView::detailsOf(Store& store, std::int64_t number) const {
+    const auto details = records::detailsOf(store, number);
+    if (!details) {
+        return fail(details.error());
     }
-    const auto transitions = (*store)->transitions(number);
-    const auto children = (*store)->children(number);
-    const auto path = (*store)->path(number);
-    if (!transitions || !children || !path) {
-        return errorReply(!transitions ? transitions.error()
-                          : !children  ? children.error()
-                                       : path.error());
-    }
-    auto shown = recordJson(*execution);
-    shown["transitions"] = listOf(*transitions);
-    shown["path"] = pathJson(*path);
+    auto shown = recordJson(details->execution);
+    shown["transitions"] = listOf(details->transitions);
+    shown["path"] = pathJson(details->path);
     shown["children"] = json::array();
-    for (const auto& child : *children) {
+    for (const auto& child : details->children) {
         shown["children"].push_back(recordJson(child));
     }
-    return {200, std::move(shown)};
+    return shown;
+}
+
+Reply RecordsView::one(std::int64_t number) {
+    const auto shown = recorded_
+                           ? store_.use([&](Store& store) { return detailsOf(store, number); })
+                           : Result<json>(fail(Errc::not_found, "nothing is recorded"));
+    return shown ? Reply{200, *shown} : errorReply(shown.error());
 }
 
 void RecordsView::show(bool shown) {
@@ -221,21 +216,15 @@ void RecordsView::show(bool shown) {
     changed_.notify_all();
 }
 
-void RecordsView::look(std::unique_ptr<Store>& store, std::int64_t& revision) const {
-    if (!store) {
-        auto opened = open();
-        const auto latest =
-            opened ? (*opened)->latestRevision() : Result<std::int64_t>(fail(opened.error()));
-        if (latest) {
-            store = std::move(*opened);
-            revision = *latest;
-        }
-        return;
-    }
-    const auto changes = store->changes(revision);
+void RecordsView::look(std::optional<std::int64_t>& revision) {
+    const auto changes = store_.use([&](Store& store) -> Result<records::Changes> {
+        return revision ? store.changes(*revision)
+                        : store.latestRevision().map([](std::int64_t latest) {
+                              return records::Changes{{}, latest};
+                          });
+    });
     if (!changes) {
-        store.reset();  // opened again next time
-        return;
+        return;  // looked for again next time
     }
     revision = changes->revision;
     for (const auto& execution : changes->executions) {
@@ -245,17 +234,16 @@ void RecordsView::look(std::unique_ptr<Store>& store, std::int64_t& revision) co
 
 void RecordsView::work(const std::stop_token& stop) {
     constexpr std::chrono::milliseconds kBetween{500};
-    std::unique_ptr<Store> store;
-    std::int64_t revision = 0;
+    std::optional<std::int64_t> revision;
     std::unique_lock lock(mutex_);
-    while (!stop.stop_requested() && !url_.empty()) {
+    while (!stop.stop_requested() && recorded_) {
         if (!shown_) {
-            store.reset();
+            revision.reset();
             changed_.wait(lock, stop, [this] { return shown_; });
             continue;
         }
         lock.unlock();
-        look(store, revision);
+        look(revision);
         lock.lock();
         changed_.wait_for(lock, stop, kBetween, [this] { return !shown_; });
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -11,13 +12,14 @@
 #include "board.hpp"
 #include "metier/http/httplib.hpp"
 #include "metier/records/execution.hpp"
+#include "metier/records/kept_store.hpp"
 #include "metier/records/store.hpp"
 #include "reply.hpp"
 
 namespace metier::dashboard {
 
-/// What servers have recorded, as the page shows it; has the board told of what is new while
-/// somebody looks.
+/// Records of servers as the page shows them; notes new ones at the board while somebody looks. The
+/// store is opened once and kept.
 ///
 /// Threading: any; a thread of its own looks for what is new, twice a second.
 class RecordsView {
@@ -27,20 +29,21 @@ public:
     RecordsView(std::string url, Board& board);
 
     /// GET /api/records. Waits for the disk.
-    Reply list(const httplib::Request& request) const;
+    Reply list(const httplib::Request& request);
     /// GET /api/records/NUMBER. Waits for the disk.
-    Reply one(std::int64_t number) const;
+    Reply one(std::int64_t number);
     /// Whether somebody looks.
     void show(bool shown);
 
 private:
-    Result<std::unique_ptr<records::Store>> open() const;
     nlohmann::json recordJson(const records::Execution& execution) const;
+    Result<nlohmann::json> detailsOf(records::Store& store, std::int64_t number) const;
     void work(const std::stop_token& stop);
-    /// Looks for changes, in a store that is opened when it is there.
-    void look(std::unique_ptr<records::Store>& store, std::int64_t& revision) const;
+    /// Looks for changes. \param revision of the look before; nothing before the first
+    void look(std::optional<std::int64_t>& revision);
 
-    const std::string url_;
+    const bool recorded_;
+    records::KeptStore store_;
     Board& board_;
     std::mutex mutex_;
     std::condition_variable_any changed_;
@@ -48,7 +51,7 @@ private:
     std::jthread thread_;  // last: it uses everything above
 };
 
-/// What a request asks for. Errors: invalid_argument, naming what is wrong.
+/// The records that a request asks for. Errors: invalid_argument, naming what is wrong.
 Result<std::pair<records::Filter, records::Page>> recordsQuery(const httplib::Request& request);
 
 }  // namespace metier::dashboard

@@ -11,6 +11,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/dashboard/cell.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "metier/records/recorder.hpp"
 #include "records_view.hpp"
 #include "skill_shown.hpp"
 #include "transitions.hpp"
@@ -308,6 +309,72 @@ TEST(RecordsQuery, RefusesWhatIsNoNumber) {
         ASSERT_FALSE(query) << name;
         EXPECT_THAT(query.error().message, HasSubstr(name));
     }
+}
+
+/// Records an execution that is over.
+void recordMove(const std::string& file, const std::string& id) {
+    records::Recorder::Options options;
+    options.url = file;
+    options.server = "urn:test:iiwa";
+    const auto recorder = records::Recorder::create(std::move(options)).value();
+    records::Execution execution;
+    execution.id = id;
+    execution.parameters = R"({"MaxVelocity":[1.0]})";
+    execution.started = kNoon;
+    const auto key = recorder->begin(execution);
+    recorder->transition(key, {.time = kNoon, .from = "Ready", .to = "Running"});
+    recorder->end(key, {.time = kNoon + 1s, .state = "Ready", .reason = "Finished"});
+    ASSERT_TRUE(recorder->flush(std::chrono::steady_clock::now() + 60s));
+}
+
+TEST(RecordsViewTest, ShowsAStoreThatComesGoesAndComesAgain) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "records_view";
+    std::filesystem::remove_all(folder);
+    const auto file = (folder / "records.db").string();
+    const SystemClock clock;
+    Board board({{"name", "test"}}, clock);
+    RecordsView view(file, board);
+    const auto ids = [&view] {
+        std::vector<std::string> all;
+        const auto reply = view.list(httplib::Request());
+        for (const auto& record : reply.body.at("records")) {
+            all.push_back(record.at("id"));
+        }
+        return all;
+    };
+    EXPECT_THAT(ids(), IsEmpty());
+    recordMove(file, "first");
+    EXPECT_THAT(ids(), ElementsAre("first"));
+    recordMove(file, "second");
+    EXPECT_THAT(ids(), ElementsAre("second", "first"));
+    std::filesystem::remove_all(folder);
+    EXPECT_THAT(ids(), IsEmpty());
+    recordMove(file, "third");
+    EXPECT_THAT(ids(), ElementsAre("third"));
+}
+
+TEST(RecordsViewTest, ShowsAllOfOne) {
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "records_view_one";
+    std::filesystem::remove_all(folder);
+    const auto file = (folder / "records.db").string();
+    recordMove(file, "move");
+    const SystemClock clock;
+    Board board({{"name", "test"}}, clock);
+    RecordsView view(file, board);
+    const auto shown = view.one(1);
+    ASSERT_EQ(shown.status, 200);
+    const auto& record = shown.body;
+    EXPECT_EQ(record.at("id"), "move");
+    EXPECT_EQ(record.at("number"), 1);
+    EXPECT_EQ(record.at("parameters").at("MaxVelocity").at(0), 1.0);
+    EXPECT_TRUE(record.at("check").is_null());
+    EXPECT_EQ(record.at("ended").get<double>() - record.at("started").get<double>(), 1.0);
+    EXPECT_EQ(record.at("missed_cycles"), 0);
+    EXPECT_TRUE(record.at("arm").is_null());
+    EXPECT_EQ(record.at("transitions").at(0).at("to"), "Running");
+    EXPECT_THAT(record.at("path"), IsEmpty());
+    EXPECT_THAT(record.at("children"), IsEmpty());
+    EXPECT_EQ(view.one(2).status, 404);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "postgres_database.hpp"
 #include "schema.hpp"
@@ -45,12 +46,32 @@ Bytes Row::bytes(std::size_t column) const {
     return value == nullptr ? Bytes() : *value;
 }
 
-Result<Rows> Database::query(std::string_view sql, std::span<const Cell> parameters) {
+Result<Rows> Database::query(std::string_view sql, const std::vector<Cell>& parameters) {
     std::vector<Argument> arguments;
     for (const auto& cell : parameters) {
         std::visit([&](const auto& value) { arguments.emplace_back(value); }, cell);
     }
     return execute(sql, arguments);
+}
+
+Result<void> Database::run(std::string_view sql, const std::vector<Cell>& parameters) {
+    return query(sql, parameters).map([](const Rows& /*rows*/) {});
+}
+
+Result<std::vector<std::int64_t>> Database::numbers(std::string_view sql,
+                                                    const std::vector<Cell>& parameters) {
+    return query(sql, parameters).map([](const Rows& rows) {
+        std::vector<std::int64_t> numbers;
+        std::transform(rows.begin(), rows.end(), std::back_inserter(numbers),
+                       [](const Row& row) { return row.integer(0); });
+        return numbers;
+    });
+}
+
+Result<std::int64_t> Database::number(std::string_view sql, const std::vector<Cell>& parameters) {
+    return numbers(sql, parameters).map([](const std::vector<std::int64_t>& numbers) {
+        return numbers.empty() ? 0 : numbers.front();
+    });
 }
 
 bool hasPassword(std::string_view url) {

@@ -3,7 +3,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "execution_json.hpp"
+#include <concepts>
+
+#include "json_text.hpp"
+#include "metier/records/members.hpp"
 
 namespace metier::records {
 namespace {
@@ -14,14 +17,38 @@ ordered_json timeOrNull(UtcTime time) {
     return time == UtcTime{} ? ordered_json() : ordered_json(timeText(time));
 }
 
-ordered_json jsonOf(const Transition& t) {
-    return {{"time", timeText(t.time)},    {"from", t.from}, {"to", t.to},
-            {"sub_state", t.sub_state},    {"step", t.step}, {"reason", t.reason},
-            {"reason_text", t.reason_text}};
+ordered_json valueOf(const Member& member, const std::string& text) {
+    return member.form == Form::json ? parsed(text) : ordered_json(text);
+}
+ordered_json valueOf(const Member& /*member*/, UtcTime time) {
+    return timeOrNull(time);
+}
+template <std::integral T>
+ordered_json valueOf(const Member& /*member*/, T number) {
+    return number;
 }
 
-ordered_json jsonOf(const Intermediate& i) {
-    return {{"time", timeText(i.time)}, {"value", parsed(i.value)}};
+ordered_json durationOf(const Execution& execution) {
+    const std::chrono::duration<double> duration = execution.ended - execution.started;
+    return execution.isOver() ? ordered_json(duration.count()) : ordered_json();
+}
+
+/// An object with the members.
+template <typename Record>
+ordered_json objectOf(const Record& record) {
+    auto json = ordered_json::object();
+    visitMembers(record, [&json](const Member& member, const auto& value) {
+        json[std::string(member.name)] = valueOf(member, value);
+    });
+    return json;
+}
+
+ordered_json jsonOf(const Transition& transition) {
+    return objectOf(transition);
+}
+
+ordered_json jsonOf(const Intermediate& intermediate) {
+    return objectOf(intermediate);
 }
 
 ordered_json jsonOf(const PathSample& sample) {
@@ -69,33 +96,14 @@ std::string dump(const ordered_json& json) {
     return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-ordered_json jsonOf(const Execution& e) {
-    ordered_json json{{"number", e.number},
-                      {"id", e.id},
-                      {"server", e.server},
-                      {"server_name", e.server_name},
-                      {"skill", e.skill},
-                      {"controller", e.controller},
-                      {"device", e.device},
-                      {"parent", e.parent},
-                      {"parent_server", e.parent_server},
-                      {"session", e.session},
-                      {"client_name", e.client_name},
-                      {"user", e.user},
-                      {"thumbprint", e.thumbprint},
-                      {"parameters", parsed(e.parameters)},
-                      {"check", parsed(e.check)},
-                      {"started", timeOrNull(e.started)},
-                      {"ended", timeOrNull(e.ended)},
-                      {"duration", nullptr},
-                      {"state", e.state},
-                      {"reason", e.reason},
-                      {"reason_text", e.reason_text},
-                      {"result", parsed(e.result)},
-                      {"missed_cycles", e.missed_cycles}};
-    if (e.isOver()) {
-        json["duration"] = std::chrono::duration<double>(e.ended - e.started).count();
-    }
+ordered_json jsonOf(const Execution& execution) {
+    auto json = ordered_json::object();
+    visitMembers(execution, [&](const Member& member, const auto& value) {
+        json[std::string(member.name)] = valueOf(member, value);
+        if (member.name == "ended") {
+            json["duration"] = durationOf(execution);
+        }
+    });
     return json;
 }
 

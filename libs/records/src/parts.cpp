@@ -1,65 +1,69 @@
 #include "parts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
-#include <initializer_list>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
+
+#include "metier/records/members.hpp"
 
 namespace metier::records {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kTransitionFields = 8;
-constexpr std::size_t kIntermediateFields = 3;
-/// Of a sample: the three counts and the time [byte].
+/// Size of the begin of a sample, the three counts and the time [byte].
 constexpr std::size_t kHead = 3 + 8;
 
-/// With quotes. Most texts are names, which are written as they are.
-void putText(std::string_view text, std::string& out) {
-    const bool plain = std::all_of(text.begin(), text.end(), [](char c) {
-        return c >= ' ' && c <= '~' && c != '"' && c != '\\';
+json stored(UtcTime time) {
+    return toMicroseconds(time);
+}
+json stored(const std::string& text) {
+    return text;
+}
+
+bool read(const json& field, UtcTime& time) {
+    time = field.is_number_integer() ? fromMicroseconds(field.get<std::int64_t>()) : UtcTime{};
+    return field.is_number_integer();
+}
+bool read(const json& field, std::string& text) {
+    text = field.is_string() ? field.get<std::string>() : std::string();
+    return field.is_string();
+}
+
+/// An array of the kind and the members.
+template <typename T>
+json fieldsOf(std::string_view kind, const T& event) {
+    auto fields = json::array({kind});
+    visitMembers(event, [&fields](const Member& /*member*/, const auto& value) {
+        fields.push_back(stored(value));
     });
-    if (plain) {
-        out.append(1, '"').append(text).append(1, '"');
-    } else {
-        out += json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+    return fields;
+}
+
+json fieldsOf(const Event& event) {
+    const auto* transition = std::get_if<Transition>(&event);
+    return transition != nullptr ? fieldsOf("t", *transition)
+                                 : fieldsOf("i", std::get<Intermediate>(event));
+}
+
+/// Appends the event if the fields are one of that kind.
+template <typename T>
+void decode(std::string_view kind, const json& fields, std::vector<Event>& events) {
+    if (!fields.is_array() || fields.empty() || fields[0] != kind) {
+        return;
     }
-}
-
-/// An array of the kind, the time and the texts.
-void putEvent(char kind, UtcTime time, std::initializer_list<std::string_view> texts,
-              std::string& out) {
-    fmt::format_to(std::back_inserter(out), "[\"{}\",{}", kind, toMicroseconds(time));
-    for (const auto text : texts) {
-        out += ',';
-        putText(text, out);
+    T event;
+    std::size_t next = 1;
+    bool whole = true;
+    visitMembers(event, [&](const Member& /*member*/, auto& value) {
+        whole = whole && next < fields.size() && read(fields[next], value);
+        ++next;
+    });
+    if (whole && next == fields.size()) {
+        events.emplace_back(std::move(event));
     }
-    out += ']';
-}
-
-void put(const Transition& t, std::string& out) {
-    putEvent('t', t.time, {t.from, t.to, t.sub_state, t.step, t.reason, t.reason_text}, out);
-}
-
-void put(const Intermediate& i, std::string& out) {
-    putEvent('i', i.time, {i.value}, out);
-}
-
-/// Whether it has that many fields: the kind, a time, and texts.
-bool isEvent(const json& fields, std::string_view kind, std::size_t count) {
-    if (!fields.is_array() || fields.size() != count || fields[0] != kind ||
-        !fields[1].is_number_integer()) {
-        return false;
-    }
-    return std::all_of(fields.begin() + 2, fields.end(),
-                       [](const json& field) { return field.is_string(); });
 }
 
 void putDouble(double value, Bytes& bytes) {
@@ -96,16 +100,11 @@ UtcTime fromMicroseconds(std::int64_t time) {
 }
 
 std::string encodeEvents(const std::vector<Event>& events) {
-    if (events.empty()) {
-        return {};
-    }
-    std::string text;
-    char before = '[';
+    auto list = json::array();
     for (const auto& event : events) {
-        text += std::exchange(before, ',');
-        std::visit([&](const auto& one) { put(one, text); }, event);
+        list.push_back(fieldsOf(event));
     }
-    return text + ']';
+    return list.empty() ? std::string() : list.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 void decodeEvents(std::string_view text, std::vector<Event>& events) {
@@ -113,13 +112,9 @@ void decodeEvents(std::string_view text, std::vector<Event>& events) {
     if (!list.is_array()) {
         return;
     }
-    for (const auto& f : list) {
-        if (isEvent(f, "t", kTransitionFields)) {
-            events.emplace_back(Transition{fromMicroseconds(f[1].get<std::int64_t>()), f[2], f[3],
-                                           f[4], f[5], f[6], f[7]});
-        } else if (isEvent(f, "i", kIntermediateFields)) {
-            events.emplace_back(Intermediate{fromMicroseconds(f[1].get<std::int64_t>()), f[2]});
-        }
+    for (const auto& fields : list) {
+        decode<Transition>("t", fields, events);
+        decode<Intermediate>("i", fields, events);
     }
 }
 

@@ -16,14 +16,15 @@ namespace metier::records {
 /// Parts that an execution can have; the key of a part is number * kMostParts + count.
 inline constexpr std::int64_t kMostParts = 1'048'576;
 
-/// What is told of an execution while it is under way.
+/// Event of an execution while it is under way.
 using Event = std::variant<Transition, Intermediate>;
 
 /// Microseconds since 1970-01-01 UTC, as all tables have times.
 std::int64_t toMicroseconds(UtcTime time);
 UtcTime fromMicroseconds(std::int64_t time);
 
-/// Events as JSON: ["t", time, from, to, sub-state, step, reason, text], ["i", time, value].
+/// Events as JSON, the members of each as visitMembers() lists them: ["t", time, from, to,
+/// sub-state, step, reason, text], ["i", time, value].
 std::string encodeEvents(const std::vector<Event>& events);
 /// Appends what `text` holds; what is no event is passed over.
 void decodeEvents(std::string_view text, std::vector<Event>& events);

@@ -12,7 +12,15 @@
 namespace metier::records {
 namespace {
 
-constexpr Dialect kDialect{.number_key = "BIGSERIAL PRIMARY KEY", .blob = "BYTEA"};
+constexpr Dialect kDialect{
+    .number_key = "BIGSERIAL PRIMARY KEY",
+    .blob = "BYTEA",
+    .tables = "SELECT tablename::text FROM pg_tables WHERE schemaname = 'metier'",
+    // Only rows that are there: a table keeps the space of removed ones for new ones.
+    .bytes =
+        "SELECT (SELECT coalesce(sum(pg_column_size(e.*)), 0) FROM executions e)::bigint + "
+        "(SELECT coalesce(sum(pg_column_size(p.*)), 0) FROM parts p)::bigint",
+    .shrink = ""};  // autovacuum does
 constexpr std::size_t kMostStatements = 64;
 /// For one statement. A database that hangs does not keep its own deadline, so that the connection
 /// is cut a little later.
@@ -23,10 +31,10 @@ constexpr std::chrono::seconds kGrace{5};
 constexpr std::string_view kLock = "SELECT pg_advisory_xact_lock(5641903277)";
 /// As well; the second number is a server's.
 constexpr int kServerLocks = 564190;
-/// Of a column, as pg_type has them.
+/// Types of columns, as pg_type has them.
 enum TypeOid : unsigned { type_bytea = 17, type_int8 = 20, type_int2 = 21, type_int4 = 23 };
 
-/// What a connection waits for at most, unless its URL says otherwise: the network may hang.
+/// Longest waits of a connection, unless its URL says otherwise: the network may hang.
 constexpr std::array kDeadlines{std::pair{"connect_timeout", "5"},
                                 std::pair{"tcp_user_timeout", "10000"},
                                 std::pair{"keepalives_idle", "10"}};
@@ -123,7 +131,7 @@ std::string firstLine(const std::exception& error) {
 
 }  // namespace
 
-/// What libpqxx throws, as an error.
+/// Turns what libpqxx throws into an error.
 template <typename Work>
 auto PostgresDatabase::guarded(Work work) -> decltype(work()) {
     const auto armed = deadline_.arm(connection_.sock(), longest_call_ + kGrace);
@@ -198,13 +206,6 @@ Result<Rows> PostgresDatabase::execute(std::string_view sql, std::span<const Arg
     });
 }
 
-Result<std::int64_t> PostgresDatabase::insert(std::string_view sql, std::string_view key,
-                                              std::span<const Argument> parameters) {
-    const auto rows = execute(fmt::format("{} RETURNING {}", sql, key), parameters);
-    return rows ? Result<std::int64_t>(rows->front().integer(0))
-                : Result<std::int64_t>(fail(rows.error()));
-}
-
 Result<void> PostgresDatabase::script(const std::string& sql) {
     return guarded([&]() -> Result<void> {
         if (transaction_ != nullptr) {
@@ -224,6 +225,14 @@ Result<void> PostgresDatabase::begin() {
     });
 }
 
+Result<void> PostgresDatabase::beginReading() {
+    using Snapshot = pqxx::transaction<pqxx::repeatable_read, pqxx::read_only>;
+    return guarded([&]() -> Result<void> {
+        transaction_ = std::make_unique<Snapshot>(connection_);
+        return {};
+    });
+}
+
 Result<void> PostgresDatabase::commit() {
     return guarded([&]() -> Result<void> {
         transaction_->commit();
@@ -237,42 +246,19 @@ void PostgresDatabase::rollBack() noexcept {
 }
 
 Result<Presence> PostgresDatabase::attend(const std::string& server) {
-    const auto held = query(fmt::format("SELECT pg_advisory_lock_shared({}, {})", kServerLocks,
-                                        static_cast<std::int32_t>(stableHash(server))),
-                            {});
-    return held ? Result<Presence>(Presence()) : Result<Presence>(fail(held.error()));
+    const auto hash = static_cast<std::int32_t>(stableHash(server));
+    return run(fmt::format("SELECT pg_advisory_lock_shared({}, {})", kServerLocks, hash)).map([] {
+        return Presence();
+    });
 }
 
 Result<bool> PostgresDatabase::isAttendedByOthers(const std::string& server) {
     const auto hash = static_cast<std::int32_t>(stableHash(server));
     // A lock that excludes all others is had by whoever is alone, and given back at once.
-    const auto alone = query(fmt::format("SELECT CASE WHEN pg_try_advisory_lock({0}, {1}) THEN "
-                                         "pg_advisory_unlock({0}, {1}) ELSE false END::int",
-                                         kServerLocks, hash),
-                             {});
-    return alone ? Result<bool>(alone->front().integer(0) == 0) : Result<bool>(fail(alone.error()));
-}
-
-Result<bool> PostgresDatabase::hasTable(std::string_view name) {
-    const auto rows =
-        query("SELECT 1 FROM pg_tables WHERE schemaname = 'metier' AND tablename = $1",
-              std::array<Cell, 1>{std::string(name)});
-    return rows ? Result<bool>(!rows->empty()) : Result<bool>(fail(rows.error()));
-}
-
-Result<bool> PostgresDatabase::isEmpty() {
-    const auto rows = query("SELECT 1 FROM pg_tables WHERE schemaname = 'metier' LIMIT 1", {});
-    return rows ? Result<bool>(rows->empty()) : Result<bool>(fail(rows.error()));
-}
-
-/// Of the rows that are there: a table keeps the space of removed ones for new ones.
-Result<std::uint64_t> PostgresDatabase::bytes() {
-    const auto rows = query(
-        "SELECT (SELECT coalesce(sum(pg_column_size(e.*)), 0) FROM executions e)::bigint + "
-        "(SELECT coalesce(sum(pg_column_size(p.*)), 0) FROM parts p)::bigint",
-        {});
-    return rows ? Result<std::uint64_t>(static_cast<std::uint64_t>(rows->front().integer(0)))
-                : Result<std::uint64_t>(fail(rows.error()));
+    return number(fmt::format("SELECT CASE WHEN pg_try_advisory_lock({0}, {1}) THEN "
+                              "pg_advisory_unlock({0}, {1}) ELSE false END::int",
+                              kServerLocks, hash))
+        .map([](std::int64_t alone) { return alone == 0; });
 }
 
 }  // namespace metier::records

@@ -21,18 +21,14 @@ public:
 
     const Dialect& dialect() const noexcept override;
     Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) override;
-    Result<std::int64_t> insert(std::string_view sql, std::string_view key,
-                                std::span<const Argument> parameters) override;
     Result<void> script(const std::string& sql) override;
     Result<void> begin() override;
+    Result<void> beginReading() override;
     Result<void> commit() override;
     void rollBack() noexcept override;
     Result<Presence> attend(const std::string& server) override;
     Result<bool> isAttendedByOthers(const std::string& server) override;
-    Result<bool> hasTable(std::string_view name) override;
-    Result<bool> isEmpty() override;
-    Result<std::uint64_t> bytes() override;
-    Result<void> shrink() override { return {}; }  // autovacuum does
+    bool isCurrent() override { return true; }  // a connection that breaks says so
     const std::string& name() const noexcept override { return name_; }
 
 private:
@@ -45,7 +41,7 @@ private:
     std::chrono::seconds longest_call_{0};
     SocketDeadline deadline_;
     pqxx::connection connection_;
-    std::unique_ptr<pqxx::work> transaction_;                     // ends before the connection
+    std::unique_ptr<pqxx::dbtransaction> transaction_;            // ends before the connection
     std::map<std::string, std::string, std::less<>> statements_;  // names by their SQL
     std::uint64_t made_ = 0;                                      // statements
 };

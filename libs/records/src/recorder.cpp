@@ -1,17 +1,384 @@
 #include "metier/records/recorder.hpp"
 
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <type_traits>
 #include <utility>
 
-#include "recorder_threads.hpp"
+#include "lost.hpp"
+#include "messages.hpp"
+#include "retention.hpp"
+#include "writer.hpp"
 
 namespace metier::records {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Time for which messages are gathered before they are written together.
+constexpr auto kGather = 250ms;
+constexpr auto kRetry = 1s;
+constexpr auto kTrimEvery = 1h;
+constexpr auto kWatchEvery = 250ms;
+
+SteadyTime now() {
+    return std::chrono::steady_clock::now();
+}
+
+std::uint64_t sumOf(const Dropped& dropped) {
+    return dropped.executions + dropped.events + dropped.samples;
+}
+
+/// Lets robots come first where every core is busy: the writer has its share of the time, and takes
+/// it from nobody who runs.
+void yieldToOthers() {
+    // For this thread alone. Should the system refuse it, the writer is one thread among others.
+    const sched_param no_priority{};
+    static_cast<void>(sched_setscheduler(0, SCHED_BATCH, &no_priority));
+}
+
+std::string lossText(const Dropped& d) {
+    return fmt::format("{} executions, {} transitions and results and {} samples of paths",
+                       d.executions, d.events, d.samples);
+}
+
+}  // namespace
+
+/// Queue of a recorder, the thread that writes, and the thread that reports how that goes, also
+/// while the first one hangs in a call to the disk.
+class Recorder::Impl {
+public:
+    explicit Impl(Options options);
+    ~Impl();
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    Key begin(Execution execution);
+    template <typename Event>
+    void put(Key key, Event event);
+    void sample(const KeyedSample& sample);
+    bool flush(SteadyTime deadline);
+    Status status() const;
+
+private:
+    bool isFull(std::size_t more) const;
+    void append(Message message, std::size_t size);
+    void write(const std::stop_token& stop);
+    bool waitForWork(const std::stop_token& stop);
+    Result<void> writeRound();
+    void takeWaiting();
+    Result<void> openStore();
+    Result<void> trim();
+    Result<void> trimPart();
+    void finishRound(const Result<void>& done);
+    bool isIdle() const;
+
+    void watch(const std::stop_token& stop);
+    bool hangs() const;
+    std::optional<HealthReport> news();
+
+    const Options options_;
+
+    mutable std::mutex mutex_;  // for what follows, until the line
+    std::condition_variable_any changed_;
+    Batch waiting_;
+    std::size_t taken_ = 0;        // messages that the writer has and are not written yet
+    std::size_t taken_bytes_ = 0;  // the same
+    Key newest_ = 0;
+    Dropped dropped_;
+    std::uint64_t asked_ = 0;     // flushes
+    std::uint64_t answered_ = 0;  // flushes
+    std::uint64_t written_ = 0;
+    std::optional<SteadyTime> unwritten_since_;  // begin of the first round since one went well
+    std::string error_;  // of the last round; empty: it went well, or others were in the way
+    Health reported_ = Health::writing;
+    std::uint64_t reported_loss_ = 0;
+    // ---- used by the writer's thread alone
+    std::unique_ptr<Database> database_;
+    Presence presence_;
+    bool opened_ = false;  // once
+    Writer writer_;
+    std::uint64_t asked_then_ = 0;  // flushes that the taken batch answers
+    std::optional<RetentionRun> trimming_;
+    SteadyTime next_trim_{};
+    // ----
+    std::jthread watcher_;
+    std::jthread thread_;
+};
+
+Recorder::Impl::Impl(Options options) : options_(std::move(options)), writer_(options_.server) {
+    watcher_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
+    thread_ = std::jthread([this](const std::stop_token& stop) { write(stop); });
+}
+
+Recorder::Impl::~Impl() {
+    thread_.request_stop();
+    thread_ = {};
+    watcher_.request_stop();
+    watcher_ = {};
+}
+
+Recorder::Key Recorder::Impl::begin(Execution execution) {
+    Message message{.content = std::make_unique<Execution>(std::move(execution))};
+    const auto size = sizeOf(message);
+    const std::lock_guard lock(mutex_);
+    if (isFull(size)) {
+        ++dropped_.executions;
+        return 0;
+    }
+    message.key = ++newest_;
+    append(std::move(message), size);
+    return newest_;
+}
+
+template <typename Event>
+void Recorder::Impl::put(Key key, Event event) {
+    if (key == 0) {
+        return;
+    }
+    Message message{key, std::move(event)};
+    const auto size = sizeOf(message);
+    // An execution ends once, so that beyond the queue's size there are never more ends than began.
+    const bool ends = std::is_same_v<Event, Outcome>;
+    const std::lock_guard lock(mutex_);
+    if (!ends && isFull(size)) {
+        ++dropped_.events;
+    } else {
+        append(std::move(message), size);
+    }
+}
+
+void Recorder::Impl::sample(const KeyedSample& sample) {
+    if (sample.key == 0) {
+        return;
+    }
+    const std::lock_guard lock(mutex_);
+    if (waiting_.isEmpty()) {
+        changed_.notify_all();
+    }
+    if (waiting_.samples.size() >= options_.most_waiting_samples) {
+        waiting_.samples.pop_front();
+        ++dropped_.samples;
+    }
+    waiting_.samples.push_back(sample);
+}
+
+/// With the lock.
+bool Recorder::Impl::isFull(std::size_t more) const {
+    return waiting_.bytes + taken_bytes_ + more > options_.most_waiting;
+}
+
+/// With the lock. Wakes the writer only when it has something to wait for no longer, since waking a
+/// thread costs more than all else here.
+void Recorder::Impl::append(Message message, std::size_t size) {
+    const auto many = options_.most_waiting / 2;
+    const bool was_many = waiting_.bytes > many;
+    if (waiting_.isEmpty() || (!was_many && waiting_.bytes + size > many)) {
+        changed_.notify_all();
+    }
+    waiting_.bytes += size;
+    waiting_.messages.push_back(std::move(message));
+}
+
+bool Recorder::Impl::flush(SteadyTime deadline) {
+    std::unique_lock lock(mutex_);
+    const auto ticket = ++asked_;
+    changed_.notify_all();
+    return changed_.wait_until(lock, deadline, [&] { return answered_ >= ticket; });
+}
+
+Recorder::Status Recorder::Impl::status() const {
+    const std::lock_guard lock(mutex_);
+    return {.health = reported_,
+            .waiting = waiting_.messages.size() + taken_,
+            .waiting_samples = waiting_.samples.size(),
+            .written = written_,
+            .dropped = dropped_};
+}
+
+void Recorder::Impl::write(const std::stop_token& stop) {
+    yieldToOthers();
+    while (true) {
+        const bool go_on = waitForWork(stop);
+        const auto done = writeRound();
+        finishRound(done);
+        if (!go_on && (!done || isIdle())) {
+            return;
+        }
+        if (!done) {
+            std::unique_lock lock(mutex_);
+            changed_.wait_for(lock, stop, kRetry, [] { return false; });
+        }
+    }
+}
+
+/// False if nothing will come any more: all is written.
+bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    const auto asked = [this] { return asked_ > answered_; };
+    if (database_ != nullptr && !trimming_ && !writer_.hasChanges()) {
+        changed_.wait_until(lock, stop, next_trim_, [&] { return !waiting_.isEmpty() || asked(); });
+    }
+    if (database_ != nullptr && !trimming_) {
+        changed_.wait_for(lock, stop, kGather,
+                          [&] { return asked() || waiting_.bytes > options_.most_waiting / 2; });
+    }
+    unwritten_since_ = unwritten_since_.value_or(now());
+    return !stop.stop_requested();
+}
+
+Result<void> Recorder::Impl::writeRound() {
+    auto done = database_ == nullptr ? openStore() : Result<void>();
+    // While a batch could not be written no more is taken: the queue is bounded.
+    if (done && !writer_.hasChanges()) {
+        takeWaiting();
+    }
+    if (done) {
+        done = writer_.write(*database_);
+    }
+    if (done) {
+        done = trim();
+    }
+    if (!done && done.error().code != Errc::timeout) {
+        database_.reset();  // after a timeout it is as good as before, and shows that this is there
+        trimming_.reset();
+    }
+    return done;
+}
+
+void Recorder::Impl::takeWaiting() {
+    Batch batch;
+    {
+        const std::lock_guard lock(mutex_);
+        std::swap(batch, waiting_);
+        taken_ = batch.messages.size();
+        taken_bytes_ = batch.bytes;
+        asked_then_ = asked_;
+    }
+    const auto lost = writer_.take(std::move(batch));
+    const std::lock_guard lock(mutex_);
+    dropped_ += lost;
+}
+
+Result<void> Recorder::Impl::openStore() {
+    auto opened = openDatabase(options_.url, Store::Access::write);
+    if (!opened) {
+        return fail(opened.error());
+    }
+    auto attended = attend(**opened, options_.server, opened_ ? Opening::again : Opening::first);
+    if (!attended) {
+        return fail(attended.error());
+    }
+    presence_ = std::move(*attended);
+    opened_ = true;
+    database_ = std::move(*opened);
+    writer_.reopened();
+    return {};
+}
+
+/// If others are in the way nothing is lost: it goes on in the next round.
+Result<void> Recorder::Impl::trim() {
+    auto done = trimPart();
+    return !done && done.error().code == Errc::timeout ? Result<void>() : done;
+}
+
+/// Messages that come meanwhile are written between two parts.
+Result<void> Recorder::Impl::trimPart() {
+    if (!trimming_ && now() >= next_trim_) {
+        if (auto closed = closeLostOfOthers(*database_, options_.server); !closed) {
+            return closed;
+        }
+        next_trim_ = now() + kTrimEvery;
+        trimming_.emplace(options_.keep, std::chrono::system_clock::now());
+    }
+    if (!trimming_) {
+        return {};
+    }
+    const auto more = trimming_->step(*database_);
+    if (!more) {
+        return fail(more.error());
+    }
+    if (!*more) {
+        trimming_.reset();
+    }
+    return {};
+}
+
+void Recorder::Impl::finishRound(const Result<void>& done) {
+    {
+        const std::lock_guard lock(mutex_);
+        const bool in_the_way = !done && done.error().code == Errc::timeout;
+        error_ = done || in_the_way ? std::string() : done.error().message;
+        if (!writer_.hasChanges()) {
+            taken_ = 0;
+            taken_bytes_ = 0;
+        }
+        if (done) {
+            answered_ = asked_then_;
+            unwritten_since_.reset();
+        }
+        written_ = writer_.written();
+    }
+    changed_.notify_all();
+}
+
+bool Recorder::Impl::isIdle() const {
+    const std::lock_guard lock(mutex_);
+    return waiting_.isEmpty() && !writer_.hasChanges();
+}
+
+void Recorder::Impl::watch(const std::stop_token& stop) {
+    bool last = false;
+    while (!last) {
+        std::optional<HealthReport> report;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait_for(lock, stop, kWatchEvery, [] { return false; });
+            last = stop.stop_requested();
+            report = news();
+        }
+        if (report && options_.on_health) {
+            options_.on_health(*report);
+        }
+    }
+}
+
+/// With the lock.
+bool Recorder::Impl::hangs() const {
+    return unwritten_since_ && now() - *unwritten_since_ > options_.patience;
+}
+
+/// With the lock. Nothing if all is as it was reported.
+std::optional<HealthReport> Recorder::Impl::news() {
+    const auto lost = sumOf(dropped_);
+    const bool new_loss = lost > std::exchange(reported_loss_, lost);
+    const bool fails = !error_.empty() || hangs() || new_loss;
+    const auto health = fails ? Health::failing : Health::writing;
+    if (health == std::exchange(reported_, health)) {
+        return std::nullopt;
+    }
+    if (!fails) {
+        return HealthReport{health, "executions are recorded again; lost are " + lossText(dropped_),
+                            dropped_};
+    }
+    const auto why = !error_.empty() ? error_
+                     : hangs()       ? options_.url + " takes too long"
+                                     : "more comes than can be written";
+    return HealthReport{health, "executions are not recorded: " + why, dropped_};
+}
 
 Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
     if (auto known = checkUrl(options.url); !known) {
         return fail(known.error());
     }
     if (options.server.empty()) {
-        return fail(Errc::invalid_argument, "who records must name its server");
+        return fail(Errc::invalid_argument, "records need the name of their server");
     }
     return std::unique_ptr<Recorder>(new Recorder(std::make_unique<Impl>(std::move(options))));
 }
@@ -19,36 +386,24 @@ Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recorder::~Recorder() = default;
 
-Recorder::Key Recorder::begin(const ExecutionView& execution) {
-    return impl_->begin(execution);
+Recorder::Key Recorder::begin(Execution execution) {
+    return impl_->begin(std::move(execution));
 }
 
-Recorder::Key Recorder::begin(const ExecutionView& execution, const TransitionView& first) {
-    return impl_->begin(execution, first);
+void Recorder::transition(Key key, Transition transition) {
+    impl_->put(key, std::move(transition));
 }
 
-void Recorder::transition(Key key, const TransitionView& transition) {
-    impl_->tell(key, transition);
+void Recorder::intermediate(Key key, Intermediate intermediate) {
+    impl_->put(key, std::move(intermediate));
 }
 
-void Recorder::intermediate(Key key, const IntermediateView& intermediate) {
-    impl_->tell(key, intermediate);
-}
-
-void Recorder::sample(Key key, const PathSample& sample) noexcept {
+void Recorder::sample(Key key, const PathSample& sample) {
     impl_->sample({key, sample});
 }
 
-void Recorder::end(Key key, const OutcomeView& outcome) {
-    impl_->end(key, outcome);
-}
-
-void Recorder::end(Key key, const OutcomeView& outcome, const TransitionView& last) {
-    impl_->end(key, last, outcome);
-}
-
-void Recorder::record(const WholeExecution& whole) {
-    impl_->begin(whole);
+void Recorder::end(Key key, Outcome outcome) {
+    impl_->put(key, std::move(outcome));
 }
 
 bool Recorder::flush(SteadyTime deadline) {

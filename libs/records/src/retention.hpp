@@ -9,7 +9,7 @@
 
 namespace metier::records {
 
-/// Removes what is too old or too much, a part in each step.
+/// Removes executions that are too old or too many, a part in each step.
 class RetentionRun {
 public:
     RetentionRun(const Retention& keep, UtcTime now) : keep_(keep), now_(now) {}
@@ -20,8 +20,7 @@ public:
 
 private:
     Result<std::uint64_t> excess(Database& database) const;
-    Result<Rows> oldest(Database& database, UtcTime before, std::uint64_t count) const;
-    Result<void> remove(Database& database, const Rows& numbers);
+    Result<std::uint64_t> removeOldest(Database& database, UtcTime before, std::uint64_t most);
     Result<bool> finish(Database& database) const;
 
     const Retention keep_;

@@ -1,49 +1,125 @@
 #include "rows.hpp"
 
-#include <array>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
+#include <utility>
+
+#include "metier/records/members.hpp"
 #include "parts.hpp"
 
 namespace metier::records {
 
-const std::string_view kExecutionColumns =
-    "number, id, server, server_name, controller, skill, device, user_name, state, reason, "
-    "reason_text, started, ended, parent, parent_server, session, client_name, thumbprint, "
-    "missed_cycles, parameters, result, check_report, revision";
+namespace {
 
-Execution toExecution(const Row& row) {
-    Execution e;
-    e.number = row.integer(0);
-    const std::array texts{&e.id,     &e.server, &e.server_name, &e.controller, &e.skill,
-                           &e.device, &e.user,   &e.state,       &e.reason,     &e.reason_text};
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-        *texts.at(i) = row.text(i + 1);
-    }
-    e.started = fromMicroseconds(row.integer(11));
-    e.ended = fromMicroseconds(row.integer(12));
-    const std::array more{&e.parent, &e.parent_server, &e.session, &e.client_name, &e.thumbprint};
-    for (std::size_t i = 0; i < more.size(); ++i) {
-        *more.at(i) = row.text(i + 13);
-    }
-    e.missed_cycles = static_cast<std::uint64_t>(row.integer(18));
-    e.parameters = row.text(19);
-    e.result = row.text(20);
-    e.check = row.text(21);
-    return e;
+bool isOfKind(const Member& member) {
+    return member.table == Table::kinds;
+}
+bool isInserted(const Member& member) {
+    return member.table == Table::executions && member.name != "number";
+}
+bool isUpdated(const Member& member) {
+    return isInserted(member) && member.changes;
+}
+bool isAny(const Member& /*member*/) {
+    return true;
 }
 
-Result<void> RowWriter::takeRevisions(std::int64_t count) {
-    const auto rows = database_.query(
-        "UPDATE metier_records SET value = value + $1 WHERE name = 'revision' RETURNING value",
-        std::array<Cell, 1>{count});
+using Wanted = bool (*)(const Member&);
+
+/// Appends the columns of the members that are wanted.
+std::vector<std::string> columnsOf(Wanted wanted, std::vector<std::string> columns = {}) {
+    const Execution execution;
+    visitMembers(execution, [&](const Member& member, const auto& /*value*/) {
+        if (wanted(member)) {
+            columns.emplace_back(member.column);
+        }
+    });
+    return columns;
+}
+
+/// "a, b"
+std::string listOf(const std::vector<std::string>& columns) {
+    return fmt::format("{}", fmt::join(columns, ", "));
+}
+
+/// With the parameter of each: "$1, $2" for "${1}", "a = $1, b = $2" for "{0} = ${1}".
+std::string parametersOf(const std::vector<std::string>& columns, std::string_view form,
+                         std::string_view between) {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        all.push_back(fmt::format(fmt::runtime(form), columns[i], i + 1));
+    }
+    return fmt::format("{}", fmt::join(all, between));
+}
+
+constexpr std::string_view kParameter = "${1}";
+constexpr std::string_view kEquality = "{0} = ${1}";
+
+void read(const Row& row, std::size_t column, std::string& text) {
+    text = row.text(column);
+}
+void read(const Row& row, std::size_t column, UtcTime& time) {
+    time = fromMicroseconds(row.integer(column));
+}
+void read(const Row& row, std::size_t column, std::int64_t& number) {
+    number = row.integer(column);
+}
+void read(const Row& row, std::size_t column, std::uint64_t& count) {
+    count = static_cast<std::uint64_t>(row.integer(column));
+}
+
+Argument argumentOf(const std::string& text) {
+    return std::string_view(text);
+}
+Argument argumentOf(UtcTime time) {
+    return toMicroseconds(time);
+}
+Argument argumentOf(std::int64_t number) {
+    return number;
+}
+Argument argumentOf(std::uint64_t count) {
+    return static_cast<std::int64_t>(count);
+}
+
+/// Appends the values of the members that are wanted.
+std::vector<Argument> valuesOf(const Execution& execution, Wanted wanted,
+                               std::vector<Argument> values = {}) {
+    visitMembers(execution, [&](const Member& member, const auto& value) {
+        if (wanted(member)) {
+            values.push_back(argumentOf(value));
+        }
+    });
+    return values;
+}
+
+}  // namespace
+
+Result<std::vector<Execution>> readExecutions(Database& database, std::string_view condition,
+                                              const std::vector<Cell>& values) {
+    static const auto kSelect =
+        fmt::format("SELECT {} FROM history WHERE ", listOf(columnsOf(isAny)));
+    const auto rows = database.query(kSelect + std::string(condition), values);
     if (!rows) {
         return fail(rows.error());
     }
-    if (rows->empty()) {
-        return fail(Errc::invalid_argument, database_.name() + ": the revision is missing");
+    std::vector<Execution> result(rows->size());
+    for (std::size_t i = 0; i < rows->size(); ++i) {
+        std::size_t column = 0;
+        visitMembers(result[i], [&](const Member& /*member*/, auto& value) {
+            read((*rows)[i], column++, value);
+        });
     }
-    revision_ = rows->front().integer(0) - count;
-    return {};
+    return result;
+}
+
+Result<void> RowWriter::takeRevisions(std::int64_t count) {
+    const auto latest = database_.number(
+        "UPDATE metier_records SET value = value + $1 WHERE name = 'revision' RETURNING value",
+        {count});
+    revision_ = latest.value_or(0) - count;
+    return latest.map([](std::int64_t /*latest*/) {});
 }
 
 Result<std::int64_t> RowWriter::insertOrFind(std::string_view insert, std::string_view find,
@@ -60,27 +136,22 @@ Result<std::int64_t> RowWriter::insertOrFind(std::string_view insert, std::strin
     return fail(Errc::internal, database_.name() + ": a row that was inserted is not there");
 }
 
-Result<std::int64_t> RowWriter::kindOf(const Execution& e) {
-    const std::array<const std::string*, 8> texts{&e.server, &e.server_name, &e.controller,
-                                                  &e.skill,  &e.device,      &e.user,
-                                                  &e.state,  &e.reason};
+Result<std::int64_t> RowWriter::kindOf(const Execution& execution) {
+    const auto values = valuesOf(execution, isOfKind);
     std::string key;
-    for (const auto* text : texts) {
-        key.append(*text).push_back('\0');  // no stored text has one
+    for (const auto& value : values) {
+        key.append(std::get<std::string_view>(value)).push_back('\0');  // no stored text has one
     }
     if (const auto known = kinds_.find(key); known != kinds_.end()) {
         return known->second;
     }
-    std::vector<Argument> values;
-    for (const auto* text : texts) {
-        values.emplace_back(std::string_view(*text));
-    }
-    const auto kind = insertOrFind(
-        "INSERT INTO kinds (server, server_name, controller, skill, device, user_name, state, "
-        "reason) VALUES ($1, $2, $3, $4, $5, $6, $7, $8) ON CONFLICT DO NOTHING RETURNING kind",
-        "SELECT kind FROM kinds WHERE server = $1 AND server_name = $2 AND controller = $3 AND "
-        "skill = $4 AND device = $5 AND user_name = $6 AND state = $7 AND reason = $8",
-        values);
+    static const auto kColumns = columnsOf(isOfKind);
+    static const auto kInsert =
+        fmt::format("INSERT INTO kinds ({}) VALUES ({}) ON CONFLICT DO NOTHING RETURNING kind",
+                    listOf(kColumns), parametersOf(kColumns, kParameter, ", "));
+    static const auto kFind =
+        fmt::format("SELECT kind FROM kinds WHERE {}", parametersOf(kColumns, kEquality, " AND "));
+    const auto kind = insertOrFind(kInsert, kFind, values);
     if (kind) {
         kinds_.emplace(std::move(key), *kind);
     }
@@ -111,66 +182,39 @@ Result<void> RowWriter::save(Execution& execution) {
                                  : update(execution, *kind, *note);
 }
 
-Result<void> RowWriter::insert(Execution& e, std::int64_t kind, std::int64_t note) {
-    const std::array<Argument, 15> values{kind,
-                                          note,
-                                          toMicroseconds(e.started),
-                                          toMicroseconds(e.ended),
-                                          revision_,
-                                          e.id,
-                                          e.parent,
-                                          e.parent_server,
-                                          e.session,
-                                          e.client_name,
-                                          e.thumbprint,
-                                          static_cast<std::int64_t>(e.missed_cycles),
-                                          e.parameters,
-                                          e.result,
-                                          e.check};
-    const auto number = database_.insert(
-        "INSERT INTO executions (kind, note, started, ended, revision, id, parent, parent_server, "
-        "session, client_name, thumbprint, missed_cycles, parameters, result, check_report) VALUES "
-        "($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15)",
-        "number", values);
-    if (!number) {
-        return fail(number.error());
-    }
-    e.number = *number;
-    return {};
+Result<void> RowWriter::insert(Execution& execution, std::int64_t kind, std::int64_t note) {
+    static const auto kColumns = columnsOf(isInserted, {"kind", "note", "revision"});
+    static const auto kInsert =
+        fmt::format("INSERT INTO executions ({}) VALUES ({}) RETURNING number", listOf(kColumns),
+                    parametersOf(kColumns, kParameter, ", "));
+    return database_.execute(kInsert, valuesOf(execution, isInserted, {kind, note, revision_}))
+        .map([&](const Rows& rows) { execution.number = rows.front().integer(0); });
 }
 
-Result<void> RowWriter::update(const Execution& e, std::int64_t kind, std::int64_t note) {
-    const std::array<Argument, 7> values{kind,
-                                         note,
-                                         toMicroseconds(e.ended),
-                                         revision_,
-                                         static_cast<std::int64_t>(e.missed_cycles),
-                                         e.result,
-                                         e.number};
-    const auto rows = database_.execute(
-        "UPDATE executions SET kind = $1, note = $2, ended = $3, revision = $4, "
-        "missed_cycles = $5, result = $6 WHERE number = $7",
-        values);
-    return rows ? Result<void>() : Result<void>(fail(rows.error()));
+Result<void> RowWriter::update(const Execution& execution, std::int64_t kind, std::int64_t note) {
+    static const auto kColumns = columnsOf(isUpdated, {"kind", "note", "revision"});
+    static const auto kUpdate =
+        fmt::format("UPDATE executions SET {} WHERE number = ${}",
+                    parametersOf(kColumns, kEquality, ", "), kColumns.size() + 1);
+    auto values = valuesOf(execution, isUpdated, {kind, note, revision_});
+    values.emplace_back(execution.number);
+    return database_.execute(kUpdate, values).map([](const Rows& /*none*/) {});
 }
 
 Result<std::int64_t> RowWriter::numberOf(const Execution& e) {
-    const auto rows = database_.query(
+    return database_.number(
         "SELECT number FROM history WHERE id = $1 AND started = $2 AND server = $3 AND skill = $4 "
         "AND controller = $5",
-        std::array<Cell, 5>{e.id, toMicroseconds(e.started), e.server, e.skill, e.controller});
-    if (!rows) {
-        return fail(rows.error());
-    }
-    return rows->empty() ? 0 : rows->front().integer(0);
+        {e.id, toMicroseconds(e.started), e.server, e.skill, e.controller});
 }
 
 Result<void> RowWriter::addPart(std::int64_t part, const std::string& events,
                                 const Bytes& samples) {
-    const auto rows = database_.execute(
-        "INSERT INTO parts (part, events, samples) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-        std::array<Argument, 3>{part, events, samples});
-    return rows ? Result<void>() : Result<void>(fail(rows.error()));
+    return database_
+        .execute(
+            "INSERT INTO parts (part, events, samples) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
+            std::array<Argument, 3>{part, events, samples})
+        .map([](const Rows& /*none*/) {});
 }
 
 }  // namespace metier::records

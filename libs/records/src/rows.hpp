@@ -12,9 +12,9 @@
 
 namespace metier::records {
 
-/// The columns of the view `history` that toExecution() reads, in its order.
-extern const std::string_view kExecutionColumns;
-Execution toExecution(const Row& row);
+/// Executions of the view `history` that meet `condition`, a WHERE clause without that word.
+Result<std::vector<Execution>> readExecutions(Database& database, std::string_view condition,
+                                              const std::vector<Cell>& values = {});
 
 /// Kinds that are in the store, by all their texts; they are never removed.
 using KindCache = std::unordered_map<std::string, std::int64_t>;

@@ -2,19 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace metier::records {
 namespace {
 
-constexpr std::string_view kMarker = "metier_records";
-
 // Times are microseconds since 1970-01-01 UTC. Nothing is ever NULL: '' and 0 mean none.
 //
-// What many executions have in common is a row of `kinds`, what a reason said a row of `notes`:
+// A row of `kinds` has what many executions have in common, a row of `notes` the text of a reason:
 // a filter looks for those that fit, which are few, and then takes the newest of each from an
 // index; where many notes fit, it goes through executions that have one, newest first. `parts`
 // holds what came while an execution was under way, in the order it was written: its key is number
-// * 1048576 + count. `backlog` holds what a recorder was told faster than it made rows of it, each
-// recorder a life of its own, with the executions that were under way before the oldest.
+// * 1048576 + count.
 constexpr std::string_view kTables = R"(
 CREATE TABLE metier_records (name TEXT PRIMARY KEY, value BIGINT NOT NULL);
 INSERT INTO metier_records VALUES ('schema_version', {version}), ('revision', 0);
@@ -46,78 +45,54 @@ CREATE VIEW history AS SELECT e.number, e.id, k.server, k.server_name, k.control
     FROM executions e JOIN kinds k ON k.kind = e.kind JOIN notes n ON n.note = e.note;
 )";
 
-// Later than the others: stores of the same version may lack it until somebody writes.
-constexpr std::string_view kBacklogName = "backlog";
-constexpr std::string_view kBacklog = R"(
-CREATE TABLE backlog (life BIGINT NOT NULL, number BIGINT NOT NULL, server TEXT NOT NULL,
-    under_way TEXT NOT NULL, content {blob} NOT NULL, PRIMARY KEY (life, number));
-)";
-
-Result<void> make(Database& database, std::string_view marker, std::string_view tables) {
-    return inTransaction(database, [&]() -> Result<void> {
-        // Another server may have made them while this one waited for its transaction.
-        const auto there = database.hasTable(marker);
-        if (!there) {
-            return fail(there.error());
-        }
-        const auto& dialect = database.dialect();
-        return *there ? Result<void>()
-                      : database.script(fmt::format(fmt::runtime(tables),
-                                                    fmt::arg("version", kSchemaVersion),
-                                                    fmt::arg("number_key", dialect.number_key),
-                                                    fmt::arg("blob", dialect.blob)));
-    });
-}
-
-/// What this version has and the one that made the store may not have had.
-Result<void> complete(Database& database) {
-    const auto there = database.hasTable(kBacklogName);
-    if (!there) {
-        return fail(there.error());
-    }
-    return *there ? Result<void>() : make(database, kBacklogName, kBacklog);
+Result<void> make(Database& database) {
+    const auto& dialect = database.dialect();
+    return database.script(fmt::format(fmt::runtime(kTables), fmt::arg("version", kSchemaVersion),
+                                       fmt::arg("number_key", dialect.number_key),
+                                       fmt::arg("blob", dialect.blob)));
 }
 
 Result<void> checkVersion(Database& database) {
-    const auto rows =
-        database.query("SELECT value FROM metier_records WHERE name = 'schema_version'", {});
-    if (!rows) {
-        return fail(rows.error());
+    const auto version =
+        database.number("SELECT value FROM metier_records WHERE name = 'schema_version'");
+    if (!version || *version == kSchemaVersion) {
+        return version.map([](auto /*version*/) {});
     }
-    const auto version = rows->empty() ? 0 : rows->front().integer(0);
-    if (version == kSchemaVersion) {
-        return {};
-    }
-    return fail(version > kSchemaVersion ? Errc::not_supported : Errc::invalid_argument,
+    return fail(*version > kSchemaVersion ? Errc::not_supported : Errc::invalid_argument,
                 fmt::format("{}: records of schema version {}; this metier knows version {}",
-                            database.name(), version, kSchemaVersion));
+                            database.name(), *version, kSchemaVersion));
+}
+
+/// Errors: not_found (no tables), invalid_argument (those of others), not_supported.
+Result<void> check(Database& database) {
+    const auto tables = database.query(database.dialect().tables);
+    if (!tables) {
+        return fail(tables.error());
+    }
+    if (tables->empty()) {
+        return fail(Errc::not_found, database.name() + ": there are no records");
+    }
+    const bool known = std::any_of(tables->begin(), tables->end(),
+                                   [](const Row& row) { return row.text(0) == "metier_records"; });
+    return known ? checkVersion(database)
+                 : fail(Errc::invalid_argument,
+                        database.name() + " holds other tables than those of records");
 }
 
 }  // namespace
 
 Result<void> prepareSchema(Database& database, Store::Access access) {
-    const auto marked = database.hasTable(kMarker);
-    if (!marked) {
-        return fail(marked.error());
+    if (access == Store::Access::read) {
+        return check(database);
     }
-    if (!*marked) {
-        const auto empty = database.isEmpty();
-        if (!empty) {
-            return fail(empty.error());
+    return inTransaction(database, [&database]() -> Result<void> {
+        auto known = check(database);
+        if (!known && known.error().code == Errc::not_found) {
+            return make(database);
         }
-        if (!*empty) {
-            return fail(Errc::invalid_argument,
-                        database.name() + " holds other tables than those of records");
-        }
-        if (access == Store::Access::read) {
-            return fail(Errc::not_found, database.name() + ": there are no records");
-        }
-        if (auto made = make(database, kMarker, kTables); !made) {
-            return made;
-        }
-    }
-    auto known = checkVersion(database);
-    return known && access == Store::Access::write ? complete(database) : known;
+        // Versions that wrote floods as they came left them there until they had made rows.
+        return known ? database.script("DROP TABLE IF EXISTS backlog") : known;
+    });
 }
 
 }  // namespace metier::records

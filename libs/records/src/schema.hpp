@@ -4,10 +4,11 @@
 
 namespace metier::records {
 
-/// Of what this program writes.
+/// Version of the tables that this program writes.
 inline constexpr std::int64_t kSchemaVersion = 1;
 
-/// Makes the tables if there are none and `access` is write; else looks whether they fit.
+/// Checks the tables, or makes them if there are none and `access` is write. Any number of servers
+/// may do so at once.
 /// Errors: not_found (no tables), invalid_argument (other tables), not_supported (later version).
 Result<void> prepareSchema(Database& database, Store::Access access);
 

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <system_error>
-#include <utility>
 
 #include "metier/base/stable_hash.hpp"
 
@@ -28,20 +27,10 @@ struct flock rangeOf(const std::string& server, short type) {
 
 }  // namespace
 
-Result<ServerLocks> ServerLocks::open(const std::filesystem::path& file) {
-    ServerLocks locks(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerOnly),
-                      file.string());
-    return locks.descriptor_ < 0 ? Result<ServerLocks>(locks.failed())
-                                 : Result<ServerLocks>(std::move(locks));
-}
-
-ServerLocks::ServerLocks(ServerLocks&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_)) {}
-
-ServerLocks& ServerLocks::operator=(ServerLocks&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    std::swap(name_, other.name_);
-    return *this;
+Result<std::shared_ptr<ServerLocks>> ServerLocks::open(const std::string& file) {
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerOnly);
+    std::shared_ptr<ServerLocks> locks(new ServerLocks(descriptor, file));
+    return descriptor < 0 ? Result<std::shared_ptr<ServerLocks>>(locks->failed()) : locks;
 }
 
 ServerLocks::~ServerLocks() {

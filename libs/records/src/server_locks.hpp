@@ -1,24 +1,26 @@
 #pragma once
 
-#include <filesystem>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "metier/base/error.hpp"
 
 namespace metier::records {
 
-/// Which servers record into a SQLite file: each holds a lock on the byte of its name in a file
-/// beside it. The kernel frees it with its process, also after kill -9.
+/// Signs of the servers that record into a SQLite file: each holds a lock on the byte of its name
+/// in a file beside it. The kernel frees it with its process, also after kill -9.
 ///
 /// Threading: one thread at a time.
 class ServerLocks {
 public:
-    /// The file is made, for its owner alone. Errors: resource_unavailable.
-    static Result<ServerLocks> open(const std::filesystem::path& file);
-    ServerLocks(ServerLocks&& other) noexcept;
-    ServerLocks& operator=(ServerLocks&& other) noexcept;
+    /// The file is made, for its owner alone. Shared by whoever holds the names.
+    /// Errors: resource_unavailable.
+    static Result<std::shared_ptr<ServerLocks>> open(const std::string& file);
     /// Frees what it holds.
     ~ServerLocks();
+    ServerLocks(const ServerLocks&) = delete;
+    ServerLocks& operator=(const ServerLocks&) = delete;
 
     /// Several may hold the same name. Errors: resource_unavailable.
     Result<void> hold(const std::string& server) const;
@@ -30,8 +32,8 @@ private:
         : descriptor_(descriptor), name_(std::move(name)) {}
     tl::unexpected<Error> failed() const;
 
-    int descriptor_;
-    std::string name_;  // for messages
+    const int descriptor_;
+    const std::string name_;  // for messages
 };
 
 }  // namespace metier::records

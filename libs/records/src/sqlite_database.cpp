@@ -5,8 +5,9 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
+#include <chrono>
 #include <mutex>
 #include <system_error>
 
@@ -15,21 +16,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Dialect kDialect{.number_key = "INTEGER PRIMARY KEY AUTOINCREMENT", .blob = "BLOB"};
-/// How long others that write are waited for [ms]; only ever on a thread that may wait.
-constexpr int kBusyTimeout = 2'000;
+constexpr Dialect kDialect{
+    .number_key = "INTEGER PRIMARY KEY AUTOINCREMENT",
+    .blob = "BLOB",
+    .tables = "SELECT name FROM sqlite_master WHERE type = 'table'",
+    .bytes =
+        "SELECT (page_count - freelist_count) * page_size FROM pragma_page_count(), "
+        "pragma_freelist_count(), pragma_page_size()",
+    .shrink = "PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE)"};
+/// Longest wait for others that write; only ever on a thread that may wait. A recorder tries
+/// again; whoever reads waits for nothing but the last one who closes a file.
+constexpr std::chrono::milliseconds kLongestWrite{2'000};
+constexpr std::chrono::milliseconds kLongestRead{10'000};
 /// Statements that are kept; lists make many that are used once.
 constexpr std::size_t kMostStatements = 64;
 constexpr mode_t kOwnerOnly = 0600;
 
-/// The folder and the empty file, which others may not read.
+/// Makes the folder and the empty file, which others may not read.
 Result<void> makeFile(const fs::path& file) {
-    std::error_code error;  // who opens the file is told what is wrong
+    std::error_code error;  // opening the file shows what is wrong
     if (file.has_parent_path() && fs::create_directories(file.parent_path(), error)) {
         fs::permissions(file.parent_path(), fs::perms::owner_all, error);
     }
-    // Only if there is none: to close a file frees all locks that the process has on it, those of
-    // other connections as well.
+    // Closing a file frees all locks that the process has on it, those of other connections as
+    // well: it is opened here only if it is new, and no other thread connects before it is closed.
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
     const int made = ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
     if (made < 0 && errno == EEXIST) {
         return {};
@@ -70,8 +82,9 @@ Errc codeOf(int status) {
         case SQLITE_MISUSE:
         case SQLITE_RANGE:
             return Errc::internal;
-        case SQLITE_BUSY:
-            return Errc::timeout;  // others have had it locked for kBusyTimeout
+        case SQLITE_BUSY:      // others have had it locked for kLongestWrite
+        case SQLITE_PROTOCOL:  // others have begun to read or write again and again
+            return Errc::timeout;
         default:
             return Errc::resource_unavailable;
     }
@@ -89,18 +102,6 @@ int bind(sqlite3_stmt* statement, int index, const Argument& argument) {
     return sqlite3_bind_blob64(statement, index,
                                bytes.empty() ? "" : static_cast<const void*>(bytes.data()),
                                bytes.size(), SQLITE_STATIC);
-}
-
-/// Of $n the n, in the order in which SQLite counts them.
-std::vector<std::size_t> parametersOf(sqlite3_stmt* statement) {
-    std::vector<std::size_t> numbers;
-    for (int i = 1; i <= sqlite3_bind_parameter_count(statement); ++i) {
-        const std::string_view name(sqlite3_bind_parameter_name(statement, i));
-        std::size_t number = 0;
-        std::from_chars(name.data() + 1, name.data() + name.size(), number);
-        numbers.push_back(number);
-    }
-    return numbers;
 }
 
 Cell column(sqlite3_stmt* statement, int index) {
@@ -193,7 +194,8 @@ Result<void> SqliteDatabase::connect(Store::Access access) {
     if (status != SQLITE_OK) {
         return failed();
     }
-    sqlite3_busy_timeout(connection, kBusyTimeout);
+    const auto longest = access == Store::Access::read ? kLongestRead : kLongestWrite;
+    sqlite3_busy_timeout(connection, static_cast<int>(longest.count()));
     return {};
 }
 
@@ -218,22 +220,22 @@ tl::unexpected<Error> SqliteDatabase::failed() const {
                                                         : fmt::format("{}: {}", name_, why));
 }
 
-Result<const SqliteDatabase::Statement*> SqliteDatabase::prepared(std::string_view sql) {
+Result<sqlite3_stmt*> SqliteDatabase::prepared(std::string_view sql) {
     if (const auto known = statements_.find(sql); known != statements_.end()) {
-        return &known->second;
+        return known->second.get();
     }
     if (statements_.size() >= kMostStatements) {
         statements_.clear();
     }
+    // SQLite counts parameters named $1 as they come, and ?1 by its number.
+    std::string numbered(sql);
+    std::replace(numbered.begin(), numbered.end(), '$', '?');
     sqlite3_stmt* made = nullptr;
-    if (sqlite3_prepare_v2(connection_.get(), sql.data(), static_cast<int>(sql.size()), &made,
-                           nullptr) != SQLITE_OK) {
+    if (sqlite3_prepare_v2(connection_.get(), numbered.c_str(), -1, &made, nullptr) != SQLITE_OK) {
         return failed();
     }
-    auto& statement = statements_[std::string(sql)];
-    statement.prepared.reset(made);
-    statement.parameters = parametersOf(made);
-    return &statement;
+    statements_[std::string(sql)].reset(made);
+    return made;
 }
 
 Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argument> parameters) {
@@ -241,12 +243,9 @@ Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argum
     if (!found) {
         return fail(found.error());
     }
-    auto* const statement = (*found)->prepared.get();
-    const auto& numbers = (*found)->parameters;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const bool given = numbers[i] >= 1 && numbers[i] <= parameters.size();
-        if (given &&
-            bind(statement, static_cast<int>(i) + 1, parameters[numbers[i] - 1]) != SQLITE_OK) {
+    auto* const statement = *found;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        if (bind(statement, static_cast<int>(i) + 1, parameters[i]) != SQLITE_OK) {
             return failed();
         }
     }
@@ -261,13 +260,6 @@ Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argum
     return result;
 }
 
-Result<std::int64_t> SqliteDatabase::insert(std::string_view sql, std::string_view /*key*/,
-                                            std::span<const Argument> parameters) {
-    const auto done = execute(sql, parameters);
-    return done ? Result<std::int64_t>(sqlite3_last_insert_rowid(connection_.get()))
-                : Result<std::int64_t>(fail(done.error()));
-}
-
 Result<void> SqliteDatabase::script(const std::string& sql) {
     return sqlite3_exec(connection_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK
                ? Result<void>()
@@ -280,56 +272,22 @@ void SqliteDatabase::rollBack() noexcept {
     }
 }
 
-Result<std::int64_t> SqliteDatabase::number(std::string_view sql) {
-    const auto rows = query(sql, {});
-    if (!rows) {
-        return fail(rows.error());
-    }
-    return rows->empty() ? 0 : rows->front().integer(0);
-}
-
 Result<Presence> SqliteDatabase::attend(const std::string& server) {
-    auto locks = ServerLocks::open(name_ + "-servers");
-    if (!locks) {
-        return fail(locks.error());
-    }
-    auto presence = std::make_shared<ServerLocks>(std::move(*locks));
-    const auto held = presence->hold(server);
-    return held ? Result<Presence>(std::move(presence)) : Result<Presence>(fail(held.error()));
+    return ServerLocks::open(name_ + "-servers").and_then([&](const auto& locks) {
+        return locks->hold(server).map([&] { return Presence(locks); });
+    });
 }
 
 Result<bool> SqliteDatabase::isAttendedByOthers(const std::string& server) {
-    const auto locks = ServerLocks::open(name_ + "-servers");
-    return locks ? locks->isHeldByOthers(server) : Result<bool>(fail(locks.error()));
+    return ServerLocks::open(name_ + "-servers").and_then([&](const auto& locks) {
+        return locks->isHeldByOthers(server);
+    });
 }
 
-Result<bool> SqliteDatabase::hasTable(std::string_view name) {
-    const auto rows = query("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = $1",
-                            std::vector<Cell>{std::string(name)});
-    return rows ? Result<bool>(!rows->empty()) : Result<bool>(fail(rows.error()));
-}
-
-Result<bool> SqliteDatabase::isEmpty() {
-    const auto tables = number("SELECT count(*) FROM sqlite_master");
-    return tables ? Result<bool>(*tables == 0) : Result<bool>(fail(tables.error()));
-}
-
-Result<std::uint64_t> SqliteDatabase::bytes() {
-    // A backlog is made rows of soon. Who only reads may find a store that has none yet.
-    const auto has_backlog = hasTable("backlog");
-    if (!has_backlog) {
-        return fail(has_backlog.error());
-    }
-    const auto bytes = number(fmt::format(
-        "SELECT max(0, (page_count - freelist_count) * page_size - {}) FROM pragma_page_count(), "
-        "pragma_freelist_count(), pragma_page_size()",
-        *has_backlog ? "(SELECT coalesce(sum(length(content)), 0) FROM backlog)" : "0"));
-    return bytes ? Result<std::uint64_t>(static_cast<std::uint64_t>(*bytes))
-                 : Result<std::uint64_t>(fail(bytes.error()));
-}
-
-Result<void> SqliteDatabase::shrink() {
-    return script("PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE)");
+bool SqliteDatabase::isCurrent() {
+    int moved = 0;
+    sqlite3_file_control(connection_.get(), nullptr, SQLITE_FCNTL_HAS_MOVED, &moved);
+    return moved == 0;
 }
 
 }  // namespace metier::records

@@ -4,7 +4,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "database.hpp"
 #include "server_locks.hpp"
@@ -26,19 +25,15 @@ public:
 
     const Dialect& dialect() const noexcept override;
     Result<Rows> execute(std::string_view sql, std::span<const Argument> parameters) override;
-    Result<std::int64_t> insert(std::string_view sql, std::string_view key,
-                                std::span<const Argument> parameters) override;
     Result<void> script(const std::string& sql) override;
     Result<void> begin() override { return script("BEGIN IMMEDIATE"); }
+    Result<void> beginReading() override { return script("BEGIN"); }
     Result<void> commit() override { return script("COMMIT"); }
     void rollBack() noexcept override;
     /// Ends with what is returned alone.
     Result<Presence> attend(const std::string& server) override;
     Result<bool> isAttendedByOthers(const std::string& server) override;
-    Result<bool> hasTable(std::string_view name) override;
-    Result<bool> isEmpty() override;
-    Result<std::uint64_t> bytes() override;
-    Result<void> shrink() override;
+    bool isCurrent() override;
     const std::string& name() const noexcept override { return name_; }
 
 private:
@@ -46,21 +41,17 @@ private:
         void operator()(sqlite3* connection) const noexcept;
         void operator()(sqlite3_stmt* statement) const noexcept;
     };
-    struct Statement {
-        std::unique_ptr<sqlite3_stmt, Close> prepared;
-        std::vector<std::size_t> parameters;  // the number n of each $n, in SQLite's order
-    };
 
     explicit SqliteDatabase(std::string name) : name_(std::move(name)) {}
     Result<void> connect(Store::Access access);
     Result<void> setUp(Store::Access access);
-    Result<const Statement*> prepared(std::string_view sql);
-    Result<std::int64_t> number(std::string_view sql);
+    Result<sqlite3_stmt*> prepared(std::string_view sql);
     tl::unexpected<Error> failed() const;
 
     std::string name_;
     std::unique_ptr<sqlite3, Close> connection_;
-    std::map<std::string, Statement, std::less<>> statements_;  // end before the connection
+    // By their SQL; end before the connection.
+    std::map<std::string, std::unique_ptr<sqlite3_stmt, Close>, std::less<>> statements_;
 };
 
 }  // namespace metier::records

@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <charconv>
-#include <map>
 
 #include "database.hpp"
-#include "listing.hpp"
+#include "export.hpp"
+#include "filter_sql.hpp"
 #include "parts.hpp"
 #include "retention.hpp"
 #include "rows.hpp"
+#include "search.hpp"
 #include "text.hpp"
 
 namespace metier::records {
@@ -24,45 +24,28 @@ std::optional<std::int64_t> toNumber(std::string_view text) {
     return read.ec == std::errc() && read.ptr == end ? std::optional(number) : std::nullopt;
 }
 
-Result<std::vector<Execution>> executions(Database& database, std::string_view condition,
-                                          std::span<const Cell> values) {
-    const auto rows = database.query(
-        fmt::format("SELECT {} FROM history WHERE {}", kExecutionColumns, condition), values);
-    if (!rows) {
-        return fail(rows.error());
-    }
-    std::vector<Execution> result;
-    result.reserve(rows->size());
-    for (const auto& row : *rows) {
-        result.push_back(toExecution(row));
-    }
-    return result;
-}
-
 /// The column of every part of an execution, in the order in which they were written.
 Result<Rows> partsOf(Database& database, std::int64_t number, std::string_view column) {
     return database.query(
         fmt::format("SELECT {} FROM parts WHERE part >= $1 AND part < $2 ORDER BY part", column),
-        std::array<Cell, 2>{number * kMostParts, (number + 1) * kMostParts});
+        {number * kMostParts, (number + 1) * kMostParts});
 }
 
 template <typename Wanted>
 Result<std::vector<Wanted>> eventsOf(Database& database, std::int64_t number) {
-    const auto rows = partsOf(database, number, "events");
-    if (!rows) {
-        return fail(rows.error());
-    }
-    std::vector<Event> events;
-    for (const auto& row : *rows) {
-        decodeEvents(row.text(0), events);
-    }
-    std::vector<Wanted> wanted;
-    for (auto& event : events) {
-        if (auto* one = std::get_if<Wanted>(&event)) {
-            wanted.push_back(std::move(*one));
+    return partsOf(database, number, "events").map([](const Rows& rows) {
+        std::vector<Event> events;
+        for (const auto& row : rows) {
+            decodeEvents(row.text(0), events);
         }
-    }
-    return wanted;
+        std::vector<Wanted> wanted;
+        for (auto& event : events) {
+            if (auto* one = std::get_if<Wanted>(&event)) {
+                wanted.push_back(std::move(*one));
+            }
+        }
+        return wanted;
+    });
 }
 
 }  // namespace
@@ -71,22 +54,20 @@ Store::Store(std::unique_ptr<Database> database) : database_(std::move(database)
 Store::~Store() = default;
 
 Result<std::unique_ptr<Store>> Store::open(const std::string& url, Access access) {
-    auto database = openDatabase(url, access);
-    if (!database) {
-        return fail(database.error());
-    }
-    return std::unique_ptr<Store>(new Store(std::move(*database)));
+    return openDatabase(url, access).map([](std::unique_ptr<Database> database) {
+        return std::unique_ptr<Store>(new Store(std::move(database)));
+    });
 }
 
 Result<Execution> Store::find(std::string_view number_or_id) {
     if (const auto number = toNumber(number_or_id)) {
-        auto found = executions(*database_, "number = $1", std::array<Cell, 1>{*number});
+        auto found = readExecutions(*database_, "number = $1", {*number});
         if (!found || !found->empty()) {
             return found ? Result<Execution>(std::move(found->front())) : fail(found.error());
         }
     }
-    auto found = executions(*database_, "id = $1 ORDER BY started DESC, number DESC LIMIT 1",
-                            std::array<Cell, 1>{storable(number_or_id)});
+    auto found = readExecutions(*database_, "id = $1 ORDER BY started DESC, number DESC LIMIT 1",
+                                {storable(number_or_id)});
     if (!found) {
         return fail(found.error());
     }
@@ -107,30 +88,27 @@ Result<Listing> Store::list(const Filter& filter, const Page& page) {
     if (numbers->empty()) {
         return listing;
     }
-    auto found = executions(
-        *database_,
-        fmt::format("number IN ({}) ORDER BY started DESC, number DESC", fmt::join(*numbers, ", ")),
-        {});
-    if (!found) {
-        return fail(found.error());
-    }
-    listing.executions = std::move(*found);
-    return listing;
+    const auto condition =
+        fmt::format("number IN ({}) ORDER BY started DESC, number DESC", fmt::join(*numbers, ", "));
+    return readExecutions(*database_, condition).map([&](std::vector<Execution> found) {
+        listing.executions = std::move(found);
+        return listing;
+    });
 }
 
 Result<std::vector<Execution>> Store::children(std::int64_t number) {
-    const auto parent = executions(*database_, "number = $1", std::array<Cell, 1>{number});
+    const auto parent = readExecutions(*database_, "number = $1", {number});
     if (!parent) {
         return fail(parent.error());
     }
     if (parent->empty() || parent->front().id.empty()) {
         return std::vector<Execution>{};
     }
-    return executions(*database_,
-                      "parent = $1 AND parent <> '' AND number <> $2 AND "
-                      "(parent_server = $3 OR (parent_server = '' AND server = $3)) "
-                      "ORDER BY started, number",
-                      std::array<Cell, 3>{parent->front().id, number, parent->front().server});
+    return readExecutions(*database_,
+                          "parent = $1 AND parent <> '' AND number <> $2 AND "
+                          "(parent_server = $3 OR (parent_server = '' AND server = $3)) "
+                          "ORDER BY started, number",
+                          {parent->front().id, number, parent->front().server});
 }
 
 Result<std::vector<Transition>> Store::transitions(std::int64_t number) {
@@ -142,40 +120,45 @@ Result<std::vector<Intermediate>> Store::intermediates(std::int64_t number) {
 }
 
 Result<std::vector<PathSample>> Store::path(std::int64_t number) {
-    const auto rows = partsOf(*database_, number, "samples");
-    if (!rows) {
-        return fail(rows.error());
-    }
-    std::vector<PathSample> samples;
-    for (const auto& row : *rows) {
-        decodeSamples(row.bytes(0), samples);
-    }
-    return samples;
+    return partsOf(*database_, number, "samples").map([](const Rows& rows) {
+        std::vector<PathSample> samples;
+        for (const auto& row : rows) {
+            decodeSamples(row.bytes(0), samples);
+        }
+        return samples;
+    });
 }
 
-Result<Changes> Store::changes(std::int64_t revision, std::uint32_t count) {
-    auto found = executions(*database_, "revision > $1 ORDER BY revision LIMIT $2",
-                            std::array<Cell, 2>{revision, std::int64_t{count}});
+Result<Changes> Store::changes(std::int64_t revision, const Filter& filter, std::uint32_t count) {
+    const auto latest = latestRevision();
+    if (!latest) {
+        return fail(latest.error());
+    }
+    Values values({revision, *latest, std::int64_t{count}});
+    const auto condition = fits(filter, values);
+    auto found = readExecutions(
+        *database_,
+        fmt::format("revision > $1 AND revision <= $2 AND {} ORDER BY revision LIMIT $3",
+                    condition),
+        values.all());
     if (!found) {
         return fail(found.error());
     }
-    Changes changes{.executions = std::move(*found), .revision = revision};
-    if (!changes.executions.empty()) {
-        const auto last = database_->query("SELECT revision FROM executions WHERE number = $1",
-                                           std::array<Cell, 1>{changes.executions.back().number});
-        if (!last) {
-            return fail(last.error());
-        }
-        changes.revision = last->empty() ? revision : last->front().integer(0);
+    Changes changes{.executions = std::move(*found), .revision = *latest};
+    if (changes.executions.size() < count) {
+        return changes;
     }
-    return changes;
+    return database_
+        ->number("SELECT revision FROM executions WHERE number = $1",
+                 {changes.executions.back().number})
+        .map([&](std::int64_t last) {
+            changes.revision = last;
+            return changes;
+        });
 }
 
 Result<std::int64_t> Store::latestRevision() {
-    const auto rows =
-        database_->query("SELECT value FROM metier_records WHERE name = 'revision'", {});
-    return rows ? Result<std::int64_t>(rows->empty() ? 0 : rows->front().integer(0))
-                : Result<std::int64_t>(fail(rows.error()));
+    return database_->number("SELECT value FROM metier_records WHERE name = 'revision'");
 }
 
 Result<std::uint64_t> Store::retain(const Retention& keep, UtcTime now) {
@@ -192,7 +175,17 @@ Result<std::uint64_t> Store::retain(const Retention& keep, UtcTime now) {
 }
 
 Result<std::uint64_t> Store::bytes() {
-    return database_->bytes();
+    return database_->number(database_->dialect().bytes).map([](std::int64_t bytes) {
+        return static_cast<std::uint64_t>(bytes);
+    });
+}
+
+Result<std::uint64_t> Store::exportTo(const std::string& file) {
+    return records::exportTo(*database_, file);
+}
+
+bool Store::isCurrent() {
+    return database_->isCurrent();
 }
 
 }  // namespace metier::records

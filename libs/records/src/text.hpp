@@ -3,6 +3,9 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <type_traits>
+
+#include "metier/records/members.hpp"
 
 namespace metier::records {
 
@@ -16,7 +19,18 @@ inline constexpr std::size_t kLongestKey = 2'000;
 /// Well-formed UTF-8 without NUL, as both databases take it: what does not fit becomes U+FFFD, and
 /// what is beyond `longest` is cut off.
 std::string storable(std::string_view text, std::size_t longest = kLongestText);
-/// Whether it is that already.
-bool isStorable(std::string_view text, std::size_t longest = kLongestText);
+
+/// Replaces a text by what storable() makes of it.
+void makeStorable(std::string& text, Form form);
+
+/// Does so with every text of an Execution, Transition, Intermediate or Outcome.
+template <typename Record>
+void makeStorable(Record& record) {
+    visitMembers(record, [](const Member& member, auto& value) {
+        if constexpr (std::is_same_v<decltype(value), std::string&>) {
+            makeStorable(value, member.form);
+        }
+    });
+}
 
 }  // namespace metier::records

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "execution_json.hpp"
+#include "json_text.hpp"
 #include "metier/records/json.hpp"
 #include "parts.hpp"
 
@@ -173,25 +173,18 @@ void Trace::addSlice(const Slice& slice, const Lane& lane, ordered_json argument
 }
 
 void Trace::addArrow(const Execution& parent, const Execution& child) {
-    const auto time = toMicroseconds(child.started) - origin_;
-    const auto from = laneOf(parent);
-    const auto to = laneOf(child);
-    const auto id = child.number;
-    events_.push_back({{"ph", "s"},
-                       {"name", "starts"},
-                       {"cat", "parent"},
-                       {"id", id},
-                       {"ts", time},
-                       {"pid", from.process},
-                       {"tid", from.thread}});
-    events_.push_back({{"ph", "f"},
-                       {"bp", "e"},
-                       {"name", "starts"},
-                       {"cat", "parent"},
-                       {"id", id},
-                       {"ts", time},
-                       {"pid", to.process},
-                       {"tid", to.thread}});
+    const auto add = [&](const char* phase, const Lane& lane) -> ordered_json& {
+        return events_.emplace_back(
+            ordered_json::object({{"ph", phase},
+                                  {"name", "starts"},
+                                  {"cat", "parent"},
+                                  {"id", child.number},
+                                  {"ts", toMicroseconds(child.started) - origin_},
+                                  {"pid", lane.process},
+                                  {"tid", lane.thread}}));
+    };
+    add("s", laneOf(parent));
+    add("f", laneOf(child))["bp"] = "e";
 }
 
 }  // namespace

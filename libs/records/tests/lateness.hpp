@@ -1,7 +1,6 @@
 #pragma once
 
-#include <sys/resource.h>
-#include <unistd.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,16 +11,17 @@
 
 namespace metier::records {
 
-/// How late a thread of the writer's priority wakes up on this machine now: nothing that it does
-/// can be more punctual.
+/// Delay with which a thread of the writer's priority wakes up on this machine now: nothing that it
+/// does can be more punctual.
 class Lateness {
 public:
-    /// The latest so far.
+    /// Largest delay so far.
     std::chrono::nanoseconds worst() const { return worst_; }
 
 private:
     void measure(const std::stop_token& stop) {
-        static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15));
+        const sched_param no_priority{};
+        static_cast<void>(sched_setscheduler(0, SCHED_BATCH, &no_priority));
         std::mutex mutex;
         std::condition_variable_any nobody;
         std::unique_lock lock(mutex);

@@ -13,7 +13,7 @@
 
 namespace metier::records {
 
-/// What has not come by then never comes, however busy the machine.
+/// Deadline of all that has to come, however busy the machine.
 inline SteadyTime soon() {
     return std::chrono::steady_clock::now() + std::chrono::seconds(60);
 }
@@ -76,12 +76,10 @@ inline PathSample sampleAt(double time, double axis) {
 }
 
 inline std::unique_ptr<Recorder> recorderOf(const std::string& url,
-                                            const std::string& server = "urn:test:ur5",
-                                            std::size_t most_waiting = 10'000) {
+                                            const std::string& server = "urn:test:ur5") {
     Recorder::Options options;
     options.url = url;
     options.server = server;
-    options.most_waiting = most_waiting;
     options.patience = std::chrono::milliseconds(100);  // for tests that await Health::failing
     return Recorder::create(std::move(options)).value();
 }

@@ -1,8 +1,8 @@
-// What a store holds and how it is found, the same in both databases.
+// Content of a store and how it is found, the same in both databases.
 #include "metier/records/store.hpp"
 
+#include "either_database.hpp"
 #include "recorded.hpp"
-#include "temporary_postgres.hpp"
 
 namespace metier::records {
 namespace {
@@ -12,17 +12,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class EitherStore : public ::testing::TestWithParam<const char*> {
+class EitherStore : public EitherDatabase {
 protected:
-    void SetUp() override {
-        if (GetParam() == std::string("Sqlite")) {
-            url_ = (testFolder() / "records.db").string();
-        } else if (auto* postgres = TemporaryPostgres::instance()) {
-            url_ = postgres->freshDatabase();
-        } else {
-            GTEST_SKIP() << "PostgreSQL is not installed";
-        }
-    }
     std::unique_ptr<Store> store() const {
         auto opened = Store::open(url_);
         if (!opened) {
@@ -56,19 +47,16 @@ protected:
         }
         return result;
     }
-
-    std::string url_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Of, EitherStore, ::testing::Values("Sqlite", "Postgres"),
-                         [](const auto& test) { return std::string(test.param); });
+INSTANTIATE_EITHER(EitherStore);
 
 TEST_P(EitherStore, HoldsAllThatWasTold) {
     const auto recorder = recorderOf(url_);
-    auto told = moveOf("m-1");
-    told.parent = "p-1";
-    told.parent_server = "urn:test:pick";
-    const auto key = recorder->begin(told);
+    auto given = moveOf("m-1");
+    given.parent = "p-1";
+    given.parent_server = "urn:test:pick";
+    const auto key = recorder->begin(given);
     recorder->transition(key, {.time = at(0),
                                .from = "Ready",
                                .to = "Running",
@@ -102,7 +90,7 @@ TEST_P(EitherStore, HoldsAllThatWasTold) {
                 ElementsAre("p-1", "urn:test:pick", "s-7", "metier command", "ab12"));
     EXPECT_THAT(
         (std::array{e.parameters, e.check, e.result, e.state, e.reason, e.reason_text}),
-        ElementsAre(told.parameters, told.check, R"({"Duration":1.0})", "Ready", "Finished", ""));
+        ElementsAre(given.parameters, given.check, R"({"Duration":1.0})", "Ready", "Finished", ""));
     EXPECT_EQ(e.started, at(0));
     EXPECT_EQ(e.ended, at(1'000));
     EXPECT_EQ(e.missed_cycles, 2U);
@@ -249,6 +237,46 @@ TEST_P(EitherStore, TellsWhatCameOrChanged) {
     ASSERT_EQ(ended.executions.size(), 2U);
     EXPECT_TRUE(ended.executions[0].isOver() && ended.executions[1].isOver());
     EXPECT_EQ(ended.revision, reading->latestRevision().value());
+}
+
+TEST_P(EitherStore, ShowsOfChangesThoseThatListWouldShow) {
+    recordSix();
+    std::vector<Filter> filters(9);
+    filters[1].server = "edo";
+    filters[2].skill = "JointPtpMoveSkill";
+    filters[3].state = "Halted";
+    filters[4].text = "OVER limit 3.1";
+    filters[5].text = "linear";
+    filters[6].text = "e";
+    filters[6].user = "ben";
+    filters[7].from = at(1'000);
+    filters[7].until = at(3'000);
+    filters[8].parent = "nobody";
+    const auto reading = store();
+    for (const auto& filter : filters) {
+        auto changed = reading->changes(0, filter)->executions;
+        std::vector<std::string> found;
+        for (auto one = changed.rbegin(); one != changed.rend(); ++one) {
+            found.push_back(one->id);  // they were written in the order of their starts
+        }
+        EXPECT_EQ(found, ids(filter));
+    }
+}
+
+TEST_P(EitherStore, GoesOnAfterChangesThatDoNotFit) {
+    recordSix();
+    const auto reading = store();
+    Filter filter;
+    filter.user = "ben";
+    const auto first = reading->changes(0, filter, 1).value();
+    ASSERT_EQ(first.executions.size(), 1U);
+    EXPECT_EQ(first.executions[0].id, "d");
+    const auto second = reading->changes(first.revision, filter).value();
+    EXPECT_EQ(second.executions.size(), 2U);
+    EXPECT_EQ(second.revision, reading->latestRevision().value());
+    const auto beyond = reading->changes(second.revision + 1'000, filter).value();
+    EXPECT_TRUE(beyond.executions.empty());
+    EXPECT_EQ(beyond.revision, second.revision) << "another store was here before";
 }
 
 TEST_P(EitherStore, TakesAnyBytesAsNames) {

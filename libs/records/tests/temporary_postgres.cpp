@@ -27,7 +27,7 @@ SteadyTime soon() {
     return std::chrono::steady_clock::now() + 60s;
 }
 
-/// Where Debian has the programs of the newest version; empty: nowhere.
+/// Folder in which Debian has the programs of the newest version; empty: there are none.
 fs::path installedPrograms() {
     fs::path newest;
     std::error_code none;

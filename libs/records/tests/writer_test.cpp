@@ -1,9 +1,8 @@
-// Rows of what was told, also if it is not known whether they are in the store.
+// Rows of records, also if it is not known whether they are in the store.
 #include "writer.hpp"
 
-#include "deaf_database.hpp"
-#include "message_log.hpp"
 #include "recorded.hpp"
+#include "wrapped_database.hpp"
 
 namespace metier::records {
 namespace {
@@ -11,18 +10,19 @@ namespace {
 class WriterOfAFile : public ::testing::Test {
 protected:
     std::int64_t number(const std::string& sql) const {
-        return database_->query(sql, {}).value().front().integer(0);
+        return database_->query(sql).value().front().integer(0);
     }
-    /// Tells the writer of a transition of its only execution.
-    void tell(std::int64_t time, const char* from, const char* to) {
-        MessageLog log;
-        log.put(1, TransitionView{.time = at(time), .from = from, .to = to});
-        EXPECT_FALSE(writer_.take(log, {}).any());
+    /// Gives the writer a transition of its only execution.
+    void give(std::int64_t time, const char* from, const char* to) {
+        Batch batch;
+        batch.messages.push_back({1, Transition{.time = at(time), .from = from, .to = to}});
+        EXPECT_FALSE(writer_.take(std::move(batch)).any());
     }
     void begin() {
-        MessageLog log;
-        log.put(1, moveOf("m-1"), TransitionView{.time = at(1), .from = "Ready", .to = "Running"});
-        EXPECT_FALSE(writer_.take(log, {}).any());
+        Batch batch;
+        batch.messages.push_back({1, std::make_unique<Execution>(moveOf("m-1"))});
+        EXPECT_FALSE(writer_.take(std::move(batch)).any());
+        give(1, "Ready", "Running");
     }
     void expectOneOf(std::size_t transitions) const {
         EXPECT_EQ(number("SELECT count(*) FROM executions"), 1);
@@ -32,7 +32,7 @@ protected:
 
     const std::string file_ = (testFolder() / "records.db").string();
     const std::unique_ptr<Database> database_ = openDatabase(file_, Store::Access::write).value();
-    Writer writer_{"one", nullptr};
+    Writer writer_{"one"};
 };
 
 TEST_F(WriterOfAFile, WritesNothingTwiceIfTheAnswerToTheCommitOfABeginIsLost) {
@@ -44,7 +44,7 @@ TEST_F(WriterOfAFile, WritesNothingTwiceIfTheAnswerToTheCommitOfABeginIsLost) {
     ASSERT_TRUE(writer_.write(*database_));
     EXPECT_EQ(writer_.written(), 1U);
     expectOneOf(1);
-    tell(2, "Running", "Suspended");
+    give(2, "Running", "Suspended");
     ASSERT_TRUE(writer_.write(*database_));
     expectOneOf(2);
 }
@@ -52,12 +52,12 @@ TEST_F(WriterOfAFile, WritesNothingTwiceIfTheAnswerToTheCommitOfABeginIsLost) {
 TEST_F(WriterOfAFile, WritesNothingTwiceIfTheAnswerToALaterCommitIsLost) {
     begin();
     ASSERT_TRUE(writer_.write(*database_));
-    tell(2, "Running", "Suspended");
+    give(2, "Running", "Suspended");
     DeafDatabase deaf(*database_);
     ASSERT_FALSE(writer_.write(deaf));
     ASSERT_TRUE(writer_.write(*database_));
     expectOneOf(2);
-    tell(3, "Suspended", "Running");
+    give(3, "Suspended", "Running");
     ASSERT_TRUE(writer_.write(*database_));
     expectOneOf(3);
     EXPECT_EQ(writer_.written(), 1U);

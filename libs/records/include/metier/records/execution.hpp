@@ -17,130 +17,64 @@ inline constexpr std::string_view kLost = "Lost";
 /// Reason of such an execution.
 inline constexpr std::string_view kServerLost = "ServerLost";
 
-// What is recorded has its texts; who tells a recorder only shows them: the Views.
-
-/// One execution of a skill, whichever client started it.
+/// One execution of a skill, whichever client started it. visitMembers() of members.hpp lists its
+/// members.
 ///
 /// Text may be anything: what is no UTF-8 becomes U+FFFD when it is written; names are cut after
 /// 300 bytes, ids and a reason's text after 2000, JSON after 1,000,000. States and reasons are the
 /// names that OPC UA clients see.
-template <typename Text>
-struct BasicExecution {
-    std::int64_t number = 0;  ///< within the store, from 1; 0: it is not in one yet
-    Text id{};                ///< as its server names it; unique within a skill of a server
-    Text server{};            ///< ApplicationUri
-    Text server_name{};       ///< as its cell file names it
-    Text skill{};             ///< BrowseName of the Program
-    Text controller{};        ///< BrowseName of what the Program belongs to; may be empty
-    Text device{};            ///< the arm or gripper it moves; may be empty
-    Text parent{};            ///< id of the execution that started it; empty: a client did
-    Text parent_server{};     ///< ApplicationUri of the parent; empty: the same server
-    Text session{};           ///< id of the session that started it
-    Text client_name{};       ///< as that session's client calls itself
-    Text user{};              ///< empty: anonymous
-    Text thumbprint{};        ///< of the client's certificate, hexadecimal; may be empty
-    Text parameters{};        ///< JSON object, a member for each parameter
-    Text check{};             ///< JSON of what Check said before; may be empty
+struct Execution {
+    std::int64_t number = 0;      ///< within the store, from 1; 0: it is not in one yet
+    std::string id{};             ///< as its server names it; unique within a skill of a server
+    std::string server{};         ///< ApplicationUri
+    std::string server_name{};    ///< as its cell file names it
+    std::string skill{};          ///< BrowseName of the Program
+    std::string controller{};     ///< BrowseName of what the Program belongs to; may be empty
+    std::string device{};         ///< the arm or gripper it moves; may be empty
+    std::string parent{};         ///< id of the execution that started it; empty: a client did
+    std::string parent_server{};  ///< ApplicationUri of the parent; empty: the same server
+    std::string session{};        ///< id of the session that started it
+    std::string client_name{};    ///< as that session's client calls itself
+    std::string user{};           ///< empty: anonymous
+    std::string thumbprint{};     ///< of the client's certificate, hexadecimal; may be empty
+    std::string parameters{};     ///< JSON object, a member for each parameter
+    std::string check{};          ///< JSON of what Check said before; may be empty
     UtcTime started{};
-    UtcTime ended{};     ///< the epoch while it is under way
-    Text state{};        ///< "Running", "Suspended"; once over "Ready", "Halted" or kLost
-    Text reason{};       ///< "Finished", "ByClient", ...; may be empty
-    Text reason_text{};  ///< for a person; may be empty
-    Text result{};       ///< JSON object; empty unless it finished
+    UtcTime ended{};            ///< the epoch while it is under way
+    std::string state{};        ///< "Running", "Suspended"; once over "Ready", "Halted" or kLost
+    std::string reason{};       ///< "Finished", "ByClient", ...; may be empty
+    std::string reason_text{};  ///< for a person; may be empty
+    std::string result{};       ///< JSON object; empty unless it finished
     std::uint64_t missed_cycles = 0;  ///< of the device, while this ran
 
     bool isOver() const noexcept { return ended != UtcTime{}; }
-    operator BasicExecution<std::string_view>() const {
-        return {.number = number,
-                .id = id,
-                .server = server,
-                .server_name = server_name,
-                .skill = skill,
-                .controller = controller,
-                .device = device,
-                .parent = parent,
-                .parent_server = parent_server,
-                .session = session,
-                .client_name = client_name,
-                .user = user,
-                .thumbprint = thumbprint,
-                .parameters = parameters,
-                .check = check,
-                .started = started,
-                .ended = ended,
-                .state = state,
-                .reason = reason,
-                .reason_text = reason_text,
-                .result = result,
-                .missed_cycles = missed_cycles};
-    }
 };
-using Execution = BasicExecution<std::string>;
-using ExecutionView = BasicExecution<std::string_view>;
 
 /// A change of an execution's state, sub-state or step.
-template <typename Text>
-struct BasicTransition {
+struct Transition {
     UtcTime time{};
-    Text from{};       ///< state; the same as `to` if only sub-state or step changed
-    Text to{};         ///< state
-    Text sub_state{};  ///< after it; may be empty
-    Text step{};       ///< of a composed skill, after it; may be empty
-    Text reason{};
-    Text reason_text{};
-
-    operator BasicTransition<std::string_view>() const {
-        return {.time = time,
-                .from = from,
-                .to = to,
-                .sub_state = sub_state,
-                .step = step,
-                .reason = reason,
-                .reason_text = reason_text};
-    }
+    std::string from{};       ///< state; the same as `to` if only sub-state or step changed
+    std::string to{};         ///< state
+    std::string sub_state{};  ///< after it; may be empty
+    std::string step{};       ///< of a composed skill, after it; may be empty
+    std::string reason{};
+    std::string reason_text{};
 };
-using Transition = BasicTransition<std::string>;
-using TransitionView = BasicTransition<std::string_view>;
 
-/// What a skill told while it ran.
-template <typename Text>
-struct BasicIntermediate {
+/// A value that a skill published while it ran.
+struct Intermediate {
     UtcTime time{};
-    Text value{};  ///< JSON
-
-    operator BasicIntermediate<std::string_view>() const { return {.time = time, .value = value}; }
+    std::string value{};  ///< JSON
 };
-using Intermediate = BasicIntermediate<std::string>;
-using IntermediateView = BasicIntermediate<std::string_view>;
 
-/// How an execution ended.
-template <typename Text>
-struct BasicOutcome {
+/// End of an execution.
+struct Outcome {
     UtcTime time{};
-    Text state{};  ///< "Ready" or "Halted"
-    Text reason{};
-    Text reason_text{};
-    Text result{};                    ///< JSON object; empty unless it finished
+    std::string state{};  ///< "Ready" or "Halted"
+    std::string reason{};
+    std::string reason_text{};
+    std::string result{};             ///< JSON object; empty unless it finished
     std::uint64_t missed_cycles = 0;  ///< of the device, while this ran
-
-    operator BasicOutcome<std::string_view>() const {
-        return {.time = time,
-                .state = state,
-                .reason = reason,
-                .reason_text = reason_text,
-                .result = result,
-                .missed_cycles = missed_cycles};
-    }
-};
-using Outcome = BasicOutcome<std::string>;
-using OutcomeView = BasicOutcome<std::string_view>;
-
-/// An execution with nothing between its begin and its end.
-struct WholeExecution {
-    const ExecutionView& execution;
-    const TransitionView& first;
-    const TransitionView& last;
-    const OutcomeView& outcome;
 };
 
 /// Up to kMost numbers in place: never allocates.
@@ -169,7 +103,7 @@ private:
     std::uint8_t size_ = 0;
 };
 
-/// Where the axes were at one time. Trivially copyable.
+/// Positions of the axes at one time. Trivially copyable.
 struct PathSample {
     double time = 0;           ///< since the start of the execution [s]
     SampleValues actual{};     ///< joint position, axis 1 first [rad]

@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
@@ -15,7 +14,7 @@
 
 namespace metier::records {
 
-/// What could not be recorded.
+/// Number of records that were lost.
 struct Dropped {
     std::uint64_t executions = 0;
     std::uint64_t events = 0;  ///< transitions and intermediate results
@@ -31,13 +30,13 @@ struct Dropped {
     friend bool operator==(const Dropped&, const Dropped&) = default;
 };
 
-/// What recording is in.
+/// Whether records are written.
 enum class Health {
     writing,
     failing,  ///< nothing can be written, or it takes too long: something is or may get lost
 };
 
-/// What the server should tell as an alarm: once when recording fails, once when it works again.
+/// Alarm for the server's clients: once when recording fails, once when it works again.
 struct HealthReport {
     Health health = Health::writing;
     std::string text{};  ///< for a person: the reason and what was lost, "records work again: ..."
@@ -46,48 +45,43 @@ struct HealthReport {
 
 /// Records the executions of one server. Every call returns at once, whatever the disk does.
 ///
-/// A writer thread of its own writes at least every 500 ms: a crash of the server loses at most the
-/// last second. What comes faster than 2,000 executions a second is written as it was told, and
-/// made rows of, which readers see, once less comes, after ten seconds, or when the server is
-/// started again. While the store cannot be written or opened, events wait in a queue of a fixed
-/// size; beyond it new executions and events are dropped, of samples the oldest. An end is never
-/// dropped if its begin was not. What servers that died left under way is closed as kLost
-/// when it opens the store, and every hour. The store is trimmed to its retention at the beginning
-/// and then every hour.
+/// A thread of its own writes rows, at least every 500 ms: a crash of the server loses at most the
+/// last second. While the store cannot be opened or written, or more comes than can be written,
+/// records wait in a queue of a fixed size; beyond it new executions and events are dropped, of
+/// samples the oldest. An end is never dropped if its begin was not. Executions that dead servers
+/// left under way are closed as kLost when this opens the store, and every hour. The store is
+/// trimmed to its retention at the beginning and then every hour.
+///
+/// Threads: any, but no cycle thread (allocates, locks for a moment).
 class Recorder {
 public:
-    /// One execution of this recorder; 0: it was dropped, and all that is told of it is, too.
+    /// One execution of this recorder; 0: it was dropped, and all that follows of it is, too.
     using Key = std::uint64_t;
-    /// Makes JSON of a value in the form that its teller has given it.
-    using ToJson = std::string (*)(std::string_view);
 
     struct Options {
         std::string url{};     ///< as Store::open() takes it
         std::string server{};  ///< ApplicationUri; nobody else records under it
         Retention keep{};
-        /// Called on a thread of the recorder with parameters, intermediate values and results,
-        /// unless empty, whatever was told; null: they are JSON. Takes any bytes: the store may be
-        /// damaged.
-        ToJson to_json = nullptr;
         /// On a thread of the recorder, at each change of its health. May be empty.
         std::function<void(const HealthReport&)> on_health{};
-        std::size_t most_waiting = 10'000;          ///< executions and events
-        std::size_t most_waiting_samples = 16'384;  ///< about 220 byte each, taken at once
+        std::size_t most_waiting = 50'000'000;      ///< executions and events [byte]
+        std::size_t most_waiting_samples = 16'384;  ///< about 230 byte each
         /// Longest time without a write, because the disk hangs or others keep the store locked,
-        /// that is not told as failing while nothing is lost: a busy machine is no fault.
+        /// that is not reported as failing while nothing is lost: a busy machine is no fault.
         std::chrono::milliseconds patience{20'000};
     };
 
-    /// How it is, for metrics.
+    /// Figures for metrics.
     struct Status {
         Health health = Health::writing;
-        std::size_t waiting = 0;          ///< messages of which there are no rows yet
-        std::size_t waiting_samples = 0;  ///< about
+        std::size_t waiting = 0;          ///< executions and events that are not written yet
+        std::size_t waiting_samples = 0;  ///< as well
         std::uint64_t written = 0;        ///< executions that began and are in the store
         Dropped dropped{};
     };
 
-    /// Does not wait for the store: one that cannot be opened is tried again and told as failing.
+    /// Does not wait for the store: one that cannot be opened is tried again and reported as
+    /// failing.
     /// Errors: invalid_argument (no such URL, no server's name).
     static Result<std::unique_ptr<Recorder>> create(Options options);
     /// Tries once to write what is waiting.
@@ -96,24 +90,16 @@ public:
     Recorder& operator=(const Recorder&) = delete;
 
     /// An execution begins; its server is Options::server whatever it says. Its state changes with
-    /// its transitions. Threads: any, but no cycle thread (allocates, locks for a moment); the same
-    /// for all but sample().
-    Key begin(const ExecutionView& execution);
-    /// The same, and its first transition.
-    Key begin(const ExecutionView& execution, const TransitionView& first);
-    /// Of one execution in the order of their times; the 100,000 first are kept.
-    void transition(Key key, const TransitionView& transition);
-    void intermediate(Key key, const IntermediateView& intermediate);
-    /// Threads: any, cycle threads as well; neither locks nor allocates. One at a time for a key.
-    void sample(Key key, const PathSample& sample) noexcept;
-    /// Nothing may be told of it any more.
-    void end(Key key, const OutcomeView& outcome);
-    /// The same, and its last transition before.
-    void end(Key key, const OutcomeView& outcome, const TransitionView& last);
-    /// begin() and end() of an execution that is over.
-    void record(const WholeExecution& whole);
+    /// its transitions.
+    Key begin(Execution execution);
+    /// In the order of their times; the first 100,000 of an execution are kept.
+    void transition(Key key, Transition transition);
+    void intermediate(Key key, Intermediate intermediate);
+    void sample(Key key, const PathSample& sample);
+    /// Nothing may follow of it any more.
+    void end(Key key, Outcome outcome);
 
-    /// Waits until readers see all that was told before; false at the deadline. For tests and
+    /// Waits until readers see all that was recorded before; false at the deadline. For tests and
     /// tools, not for servers.
     bool flush(SteadyTime deadline);
     /// Threads: any.

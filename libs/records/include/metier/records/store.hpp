@@ -16,7 +16,7 @@ namespace metier::records {
 
 class Database;
 
-/// Which executions are wanted. What is empty takes all; what is not must fit as a whole.
+/// Executions that are wanted. An empty member takes all; one that is not must fit as a whole.
 struct Filter {
     std::string server{};  ///< ApplicationUri or name of the server
     std::string skill{};   ///< BrowseName
@@ -31,9 +31,6 @@ struct Filter {
     std::string text{};
 };
 
-/// Whether the execution is one of those. Threads: any; pure.
-bool fits(const Execution& execution, const Filter& filter);
-
 /// A part of a list.
 struct Page {
     std::int64_t before = 0;    ///< number of the last one of the page before; 0: the first page
@@ -46,13 +43,13 @@ struct Listing {
     bool more = false;  ///< older ones fit, too
 };
 
-/// What came or changed.
+/// Executions that came or changed.
 struct Changes {
     std::vector<Execution> executions{};  ///< as they are now, in the order of their last change
     std::int64_t revision = 0;            ///< to go on from
 };
 
-/// How much is kept; 0: without bound.
+/// Age and size up to which records are kept; 0: without bound.
 struct Retention {
     std::chrono::hours age{24 * 90};      ///< since the start
     std::uint64_t bytes = 2'000'000'000;  ///< in use by executions and their paths
@@ -91,22 +88,31 @@ public:
     Result<Execution> find(std::string_view number_or_id);
     /// An unknown Page::before gives nothing.
     Result<Listing> list(const Filter& filter, const Page& page);
-    /// What the execution started, on whichever server, oldest first.
+    /// Executions that the execution started, on whichever server, oldest first.
     Result<std::vector<Execution>> children(std::int64_t number);
     /// In the order of their times; nothing for an unknown number. The same for the next two.
     Result<std::vector<Transition>> transitions(std::int64_t number);
     Result<std::vector<Intermediate>> intermediates(std::int64_t number);
     Result<std::vector<PathSample>> path(std::int64_t number);
-    /// What came or changed after `revision`, by any server; to be asked again and again.
-    /// \param revision of the last answer, or of latestRevision() to begin with
-    Result<Changes> changes(std::int64_t revision, std::uint32_t count = 1'000);
+    /// Executions that came or changed after `revision`, by any server; to be asked again and
+    /// again. \param revision of the last answer, or of latestRevision() to begin with. One that
+    /// this store
+    ///                 has not reached, of a store that was here before, gives none
+    Result<Changes> changes(std::int64_t revision, const Filter& filter = {},
+                            std::uint32_t count = 1'000);
     Result<std::int64_t> latestRevision();
 
     /// Removes the oldest executions that are over, a part at a time.
     /// \return how many. Needs Access::write.
     Result<std::uint64_t> retain(const Retention& keep, UtcTime now);
-    /// What executions and their paths take [byte], about.
+    /// Space of executions and their paths [byte], about.
     Result<std::uint64_t> bytes();
+    /// Writes a copy of all records, as they are at one moment, into a SQLite file that is made.
+    /// \return how many executions. Errors: already_exists; the file is removed after any other.
+    Result<std::uint64_t> exportTo(const std::string& file);
+    /// Whether another open() would lead to the same store: false once a file was removed or
+    /// replaced.
+    bool isCurrent();
 
 private:
     explicit Store(std::unique_ptr<Database> database);

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "metier/base/error.hpp"
+#include "metier/records/store.hpp"
+
+namespace metier::records {
+
+/// A store that is opened when it is first used, and kept: opened anew once its file was replaced
+/// or its database was away.
+///
+/// Threading: any number of threads, one after the other.
+class KeptStore {
+public:
+    /// Longest wait for others.
+    static constexpr std::chrono::seconds kPatience{10};
+
+    /// \param url as Store::open() takes it
+    explicit KeptStore(std::string url) : url_(std::move(url)) {}
+
+    /// The Result of work(Store&). After an error that may come from an old connection it is called
+    /// once more, with a new one.
+    /// Errors: those of Store::open() and of `work`; resource_unavailable (kPatience passed).
+    template <typename Work>
+    auto use(Work work) -> std::invoke_result_t<Work, Store&> {
+        const std::unique_lock lock(mutex_, kPatience);
+        if (!lock) {
+            return fail(Errc::resource_unavailable, "records are being read for others");
+        }
+        const bool kept = store_ != nullptr && store_->isCurrent();
+        auto result = kept ? work(*store_) : useNew(work);
+        return kept && !result && isOfConnection(result.error().code) ? useNew(work) : result;
+    }
+
+private:
+    template <typename Work>
+    auto useNew(Work work) -> std::invoke_result_t<Work, Store&> {
+        if (auto opened = open(); !opened) {
+            return fail(opened.error());
+        }
+        return work(*store_);
+    }
+    Result<void> open();
+    static bool isOfConnection(Errc code);
+
+    const std::string url_;
+    std::timed_mutex mutex_;
+    std::unique_ptr<Store> store_;
+};
+
+}  // namespace metier::records

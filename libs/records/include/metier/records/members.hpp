@@ -1,0 +1,93 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "metier/records/execution.hpp"
+
+namespace metier::records {
+
+/// Table of the schema that has the column of a member.
+enum class Table : std::uint8_t { executions, kinds, notes };
+
+/// Kind of a text, which says after how many bytes it is cut.
+enum class Form : std::uint8_t { name, key, json };
+
+/// Description of a member of Execution or Transition, the only one there is: JSON, SQL, the limits
+/// of texts and the memory that a record takes all come from it.
+struct Member {
+    std::string_view name;           ///< in JSON
+    std::string_view column = name;  ///< in SQL
+    Table table = Table::executions;
+    Form form = Form::name;  ///< of a text
+    bool changes = false;    ///< in the table of executions, after the begin
+};
+
+/// Calls visit(const Member&, T& member) for each member, in their order. T is std::string,
+/// UtcTime, std::int64_t (the number in the store) or std::uint64_t, const if `execution` is.
+template <typename E, typename Visit>
+requires std::same_as<std::remove_const_t<E>, Execution>
+void visitMembers(E& execution, Visit visit) {
+    using enum Table;
+    const auto column = [](std::string_view name) { return Member{.name = name}; };
+    const auto kind = [](std::string_view name) { return Member{.name = name, .table = kinds}; };
+    visit(column("number"), execution.number);
+    visit(Member{.name = "id", .form = Form::key}, execution.id);
+    visit(kind("server"), execution.server);
+    visit(kind("server_name"), execution.server_name);
+    visit(kind("skill"), execution.skill);
+    visit(kind("controller"), execution.controller);
+    visit(kind("device"), execution.device);
+    visit(Member{.name = "parent", .form = Form::key}, execution.parent);
+    visit(column("parent_server"), execution.parent_server);
+    visit(column("session"), execution.session);
+    visit(column("client_name"), execution.client_name);
+    visit(Member{.name = "user", .column = "user_name", .table = kinds}, execution.user);
+    visit(column("thumbprint"), execution.thumbprint);
+    visit(Member{.name = "parameters", .form = Form::json}, execution.parameters);
+    visit(Member{.name = "check", .column = "check_report", .form = Form::json}, execution.check);
+    visit(column("started"), execution.started);
+    visit(Member{.name = "ended", .changes = true}, execution.ended);
+    visit(kind("state"), execution.state);
+    visit(kind("reason"), execution.reason);
+    visit(Member{.name = "reason_text", .table = notes, .form = Form::key}, execution.reason_text);
+    visit(Member{.name = "result", .form = Form::json, .changes = true}, execution.result);
+    visit(Member{.name = "missed_cycles", .changes = true}, execution.missed_cycles);
+}
+
+/// Does so for a transition.
+template <typename T, typename Visit>
+requires std::same_as<std::remove_const_t<T>, Transition>
+void visitMembers(T& transition, Visit visit) {
+    visit(Member{.name = "time"}, transition.time);
+    visit(Member{.name = "from"}, transition.from);
+    visit(Member{.name = "to"}, transition.to);
+    visit(Member{.name = "sub_state"}, transition.sub_state);
+    visit(Member{.name = "step"}, transition.step);
+    visit(Member{.name = "reason"}, transition.reason);
+    visit(Member{.name = "reason_text", .form = Form::key}, transition.reason_text);
+}
+
+/// Does so for an intermediate result, and for an outcome.
+template <typename T, typename Visit>
+requires std::same_as<std::remove_const_t<T>, Intermediate>
+void visitMembers(T& intermediate, Visit visit) {
+    visit(Member{.name = "time"}, intermediate.time);
+    visit(Member{.name = "value", .form = Form::json}, intermediate.value);
+}
+
+template <typename T, typename Visit>
+requires std::same_as<std::remove_const_t<T>, Outcome>
+void visitMembers(T& outcome, Visit visit) {
+    visit(Member{.name = "time"}, outcome.time);
+    visit(Member{.name = "state"}, outcome.state);
+    visit(Member{.name = "reason"}, outcome.reason);
+    visit(Member{.name = "reason_text", .form = Form::key}, outcome.reason_text);
+    visit(Member{.name = "result", .form = Form::json}, outcome.result);
+    visit(Member{.name = "missed_cycles"}, outcome.missed_cycles);
+}
+
+}  // namespace metier::records

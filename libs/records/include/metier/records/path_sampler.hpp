@@ -1,0 +1,71 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/device/force_torque_sensor.hpp"
+#include "metier/records/recorder.hpp"
+
+namespace metier::records {
+
+/// Records where an arm is while executions are under way: at their begin, at their end, and every
+/// 10 ms as long as it moves; an arm that stands is recorded once a second.
+///
+/// Threading: a thread of its own reads the arm's and the sensor's newest state, for which no cycle
+/// thread waits. begin() and end() from any thread; they wait for one reading of that thread at
+/// most.
+class PathSampler {
+public:
+    static constexpr std::chrono::milliseconds kPeriod{10};
+
+    /// \param arm      must outlive this, as the sensor and the recorder
+    /// \param sensor   may be null
+    PathSampler(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
+                Recorder& recorder);
+    ~PathSampler();
+    PathSampler(const PathSampler&) = delete;
+    PathSampler& operator=(const PathSampler&) = delete;
+
+    void begin(Recorder::Key key);
+    /// No sample of it comes after this.
+    /// \return cycles that the arm has missed since begin()
+    std::uint64_t end(Recorder::Key key);
+
+private:
+    struct Reading {
+        device::ArmState arm;
+        std::optional<device::WrenchSample> force{};
+        SteadyTime time{};
+    };
+    /// An execution that is under way.
+    struct Path {
+        Recorder::Key key = 0;
+        SteadyTime begin{};
+        std::uint64_t missed_at_begin = 0;
+        std::optional<Reading> sent{};     ///< the last sample
+        std::optional<Reading> skipped{};  ///< after it, and as good as the same
+    };
+
+    void run(const std::stop_token& stop);
+    Reading read() const;
+    void take(Path& path, const Reading& reading);
+    void send(Path& path, const Reading& reading);
+
+    const device::Arm& arm_;
+    const device::ForceTorqueSensor* sensor_;
+    Recorder& recorder_;
+
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::vector<Path> paths_;
+    std::jthread thread_;
+};
+
+}  // namespace metier::records

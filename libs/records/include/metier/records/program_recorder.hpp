@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "metier/records/execution.hpp"
+#include "metier/records/path_sampler.hpp"
+#include "metier/records/recorder.hpp"
+#include "metier/skill/program.hpp"
+
+namespace metier::records {
+
+/// Makes a record of each execution of one Program.
+///
+/// Threading: the Program's owner. Nothing waits for a disk.
+class ProgramRecorder final : private skill::ProgramObserver {
+public:
+    /// Place of the Program, as its records show it; texts may be empty.
+    struct Place {
+        std::string server_name{};  ///< as its cell file names it
+        std::string controller{};   ///< BrowseName of what the Program belongs to
+        std::string device{};       ///< the arm or gripper it moves
+    };
+
+    /// \param program must outlive this, as the recorder and the sampler
+    /// \param sampler of the arm that the Program moves; null: it moves none
+    ProgramRecorder(skill::Program& program, Recorder& recorder, PathSampler* sampler, Place place);
+    ~ProgramRecorder() override;
+    ProgramRecorder(const ProgramRecorder&) = delete;
+    ProgramRecorder& operator=(const ProgramRecorder&) = delete;
+
+private:
+    // Its transition follows at once.
+    void onBegin(const skill::ExecutionRecord& /*execution*/) override {}
+    void onTransition(const skill::TransitionEvent& event) override;
+    void onSubState(skill::SubState sub_state, std::string_view step) override;
+    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
+    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
+    void onResult(const skill::ValueMap& /*result*/) override {}
+    void onProgress(const skill::Value& intermediate) override;
+    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
+    void onStarted(const skill::StartedExecution& child) override;
+    void onCheck(const skill::Caller& caller, const skill::ValueMap& parameters,
+                 const skill::CheckReport& report) override;
+
+    void begin(const skill::ExecutionRecord& execution);
+    void add(const skill::TransitionEvent& event);
+    void end(Outcome outcome);
+    std::string checkOf(const skill::ExecutionRecord& execution) const;
+
+    skill::Program& program_;
+    Recorder& recorder_;
+    PathSampler* sampler_;
+    const Place place_;
+
+    Recorder::Key key_ = 0;  ///< of the execution that is under way; 0: none, or dropped
+    skill::State state_;     ///< after the last transition
+    skill::SubState sub_state_ = skill::SubState::none;
+    std::string step_;
+    /// The last answer of Check.
+    struct Checked {
+        std::string session{};
+        skill::ValueMap parameters{};
+        std::string report{};  ///< JSON
+    };
+    Checked checked_;
+};
+
+}  // namespace metier::records

@@ -1,0 +1,106 @@
+#include "export.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+
+#include "schema.hpp"
+#include "sqlite_database.hpp"
+
+namespace metier::records {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows that are read and written at once.
+constexpr std::int64_t kAtOnce = 500;
+
+/// A table and the number that its rows are read by.
+struct Copied {
+    std::string_view table;
+    std::string_view key;
+};
+constexpr std::array kCopied{Copied{"kinds", "kind"}, Copied{"notes", "note"},
+                             Copied{"executions", "number"}, Copied{"parts", "part"}};
+
+Result<void> insert(Database& into, std::string_view table, const Rows& rows) {
+    for (const auto& row : rows) {
+        std::vector<std::string> parameters;
+        for (std::size_t i = 1; i <= row.cells().size(); ++i) {
+            parameters.push_back(fmt::format("${}", i));
+        }
+        const auto sql =
+            fmt::format("INSERT INTO {} VALUES ({})", table, fmt::join(parameters, ", "));
+        if (auto inserted = into.run(sql, row.cells()); !inserted) {
+            return inserted;
+        }
+    }
+    return {};
+}
+
+/// The key is the first column of every table.
+Result<void> copy(Database& from, Database& into, const Copied& copied) {
+    const auto sql = fmt::format("SELECT * FROM {0} WHERE {1} > $1 ORDER BY {1} LIMIT $2",
+                                 copied.table, copied.key);
+    std::int64_t last = std::numeric_limits<std::int64_t>::min();
+    while (true) {
+        const auto rows = from.query(sql, {last, kAtOnce});
+        if (!rows || rows->empty()) {
+            return rows.map([](const Rows& /*none*/) {});
+        }
+        auto done = inTransaction(into, [&] { return insert(into, copied.table, *rows); });
+        if (!done) {
+            return done;
+        }
+        last = rows->back().integer(0);
+    }
+}
+
+/// The version comes last: a file that was left half written is no store of records.
+Result<void> copyAll(Database& from, Database& into) {
+    auto done =
+        into.script("PRAGMA synchronous = OFF; DELETE FROM metier_records; DELETE FROM notes");
+    for (const auto& copied : kCopied) {
+        done = done.and_then([&] { return copy(from, into, copied); });
+    }
+    return done.and_then([&] { return from.query("SELECT name, value FROM metier_records"); })
+        .and_then([&](const Rows& rows) { return insert(into, "metier_records", rows); })
+        // All of it is on the disk, and in the file alone, not in one beside it.
+        .and_then(
+            [&] { return into.script("PRAGMA synchronous = FULL; PRAGMA journal_mode = DELETE"); });
+}
+
+Result<std::uint64_t> writeFile(Database& from, const std::string& file) {
+    const auto opened = SqliteDatabase::open(file, Store::Access::write);
+    if (!opened) {
+        return fail(opened.error());
+    }
+    auto& into = **opened;
+    return prepareSchema(into, Store::Access::write)
+        .and_then([&] { return inSnapshot(from, [&] { return copyAll(from, into); }); })
+        .and_then([&] { return into.number("SELECT count(*) FROM executions"); })
+        .map([](std::int64_t count) { return static_cast<std::uint64_t>(count); });
+}
+
+}  // namespace
+
+Result<std::uint64_t> exportTo(Database& from, const std::string& file) {
+    std::error_code none;
+    if (fs::symlink_status(file, none).type() != fs::file_type::not_found) {
+        return fail(Errc::already_exists,
+                    fmt::format("{} exists already: it is left as it is", file));
+    }
+    auto count = writeFile(from, file);
+    for (const auto* more : {"", "-wal", "-shm"}) {
+        if (!count) {
+            fs::remove(file + more, none);
+        }
+    }
+    return count;
+}
+
+}  // namespace metier::records

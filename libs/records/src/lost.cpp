@@ -1,0 +1,102 @@
+#include "lost.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "parts.hpp"
+#include "rows.hpp"
+#include "text.hpp"
+
+namespace metier::records {
+namespace {
+
+constexpr std::string_view kLostText = "the server ended while this was under way";
+
+/// The latest time that is known of an execution under way.
+Result<UtcTime> lastSignOf(Database& database, const Execution& execution) {
+    const auto rows = database.query(
+        "SELECT events, samples FROM parts WHERE part >= $1 AND part < $2 ORDER BY part DESC "
+        "LIMIT 1",
+        {execution.number * kMostParts, (execution.number + 1) * kMostParts});
+    if (!rows) {
+        return fail(rows.error());
+    }
+    auto last = execution.started;
+    if (rows->empty()) {
+        return last;
+    }
+    std::vector<Event> events;
+    decodeEvents(rows->front().text(0), events);
+    for (const auto& event : events) {
+        last = std::max(last, std::visit([](const auto& one) { return one.time; }, event));
+    }
+    std::vector<PathSample> samples;
+    decodeSamples(rows->front().bytes(1), samples);
+    if (!samples.empty()) {
+        const std::chrono::duration<double> time(samples.back().time);
+        last =
+            std::max(last, execution.started + std::chrono::duration_cast<UtcTime::duration>(time));
+    }
+    return last;
+}
+
+Result<void> close(Database& database, const std::string& server) {
+    auto executions =
+        readExecutions(database, "ended = 0 AND server = $1 ORDER BY number", {server});
+    if (!executions) {
+        return fail(executions.error());
+    }
+    KindCache kinds;
+    RowWriter writer(database, kinds);
+    auto done = writer.takeRevisions(static_cast<std::int64_t>(executions->size()));
+    for (auto& execution : *executions) {
+        const auto ended = lastSignOf(database, execution);
+        if (!done || !ended) {
+            return ended ? done : Result<void>(fail(ended.error()));
+        }
+        execution.ended = *ended;
+        execution.state = kLost;
+        execution.reason = kServerLost;
+        execution.reason_text = kLostText;
+        done = writer.save(execution);
+    }
+    return done;
+}
+
+/// Within a transaction, so that the server does not begin meanwhile.
+Result<void> closeIfDead(Database& database, const std::string& server) {
+    return database.isAttendedByOthers(server).and_then(
+        [&](bool attended) { return attended ? Result<void>() : close(database, server); });
+}
+
+}  // namespace
+
+Result<Presence> attend(Database& database, const std::string& server, Opening opening) {
+    const auto name = storable(server, kLongestName);
+    if (opening == Opening::again) {
+        return database.attend(name);
+    }
+    Presence presence;
+    return inTransaction(database,
+                         [&] {
+                             return closeIfDead(database, name)
+                                 .and_then([&] { return database.attend(name); })
+                                 .map([&](Presence held) { presence = std::move(held); });
+                         })
+        .map([&] { return presence; });
+}
+
+Result<void> closeLostOfOthers(Database& database, const std::string& own) {
+    const auto servers =
+        database.query("SELECT DISTINCT server FROM history WHERE ended = 0 AND server <> $1",
+                       {storable(own, kLongestName)});
+    Result<void> done = servers.map([](const Rows& /*servers*/) {});
+    for (const auto& row : servers.value_or(Rows())) {
+        done = done.and_then([&] {
+            return inTransaction(database, [&] { return closeIfDead(database, row.text(0)); });
+        });
+    }
+    return done;
+}
+
+}  // namespace metier::records

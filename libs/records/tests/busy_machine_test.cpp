@@ -1,0 +1,66 @@
+// Servers with one store while other programs use every core.
+#include <csignal>
+#include <thread>
+
+#include "metier/process/child_process.hpp"
+#include "recorded.hpp"
+#include "temporary_postgres.hpp"
+
+namespace metier::records {
+namespace {
+
+using process::ChildProcess;
+
+/// Programs that leave no core idle, as a compiler does.
+class BusyMachine {
+public:
+    BusyMachine() {
+        for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i) {
+            threads_.emplace_back([](const std::stop_token& stop) {
+                while (!stop.stop_requested()) {
+                }
+            });
+        }
+    }
+
+private:
+    std::vector<std::jthread> threads_;
+};
+
+void expectFourWithoutAlarms(const std::string& url) {
+    const BusyMachine busy;
+    std::vector<ChildProcess> servers;
+    for (const auto* name : {"one", "two", "three", "four"}) {
+        servers.push_back(ChildProcess::start({METIER_RECORDS_WRITER, url, name, "0"}).value());
+    }
+    constexpr int kLines = 400;  // 2 s
+    for (auto& server : servers) {
+        EXPECT_EQ(server.readLine(soon()).value_or("nothing"), "ready");
+        for (int i = 0; i < kLines; ++i) {
+            const auto line = server.readLine(soon()).value_or("nothing");
+            EXPECT_EQ(line.find("health"), std::string::npos) << line;
+        }
+    }
+    for (auto& server : servers) {
+        server.signal(SIGKILL);
+        EXPECT_EQ(server.waitUntil(soon()), 128 + SIGKILL);
+    }
+    const auto store = Store::open(url).value();
+    EXPECT_TRUE(store->find("one-1"));
+    EXPECT_TRUE(store->find("four-1"));
+}
+
+TEST(FourServersOfABusyMachine, ShareAFileWithoutAnAlarm) {
+    expectFourWithoutAlarms((testFolder() / "records.db").string());
+}
+
+TEST(FourServersOfABusyMachine, ShareADatabaseWithoutAnAlarm) {
+    auto* postgres = TemporaryPostgres::instance();
+    if (postgres == nullptr) {
+        GTEST_SKIP() << "PostgreSQL is not installed";
+    }
+    expectFourWithoutAlarms(postgres->freshDatabase());
+}
+
+}  // namespace
+}  // namespace metier::records
