@@ -21,9 +21,9 @@
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
-#include "metier/remote_skill/remote_server.hpp"
+#include "metier/client/remote_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::benchmarks {
 namespace {
@@ -55,7 +55,7 @@ public:
     }
     /// A composed skill whose only used skill is that of `below`.
     void serveAbove(OneSkillServer& below, const std::string& text) {
-        below_ = orThrow(remote_skill::RemoteServer::connect({.url = below.url(), .name = "below"},
+        below_ = orThrow(client::RemoteServer::connect({.url = below.url(), .name = "below"},
                                                              skills_->executor()));
         auto child = orThrow(below_->use(orThrow(below_->skills()).front(), name_));
         auto composed = orThrow(composition::compose(
@@ -78,7 +78,7 @@ private:
     std::string name_;
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_ = orThrow(opcua::Server::create(serverOptions()));
-    std::unique_ptr<remote_skill::RemoteServer> below_;
+    std::unique_ptr<client::RemoteServer> below_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;  // ends before what it uses
     opcua_skill::SkillController place_;
 };
@@ -112,8 +112,8 @@ class Runner {
 public:
     explicit Runner(const std::string& url)
         : client_(orThrow(opcua::Client::connect(url))),
-          skill_(orThrow(skill_client::SkillHandle::open(
-              *client_, orThrow(skill_client::findSkills(*client_)).front()))) {}
+          skill_(orThrow(client::SkillHandle::open(
+              *client_, orThrow(client::findSkills(*client_)).front()))) {}
 
     /// [ms]
     double run() {
@@ -125,7 +125,7 @@ public:
 
 private:
     std::unique_ptr<opcua::Client> client_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
     std::uint64_t count_ = 0;
 };
 

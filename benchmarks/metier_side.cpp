@@ -15,7 +15,7 @@
 #include "metier/records/program_recorder.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "recording_switch.hpp"
 
 namespace metier::benchmarks {
@@ -154,7 +154,7 @@ private:
 class MetierCaller final : public Caller {
 public:
     explicit MetierCaller(const std::string& url) : client_(connect(url)) {
-        skill_ = orThrow(skill_client::findSkill(*client_, kStarted)).node;
+        skill_ = orThrow(client::findSkill(*client_, kStarted)).node;
         start_ = orThrow(client_->translate(skill_, {{0, "Start"}}));
     }
 
@@ -217,7 +217,7 @@ class BareCallerOfMetier final : public Caller {
 public:
     explicit BareCallerOfMetier(const std::string& url) : client_(url) {
         const auto finder = orThrow(opcua::Client::connect(url, {}));
-        const auto skill = orThrow(skill_client::findSkill(*finder, kStarted)).node;
+        const auto skill = orThrow(client::findSkill(*finder, kStarted)).node;
         skill_ = skill.toString();
         start_ = orThrow(finder->translate(skill, {{0, "Start"}})).toString();
     }

@@ -36,9 +36,9 @@
 
 #include "bare.hpp"
 #include "metier/opcua/client.hpp"
-#include "metier/process/child_process.hpp"
-#include "metier/skill_client/kinematics_reader.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/link/child_process.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "server_process.hpp"
 #include "tap.hpp"
 
@@ -162,10 +162,10 @@ private:
             << "stream_silence = 1.0\n";
     }
 
-    std::optional<process::ChildProcess> start(std::vector<std::string> arguments) {
+    std::optional<link::ChildProcess> start(std::vector<std::string> arguments) {
         const auto what = arguments.front();
         arguments.insert(arguments.begin(), {METIER_PROGRAM, "--insecure-lab"});
-        auto child = require("metier", process::ChildProcess::start(arguments));
+        auto child = require("metier", link::ChildProcess::start(arguments));
         const auto line = require(what, child.readLine(steady_clock::now() + kPatience));
         ready_ = line.substr(line.find(' ') + 1);
         return child;
@@ -176,8 +176,8 @@ private:
     Tap tap_;
     std::filesystem::path file_;
     std::string ready_;
-    std::optional<process::ChildProcess> controller_;
-    std::optional<process::ChildProcess> server_;
+    std::optional<link::ChildProcess> controller_;
+    std::optional<link::ChildProcess> server_;
 };
 
 /// The stream of one cell, as a client writes it.
@@ -224,15 +224,15 @@ public:
     std::string reason() { return skill_.reasonText(); }
 
 private:
-    static skill_client::SkillHandle open(opcua::Client& client) {
-        auto address = require("skill", skill_client::findSkill(client, "PositionStreamSkill"));
-        return require("skill", skill_client::SkillHandle::open(client, std::move(address)));
+    static client::SkillHandle open(opcua::Client& client) {
+        auto address = require("skill", client::findSkill(client, "PositionStreamSkill"));
+        return require("skill", client::SkillHandle::open(client, std::move(address)));
     }
 
     std::vector<double> measured() {
         const auto nodes =
-            require("kinematics", skill_client::findKinematics(*client_, skill_.address()));
-        return require("joints", skill_client::readJointPosition(*client_, nodes));
+            require("kinematics", client::findKinematics(*client_, skill_.address()));
+        return require("joints", client::readJointPosition(*client_, nodes));
     }
 
     /// The controller may still come up: a reset succeeds once it has.
@@ -250,7 +250,7 @@ private:
 
     Tap& tap_;
     std::unique_ptr<opcua::Client> client_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
     std::vector<double> joints_;
     double start_ = 0;
 };

@@ -5,10 +5,10 @@ set(METIER_EXTRA_DEVICES "" CACHE STRING
 
 # metier_add_driver(<name> SOURCES ... [PUBLIC libs] [PRIVATE libs])
 # A library metier::<name>_driver, as metier_add_library makes it, that defines
-#   metier::driver::Driver metier::driver::<name>Driver();
+#   metier::device::Driver metier::device::<name>Driver();
 function(metier_add_driver name)
     metier_add_library(${name}_driver ${ARGN})
-    target_link_libraries(metier_${name}_driver PUBLIC metier::driver)
+    target_link_libraries(metier_${name}_driver PUBLIC metier::device)
     set_property(GLOBAL APPEND PROPERTY METIER_DRIVERS ${name})
 endfunction()
 
@@ -57,7 +57,7 @@ endfunction()
 # Call after all folders were added.
 function(metier_add_device_tables)
     get_property(drivers GLOBAL PROPERTY METIER_DRIVERS)
-    _metier_device_table(drivers "${drivers}" metier::@_driver metier/driver/driver.hpp
+    _metier_device_table(drivers "${drivers}" metier::@_driver metier/device/driver.hpp
         Driver Driver drivers)
     get_property(controllers GLOBAL PROPERTY METIER_VIRTUAL_CONTROLLERS)
     _metier_device_table(virtual_controllers "${controllers}" metier::virtual_@

@@ -18,7 +18,7 @@
 #include "metier/device/arm_core.hpp"
 #include "metier/device/notifier.hpp"
 #include "metier/device/reset_desk.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 #include "metier/link/back_off.hpp"
 #include "metier/link/tcp_link.hpp"
 
@@ -269,7 +269,7 @@ private:
     std::jthread thread_;
 };
 
-Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+Result<device::OpenDevice> open(const device::OpenRequest& request) {
     const auto port = static_cast<std::uint16_t>(request.settings.numberOr("port", 7300, 1, 65535));
     // Of the controller, until it counts as gone: three cycles, more for a virtual one [s].
     const auto silence = request.settings.numberOr("longest_silence", 0.03, 0.03, 2.0);
@@ -287,7 +287,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
     auto arm = std::make_shared<TernArm>(
         std::move(info), request.address, port,
         std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(silence)));
-    driver::OpenDevice device;
+    device::OpenDevice device;
     device.arm = arm.get();
     device.owner = std::move(arm);
     return device;
@@ -296,11 +296,11 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
 }  // namespace
 }  // namespace metier::tern_driver
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver ternDriver() {
     return {"tern", "The robot of docs/guide/add-a-robot.md: lines of text over TCP",
             tern_driver::open};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

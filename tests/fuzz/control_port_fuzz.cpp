@@ -20,7 +20,7 @@ namespace {
 
 using namespace metier;
 using namespace metier::virtual_controller;
-using Values = std::map<std::string, configuration::Settings::Value>;
+using Values = std::map<std::string, cell::Settings::Value>;
 
 // An address of this process alone, so that ports which have a fixed number are free.
 std::string ownAddress(std::size_t index) {

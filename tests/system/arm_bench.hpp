@@ -45,7 +45,7 @@ public:
     ArmBench(const ArmBench&) = delete;
     ArmBench& operator=(const ArmBench&) = delete;
 
-    skill_client::SkillHandle& skill() { return skill_; }
+    client::SkillHandle& skill() { return skill_; }
     opcua::Client& client() { return *client_; }
     const std::vector<double>& home() const { return home_; }
     const std::string& address() const { return cell_.virtualAddress("controller"); }
@@ -88,7 +88,7 @@ private:
     Queue<skill::TransitionEvent> events_{1000};
     RunningCell cell_;
     std::unique_ptr<opcua::Client> client_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
     std::vector<double> home_;
     UtcTime injected_{};
     mutable Queue<int> nothing_{1};

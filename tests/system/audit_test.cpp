@@ -9,8 +9,8 @@
 
 #include "discovered_cell.hpp"
 #include "installation.hpp"
-#include "metier/audit/audit_log.hpp"
-#include "metier/skill_client/control_handle.hpp"
+#include "metier/security/audit_log.hpp"
+#include "metier/client/control_handle.hpp"
 #include "server_events.hpp"
 #include "small_disk.hpp"
 
@@ -80,7 +80,7 @@ TEST_F(AuditedArm, KeepsWhoStartedWhoHaltedAndWhoHadControl) {
     const auto home = jointPosition(*owner, skill);
     {
         const auto control =
-            skill_client::ControlHandle::acquire(*owner, skill.address().controller()->node, {});
+            client::ControlHandle::acquire(*owner, skill.address().controller()->node, {});
         ASSERT_TRUE(control) << control.error().message;
         const auto started =
             skill.startWith({.execution_id = "audited", .parameters = longMove(home)});
@@ -114,7 +114,7 @@ TEST_F(AuditedArm, KeepsWhatTheServerDidForAnOwnerThatWasLost) {
     auto skill = openSkill(*watcher, "JointPtpMoveSkill");
     auto target = jointPosition(*watcher, skill);
     target.front() += 1.0;
-    auto run = process::ChildProcess::start(
+    auto run = link::ChildProcess::start(
                    metierCommand({"run", server.url(), "JointPtpMoveSkill", "--set",
                                   fmt::format("TargetJointPosition={}", fmt::join(target, ",")),
                                   "--set", "SpeedOverride=0.1", "--lease", "300ms"}))

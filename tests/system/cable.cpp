@@ -25,7 +25,7 @@ SteadyTime soon() {
 }
 
 std::string run(const std::vector<std::string>& command) {
-    auto child = process::ChildProcess::start(command, process::ErrorOutput::with_output);
+    auto child = link::ChildProcess::start(command, link::ErrorOutput::with_output);
     if (!child) {
         throw std::runtime_error(child.error().message);
     }
@@ -39,11 +39,11 @@ std::string run(const std::vector<std::string>& command) {
     return output;
 }
 
-process::ChildProcess farNamespace() {
+link::ChildProcess farNamespace() {
     if (::unshare(CLONE_NEWNET) != 0) {
         throw std::system_error(errno, std::generic_category(), "a network namespace");
     }
-    auto child = process::ChildProcess::start(
+    auto child = link::ChildProcess::start(
         {"unshare", "--net", "sh", "-c", "echo up; exec sleep infinity"});
     if (!child || !child->readLine(soon())) {
         throw std::runtime_error("no second network namespace");

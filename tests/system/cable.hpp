@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::system_tests {
 
@@ -48,7 +48,7 @@ public:
     std::string lossCounts() const;
 
 private:
-    process::ChildProcess far_end_;  // keeps the far namespace
+    link::ChildProcess far_end_;  // keeps the far namespace
 };
 
 }  // namespace metier::system_tests

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "metier_program.hpp"
 #include "running_cell.hpp"
@@ -143,12 +143,12 @@ class LoggedCell {
 public:
     explicit LoggedCell(const std::filesystem::path& file,
                         const std::vector<std::string>& more = {})
-        : process_(process::ChildProcess::start(commandFor(file, more),
-                                                process::ErrorOutput::with_output)
+        : process_(link::ChildProcess::start(commandFor(file, more),
+                                                link::ErrorOutput::with_output)
                        .value()) {
         said_ = readTo("the cell is up");
     }
-    process::ChildProcess& process() { return process_; }
+    link::ChildProcess& process() { return process_; }
     /// All lines until it was up.
     const std::string& said() const { return said_; }
     /// The address of a server, as it was printed.
@@ -198,7 +198,7 @@ private:
         return metierCommand(arguments);
     }
 
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::string said_;
 };
 
@@ -256,7 +256,7 @@ TEST(CellRestart, WaitsLongerAfterEveryEnd) {
 TEST(DemoCells, AllowEveryServerOfABusyComputerASecond) {
     for (const auto* file : {"demo.toml", "pick_and_place.toml"}) {
         const auto cell =
-            configuration::loadCell(std::filesystem::path(METIER_SOURCE_DIR) / "cells" / file);
+            cell::loadCell(std::filesystem::path(METIER_SOURCE_DIR) / "cells" / file);
         ASSERT_TRUE(cell) << cell.error().message;
         for (const auto& server : cell->servers) {
             EXPECT_EQ(server.stall_limit, 1.0) << file << ": " << server.name;
@@ -280,7 +280,7 @@ struct SilentPeer {
 /// A program that waits for `peer` ends within a second of SIGTERM.
 void expectPromptEnd(const std::vector<std::string>& arguments, SilentPeer& peer) {
     auto program =
-        process::ChildProcess::start(metierCommand(arguments), process::ErrorOutput::with_output)
+        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output)
             .value();
     const auto caller = peer.awaitCaller();
     const auto processes = descendants(program.pid());

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "metier/base/queue.hpp"
-#include "metier/skill_client/kinematics_reader.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "metier_program.hpp"
 #include "running_cell.hpp"
 
@@ -55,7 +55,7 @@ TEST(Cell, OfTheDemoMovesEveryArmAlongItsSquareOnItsWire) {
 TEST(Cell, IsFoundByBrowsing) {
     const ServerProcess iiwa("iiwa");
     const auto client = connectTo(iiwa.url());
-    const auto skills = skill_client::findSkills(*client);
+    const auto skills = client::findSkills(*client);
     ASSERT_TRUE(skills) << skills.error().message;
     std::vector<std::string> names;
     for (const auto& skill : *skills) {
@@ -104,7 +104,7 @@ public:
     };
     Seen next() { return transitions_.popUntil(inAMinute()).value(); }
     opcua::Client& client() { return *client_; }
-    skill_client::SkillHandle& skill() { return skill_; }
+    client::SkillHandle& skill() { return skill_; }
     const std::vector<double>& home() const { return home_; }
     std::vector<double> position() { return jointPosition(*client_, skill_); }
 
@@ -122,9 +122,9 @@ public:
     /// Until the arm really moves.
     void awaitMotion() {
         Queue<double> positions(1'000);
-        const auto nodes = skill_client::findKinematics(*client_, skill_.address());
+        const auto nodes = client::findKinematics(*client_, skill_.address());
         ASSERT_TRUE(nodes);
-        const auto subscription = skill_client::subscribeJointPosition(
+        const auto subscription = client::subscribeJointPosition(
             *client_, *nodes, std::chrono::milliseconds(10),
             [&positions](const auto& joints) { positions.tryPush(joints.front()); });
         ASSERT_TRUE(subscription);
@@ -138,7 +138,7 @@ public:
     /// Until the server says that its arm has this safety state.
     void awaitSafetyState(std::int32_t wanted) {
         Queue<std::int32_t> states(1'000);
-        const auto nodes = skill_client::findKinematics(*client_, skill_.address());
+        const auto nodes = client::findKinematics(*client_, skill_.address());
         ASSERT_TRUE(nodes);
         const auto subscription =
             client_->subscribeData(nodes->safety_state, {std::chrono::milliseconds(50), 10},
@@ -158,7 +158,7 @@ public:
 private:
     Queue<Seen> transitions_{100};
     std::unique_ptr<opcua::Client> client_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
     std::vector<double> home_;
 };
 

@@ -4,7 +4,7 @@
 #include "discovered_cell.hpp"
 #include "installation.hpp"
 #include "metier/opcua/discovery.hpp"
-#include "metier/trust/security_folder.hpp"
+#include "metier/security/security_folder.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -211,32 +211,32 @@ TEST_F(ClosedCell, GoesOnWithARenewedCertificate) {
 }
 
 TEST_F(ClosedCell, WarnsAMonthBeforeACertificateEnds) {
-    const auto folder = trust::SecurityFolder::open(here_.folder()).value();
+    const auto folder = security::SecurityFolder::open(here_.folder()).value();
     const auto now = std::chrono::system_clock::now();
-    const auto ending = trust::makeIdentity({.application_name = "metier iiwa",
+    const auto ending = security::makeIdentity({.application_name = "metier iiwa",
                                              .application_uri = "urn:test:metier:iiwa",
                                              .hosts = {"localhost"},
                                              .lifetime = std::chrono::days(29)},
                                             now);
-    ASSERT_TRUE(trust::saveIdentity(folder.identityFolder("iiwa"), *ending));
+    ASSERT_TRUE(security::saveIdentity(folder.identityFolder("iiwa"), *ending));
     auto serve =
         here_.command({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"});
-    auto server = process::ChildProcess::start(serve, process::ErrorOutput::with_output).value();
+    auto server = link::ChildProcess::start(serve, link::ErrorOutput::with_output).value();
     std::string said;
     while (said.find("metier trust renew iiwa") == std::string::npos) {
         const auto line = server.readLine(inAMinute());
         ASSERT_TRUE(line) << said;
         said += *line + "\n";
     }
-    EXPECT_THAT(said, HasSubstr("ends on " + trust::dateText(now + std::chrono::days(29))));
+    EXPECT_THAT(said, HasSubstr("ends on " + security::dateText(now + std::chrono::days(29))));
     EXPECT_THAT(here_.run({"trust", "list"}).output, HasSubstr("renew it, iiwa"));
 }
 
 TEST_F(ClosedCell, SaysWhatALabIs) {
     auto server =
-        process::ChildProcess::start(
+        link::ChildProcess::start(
             metierCommand({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"}),
-            process::ErrorOutput::with_output)
+            link::ErrorOutput::with_output)
             .value();
     std::string said;
     while (said.find("INSECURE LAB") == std::string::npos) {

@@ -9,8 +9,8 @@
 namespace metier::system_tests {
 namespace {
 
-process::ChildProcess startDiscovery(int forget_after, const std::string& port) {
-    auto child = process::ChildProcess::start(metierCommand(
+link::ChildProcess startDiscovery(int forget_after, const std::string& port) {
+    auto child = link::ChildProcess::start(metierCommand(
         {"discovery", "--port", port, "--forget-after", std::to_string(forget_after)}));
     if (!child) {
         throw std::runtime_error(child.error().message);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "metier/opcua/discovery.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {
@@ -29,7 +29,7 @@ public:
     bool awaitForgotten(const std::string& name) const;
 
 private:
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::string url_;
 };
 

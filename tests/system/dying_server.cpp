@@ -26,9 +26,9 @@ std::string freeAddress() {
            std::to_string(getpid() / 250 % 250) + "." + std::to_string(1 + getpid() % 250);
 }
 
-process::ChildProcess startController(const std::string& file, const std::string& address) {
+link::ChildProcess startController(const std::string& file, const std::string& address) {
     auto controller =
-        process::ChildProcess::start(
+        link::ChildProcess::start(
             metierCommand({"virtual", "run", file, "controller", "--address", address}))
             .value();
     controller.readLine(inAMinute()).value();
@@ -52,7 +52,7 @@ StartedServer DyingServer::start(const std::string& server,
     std::vector<std::string> arguments{"serve", file_, "--server", server};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto process =
-        process::ChildProcess::start(metierCommand(arguments), process::ErrorOutput::with_output)
+        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output)
             .value();
     const std::string ready = "ready ";
     std::string said;

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "metier/base/clock.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {
 
 /// A `metier serve` that printed its ready line.
 struct StartedServer {
-    process::ChildProcess process;
+    link::ChildProcess process;
     std::string url;
 };
 
@@ -66,7 +66,7 @@ private:
 
     std::string file_;
     std::string address_;
-    process::ChildProcess controller_;
+    link::ChildProcess controller_;
     SteadyTime begun_;
     StartedServer server_;
     std::chrono::steady_clock::duration started_in_;

@@ -7,7 +7,7 @@
 
 #include "discovered_cell.hpp"
 #include "metier/base/queue.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -37,7 +37,7 @@ std::string robotOf(const std::string& url) {
     if (!client) {
         return "none";
     }
-    const auto skill = skill_client::findSkill(**client, "JointPtpMoveSkill");
+    const auto skill = client::findSkill(**client, "JointPtpMoveSkill");
     return skill ? skill->controllerName() : "none";
 }
 
@@ -126,10 +126,10 @@ TEST(SoughtRobot, ReachesAsFarAsItMust) {
 TEST(SoughtRobot, IsSoughtNoLongerOnceTheComponentIsToStop) {
     const DiscoveryProcess lds(2);
     auto seeking =
-        process::ChildProcess::start(
+        link::ChildProcess::start(
             metierCommand({"--log", "info", "serve", discoveredCell().string(), "--server",
                            "any-robot", "--port", "0", "--discovery", lds.url()}),
-            process::ErrorOutput::with_output)
+            link::ErrorOutput::with_output)
             .value();
     while (const auto line = seeking.readLine(inAMinute())) {
         if (line->find("any-robot seeks a robot") != std::string::npos) {

@@ -79,8 +79,8 @@ protected:
     UtcTime injected_{};
     RunningCell cell_{deviceCell("wsg50")};
     std::unique_ptr<opcua::Client> client_ = connectTo(cell_.url("gripper"));
-    skill_client::SkillHandle grasp_ = openSkill(*client_, "GraspGripperSkill");
-    skill_client::SkillHandle release_ = openSkill(*client_, "ReleaseGripperSkill");
+    client::SkillHandle grasp_ = openSkill(*client_, "GraspGripperSkill");
+    client::SkillHandle release_ = openSkill(*client_, "ReleaseGripperSkill");
 };
 
 TEST_F(GripperOnItsWire, HoldsAPartAndLetsItGo) {

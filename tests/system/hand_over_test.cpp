@@ -25,7 +25,7 @@ std::filesystem::path cellOf(const std::string& arm) {
 class HandOver : public ::testing::TestWithParam<const char*> {
 protected:
     /// Moves axis 1 by so much with one of the skills. \return how long after now it was refused
-    std::chrono::nanoseconds move(skill_client::SkillHandle& skill, double by) {
+    std::chrono::nanoseconds move(client::SkillHandle& skill, double by) {
         auto target = home_;
         target.front() += by;
         const auto deadline = inAMinute();
@@ -48,8 +48,8 @@ protected:
     ServerProcess component_{"ur5-move", {"--port", "0", "--robot", cell_.url("arm")}};
     std::unique_ptr<opcua::Client> owner_ = connectTo(cell_.url("arm"));
     std::unique_ptr<opcua::Client> other_ = connectTo(component_.url());
-    skill_client::SkillHandle own_ = openSkill(*owner_, "JointPtpMoveSkill");
-    skill_client::SkillHandle theirs_ = openSkill(*other_, "JointPtpMoveSkill");
+    client::SkillHandle own_ = openSkill(*owner_, "JointPtpMoveSkill");
+    client::SkillHandle theirs_ = openSkill(*other_, "JointPtpMoveSkill");
     std::vector<double> home_ = jointPosition(*owner_, own_);
 };
 

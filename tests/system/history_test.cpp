@@ -166,9 +166,9 @@ TEST_F(History, ShowsAllOfOneByNumberOrId) {
 }
 
 TEST_F(History, FollowsWhatComesFromBeforeTheFirstRecord) {
-    auto following = process::ChildProcess::start(
+    auto following = link::ChildProcess::start(
                          metierCommand({"history", "--follow", "--json", "--records", file_}),
-                         process::ErrorOutput::with_output)
+                         link::ErrorOutput::with_output)
                          .value();
     EXPECT_THAT(following.readLine(inAMinute()).value(),
                 HasSubstr("there are no records; waiting"));
@@ -190,11 +190,11 @@ TEST_F(History, FollowsWhatComesFromBeforeTheFirstRecord) {
 TEST_F(History, FollowsNobodyAnyLongerOnceItsReaderHasGone) {
     recordThree();
     auto following =
-        process::ChildProcess::start(
+        link::ChildProcess::start(
             {"/bin/sh", "-c",
              fmt::format("{{ {} history --follow --records {}; echo ended >&2; }} | head -n 1",
                          fmt::join(metierCommand({}), " "), file_)},
-            process::ErrorOutput::with_output)
+            link::ErrorOutput::with_output)
             .value();
     EXPECT_THAT(following.readLine(inAMinute()).value(), HasSubstr("number"));
     EXPECT_EQ(following.readLine(inAMinute()).value(), "ended");

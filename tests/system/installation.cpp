@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "metier/trust/security_folder.hpp"
+#include "metier/security/security_folder.hpp"
 
 namespace metier::system_tests {
 
@@ -33,7 +33,7 @@ ServerProcess Installation::serve(const std::string& server) const {
 }
 
 opcua::ClientOptions Installation::asCommand() const {
-    auto folder = trust::SecurityFolder::open(folder_).value();
+    auto folder = security::SecurityFolder::open(folder_).value();
     auto identity = folder.identity("command",
                                     {.application_name = "metier command",
                                      .application_uri = "urn:test:metier:command",
@@ -45,8 +45,8 @@ opcua::ClientOptions Installation::asCommand() const {
 }
 
 std::string Installation::thumbprintOf(const std::string& application) const {
-    const auto folder = trust::SecurityFolder::open(folder_).value();
-    return trust::loadIdentity(folder.identityFolder(application)).value().certificate.thumbprint();
+    const auto folder = security::SecurityFolder::open(folder_).value();
+    return security::loadIdentity(folder.identityFolder(application)).value().certificate.thumbprint();
 }
 
 }  // namespace metier::system_tests

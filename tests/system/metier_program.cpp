@@ -8,8 +8,8 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "metier/skill_client/kinematics_reader.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -43,9 +43,9 @@ Finished runMetier(const std::vector<std::string>& arguments, Errors errors) {
 }
 
 Finished runToEnd(const std::vector<std::string>& command, Errors errors) {
-    auto child = orThrow(process::ChildProcess::start(
-        command, errors == Errors::with_output ? process::ErrorOutput::with_output
-                                               : process::ErrorOutput::inherited));
+    auto child = orThrow(link::ChildProcess::start(
+        command, errors == Errors::with_output ? link::ErrorOutput::with_output
+                                               : link::ErrorOutput::inherited));
     Finished finished;
     const auto deadline = inAMinute();
     auto line = child.readLine(deadline);
@@ -84,7 +84,7 @@ ServerProcess::ServerProcess(const std::string& name, const std::vector<std::str
     : ServerProcess(serveArguments(name, more, cell)) {}
 
 ServerProcess::ServerProcess(const std::vector<std::string>& command)
-    : process_(orThrow(process::ChildProcess::start(command))) {
+    : process_(orThrow(link::ChildProcess::start(command))) {
     const std::string ready = "ready ";
     const auto line = orThrow(process_.readLine(inAMinute()));
     if (!line.starts_with(ready)) {
@@ -101,17 +101,17 @@ std::unique_ptr<opcua::Client> connectTo(const std::string& url) {
     return orThrow(opcua::Client::connect(url));
 }
 
-skill_client::SkillHandle openSkill(opcua::Client& client, const std::string& name) {
+client::SkillHandle openSkill(opcua::Client& client, const std::string& name) {
     return orThrow(
-        skill_client::SkillHandle::open(client, orThrow(skill_client::findSkill(client, name))));
+        client::SkillHandle::open(client, orThrow(client::findSkill(client, name))));
 }
 
-std::vector<double> jointPosition(opcua::Client& client, const skill_client::SkillHandle& skill) {
-    const auto nodes = orThrow(skill_client::findKinematics(client, skill.address()));
-    return orThrow(skill_client::readJointPosition(client, nodes));
+std::vector<double> jointPosition(opcua::Client& client, const client::SkillHandle& skill) {
+    const auto nodes = orThrow(client::findKinematics(client, skill.address()));
+    return orThrow(client::readJointPosition(client, nodes));
 }
 
-void awaitMotion(opcua::Client& client, const skill_client::SkillHandle& skill,
+void awaitMotion(opcua::Client& client, const client::SkillHandle& skill,
                  const std::vector<double>& from) {
     const auto deadline = inAMinute();
     while (jointPosition(client, skill) == from) {

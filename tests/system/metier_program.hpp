@@ -8,8 +8,8 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/opcua/client.hpp"
-#include "metier/process/child_process.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/link/child_process.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::system_tests {
 
@@ -63,18 +63,18 @@ public:
     void signal(int number) { process_.signal(number); }
 
 private:
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::string url_;
 };
 
 /// A client of that server. Throws if it cannot connect.
 std::unique_ptr<opcua::Client> connectTo(const std::string& url);
 /// The skill of that name. Throws if there is none.
-skill_client::SkillHandle openSkill(opcua::Client& client, const std::string& name);
+client::SkillHandle openSkill(opcua::Client& client, const std::string& name);
 /// Measured joint positions [rad] of the arm that a skill moves.
-std::vector<double> jointPosition(opcua::Client& client, const skill_client::SkillHandle& skill);
+std::vector<double> jointPosition(opcua::Client& client, const client::SkillHandle& skill);
 /// Waits until that arm is elsewhere. Throws if it stays there for a minute.
-void awaitMotion(opcua::Client& client, const skill_client::SkillHandle& skill,
+void awaitMotion(opcua::Client& client, const client::SkillHandle& skill,
                  const std::vector<double>& from);
 
 }  // namespace metier::system_tests

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <map>
 
-#include "metier/skill_client/control_handle.hpp"
+#include "metier/client/control_handle.hpp"
 #include "owner_death/trial.hpp"
 
 namespace metier::system_tests {
@@ -97,14 +97,14 @@ public:
 
 private:
     void start(const std::vector<std::string>& arguments) {
-        auto child = process::ChildProcess::start(metierCommand(arguments));
+        auto child = link::ChildProcess::start(metierCommand(arguments));
         if (!child || !child->readLine(inAMinute())) {
             throw std::runtime_error("metier " + arguments.front() + " does not start");
         }
         below_.push_back(std::move(*child));
     }
 
-    std::vector<process::ChildProcess> below_;
+    std::vector<link::ChildProcess> below_;
     std::optional<DeathRow> row_;  // ends before what it stands on
 };
 
@@ -139,11 +139,11 @@ int runTrials(std::chrono::milliseconds lease, int stride, const std::string& ki
 int stayQuiet(std::chrono::minutes time, int percent, std::size_t clients) {
     Cable cable;
     std::vector<std::unique_ptr<OwnedServer>> servers;
-    std::vector<process::ChildProcess> owners;
+    std::vector<link::ChildProcess> owners;
     for (std::size_t i = 0; i < clients; ++i) {
         servers.push_back(std::make_unique<OwnedServer>(std::vector<std::string>{
             "serve", simulatedCell().string(), "--server", "ur5", "--port", "0"}));
-        auto owner = process::ChildProcess::start(cable.atFarEnd(
+        auto owner = link::ChildProcess::start(cable.atFarEnd(
             metierCommand({"own", Cable::addressOf(servers.back()->url()), "--lease", "1s"})));
         if (!owner || !owner->readLine(inAMinute())) {
             throw std::runtime_error("metier own does not start");

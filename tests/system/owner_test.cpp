@@ -6,7 +6,7 @@
 #include <csignal>
 
 #include "metier/base/queue.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {
@@ -38,7 +38,7 @@ protected:
     Seen next() { return transitions_.popUntil(inAMinute()).value(); }
 
     /// `metier run` of a move of axis 1 that takes some seconds; it is Running.
-    process::ChildProcess startLongRun(const std::vector<std::string>& owner) {
+    link::ChildProcess startLongRun(const std::vector<std::string>& owner) {
         auto target = home_;
         target.front() += 1.0;
         std::vector<std::string> arguments{
@@ -50,7 +50,7 @@ protected:
             "--set",
             "SpeedOverride=0.1"};
         arguments.insert(arguments.end(), owner.begin(), owner.end());
-        auto run = process::ChildProcess::start(metierCommand(arguments)).value();
+        auto run = link::ChildProcess::start(metierCommand(arguments)).value();
         EXPECT_EQ(next().event.to, State::running);
         return run;
     }
@@ -58,7 +58,7 @@ protected:
     ServerProcess robot_{"iiwa"};
     Queue<Seen> transitions_{100};
     std::unique_ptr<opcua::Client> watcher_ = connectTo(robot_.url());
-    skill_client::SkillHandle skill_ = openSkill(*watcher_, "JointPtpMoveSkill");
+    client::SkillHandle skill_ = openSkill(*watcher_, "JointPtpMoveSkill");
     std::vector<double> home_;
 };
 
@@ -99,7 +99,7 @@ TEST_F(OwnedRobot, IsSuspendedIfItsStartSaysSoAndAnotherClientGoesOn) {
 }
 
 TEST_F(OwnedRobot, IsLeftAloneByTheCommandLineOfOthers) {
-    auto own = process::ChildProcess::start(metierCommand({"own", robot_.url()})).value();
+    auto own = link::ChildProcess::start(metierCommand({"own", robot_.url()})).value();
     EXPECT_THAT(own.readLine(inAMinute()).value(), HasSubstr("taken, epoch"));
     const auto refused = skill_.set("TargetJointPosition", home_);
     ASSERT_FALSE(refused);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "metier/skill_client/control_handle.hpp"
+#include "metier/client/control_handle.hpp"
 #include "metier_program.hpp"
 #include "running_cell.hpp"
 
@@ -57,7 +57,7 @@ protected:
 
     RunningCell cell_{deviceCell("pick_place")};
     std::unique_ptr<opcua::Client> client_ = connectTo(cell_.url("component"));
-    skill_client::SkillHandle skill_ = openSkill(*client_, kSkill);
+    client::SkillHandle skill_ = openSkill(*client_, kSkill);
 };
 
 TEST_F(PickingCell, IsFoundByItsTaskWithWhatItsArmCanDo) {
@@ -141,7 +141,7 @@ TEST_F(PickingCell, IsOfferedByARobotItselfToTheSameClientAlsoUnderALease) {
     auto own = openSkill(*edo, kSkill);
     EXPECT_EQ(own.address().type_name, "PickPlaceSkillType");
     const auto control =
-        skill_client::ControlHandle::acquire(*edo, own.address().controller()->node, {});
+        client::ControlHandle::acquire(*edo, own.address().controller()->node, {});
     ASSERT_TRUE(control) << control.error().message;
     auto parameters = partFrom(above(0.42, 0.0, 0.2));
     parameters["PlacePose"] = above(0.42, 0.08, 0.2);

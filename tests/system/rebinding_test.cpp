@@ -72,7 +72,7 @@ protected:
     std::optional<ServerProcess> component_;
     std::unique_ptr<opcua::Client> client_;
     Queue<TransitionEvent> events_{1'000};
-    std::optional<skill_client::SkillHandle> swing_;
+    std::optional<client::SkillHandle> swing_;
 
 private:
     static std::vector<double> homeOf(const std::string& url) {
@@ -146,7 +146,7 @@ TEST_F(FoundArm, IsGivenUpForAnotherWhenItsServerHangs) {
 }
 
 /// Lines of a program's output until one has a text.
-std::string readUntil(process::ChildProcess& program, const std::string& text) {
+std::string readUntil(link::ChildProcess& program, const std::string& text) {
     std::string seen;
     for (auto line = program.readLine(inAMinute()); line; line = program.readLine(inAMinute())) {
         if (line->find(text) != std::string::npos) {
@@ -163,10 +163,10 @@ TEST(SearchForAnArm, EndsWithTheStopSignal) {
     // The signal was blocked, and looked at by nobody, for up to 20 s.
     const DiscoveryProcess lds;
     auto component =
-        process::ChildProcess::start(
+        link::ChildProcess::start(
             metierCommand({"--log", "info", "serve", discoveredCell().string(), "--server", "swing",
                            "--port", "0", "--discovery", lds.url()}),
-            process::ErrorOutput::with_output)
+            link::ErrorOutput::with_output)
             .value();
     std::string text;
     const auto read = [&](const std::string& until) {
@@ -197,8 +197,8 @@ TEST(DiscoveryOnTheNetwork, FindsArmsAndBindsToTheOneThatIsThere) {
     ASSERT_TRUE(lds.awaitKnown("iiwa-a"));
     ASSERT_TRUE(lds.awaitKnown("iiwa-b"));
     const auto far = [&](const std::vector<std::string>& arguments) {
-        return process::ChildProcess::start(cable.atFarEnd(metierCommand(arguments)),
-                                            process::ErrorOutput::with_output)
+        return link::ChildProcess::start(cable.atFarEnd(metierCommand(arguments)),
+                                            link::ErrorOutput::with_output)
             .value();
     };
     const auto lds_url = Cable::addressOf(lds.url());

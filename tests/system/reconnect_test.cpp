@@ -13,8 +13,8 @@
 #include <optional>
 
 #include "metier/base/queue.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier_program.hpp"
 #include "tcp_relay.hpp"
 
@@ -36,8 +36,8 @@ constexpr const char* kSkill = "JointPtpMoveSkill";
 class Told {
 public:
     explicit Told(const std::vector<std::string>& arguments)
-        : process_(process::ChildProcess::start(metierCommand(arguments),
-                                                process::ErrorOutput::with_output)
+        : process_(link::ChildProcess::start(metierCommand(arguments),
+                                                link::ErrorOutput::with_output)
                        .value()) {}
 
     bool until(const std::string& words) {
@@ -59,7 +59,7 @@ public:
     const std::string& text() const { return text_; }
 
 private:
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::string text_;
 };
 
@@ -131,7 +131,7 @@ protected:
     TcpRelay relay_{static_cast<std::uint16_t>(std::stoi(robot_->port()))};
     Queue<TransitionEvent> seen_{100};
     std::unique_ptr<opcua::Client> bystander_;
-    std::optional<skill_client::SkillHandle> bystanding_;
+    std::optional<client::SkillHandle> bystanding_;
     std::vector<double> home_;
 };
 
@@ -250,7 +250,7 @@ protected:
 
     Queue<opcua::ConnectionChange> changes_{100};
     std::unique_ptr<opcua::Client> client_;
-    std::optional<skill_client::SkillHandle> skill_;
+    std::optional<client::SkillHandle> skill_;
 };
 
 TEST_F(CutOffClient, ReadyIsGoodForARunAfterACutAndAfterARestart) {
@@ -370,7 +370,7 @@ protected:
         const auto serve =
             metierCommand({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"});
         command.insert(command.end(), serve.begin(), serve.end());
-        server_.emplace(process::ChildProcess::start(command).value());
+        server_.emplace(link::ChildProcess::start(command).value());
         const auto ready = server_->readLine(inAMinute());
         if (!ready) {
             GTEST_SKIP() << "NOT TESTED: no network of its own: " << ready.error().message;
@@ -379,7 +379,7 @@ protected:
     }
     void link(const std::string& state) {
         const auto target = std::to_string(server_->pid());
-        auto ip = process::ChildProcess::start(
+        auto ip = link::ChildProcess::start(
                       {"nsenter", "-t", target, "-n", "ip", "link", "set", "lo", state})
                       .value();
         ASSERT_EQ(ip.waitUntil(inAMinute()), 0);
@@ -397,7 +397,7 @@ protected:
         });
     }
 
-    std::optional<process::ChildProcess> server_;
+    std::optional<link::ChildProcess> server_;
     std::string url_;
 };
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "metier/skill_client/control_handle.hpp"
+#include "metier/client/control_handle.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {
@@ -30,7 +30,7 @@ protected:
         return {.execution_id = name, .parameters = {{"TargetJointPosition", joints}}};
     }
     /// The arm stays where it is, whatever was refused.
-    static void expectStill(opcua::Client& client, skill_client::SkillHandle& skill,
+    static void expectStill(opcua::Client& client, client::SkillHandle& skill,
                             const std::vector<double>& joints) {
         EXPECT_EQ(*skill.state(), State::ready);
         EXPECT_EQ(jointPosition(client, skill), joints);
@@ -64,7 +64,7 @@ TEST_F(KilledServer, TakesNoCommandOfItsLifeBefore) {
             expectStill(*client, skill, home);
         }
         const auto control =
-            skill_client::ControlHandle::acquire(*client, skill.address().controller()->node, {});
+            client::ControlHandle::acquire(*client, skill.address().controller()->node, {});
         ASSERT_TRUE(control) << control.error().message;
         before = moveOf(home, "move " + std::to_string(life));
         before.epoch = control->epoch();

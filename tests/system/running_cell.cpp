@@ -16,13 +16,13 @@ namespace {
 
 constexpr const char* kUp = "the cell is up; Ctrl-C ends it";
 
-process::ChildProcess startUp(const std::filesystem::path& file,
+link::ChildProcess startUp(const std::filesystem::path& file,
                               const std::filesystem::path& endpoints,
                               const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"up", file.string(), "--free-ports", "--endpoints",
                                        endpoints.string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return process::ChildProcess::start(metierCommand(arguments)).value();
+    return link::ChildProcess::start(metierCommand(arguments)).value();
 }
 
 /// One line for one line, without a process for each.

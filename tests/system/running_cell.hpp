@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::system_tests {
 
@@ -30,7 +30,7 @@ public:
     const std::filesystem::path& endpoints() const { return endpoints_; }
     /// How many processes there are below `metier up`.
     std::size_t size() const { return urls_.size() + virtual_addresses_.size(); }
-    process::ChildProcess& process() { return process_; }
+    link::ChildProcess& process() { return process_; }
 
     /// Does as `metier virtual inject`. Throws if it is refused.
     void inject(const std::string& controller, const std::string& fault,
@@ -44,7 +44,7 @@ public:
 
 private:
     std::filesystem::path endpoints_;
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::map<std::string, std::string> urls_;
     std::map<std::string, std::string> virtual_addresses_;
 };

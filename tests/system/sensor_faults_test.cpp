@@ -34,7 +34,7 @@ protected:
 
     RunningCell cell_{deviceCell("sensor")};
     std::unique_ptr<opcua::Client> client_ = connectTo(cell_.url("arm"));
-    skill_client::SkillHandle skill_ = openSkill(*client_, "CartesianLinearForceMoveSkill");
+    client::SkillHandle skill_ = openSkill(*client_, "CartesianLinearForceMoveSkill");
 };
 
 struct SensorFault {

@@ -23,13 +23,13 @@ opcua::Client& ServedContract::client() {
     return *client_;
 }
 
-skill_client::SkillHandle ServedContract::openSkill(opcua::Client& client,
+client::SkillHandle ServedContract::openSkill(opcua::Client& client,
                                                     const std::string& name) {
     return orThrow(
-        skill_client::SkillHandle::open(client, orThrow(skill_client::findSkill(client, name))));
+        client::SkillHandle::open(client, orThrow(client::findSkill(client, name))));
 }
 
-skill_client::SkillHandle ServedContract::openSkill(const std::string& name) {
+client::SkillHandle ServedContract::openSkill(const std::string& name) {
     return openSkill(client(), name);
 }
 

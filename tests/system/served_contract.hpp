@@ -7,8 +7,8 @@
 #include <string>
 
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "served_skills.hpp"
 
 namespace metier::system_tests {
@@ -24,9 +24,9 @@ inline SteadyTime soon() {
 /// find them by browsing.
 class ServedContract : public served::ServedSkills {
 protected:
-    skill_client::SkillHandle openSkill(opcua::Client& client, const std::string& name);
+    client::SkillHandle openSkill(opcua::Client& client, const std::string& name);
     /// A handle on a client that stays connected until the end of the test.
-    skill_client::SkillHandle openSkill(const std::string& name);
+    client::SkillHandle openSkill(const std::string& name);
 
     /// Runs work as the application around a Program does, and waits for it.
     template <typename Work>

@@ -10,7 +10,7 @@
 
 #include "dying_server.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -77,7 +77,7 @@ protected:
         ASSERT_TRUE(robot_.awaitMotion()) << "the arm does not move: " << skill.reasonText();
     }
 
-    skill_client::SkillHandle skillThatMoves() {
+    client::SkillHandle skillThatMoves() {
         const bool line = GetParam().move == Move::line;
         if (GetParam().move == Move::stream) {
             streamer_.emplace(robot_.startStreamer());
@@ -119,7 +119,7 @@ class ServerAway : public ::testing::TestWithParam<const char*> {
 protected:
     DyingServer robot_{GetParam()};
     std::unique_ptr<opcua::Client> client_ = connectTo(robot_.url());
-    skill_client::SkillHandle skill_ = openSkill(*client_, "JointPtpMoveSkill");
+    client::SkillHandle skill_ = openSkill(*client_, "JointPtpMoveSkill");
 };
 
 TEST_P(ServerAway, SaysSoAndDoesNotGoOnWithItsMove) {
@@ -164,7 +164,7 @@ TEST_P(ServerRestart, TakesAtMostTwoSeconds) {
     DyingServer robot{GetParam().arm};
     const auto first = robot.startedIn();
     std::vector<std::unique_ptr<opcua::Client>> clients;
-    std::vector<skill_client::SkillHandle> skills;
+    std::vector<client::SkillHandle> skills;
     for (int i = 0; i < 5; ++i) {
         clients.push_back(connectTo(robot.url()));
         skills.push_back(openSkill(*clients.back(), "JointPtpMoveSkill"));
@@ -232,7 +232,7 @@ TEST(OneServer, HasAPort) {
     EXPECT_THAT(second.output,
                 HasSubstr("edo: port " + port + " of 127.0.0.1 is in use by process"));
     const auto client = connectTo(first.url());
-    EXPECT_TRUE(skill_client::findSkill(*client, "JointPtpMoveSkill")) << "the first one's clients";
+    EXPECT_TRUE(client::findSkill(*client, "JointPtpMoveSkill")) << "the first one's clients";
 }
 
 TEST(OneServer, SharesNoPortWithAnotherProgram) {

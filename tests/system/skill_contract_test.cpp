@@ -86,7 +86,7 @@ protected:
     }
 
     served::ServedSkill skill_;
-    std::optional<skill_client::SkillHandle> handle_;
+    std::optional<client::SkillHandle> handle_;
     std::optional<served::TransitionWatch> watch_;
 };
 
@@ -341,7 +341,7 @@ TEST_F(SkillContract, WrittenParametersFallBackAfterTheConfigurationTimeout) {
 /// Skills that do what a test says in a function.
 class FunctionContract : public ServedContract {
 protected:
-    skill_client::SkillHandle serveSkill(skill::SkillFunctions functions,
+    client::SkillHandle serveSkill(skill::SkillFunctions functions,
                                          skill::ProgramOptions options = {}) {
         auto description = served::streamDescription();
         auto fields = description.parameters.toVector();

@@ -16,8 +16,8 @@
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
 #include "metier/robot_skills/stall_watch.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -70,8 +70,8 @@ protected:
             throw std::runtime_error(started.error().message);
         }
         client_ = orThrow(opcua::Client::connect(server_->endpointUrl()));
-        skill_ = orThrow(skill_client::SkillHandle::open(
-            *client_, orThrow(skill_client::findSkill(*client_, "JointPtpMoveSkill"))));
+        skill_ = orThrow(client::SkillHandle::open(
+            *client_, orThrow(client::findSkill(*client_, "JointPtpMoveSkill"))));
     }
     ~HangingServer() override {
         goOn();
@@ -128,7 +128,7 @@ protected:
     joint_simulator::SimulatorDrive drive_{*arm_};
     std::unique_ptr<robot_skills::StallWatch> watch_;
     std::unique_ptr<opcua::Client> client_;
-    std::optional<skill_client::SkillHandle> skill_;
+    std::optional<client::SkillHandle> skill_;
     std::latch hang_{1};
     std::atomic<bool> going_ = false;
     std::promise<SteadyTime> stopped_;

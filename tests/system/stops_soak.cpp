@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/skill_client/kinematics_reader.hpp"
+#include "metier/client/kinematics_reader.hpp"
 #include "metier_program.hpp"
 #include "running_cell.hpp"
 #include "watched_skill.hpp"
@@ -43,7 +43,7 @@ public:
     explicit Stops(const std::string& url)
         : move_(url, "JointPtpMoveSkill"), home_(jointPosition(move_.client(), *move_)) {
         auto& client = move_.client();
-        const auto kinematics = skill_client::findKinematics(client, move_->address()).value();
+        const auto kinematics = client::findKinematics(client, move_->address()).value();
         const auto metier = client.namespaceIndex("urn:metier:skills").value();
         stopping_time_ = client.translate(kinematics.object, {{metier, "StoppingTime"}}).value();
     }

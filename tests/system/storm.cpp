@@ -20,7 +20,7 @@
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -244,7 +244,7 @@ private:
     explicit StormClient(std::unique_ptr<opcua::Client> client) : client_(std::move(client)) {}
 
     Result<void> subscribeAll() {
-        auto found = skill_client::findSkills(*client_);
+        auto found = client::findSkills(*client_);
         const auto device = client_->namespaceIndex(kDevice);
         if (!found || !device) {
             return fail(found ? device.error() : found.error());

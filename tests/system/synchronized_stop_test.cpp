@@ -87,7 +87,7 @@ public:
           home_(joints()) {}
 
     const std::string& url() const { return server_.url(); }
-    skill_client::SkillHandle& skill() { return *skill_; }
+    client::SkillHandle& skill() { return *skill_; }
     skill::TransitionEvent awaitEvent(State to) { return skill_.awaitEvent(to); }
     Joints joints() { return jointPosition(skill_.client(), *skill_); }
     const Joints& home() const { return home_; }

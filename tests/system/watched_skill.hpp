@@ -5,7 +5,7 @@
 #include <string>
 
 #include "metier/base/queue.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {
@@ -22,8 +22,8 @@ public:
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
 
-    skill_client::SkillHandle& operator*() { return skill_; }
-    skill_client::SkillHandle* operator->() { return &skill_; }
+    client::SkillHandle& operator*() { return skill_; }
+    client::SkillHandle* operator->() { return &skill_; }
     opcua::Client& client() { return *client_; }
 
     /// The next transition to that state, within a minute.
@@ -40,7 +40,7 @@ public:
 private:
     Queue<skill::TransitionEvent> events_{1'000};
     std::unique_ptr<opcua::Client> client_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
 };
 
 }  // namespace metier::system_tests

@@ -31,7 +31,7 @@ protected:
     RunningCell cell_{deviceCell("world")};
     std::unique_ptr<opcua::Client> arm_ = connectTo(cell_.url("arm"));
     std::unique_ptr<opcua::Client> gripper_ = connectTo(cell_.url("gripper"));
-    skill_client::SkillHandle move_ = openSkill(*arm_, "CartesianLinearMoveSkill");
+    client::SkillHandle move_ = openSkill(*arm_, "CartesianLinearMoveSkill");
 };
 
 // The flange stands at x 0.5464, z 0.3604 and looks down; the jaws are 0.15 m below it.

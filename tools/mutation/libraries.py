@@ -38,7 +38,7 @@ LIBRARIES = {
     for library in (
         Library("skill", "metier_skill", ("skill_tests",), ("composition_tests",)),
         Library("device", "metier_device", ("device_tests",), ("joint_simulator_tests", "ur_driver_tests")),
-        Library("composition", "metier_composition", ("composition_tests",), ("synchronized_move_tests",)),
+        Library("composition", "metier_composition", ("composition_tests", "synchronized_move_tests")),
         _driver("netft"),
         _driver("wsg50"),
         _driver("ur"),
@@ -47,6 +47,6 @@ LIBRARIES = {
         Library("records", "metier_records", ("records_tests",), ("recording_tests",)),
         Library("robot_skills", "metier_robot_skills", ("robot_skills_tests",), ("gripper_nodeset_tests",)),
         Library("motion", "metier_motion", ("motion_tests", "motion_allocation_tests"), ("robot_skills_tests",)),
-        Library("remote_skill", "metier_remote_skill", ("remote_skill_tests",)),
+        Library("client", "metier_client", ("skill_client_tests", "remote_arm_tests", "remote_skill_tests")),
     )
 }

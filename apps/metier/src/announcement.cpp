@@ -18,13 +18,13 @@ std::uint16_t portOf(const std::string& url) {
 
 }  // namespace
 
-std::string announcedUrl(const configuration::Discovery& discovery, const std::string& url) {
+std::string announcedUrl(const cell::Discovery& discovery, const std::string& url) {
     return discovery.announce_as.empty()
                ? url
                : fmt::format("opc.tcp://{}{}", discovery.announce_as, url.substr(url.rfind(':')));
 }
 
-std::string applicationUriOf(const configuration::ServerConfig& config) {
+std::string applicationUriOf(const cell::ServerConfig& config) {
     const auto& announced = config.discovery.announce_as;
     const auto host = announced.empty() ? hostName() : announced;
     if (config.port != 0) {
@@ -34,11 +34,11 @@ std::string applicationUriOf(const configuration::ServerConfig& config) {
     return fmt::format("urn:{}:metier:{}:{}", host, config.name, randomHex(kDigits));
 }
 
-Announcement::Announcement(const configuration::ServerConfig& config,
+Announcement::Announcement(const cell::ServerConfig& config,
                            const std::string& application_uri, const std::string& url) {
     const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(config.discovery.period));
-    discovery::RegistrarOptions options;
+    opcua::RegistrarOptions options;
     options.server = {.application_uri = application_uri,
                       .name = config.name,
                       .discovery_urls = {announcedUrl(config.discovery, url)}};
@@ -47,12 +47,12 @@ Announcement::Announcement(const configuration::ServerConfig& config,
     options.pause = std::min(period, options.pause);
     for (const auto& server : config.discovery.servers) {
         options.discovery_url = server;
-        registrars_.push_back(std::make_unique<discovery::Registrar>(options));
+        registrars_.push_back(std::make_unique<opcua::Registrar>(options));
     }
     if (config.discovery.mdns) {
         const auto& host = config.discovery.announce_as;
-        mdns_ = std::make_unique<discovery::MdnsAnnouncer>(
-            discovery::MdnsService{.name = config.name,
+        mdns_ = std::make_unique<opcua::MdnsAnnouncer>(
+            opcua::MdnsService{.name = config.name,
                                    .host = host.empty() ? config.address : host,
                                    .port = portOf(url)});
     }

@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "metier/configuration/cell.hpp"
-#include "metier/discovery/mdns.hpp"
-#include "metier/discovery/registrar.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/opcua/mdns.hpp"
+#include "metier/opcua/registrar.hpp"
 
 namespace metier::app {
 
 /// What a server is called for good, wherever it is: urn:HOST:metier:NAME:PORT. One on any free
 /// port is another one each time.
-std::string applicationUriOf(const configuration::ServerConfig& config);
+std::string applicationUriOf(const cell::ServerConfig& config);
 
 /// As others reach a server. \param url where it listens: "opc.tcp://127.0.0.1:48411"
-std::string announcedUrl(const configuration::Discovery& discovery, const std::string& url);
+std::string announcedUrl(const cell::Discovery& discovery, const std::string& url);
 
 /// Tells others of a server, for as long as it lives, as its cell file says.
 ///
@@ -24,12 +24,12 @@ std::string announcedUrl(const configuration::Discovery& discovery, const std::s
 class Announcement {
 public:
     /// \param url where the server listens: "opc.tcp://127.0.0.1:48411"
-    Announcement(const configuration::ServerConfig& config, const std::string& application_uri,
+    Announcement(const cell::ServerConfig& config, const std::string& application_uri,
                  const std::string& url);
 
 private:
-    std::vector<std::unique_ptr<discovery::Registrar>> registrars_;
-    std::unique_ptr<discovery::MdnsAnnouncer> mdns_;  // null: not wanted
+    std::vector<std::unique_ptr<opcua::Registrar>> registrars_;
+    std::unique_ptr<opcua::MdnsAnnouncer> mdns_;  // null: not wanted
 };
 
 }  // namespace metier::app

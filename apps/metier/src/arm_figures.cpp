@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kinematics_conversion.hpp"
-#include "metier/skill_client/kinematics_reader.hpp"
+#include "metier/client/kinematics_reader.hpp"
 
 namespace metier::app {
 namespace {
@@ -25,12 +25,12 @@ std::optional<double> reachOf(const opcua_skill::KinematicsData& data) {
 
 }  // namespace
 
-ArmFigures figuresOfArm(opcua::Client& client, const skill_client::SkillAddress& skill) {
-    const auto nodes = skill_client::findKinematics(client, skill);
+ArmFigures figuresOfArm(opcua::Client& client, const client::SkillAddress& skill) {
+    const auto nodes = client::findKinematics(client, skill);
     if (!nodes) {
         return {};
     }
-    const auto data = skill_client::readKinematics(client, *nodes);
+    const auto data = client::readKinematics(client, *nodes);
     if (!data) {
         return {};
     }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "metier/opcua/client.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::app {
 
@@ -15,7 +15,7 @@ struct ArmFigures {
 };
 
 /// Of the arm that a skill moves; nothing if it moves none. Waits for the server.
-ArmFigures figuresOfArm(opcua::Client& client, const skill_client::SkillAddress& skill);
+ArmFigures figuresOfArm(opcua::Client& client, const client::SkillAddress& skill);
 
 /// Whether an arm has at least the figures that are wanted; what is unknown is not enough.
 bool isAtLeast(const ArmFigures& wanted, const ArmFigures& there);

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "device_opening.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/robot_skills/gripper_skills.hpp"
 #include "own_compositions.hpp"
 
@@ -16,7 +16,7 @@ namespace metier::app {
 namespace {
 
 /// Objects for a robot without a NodeSet of its own.
-opcua_skill::MotionDeviceSystemSpec specOf(const configuration::ServerConfig& config,
+opcua_skill::MotionDeviceSystemSpec specOf(const cell::ServerConfig& config,
                                            const motion::RobotModel& model) {
     opcua_skill::MotionDeviceSystemSpec spec;
     spec.name = config.name;
@@ -29,7 +29,7 @@ opcua_skill::MotionDeviceSystemSpec specOf(const configuration::ServerConfig& co
     return spec;
 }
 
-std::vector<std::string> nodesetsOf(const configuration::ArmServer& config) {
+std::vector<std::string> nodesetsOf(const cell::ArmServer& config) {
     if (config.nodeset.empty()) {
         return {};
     }
@@ -38,20 +38,20 @@ std::vector<std::string> nodesetsOf(const configuration::ArmServer& config) {
 
 /// The model with the tools of the cell besides its own.
 Result<motion::RobotModel> withTools(const motion::RobotModel& model,
-                                     const std::vector<configuration::Tool>& tools) {
+                                     const std::vector<cell::Tool>& tools) {
     auto chain = model.chain();
     for (const auto& tool : tools) {
         const auto& f = tool.frame;
         chain.tools.push_back(
-            {tool.name, geometry::toPose(Frame{f[0], f[1], f[2], f[3], f[4], f[5]}), tool.mass});
+            {tool.name, motion::toPose(Frame{f[0], f[1], f[2], f[3], f[4], f[5]}), tool.mass});
     }
     return model.withChain(std::move(chain));
 }
 
 /// \return nothing if the cell file names none
-Result<std::optional<driver::OpenDevice>> openSensor(const configuration::ServerConfig& config) {
+Result<std::optional<device::OpenDevice>> openSensor(const cell::ServerConfig& config) {
     if (!config.arm.force_torque_sensor) {
-        return std::optional<driver::OpenDevice>();
+        return std::optional<device::OpenDevice>();
     }
     auto sensor = openDevice(*config.arm.force_torque_sensor, config.name, nullptr);
     if (!sensor) {
@@ -67,7 +67,7 @@ Result<std::optional<driver::OpenDevice>> openSensor(const configuration::Server
 
 }  // namespace
 
-Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerConfig& config) {
+Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& config) {
     auto loaded = motion::RobotModel::load(config.arm.model).and_then([&](const auto& model) {
         return withTools(model, config.arm.tools);
     });
@@ -105,7 +105,7 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const configuration::ServerC
 }
 
 ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
-                     driver::OpenDevice device, std::optional<driver::OpenDevice> sensor,
+                     device::OpenDevice device, std::optional<device::OpenDevice> sensor,
                      std::unique_ptr<SkillHost> host)
     : file_model_(std::move(file_model)),
       device_(std::move(device)),
@@ -113,7 +113,7 @@ ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
       model_(device_.model ? *device_.model : *file_model_),
       host_(std::move(host)) {}
 
-Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
+Result<void> ArmServer::offer(const cell::ServerConfig& config) {
     const auto system =
         config.arm.nodeset.empty()
             ? opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(config, model_))
@@ -145,7 +145,7 @@ Result<void> ArmServer::offer(const configuration::ServerConfig& config) {
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
-                                    const configuration::ArmServer& config) {
+                                    const cell::ArmServer& config) {
     // What a controller that plans cannot stop by itself, its own measurement can.
     auto* const own_sensor = device_.planner != nullptr ? device_.force_torque_sensor : nullptr;
     auto arm = robot_skills::makeArmSkills(

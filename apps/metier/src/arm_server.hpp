@@ -5,8 +5,8 @@
 #include <string>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/device/driver.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "skill_host.hpp"
 
@@ -19,20 +19,20 @@ namespace metier::app {
 class ArmServer {
 public:
     /// Errors: what is wrong with the model, the driver, the NodeSet, the skills or the port.
-    static Result<std::unique_ptr<ArmServer>> start(const configuration::ServerConfig& config);
+    static Result<std::unique_ptr<ArmServer>> start(const cell::ServerConfig& config);
 
     std::string url() const { return host_->url(); }
 
 private:
-    ArmServer(std::unique_ptr<const motion::RobotModel> file_model, driver::OpenDevice device,
-              std::optional<driver::OpenDevice> sensor, std::unique_ptr<SkillHost> host);
-    Result<void> offer(const configuration::ServerConfig& config);
+    ArmServer(std::unique_ptr<const motion::RobotModel> file_model, device::OpenDevice device,
+              std::optional<device::OpenDevice> sensor, std::unique_ptr<SkillHost> host);
+    Result<void> offer(const cell::ServerConfig& config);
     Result<void> offerSkills(const opcua_skill::MotionDeviceSystem& system,
-                             const configuration::ArmServer& config);
+                             const cell::ArmServer& config);
 
     std::unique_ptr<const motion::RobotModel> file_model_;  // outlives the device, which reads it
-    driver::OpenDevice device_;
-    std::optional<driver::OpenDevice> sensor_;
+    device::OpenDevice device_;
+    std::optional<device::OpenDevice> sensor_;
     std::shared_ptr<const robot_skills::StreamReport> stream_report_;      // shared with the skill
     std::shared_ptr<const robot_skills::StoppingReport> stopping_report_;  // shared with the moves
     const motion::RobotModel& model_;  // as the controller describes the robot, else of the file

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "metier/audit/audit_log.hpp"
+#include "metier/security/audit_log.hpp"
 #include "metier/base/text.hpp"
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/text.hpp"
@@ -35,7 +35,7 @@ struct AuditOptions {
 /// Whether it is a part that verify() of another file comes to.
 bool followsAnother(const fs::path& file, const std::vector<fs::path>& files) {
     return std::any_of(files.begin(), files.end(), [&](const fs::path& first) {
-        const auto parts = audit::partsOf(first);
+        const auto parts = security::partsOf(first);
         return first != file && std::find(parts.begin(), parts.end(), file) != parts.end();
     });
 }
@@ -86,7 +86,7 @@ Result<std::set<std::string>> anchorsOf(const AuditOptions& options) {
     return anchors;
 }
 
-Exit reportVerified(const fs::path& log, const audit::Verified& verified, bool whole_logs) {
+Exit reportVerified(const fs::path& log, const security::Verified& verified, bool whole_logs) {
     fmt::print("{}: {} entries, {} to {}, last chain value {}\n", log.string(), verified.entries,
                verified.first_time, verified.last_time, verified.last_chain);
     if (verified.first_number == 1) {
@@ -106,7 +106,7 @@ Exit runVerify(const AuditOptions& options) {
     auto exit = Exit::success;
     auto missing = *anchors;
     for (const auto& log : *logs) {
-        const auto verified = audit::verify(log, *anchors);
+        const auto verified = security::verify(log, *anchors);
         if (!verified) {
             report(verified.error());
             exit = Exit::failed;
@@ -156,7 +156,7 @@ Result<std::string> anchorOfServer(const std::string& url) {
 }
 
 Result<std::string> anchorOfFile(const fs::path& log) {
-    const auto verified = audit::verify(log);
+    const auto verified = security::verify(log);
     return verified ? Result<std::string>(verified->last_chain) : fail(verified.error());
 }
 
@@ -228,7 +228,7 @@ Exit runShow(const AuditOptions& options) {
         return reportUsage(logs.error());
     }
     for (const auto& log : *logs) {
-        for (const auto& part : audit::partsOf(log)) {
+        for (const auto& part : security::partsOf(log)) {
             if (const auto done = showPart(part, options); !done) {
                 return report(done.error());
             }

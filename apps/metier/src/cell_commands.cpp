@@ -10,14 +10,14 @@
 namespace metier::app {
 namespace {
 
-using configuration::ServerKind;
+using cell::ServerKind;
 
 std::string self() {
     return std::filesystem::read_symlink("/proc/self/exe").string();
 }
 
 /// The driver of a server's device; nullptr for one without.
-const configuration::DriverChoice* driverOf(const configuration::ServerConfig& server) {
+const cell::DriverChoice* driverOf(const cell::ServerConfig& server) {
     switch (server.kind) {
         case ServerKind::arm:
             return &server.arm.driver;
@@ -40,7 +40,7 @@ std::string freeAddress() {
 }
 
 /// Options of `metier serve` for the servers that a server uses.
-void addUsed(const configuration::ServerConfig& server, const CellAddresses& known,
+void addUsed(const cell::ServerConfig& server, const CellAddresses& known,
              std::vector<std::string>& command) {
     const auto robot = known.servers.find(server.move.robot);
     if (server.kind == ServerKind::move && robot != known.servers.end()) {
@@ -55,9 +55,9 @@ void addUsed(const configuration::ServerConfig& server, const CellAddresses& kno
 }
 
 /// Options of `metier serve` for the virtual controllers of a server's devices.
-void addControllers(const configuration::ServerConfig& server, const CellAddresses& known,
+void addControllers(const cell::ServerConfig& server, const CellAddresses& known,
                     std::vector<std::string>& command) {
-    const auto give = [&](const configuration::DriverChoice& driver, const char* option) {
+    const auto give = [&](const cell::DriverChoice& driver, const char* option) {
         const auto found = known.controllers.find(driver.controller);
         if (found != known.controllers.end()) {
             command.insert(command.end(), {option, found->second});
@@ -73,7 +73,7 @@ void addControllers(const configuration::ServerConfig& server, const CellAddress
 
 }  // namespace
 
-CellRank rankOf(const configuration::ServerConfig& server) {
+CellRank rankOf(const cell::ServerConfig& server) {
     switch (server.kind) {
         case ServerKind::arm:
         case ServerKind::gripper:
@@ -88,8 +88,8 @@ CellRank rankOf(const configuration::ServerConfig& server) {
     return CellRank::composition;
 }
 
-CellMember::Plan planOf(const configuration::CellConfig& cell,
-                        const configuration::VirtualController& controller, Ports ports,
+CellMember::Plan planOf(const cell::CellConfig& cell,
+                        const cell::VirtualController& controller, Ports ports,
                         const CellAddresses& known) {
     const auto* world = cell.world();
     CellMember::Plan plan{controller.name,
@@ -105,8 +105,8 @@ CellMember::Plan planOf(const configuration::CellConfig& cell,
     return plan;
 }
 
-CellMember::Plan planOf(const configuration::CellConfig& cell,
-                        const configuration::ServerConfig& server, Ports ports,
+CellMember::Plan planOf(const cell::CellConfig& cell,
+                        const cell::ServerConfig& server, Ports ports,
                         const CellAddresses& known) {
     CellMember::Plan plan{server.name, rankOf(server), {self()}, {}};
     const auto security = securityArguments();

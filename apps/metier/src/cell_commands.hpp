@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cell_member.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 
 namespace metier::app {
 
@@ -23,14 +23,14 @@ struct CellAddresses {
 };
 
 /// \param known those that the controller uses are in it
-CellMember::Plan planOf(const configuration::CellConfig& cell,
-                        const configuration::VirtualController& controller, Ports ports,
+CellMember::Plan planOf(const cell::CellConfig& cell,
+                        const cell::VirtualController& controller, Ports ports,
                         const CellAddresses& known);
-CellMember::Plan planOf(const configuration::CellConfig& cell,
-                        const configuration::ServerConfig& server, Ports ports,
+CellMember::Plan planOf(const cell::CellConfig& cell,
+                        const cell::ServerConfig& server, Ports ports,
                         const CellAddresses& known);
 
 /// Rank of a server.
-CellRank rankOf(const configuration::ServerConfig& server);
+CellRank rankOf(const cell::ServerConfig& server);
 
 }  // namespace metier::app

@@ -39,8 +39,8 @@ Result<void> CellMember::begin(SteadyTime now) {
         command.push_back(plan_.option_for_port);
         command.push_back(address_.substr(address_.rfind(':') + 1));
     }
-    auto process = process::ChildProcess::start(
-        command, {.group = process::Group::own, .on_owners_death = SIGTERM});
+    auto process = link::ChildProcess::start(
+        command, {.group = link::Group::own, .on_owners_death = SIGTERM});
     if (!process) {
         return fail(process.error());
     }

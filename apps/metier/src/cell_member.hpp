@@ -7,8 +7,8 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/process/child_process.hpp"
-#include "metier/process/restart_pause.hpp"
+#include "metier/link/child_process.hpp"
+#include "metier/link/restart_pause.hpp"
 
 namespace metier::app {
 
@@ -67,12 +67,12 @@ private:
     Event endedByItself();
 
     Plan plan_;
-    std::optional<process::ChildProcess> process_;
+    std::optional<link::ChildProcess> process_;
     std::string address_;
     bool ready_ = false;
     SteadyTime begun_{};
     std::optional<SteadyTime> begin_at_;
-    process::RestartPause pause_;
+    link::RestartPause pause_;
     std::string how_;
 };
 

@@ -14,7 +14,7 @@ namespace metier::app {
 namespace {
 
 using namespace std::chrono_literals;
-using configuration::ServerKind;
+using cell::ServerKind;
 
 // Longest time for a process to let go of those that it uses before these get their signal, too.
 constexpr auto kLetGo = 500ms;
@@ -41,7 +41,7 @@ int millisecondsUntil(SteadyTime time) {
 
 }  // namespace
 
-Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Ports ports,
+Result<CellRunner> CellRunner::start(const cell::CellConfig& cell, Ports ports,
                                      int stop_descriptor, const OnReady& on_ready) {
     CellRunner runner;
     if (auto started = runner.startAll(cell, ports, stop_descriptor, on_ready); !started) {
@@ -50,7 +50,7 @@ Result<CellRunner> CellRunner::start(const configuration::CellConfig& cell, Port
     return runner;
 }
 
-Result<void> CellRunner::startAll(const configuration::CellConfig& cell, Ports ports,
+Result<void> CellRunner::startAll(const cell::CellConfig& cell, Ports ports,
                                   int stop_descriptor, const OnReady& on_ready) {
     for (const bool world : {true, false}) {
         for (const auto& controller : cell.virtual_controllers) {

@@ -11,7 +11,7 @@
 #include "cell_member.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 
 namespace metier::app {
 
@@ -39,7 +39,7 @@ public:
     /// until each is ready.
     /// \param stop_descriptor ends the start when it becomes readable; -1: none
     /// Errors: what the first server that was not ready in 30 s had to say; cancelled.
-    static Result<CellRunner> start(const configuration::CellConfig& cell, Ports ports,
+    static Result<CellRunner> start(const cell::CellConfig& cell, Ports ports,
                                     int stop_descriptor, const OnReady& on_ready);
     CellRunner(CellRunner&&) noexcept = default;
     CellRunner& operator=(CellRunner&&) = delete;
@@ -67,7 +67,7 @@ public:
 private:
     CellRunner() = default;
     Result<void> startMember(CellMember::Plan plan, int stop_descriptor);
-    Result<void> startAll(const configuration::CellConfig& cell, Ports ports, int stop_descriptor,
+    Result<void> startAll(const cell::CellConfig& cell, Ports ports, int stop_descriptor,
                           const OnReady& on_ready);
     std::optional<Ended> lookAtAll(OnFailure on_failure, const OnChange& on_change);
     /// Waits for something to look at, or for the descriptor.

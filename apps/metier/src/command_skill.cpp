@@ -5,7 +5,7 @@
 #include <chrono>
 #include <memory>
 
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
@@ -57,7 +57,7 @@ Exit stayUntilEnd(OpenSkill& open, const CommandOptions& options) {
 }
 
 /// A controller that takes longer for a Reset than its server waits for it is asked again.
-opcua::Answer<> call(skill_client::SkillHandle& skill, const Command& command) {
+opcua::Answer<> call(client::SkillHandle& skill, const Command& command) {
     const auto deadline = std::chrono::steady_clock::now() + kResetTimeout;
     auto called = skill.call(command.method);
     while (command.method == Method::reset && !called && called.error().code == Errc::timeout &&
@@ -71,7 +71,7 @@ opcua::Answer<> call(skill_client::SkillHandle& skill, const Command& command) {
 }
 
 /// Suspended follows at standstill, unless the skill reaches its end before, or is halted.
-Result<void> awaitSuspended(skill_client::SkillHandle& skill, const CommandOptions& options) {
+Result<void> awaitSuspended(client::SkillHandle& skill, const CommandOptions& options) {
     const auto stands = skill.awaitRest(deadlineOf(options));
     if (!stands) {
         return fail(stands.error());

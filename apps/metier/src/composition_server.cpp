@@ -147,8 +147,8 @@ private:
         return {};
     }
 
-    void note(const std::string& alias, const remote_skill::RemoteServer& remote,
-              const skill_client::SkillAddress& skill) {
+    void note(const std::string& alias, const client::RemoteServer& remote,
+              const client::SkillAddress& skill) {
         remote_.push_back(
             {alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
     }
@@ -209,7 +209,7 @@ private:
 };
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
-    const configuration::ServerConfig& config, const StopSignal& stop) {
+    const cell::ServerConfig& config, const StopSignal& stop) {
     auto definitions = loadDefinitions(config.composition.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
@@ -232,7 +232,7 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     return server;
 }
 
-CompositionServer::CompositionServer(const configuration::ServerConfig& config,
+CompositionServer::CompositionServer(const cell::ServerConfig& config,
                                      std::unique_ptr<SkillHost> host)
     : config_(config), name_(config.name), life_(newLife()), host_(std::move(host)) {}
 
@@ -258,14 +258,14 @@ void CompositionServer::keepBound() {
         std::move(bonds_));
 }
 
-Result<std::shared_ptr<remote_skill::RemoteServer>> CompositionServer::connectFound(
+Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
     const DiscoveredServer& found) {
     for (const auto& known : found_) {
         if (known->url() == found.found.url) {
             return known;
         }
     }
-    auto server = remote_skill::RemoteServer::connect({.url = found.found.url,
+    auto server = client::RemoteServer::connect({.url = found.found.url,
                                                        .name = found.found.name,
                                                        .application_name = "metier " + name_,
                                                        .security = ownCredentials(),
@@ -278,9 +278,9 @@ Result<std::shared_ptr<remote_skill::RemoteServer>> CompositionServer::connectFo
     return found_.back();
 }
 
-Result<void> CompositionServer::connect(const std::vector<configuration::UsedServer>& servers) {
+Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& servers) {
     for (const auto& used : servers) {
-        auto server = remote_skill::RemoteServer::connect({.url = used.url,
+        auto server = client::RemoteServer::connect({.url = used.url,
                                                            .name = used.name,
                                                            .application_name = "metier " + name_,
                                                            .security = ownCredentials(),

@@ -6,9 +6,9 @@
 
 #include "metier/base/error.hpp"
 #include "metier/composition/definition.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
-#include "metier/remote_skill/remote_server.hpp"
+#include "metier/client/remote_server.hpp"
 #include "rebinder.hpp"
 #include "skill_host.hpp"
 #include "skill_matching.hpp"
@@ -26,7 +26,7 @@ public:
     ///         that nobody or, unless discovered, more than one server offers; the port; cancelled
     ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
-        const configuration::ServerConfig& config, const StopSignal& stop);
+        const cell::ServerConfig& config, const StopSignal& stop);
 
     ~CompositionServer();
     CompositionServer(const CompositionServer&) = delete;
@@ -36,22 +36,22 @@ public:
 
 private:
     class Cast;
-    CompositionServer(const configuration::ServerConfig& config, std::unique_ptr<SkillHost> host);
-    Result<void> connect(const std::vector<configuration::UsedServer>& servers);
+    CompositionServer(const cell::ServerConfig& config, std::unique_ptr<SkillHost> host);
+    Result<void> connect(const std::vector<cell::UsedServer>& servers);
     Result<void> offer(std::vector<composition::Definition> definitions, const StopSignal& stop);
     Result<void> offerOne(const opcua_skill::SkillController& place,
                           composition::Definition definition, const StopSignal& stop);
 
-    Result<std::shared_ptr<remote_skill::RemoteServer>> connectFound(const DiscoveredServer& found);
+    Result<std::shared_ptr<client::RemoteServer>> connectFound(const DiscoveredServer& found);
     void keepBound();
 
-    const configuration::ServerConfig config_;
+    const cell::ServerConfig config_;
     std::string name_;
     std::string life_;  // part of the ids of executions
-    std::vector<std::unique_ptr<remote_skill::RemoteServer>> servers_;
+    std::vector<std::unique_ptr<client::RemoteServer>> servers_;
     std::vector<OfferedSkill> offered_;  // of all of them
     // Those that were found, shared by the skills that use them.
-    std::vector<std::shared_ptr<remote_skill::RemoteServer>> found_;
+    std::vector<std::shared_ptr<client::RemoteServer>> found_;
     std::vector<Bond> bonds_;
     std::unique_ptr<Rebinder> rebinder_;
     std::unique_ptr<SkillHost> host_;  // ends before the servers that its skills use

@@ -13,7 +13,7 @@
 
 #include "commands.hpp"
 #include "discovered_servers.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
 #include "robot_argument.hpp"
@@ -63,7 +63,7 @@ CellServer serverAt(const std::string& url) {
 }
 
 /// A name is part of keys, which are divided by "/".
-CellServer serverOf(const discovery::FoundServer& found) {
+CellServer serverOf(const opcua::FoundServer& found) {
     auto server = serverAt(found.url);
     if (!found.name.empty()) {
         server.name = fmt::format("{} ({})", found.name, server.name);
@@ -75,7 +75,7 @@ CellServer serverOf(const discovery::FoundServer& found) {
 Result<Cell> cellOf(const DashboardOptions& options) {
     Cell cell;
     if (!options.servers.cell.empty()) {
-        const auto config = configuration::loadCell(options.servers.cell);
+        const auto config = cell::loadCell(options.servers.cell);
         if (!config) {
             return fail(config.error());
         }
@@ -112,7 +112,7 @@ std::string urlOf(const std::string& address, std::uint16_t port) {
 /// Servers that discovery tells of are added as they come, until the signal.
 void watchDiscovery(Dashboard& page, const DashboardOptions& options, const StopSignal& stop) {
     constexpr std::chrono::seconds kBetween{10};
-    configuration::Discovery discovery;
+    cell::Discovery discovery;
     discovery.servers = options.discovery;
     discovery.mdns = options.mdns;
     while (!stop.came()) {

@@ -21,7 +21,7 @@ constexpr int kNoDescriptor = -1;
 
 /// Second tries of a move or part that failed, as on a busy machine. None in a cell with a real
 /// device: no real robot shall move by itself after a stop.
-int secondTries(const configuration::CellConfig& cell) {
+int secondTries(const cell::CellConfig& cell) {
     constexpr int kOfVirtualCells = 2;
     return cell.isVirtual() ? kOfVirtualCells : 0;
 }
@@ -55,7 +55,7 @@ struct DemoCell {
 
 /// Says what is wrong unless it runs.
 tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOptions& options) {
-    const auto cell = configuration::loadCell(file);
+    const auto cell = cell::loadCell(file);
     if (!cell) {
         return tl::unexpected(cell.error().code == Errc::invalid_argument
                                   ? reportUsage(cell.error())

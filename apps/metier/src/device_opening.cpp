@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "metier/process/name_lock.hpp"
+#include "metier/link/name_lock.hpp"
 
 namespace metier::app {
 namespace {
@@ -31,7 +31,7 @@ constexpr int kLastPort = 65535;
 
 /// Whichever face a device has tells of its safety.
 template <typename Callback>
-device::Registration onSafetyChange(const driver::OpenDevice& device, Callback callback) {
+device::Registration onSafetyChange(const device::OpenDevice& device, Callback callback) {
     if (device.arm != nullptr) {
         return device.arm->onSafetyChange(callback);
     }
@@ -41,7 +41,7 @@ device::Registration onSafetyChange(const driver::OpenDevice& device, Callback c
     return device.force_torque_sensor->onSafetyChange(callback);
 }
 
-Safety safetyOf(const driver::OpenDevice& device) {
+Safety safetyOf(const device::OpenDevice& device) {
     if (device.arm != nullptr) {
         return device.arm->safety();
     }
@@ -50,10 +50,10 @@ Safety safetyOf(const driver::OpenDevice& device) {
 }
 
 struct LockedDevice {
-    LockedDevice(process::NameLock name_lock, std::shared_ptr<void> open_device)
+    LockedDevice(link::NameLock name_lock, std::shared_ptr<void> open_device)
         : lock(std::move(name_lock)), device(std::move(open_device)) {}
 
-    process::NameLock lock;
+    link::NameLock lock;
     std::shared_ptr<void> device;  // as OpenDevice::owner
 };
 
@@ -73,20 +73,20 @@ std::string addressOf(const std::string& host) {
 }
 
 /// \return nothing for a device that several processes may use
-Result<std::optional<process::NameLock>> lockDevice(const driver::Driver& driver,
-                                                    const configuration::DriverChoice& choice,
+Result<std::optional<link::NameLock>> lockDevice(const device::Driver& driver,
+                                                    const cell::DriverChoice& choice,
                                                     const std::string& name) {
     if (driver.port.setting.empty()) {
-        return std::optional<process::NameLock>();
+        return std::optional<link::NameLock>();
     }
     const auto port = static_cast<int>(
         choice.settings.numberOr(driver.port.setting, driver.port.preset, 0, kLastPort));
     if (port == 0) {  // a free one, which nobody else has
-        return std::optional<process::NameLock>();
+        return std::optional<link::NameLock>();
     }
     const auto device =
         fmt::format("{} at {}, port {}", driver.name, addressOf(choice.controller), port);
-    auto lock = process::NameLock::take("device " + device, name + ": the controller " + device);
+    auto lock = link::NameLock::take("device " + device, name + ": the controller " + device);
     if (!lock) {
         return fail(lock.error());
     }
@@ -95,9 +95,9 @@ Result<std::optional<process::NameLock>> lockDevice(const driver::Driver& driver
 
 }  // namespace
 
-Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
+Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
                                       const std::string& name, const motion::RobotModel* model) {
-    const auto& all = driver::drivers();
+    const auto& all = device::drivers();
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const auto& known) { return known.name == choice.type; });
     if (found == all.end()) {
@@ -121,7 +121,7 @@ Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
     return device;
 }
 
-void awaitConnection(const driver::OpenDevice& device) {
+void awaitConnection(const device::OpenDevice& device) {
     struct Seen {
         std::mutex mutex;
         std::condition_variable changed;

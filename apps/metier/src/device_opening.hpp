@@ -3,8 +3,8 @@
 #include <string>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/device/driver.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::app {
@@ -14,11 +14,11 @@ namespace metier::app {
 /// \param model of an arm; nullptr for other devices; must outlive the device
 /// Errors: invalid_argument (unknown driver with the known ones, settings),
 ///         already_exists (another process of this machine has the device; names its pid).
-Result<driver::OpenDevice> openDevice(const configuration::DriverChoice& choice,
+Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
                                       const std::string& name, const motion::RobotModel* model);
 
 /// Waits until the device is ready: at most 10 s for its controller's answer, and 2 s more for its
 /// safety state to be normal. Logs why it is not.
-void awaitConnection(const driver::OpenDevice& device);
+void awaitConnection(const device::OpenDevice& device);
 
 }  // namespace metier::app

@@ -19,20 +19,20 @@ std::size_t servedBy(const DiscoveredServer& server, const std::vector<compositi
 
 }  // namespace
 
-std::vector<discovery::FoundServer> announcedServers(const configuration::Discovery& discovery,
+std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discovery,
                                                      const std::vector<std::string>& but) {
-    auto sighting = discovery::searchServers(
-        discovery.servers, discovery.mdns ? discovery::Mdns::asked : discovery::Mdns::left_out);
+    auto sighting = opcua::searchServers(
+        discovery.servers, discovery.mdns ? opcua::Mdns::asked : opcua::Mdns::left_out);
     for (const auto& problem : sighting.problems) {
         spdlog::debug("{}", problem.message);
     }
-    std::erase_if(sighting.servers, [&](const discovery::FoundServer& server) {
+    std::erase_if(sighting.servers, [&](const opcua::FoundServer& server) {
         return std::find(but.begin(), but.end(), server.url) != but.end();
     });
     return std::move(sighting.servers);
 }
 
-std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& discovery,
+std::vector<DiscoveredServer> discoverServers(const cell::Discovery& discovery,
                                               const std::vector<std::string>& but) {
     const auto announced = announcedServers(discovery, but);
     std::vector<DiscoveredServer> servers;

@@ -6,28 +6,28 @@
 
 #include "metier/base/error.hpp"
 #include "metier/composition/definition.hpp"
-#include "metier/configuration/cell.hpp"
-#include "metier/discovery/search.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/opcua/search.hpp"
 #include "skill_matching.hpp"
 
 namespace metier::app {
 
 /// A server that was found, and what it offers.
 struct DiscoveredServer {
-    discovery::FoundServer found;
+    opcua::FoundServer found;
     std::vector<OfferedSkill> offered;
 };
 
 /// Whoever discovery tells of now; nobody has asked them yet.
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
-std::vector<discovery::FoundServer> announcedServers(const configuration::Discovery& discovery,
+std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discovery,
                                                      const std::vector<std::string>& but);
 
 /// Those that answer within 2 s, by name and address, with what they offer.
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
-std::vector<DiscoveredServer> discoverServers(const configuration::Discovery& discovery,
+std::vector<DiscoveredServer> discoverServers(const cell::Discovery& discovery,
                                               const std::vector<std::string>& but);
 
 /// Which skill of a server serves each of these uses, by alias.

@@ -8,7 +8,7 @@
 
 #include "candidate.hpp"
 #include "commands.hpp"
-#include "metier/discovery/search.hpp"
+#include "metier/opcua/search.hpp"
 #include "metier/opcua/text.hpp"
 #include "printable.hpp"
 #include "skill_survey.hpp"
@@ -28,19 +28,19 @@ struct FindOptions {
     bool json = false;
 };
 
-discovery::Sighting searchFor(const FindOptions& options) {
+opcua::Sighting searchFor(const FindOptions& options) {
     auto asked = options.discovery;
     const bool everywhere = asked.empty() && options.at.empty();
     if (everywhere) {
         asked.emplace_back(kLocalDiscovery);
     }
-    auto sighting = discovery::searchServers(
-        asked, everywhere ? discovery::Mdns::asked : discovery::Mdns::left_out);
-    std::vector<discovery::FoundServer> given;
+    auto sighting = opcua::searchServers(
+        asked, everywhere ? opcua::Mdns::asked : opcua::Mdns::left_out);
+    std::vector<opcua::FoundServer> given;
     for (const auto& url : options.at) {
         given.push_back({url, "", "command line"});
     }
-    discovery::merge(sighting.servers, std::move(given));
+    opcua::merge(sighting.servers, std::move(given));
     return sighting;
 }
 
@@ -108,13 +108,13 @@ public:
     }
 
 private:
-    void say(const discovery::FoundServer& server, const std::string& text) const {
+    void say(const opcua::FoundServer& server, const std::string& text) const {
         if (!options_.json) {
             fmt::print("{:<28} {:<12} {}\n", server.url, server.name, opcua::sanitise(text));
         }
     }
 
-    void addSilent(const discovery::FoundServer& server, const std::string& error) {
+    void addSilent(const opcua::FoundServer& server, const std::string& error) {
         silent_.push_back({{"url", server.url}, {"name", server.name}, {"error", error}});
         say(server, fmt::format("does not answer: {}", error));
     }
@@ -134,7 +134,7 @@ private:
         }
     }
 
-    void addOther(const discovery::FoundServer& server, const std::vector<std::string>& terms) {
+    void addOther(const opcua::FoundServer& server, const std::vector<std::string>& terms) {
         others_.push_back({{"url", server.url}, {"name", server.name}, {"terms", terms}});
         say(server,
             fmt::format("does not fit: no {}, its terms: {}", options_.task,

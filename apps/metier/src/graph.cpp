@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "metier/composition/definition_file.hpp"
 #include "metier/composition/dot.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::app {
 namespace {
@@ -46,7 +46,7 @@ private:
 /// What Graphviz makes of it.
 Result<std::string> drawn(const std::string& dot) {
     const TemporaryFile file(dot);
-    auto program = process::ChildProcess::start({"dot", "-Tsvg", file.path()});
+    auto program = link::ChildProcess::start({"dot", "-Tsvg", file.path()});
     if (!program) {
         return fail(Errc::not_found,
                     "svg needs Graphviz, whose program `dot` is not there: apt-get install "

@@ -11,7 +11,7 @@
 namespace metier::app {
 
 Result<std::unique_ptr<GripperServer>> GripperServer::start(
-    const configuration::ServerConfig& config) {
+    const cell::ServerConfig& config) {
     auto device = openDevice(config.gripper.driver, config.name, nullptr);
     if (!device) {
         return fail(device.error());
@@ -36,10 +36,10 @@ Result<std::unique_ptr<GripperServer>> GripperServer::start(
     return server;
 }
 
-GripperServer::GripperServer(driver::OpenDevice device, std::unique_ptr<SkillHost> host)
+GripperServer::GripperServer(device::OpenDevice device, std::unique_ptr<SkillHost> host)
     : device_(std::move(device)), host_(std::move(host)) {}
 
-Result<void> GripperServer::offer(const configuration::GripperServer& config) {
+Result<void> GripperServer::offer(const cell::GripperServer& config) {
     const auto found = opcua_skill::findSkillController(host_->nodes());
     if (!found) {
         return fail(found.error());

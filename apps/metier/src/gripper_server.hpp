@@ -4,8 +4,8 @@
 #include <string>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/device/driver.hpp"
 #include "skill_host.hpp"
 
 namespace metier::app {
@@ -16,15 +16,15 @@ namespace metier::app {
 class GripperServer {
 public:
     /// Errors: what is wrong with the driver, the NodeSet, the skills or the port.
-    static Result<std::unique_ptr<GripperServer>> start(const configuration::ServerConfig& config);
+    static Result<std::unique_ptr<GripperServer>> start(const cell::ServerConfig& config);
 
     std::string url() const { return host_->url(); }
 
 private:
-    GripperServer(driver::OpenDevice device, std::unique_ptr<SkillHost> host);
-    Result<void> offer(const configuration::GripperServer& config);
+    GripperServer(device::OpenDevice device, std::unique_ptr<SkillHost> host);
+    Result<void> offer(const cell::GripperServer& config);
 
-    driver::OpenDevice device_;
+    device::OpenDevice device_;
     std::unique_ptr<SkillHost> host_;  // ends before the device
 };
 

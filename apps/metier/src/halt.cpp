@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
 namespace {
 
-using skill_client::SkillAddress;
+using client::SkillAddress;
 
 struct HaltOptions {
     ServerChoice servers;
@@ -39,7 +39,7 @@ Result<bool> callHalt(opcua::Client& client, const SkillAddress& skill) {
 /// Waits for standstill: until then the skill is Running, its sub-state Stopping.
 Result<void> awaitHalted(opcua::Client& client, const SkillAddress& address,
                          const HaltOptions& options, SteadyTime deadline) {
-    auto skill = skill_client::SkillHandle::open(client, address);
+    auto skill = client::SkillHandle::open(client, address);
     if (!skill) {
         return fail(skill.error());
     }
@@ -66,7 +66,7 @@ public:
         if (!client) {
             return report(client.error());
         }
-        const auto skills = skill_client::findSkills(**client);
+        const auto skills = client::findSkills(**client);
         if (!skills) {
             return report(skills.error());
         }

@@ -8,13 +8,13 @@
 
 #include "commands.hpp"
 #include "joint_text.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "robot_argument.hpp"
 
 namespace metier::app {
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using motion::IkKind;
 using motion::JointVector;
 using motion::RobotModel;
@@ -146,8 +146,8 @@ std::vector<Solution> solve(const IkQuestion& question) {
         const auto turned = turnedIntoLimits(question.model, joints);
         const auto reached = arm.forward(turned);
         solutions.push_back({turned, arm.withinLimits(turned),
-                             geometry::distanceBetween(reached, target),
-                             geometry::rotationAngleBetween(reached.rotation, target.rotation)});
+                             motion::distanceBetween(reached, target),
+                             motion::rotationAngleBetween(reached.rotation, target.rotation)});
     }
     return solutions;
 }

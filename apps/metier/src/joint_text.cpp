@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::app {
 namespace {
@@ -84,7 +84,7 @@ Result<JointVector> parseJoints(const motion::RobotModel& model, std::span<const
     return JointVector::from(*values);
 }
 
-Result<geometry::Pose> parsePose(std::span<const std::string> words, std::string_view what) {
+Result<motion::Pose> parsePose(std::span<const std::string> words, std::string_view what) {
     const auto values = parseNumbers(words, what);
     if (!values) {
         return fail(values.error());
@@ -95,7 +95,7 @@ Result<geometry::Pose> parsePose(std::span<const std::string> words, std::string
                     fmt::format("{}: {} values given, a pose has 6: x y z in m, a b c in rad", what,
                                 v.size()));
     }
-    return geometry::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
+    return motion::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
 }
 
 std::string toText(const JointVector& joints) {
@@ -106,8 +106,8 @@ std::string toText(const JointVector& joints) {
     return fmt::format("{:.6f}", fmt::join(values, ", "));
 }
 
-std::string toText(const geometry::Pose& pose) {
-    const auto frame = geometry::toFrame(pose);
+std::string toText(const motion::Pose& pose) {
+    const auto frame = motion::toFrame(pose);
     const auto rotation = normalForm(pose.rotation);
     return fmt::format(
         "position    x {:.12f}  y {:.12f}  z {:.12f}  m\n"
@@ -125,8 +125,8 @@ ordered_json toJson(const JointVector& joints) {
     return list;
 }
 
-ordered_json toJson(const geometry::Pose& pose) {
-    const auto frame = geometry::toFrame(pose);
+ordered_json toJson(const motion::Pose& pose) {
+    const auto frame = motion::toFrame(pose);
     const auto rotation = normalForm(pose.rotation);
     return {{"position",
              {{"x", frame.x + kNoSign}, {"y", frame.y + kNoSign}, {"z", frame.z + kNoSign}}},

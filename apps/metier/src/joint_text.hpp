@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::app {
@@ -24,16 +24,16 @@ Result<motion::JointVector> parseJoints(const motion::RobotModel& model,
 
 /// As parseNumbers(), for x, y, z [m] and the rotations a, b, c about x, y, z [rad].
 /// Errors: also invalid_argument if they are not six.
-Result<geometry::Pose> parsePose(std::span<const std::string> words, std::string_view what);
+Result<motion::Pose> parsePose(std::span<const std::string> words, std::string_view what);
 
 /// "0.1, -0.2" with 6 digits behind the point.
 std::string toText(const motion::JointVector& joints);
 /// Position, quaternion and rotations, a line each, for a person; 12 digits behind the point.
-std::string toText(const geometry::Pose& pose);
+std::string toText(const motion::Pose& pose);
 
 nlohmann::ordered_json toJson(const motion::JointVector& joints);
 /// Objects position, quaternion and rotation; the quaternion's first component that is not 0 is
 /// positive.
-nlohmann::ordered_json toJson(const geometry::Pose& pose);
+nlohmann::ordered_json toJson(const motion::Pose& pose);
 
 }  // namespace metier::app

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::app {
 namespace {
@@ -10,10 +10,10 @@ namespace {
 void addJoint(const motion::JointDescription& joint, opcua_skill::KinematicsData& data) {
     const bool first = data.joint_axes.empty();
     if (first) {
-        data.base_from_first_joint = geometry::toFrame(joint.parent_from_joint);
+        data.base_from_first_joint = motion::toFrame(joint.parent_from_joint);
     }
     data.joint_frames.push_back(first ? opcua::ThreeDFrame{}
-                                      : geometry::toFrame(joint.parent_from_joint));
+                                      : motion::toFrame(joint.parent_from_joint));
     data.joint_axes.push_back({joint.axis.x(), joint.axis.y(), joint.axis.z()});
     data.min_joint_position.push_back(joint.limits.lower);
     data.max_joint_position.push_back(joint.limits.upper);
@@ -26,7 +26,7 @@ motion::JointDescription jointFrom(const opcua_skill::KinematicsData& data, std:
     motion::JointDescription joint;
     joint.name = fmt::format("Axis {}", axis + 1);
     joint.parent_from_joint =
-        geometry::toPose(axis == 0 ? data.base_from_first_joint : data.joint_frames[axis]);
+        motion::toPose(axis == 0 ? data.base_from_first_joint : data.joint_frames[axis]);
     const auto& direction = data.joint_axes[axis];
     joint.axis = {direction.x, direction.y, direction.z};
     joint.limits = {data.min_joint_position[axis], data.max_joint_position[axis],
@@ -43,7 +43,7 @@ opcua_skill::KinematicsData toKinematicsData(const motion::RobotModel& model) {
     for (const auto& joint : chain.joints) {
         addJoint(joint, data);
     }
-    data.last_joint_from_flange = geometry::toFrame(chain.last_from_flange);
+    data.last_joint_from_flange = motion::toFrame(chain.last_from_flange);
     const auto& limits = chain.cartesian_limits;
     data.max_cartesian_velocity = {limits.velocity, limits.angular_velocity};
     data.max_cartesian_acceleration = {limits.acceleration, limits.angular_acceleration};
@@ -72,7 +72,7 @@ Result<motion::ChainDescription> toChain(const opcua_skill::KinematicsData& data
     for (std::size_t axis = 0; axis < data.axisCount(); ++axis) {
         chain.joints.push_back(jointFrom(data, axis));
     }
-    chain.last_from_flange = geometry::toPose(data.last_joint_from_flange);
+    chain.last_from_flange = motion::toPose(data.last_joint_from_flange);
     chain.cartesian_limits = {
         data.max_cartesian_velocity[0],     data.max_cartesian_acceleration[0],
         data.max_cartesian_jerk[0],         data.max_cartesian_velocity[1],

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "metier/opcua/text.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "printable.hpp"
 #include "servers.hpp"
 
@@ -29,7 +29,7 @@ Result<std::vector<ListedSkill>> listSkills(const std::string& url) {
     if (!client) {
         return fail(client.error());
     }
-    const auto skills = skill_client::findSkills(**client);
+    const auto skills = client::findSkills(**client);
     if (!skills) {
         return fail(skills.error());
     }

@@ -28,7 +28,7 @@ bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {
 }
 
 /// Addresses of servers with a position stream, and reach and payload enough.
-std::vector<std::string> findRobots(const configuration::ServerConfig& config,
+std::vector<std::string> findRobots(const cell::ServerConfig& config,
                                     const std::vector<std::string>& but) {
     std::vector<std::string> urls;
     for (const auto& server : survey(announcedServers(config.discovery, but))) {
@@ -39,7 +39,7 @@ std::vector<std::string> findRobots(const configuration::ServerConfig& config,
     return urls;
 }
 
-Error noneFound(const configuration::ServerConfig& config) {
+Error noneFound(const cell::ServerConfig& config) {
     return {Errc::not_found, fmt::format("no server with a PositionStreamSkill{} is found",
                                          textOf({config.move.reach, config.move.payload}))};
 }
@@ -55,7 +55,7 @@ Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Er
     return robot;
 }
 
-Result<ConnectedRobot> firstRobot(const configuration::ServerConfig& config,
+Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
                                   const StopSignal& stop) {
     if (!config.move.discover) {
         return connectRobot(config.move.robot);
@@ -75,7 +75,7 @@ Result<ConnectedRobot> firstRobot(const configuration::ServerConfig& config,
 
 }  // namespace
 
-Result<std::unique_ptr<MoveServer>> MoveServer::start(const configuration::ServerConfig& config,
+Result<std::unique_ptr<MoveServer>> MoveServer::start(const cell::ServerConfig& config,
                                                       const StopSignal& stop) {
     auto robot = firstRobot(config, stop);
     if (!robot) {
@@ -89,7 +89,7 @@ Result<std::unique_ptr<MoveServer>> MoveServer::start(const configuration::Serve
     return std::unique_ptr<MoveServer>(new MoveServer(config, std::move(*moves)));
 }
 
-MoveServer::MoveServer(configuration::ServerConfig config, std::unique_ptr<RobotMoves> moves)
+MoveServer::MoveServer(cell::ServerConfig config, std::unique_ptr<RobotMoves> moves)
     : config_(std::move(config)),
       url_(moves->url()),
       announced_url_(moves->announcedUrl()),

@@ -10,7 +10,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "robot_moves.hpp"
 #include "stop_signal.hpp"
 
@@ -27,7 +27,7 @@ public:
     /// Waits until a robot is found, 20 s at most, if one is to be found.
     /// Errors: the robot's server cannot be reached or does not tell enough, or the port is taken;
     ///         cancelled (a stop was asked for).
-    static Result<std::unique_ptr<MoveServer>> start(const configuration::ServerConfig& config,
+    static Result<std::unique_ptr<MoveServer>> start(const cell::ServerConfig& config,
                                                      const StopSignal& stop);
     ~MoveServer();
     MoveServer(const MoveServer&) = delete;
@@ -37,7 +37,7 @@ public:
     const std::string& url() const noexcept { return url_; }
 
 private:
-    MoveServer(configuration::ServerConfig config, std::unique_ptr<RobotMoves> moves);
+    MoveServer(cell::ServerConfig config, std::unique_ptr<RobotMoves> moves);
 
     void run(const std::stop_token& stop);
     bool awaitNext(const std::stop_token& stop);
@@ -46,7 +46,7 @@ private:
     Result<void> exchange(const std::string& robot_url);
     void tell(const Error& error);
 
-    configuration::ServerConfig config_;  // with the port that the server has
+    cell::ServerConfig config_;  // with the port that the server has
     const std::string url_;
     const std::string announced_url_;
     // Of the thread, once it runs.

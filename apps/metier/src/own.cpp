@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "metier/skill_client/control_handle.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/control_handle.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "owner_options.hpp"
 #include "servers.hpp"
 #include "stop_signal.hpp"
@@ -14,7 +14,7 @@
 namespace metier::app {
 namespace {
 
-using skill_client::ControlHandle;
+using client::ControlHandle;
 
 constexpr std::chrono::milliseconds kLook{100};
 constexpr std::chrono::milliseconds kDefaultLease{1'000};
@@ -25,12 +25,12 @@ struct OwnOptions {
 };
 
 /// The controllers of a server's skills, each once.
-Result<std::vector<skill_client::SkillAddress::Above>> controllersOf(opcua::Client& client) {
-    const auto skills = skill_client::findSkills(client);
+Result<std::vector<client::SkillAddress::Above>> controllersOf(opcua::Client& client) {
+    const auto skills = client::findSkills(client);
     if (!skills) {
         return fail(skills.error());
     }
-    std::vector<skill_client::SkillAddress::Above> controllers;
+    std::vector<client::SkillAddress::Above> controllers;
     for (const auto& skill : *skills) {
         const auto* controller = skill.controller();
         const bool known = controller == nullptr ||

@@ -130,7 +130,7 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
 }  // namespace
 
 Result<void> offerOwnCompositions(SkillHost& host, const opcua::NodeId& skills,
-                                  const configuration::ServerConfig& config) {
+                                  const cell::ServerConfig& config) {
     auto definitions = loadDefinitions(config.own_compositions);
     if (!definitions) {
         return fail(std::move(definitions.error()));

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/opcua/node_id.hpp"
 #include "skill_host.hpp"
 
@@ -13,6 +13,6 @@ namespace metier::app {
 /// offers by now and of each other, below `skills`.
 /// Errors: what is wrong with the files; a used skill that the server does not offer, or several.
 Result<void> offerOwnCompositions(SkillHost& host, const opcua::NodeId& skills,
-                                  const configuration::ServerConfig& config);
+                                  const cell::ServerConfig& config);
 
 }  // namespace metier::app

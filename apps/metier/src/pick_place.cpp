@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "pick_place_command.hpp"
 #include "second_try.hpp"
 #include "servers.hpp"
@@ -18,7 +18,7 @@
 namespace metier::app {
 namespace {
 
-using skill_client::SkillHandle;
+using client::SkillHandle;
 
 constexpr const char* kType = "PickPlaceSkillType";
 constexpr std::chrono::seconds kLongestReset{5};
@@ -45,7 +45,7 @@ Result<std::vector<Component>> findComponents(const std::vector<std::string>& ur
         if (!client) {
             return fail(client.error());
         }
-        const auto skills = skill_client::findSkills(**client);
+        const auto skills = client::findSkills(**client);
         if (!skills) {
             return fail(skills.error());
         }

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "joint_text.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/robot_skills/move_planning.hpp"
 #include "value_text.hpp"
 
@@ -115,7 +115,7 @@ Result<CartesianMoveParameters> poseParameters(const RobotModel& model, const Mo
     if (auto read = readCommon(options, model, parameters); !read) {
         return fail(read.error());
     }
-    const auto frame = geometry::toFrame(*target);
+    const auto frame = motion::toFrame(*target);
     parameters.target_position = {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
     const auto bounds = parseValue(skill::ValueType::ranges, options.axis_bounds);
     if (!bounds) {

@@ -35,13 +35,13 @@ bool isFree(const std::string& address, std::uint16_t port) {
 
 }  // namespace
 
-Result<std::optional<process::NameLock>> lockPort(const configuration::ServerConfig& config,
+Result<std::optional<link::NameLock>> lockPort(const cell::ServerConfig& config,
                                                   uid_t own) {
     if (config.port == 0) {
-        return std::optional<process::NameLock>();
+        return std::optional<link::NameLock>();
     }
     const auto port = fmt::format("port {} of {}", config.port, config.address);
-    auto lock = process::NameLock::take(port, config.name + ": " + port, own);
+    auto lock = link::NameLock::take(port, config.name + ": " + port, own);
     if (lock) {
         return std::optional(std::move(*lock));
     }
@@ -49,7 +49,7 @@ Result<std::optional<process::NameLock>> lockPort(const configuration::ServerCon
     if (by_another_user && isFree(config.address, config.port)) {
         spdlog::warn("{}, who does not serve there: it is served all the same",
                      lock.error().message);
-        return std::optional<process::NameLock>();
+        return std::optional<link::NameLock>();
     }
     return fail(lock.error());
 }

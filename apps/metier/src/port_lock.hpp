@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
-#include "metier/process/name_lock.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/link/name_lock.hpp"
 
 namespace metier::app {
 
@@ -16,8 +16,8 @@ namespace metier::app {
 /// Another user who took the name without the port keeps nobody from serving there: that is logged,
 /// and the result empty, as for any free port.
 /// \param own user of this process
-/// Errors: as process::NameLock::take(), while the port is taken.
-Result<std::optional<process::NameLock>> lockPort(const configuration::ServerConfig& config,
+/// Errors: as link::NameLock::take(), while the port is taken.
+Result<std::optional<link::NameLock>> lockPort(const cell::ServerConfig& config,
                                                   uid_t own = geteuid());
 
 }  // namespace metier::app

@@ -25,15 +25,15 @@ constexpr auto kLongestTurn = 5s;  // until the executor gets to something
 
 /// A server that was given up, with the children that watch what still runs there.
 struct Rebinder::Former {
-    std::shared_ptr<remote_skill::RemoteServer> server;
+    std::shared_ptr<client::RemoteServer> server;
     std::shared_ptr<Children> children;
 };
 
 /// What goes to the executor's thread, and what comes back.
 struct Rebinder::Exchange {
-    std::shared_ptr<remote_skill::RemoteServer> server;
+    std::shared_ptr<client::RemoteServer> server;
     std::map<std::string, OfferedSkill> chosen;
-    std::map<std::string, remote_skill::PendingUse> pending{};
+    std::map<std::string, client::PendingUse> pending{};
     std::shared_ptr<Children> children = std::make_shared<Children>();
 };
 
@@ -102,7 +102,7 @@ Result<void> Rebinder::moveTo(const DiscoveredServer& other, Bond& bond) {
     if (!chosen) {
         return fail(std::move(chosen.error()));
     }
-    auto server = remote_skill::RemoteServer::connect({.url = other.found.url,
+    auto server = client::RemoteServer::connect({.url = other.found.url,
                                                        .name = chosen->begin()->second.server,
                                                        .application_name = setup_.application_name,
                                                        .security = ownCredentials(),

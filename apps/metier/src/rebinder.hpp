@@ -13,9 +13,9 @@
 #include "discovered_servers.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/composition/sequence_skill.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/opcua/address_space.hpp"
-#include "metier/remote_skill/remote_server.hpp"
+#include "metier/client/remote_server.hpp"
 #include "metier/skill/executor.hpp"
 
 namespace metier::app {
@@ -28,7 +28,7 @@ struct Bond {
     std::string origin;                           ///< as RemoteServer::use() takes it
     std::vector<composition::Use> uses;           ///< they move together
     /// Shared by the bonds to one server.
-    std::shared_ptr<remote_skill::RemoteServer> server;
+    std::shared_ptr<client::RemoteServer> server;
     SteadyTime next_try{};
 };
 
@@ -40,7 +40,7 @@ struct Bond {
 class Rebinder {
 public:
     struct Setup {
-        configuration::Discovery discovery;
+        cell::Discovery discovery;
         std::string own_url;           ///< of the component, which does not serve itself
         std::string application_name;  ///< as others see it
         std::string own_server;  ///< ApplicationUri that executions are told as their parent's

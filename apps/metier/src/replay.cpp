@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "metier/configuration/cell.hpp"
-#include "metier/skill_json/values.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/skill/values.hpp"
 #include "motion_picture.hpp"
 #include "printable.hpp"
 #include "recorded.hpp"
@@ -32,7 +32,7 @@ Result<std::string> addressOf(const records::Execution& execution, const ReplayO
         return fail(Errc::invalid_argument, fmt::format("say where server '{}' is: --url or --cell",
                                                         execution.server_name));
     }
-    const auto cell = configuration::loadCell(options.cell);
+    const auto cell = cell::loadCell(options.cell);
     if (!cell) {
         return fail(cell.error());
     }
@@ -47,7 +47,7 @@ Result<std::string> addressOf(const records::Execution& execution, const ReplayO
 
 /// The parameters as they were then, as far as the skill still has them.
 Result<skill::ValueMap> parametersOf(const records::Execution& execution,
-                                     const skill_client::SkillHandle& skill) {
+                                     const client::SkillHandle& skill) {
     const auto json = nlohmann::json::parse(execution.parameters, nullptr, false);
     if (!json.is_object()) {
         return fail(
@@ -63,7 +63,7 @@ Result<skill::ValueMap> parametersOf(const records::Execution& execution,
             return fail(Errc::not_found, fmt::format("{} has no parameter '{}' any more",
                                                      skill.address().name, name));
         }
-        auto read = skill_json::valueFrom(value, field->type, name);
+        auto read = skill::valueFrom(value, field->type, name);
         if (!read) {
             return fail(Errc::invalid_argument, read.error().message);
         }

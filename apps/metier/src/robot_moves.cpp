@@ -13,7 +13,7 @@ namespace {
 // What a motion leaves of velocity and acceleration, so that the arm can follow its stream exactly.
 constexpr double kShare = 0.98;
 
-Result<motion::RobotModel> modelOf(const remote_arm::RemoteArm& arm) {
+Result<motion::RobotModel> modelOf(const client::RemoteArm& arm) {
     const auto position = arm.state().position;
     const std::vector<double> current(position.begin(), position.end());
     auto chain = toChain(arm.kinematics(), current);
@@ -40,7 +40,7 @@ opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device
 }  // namespace
 
 Result<ConnectedRobot> connectRobot(const std::string& url) {
-    auto arm = remote_arm::RemoteArm::connect({.url = url, .security = ownCredentials()});
+    auto arm = client::RemoteArm::connect({.url = url, .security = ownCredentials()});
     if (!arm) {
         return fail(arm.error().code, fmt::format("{}: {}", url, arm.error().message));
     }
@@ -52,7 +52,7 @@ Result<ConnectedRobot> connectRobot(const std::string& url) {
 }
 
 Result<std::unique_ptr<RobotMoves>> RobotMoves::serve(
-    const configuration::ServerConfig& config, ConnectedRobot robot,
+    const cell::ServerConfig& config, ConnectedRobot robot,
     std::shared_ptr<skill::ExecutionNames> names) {
     auto host = SkillHost::create(config, {}, std::move(names));
     if (!host) {

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "metier/remote_arm/remote_arm.hpp"
+#include "metier/client/remote_arm.hpp"
 #include "metier/skill/execution_names.hpp"
 #include "skill_host.hpp"
 
@@ -15,7 +15,7 @@ namespace metier::app {
 /// A robot behind another server, and the model by which moves are planned for it.
 struct ConnectedRobot {
     std::string url;
-    std::unique_ptr<remote_arm::RemoteArm> arm;
+    std::unique_ptr<client::RemoteArm> arm;
     motion::RobotModel model;
 };
 
@@ -30,7 +30,7 @@ public:
     /// \param names of executions that the server had before with another robot, shared with its
     ///              Programs; null: those of its state folder
     /// Errors: the port is taken.
-    static Result<std::unique_ptr<RobotMoves>> serve(const configuration::ServerConfig& config,
+    static Result<std::unique_ptr<RobotMoves>> serve(const cell::ServerConfig& config,
                                                      ConnectedRobot robot,
                                                      std::shared_ptr<skill::ExecutionNames> names);
 

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "metier/skill/json.hpp"
-#include "metier/skill_client/control_handle.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/control_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "printable.hpp"
 #include "skill_run.hpp"
 #include "value_text.hpp"
@@ -16,7 +16,7 @@
 namespace metier::app {
 namespace {
 
-using skill_client::SkillHandle;
+using client::SkillHandle;
 
 struct RunOptions {
     SkillChoice choice;
@@ -96,7 +96,7 @@ void printResult(const skill::ValueMap& result, bool as_json) {
 /// Ctrl-C halts the skill; the run then ends with the Halted that follows.
 class HaltOnSignal {
 public:
-    HaltOnSignal(const StopSignal& signal, opcua::Client& client, skill_client::SkillAddress skill)
+    HaltOnSignal(const StopSignal& signal, opcua::Client& client, client::SkillAddress skill)
         : thread_([&signal, &client, skill = std::move(skill)](const std::stop_token& stop) {
               while (!stop.stop_requested()) {
                   if (signal.waitUntil(std::chrono::steady_clock::now() + kLook)) {
@@ -109,7 +109,7 @@ public:
 private:
     static constexpr std::chrono::milliseconds kLook{100};
 
-    static void halt(opcua::Client& client, const skill_client::SkillAddress& skill) {
+    static void halt(opcua::Client& client, const client::SkillAddress& skill) {
         const auto method = client.translate(skill.node, {{0, "Halt"}});
         const auto called = method
                                 ? client.call(skill.node, *method)
@@ -144,10 +144,10 @@ struct OwnedRun {
 /// executions get plain writes and Start.
 opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& client,
                                         const OwnedRun& run) {
-    std::optional<skill_client::ControlHandle> control;
+    std::optional<client::ControlHandle> control;
     if (run.owner.lease_ms != 0) {
         const auto* controller = skill.address().controller();
-        auto taken = skill_client::ControlHandle::acquire(
+        auto taken = client::ControlHandle::acquire(
             client, controller == nullptr ? opcua::NodeId() : controller->node,
             {.lease = run.owner.lease(), .on_loss = run.owner.action()});
         if (!taken) {

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
@@ -12,7 +12,7 @@ constexpr std::chrono::milliseconds kBetweenResets{200};
 
 }  // namespace
 
-Result<void> resetUntilReady(skill_client::SkillHandle& skill, std::chrono::milliseconds longest) {
+Result<void> resetUntilReady(client::SkillHandle& skill, std::chrono::milliseconds longest) {
     const auto deadline = std::chrono::steady_clock::now() + longest;
     for (;;) {
         const auto state = skill.state();
@@ -35,13 +35,13 @@ Result<void> resetUntilReady(skill_client::SkillHandle& skill, std::chrono::mill
 void resetAllHalted(const std::vector<std::string>& urls, std::chrono::milliseconds longest) {
     for (const auto& url : urls) {
         const auto client = connectTo(url);
-        const auto skills = client ? skill_client::findSkills(**client)
-                                   : opcua::Answer<std::vector<skill_client::SkillAddress>>();
+        const auto skills = client ? client::findSkills(**client)
+                                   : opcua::Answer<std::vector<client::SkillAddress>>();
         if (!client || !skills) {
             continue;
         }
         for (const auto& address : *skills) {
-            auto skill = skill_client::SkillHandle::open(**client, address);
+            auto skill = client::SkillHandle::open(**client, address);
             if (skill) {
                 // The next start says why, if it was in vain.
                 static_cast<void>(resetUntilReady(*skill, longest));

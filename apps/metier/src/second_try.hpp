@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::app {
 
@@ -15,7 +15,7 @@ namespace metier::app {
 /// Resets a skill that is Halted, again until it is Ready or `longest` has passed: an arm may still
 /// brake.
 /// Errors: why the last Reset was refused; those of the connection.
-Result<void> resetUntilReady(skill_client::SkillHandle& skill, std::chrono::milliseconds longest);
+Result<void> resetUntilReady(client::SkillHandle& skill, std::chrono::milliseconds longest);
 
 /// The same for every Halted skill of those servers: a watchdog, or a lost link, has halted them
 /// besides the skill that used them. A server that does not answer is left out.

@@ -68,7 +68,7 @@ Error openServer(const std::string& url) {
 }
 
 Result<opcua::Credentials> credentialsOf(const std::string& name,
-                                         const trust::IdentityOptions& options) {
+                                         const security::IdentityOptions& options) {
     auto folder = openSecurityFolder();
     if (!folder) {
         return fail(folder.error());
@@ -166,18 +166,18 @@ bool isInsecureLab() {
     return process().choice.insecure_lab;
 }
 
-Result<trust::SecurityFolder> openSecurityFolder() {
+Result<security::SecurityFolder> openSecurityFolder() {
     const auto folder = securityFolder();
-    return folder ? trust::SecurityFolder::open(*folder) : fail(folder.error());
+    return folder ? security::SecurityFolder::open(*folder) : fail(folder.error());
 }
 
-Result<trust::KnownServers> knownServers() {
+Result<security::KnownServers> knownServers() {
     const auto folder = securityFolder();
-    return folder ? Result<trust::KnownServers>(trust::SecurityFolder::knownServers(*folder))
+    return folder ? Result<security::KnownServers>(security::SecurityFolder::knownServers(*folder))
                   : fail(folder.error());
 }
 
-Result<void> becomeApplication(const std::string& name, const trust::IdentityOptions& options) {
+Result<void> becomeApplication(const std::string& name, const security::IdentityOptions& options) {
     if (isInsecureLab()) {
         return {};
     }

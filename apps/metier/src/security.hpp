@@ -8,7 +8,7 @@
 #include "metier/base/error.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/security.hpp"
-#include "metier/trust/security_folder.hpp"
+#include "metier/security/security_folder.hpp"
 
 // Who this process is to those that it connects to, and they to it: one for the whole process,
 // as the command line says. Threads: any, once the command line is read.
@@ -27,12 +27,12 @@ constexpr const char* kInsecureLab =
     "INSECURE LAB: no encryption, and everybody on this machine may command";
 
 /// That of `--security`, else of the user.
-/// Errors: as trust::SecurityFolder::open(); resource_unavailable (nobody says where it is).
-Result<trust::SecurityFolder> openSecurityFolder();
+/// Errors: as security::SecurityFolder::open(); resource_unavailable (nobody says where it is).
+Result<security::SecurityFolder> openSecurityFolder();
 
 /// From now on this process is that application, not a command. Nothing happens in an insecure lab.
-/// Errors: as trust::SecurityFolder::identity().
-Result<void> becomeApplication(const std::string& name, const trust::IdentityOptions& options);
+/// Errors: as security::SecurityFolder::identity().
+Result<void> becomeApplication(const std::string& name, const security::IdentityOptions& options);
 /// Of what becomeApplication() made this process; none before, and in an insecure lab.
 std::optional<opcua::Credentials> ownCredentials();
 
@@ -48,7 +48,7 @@ void noteConnected(const opcua::ClientOptions& options, const std::string& url);
 /// clients of the same folder need not wonder.
 void noteServedOpen(const std::string& url);
 /// Addresses at which servers were closed. Errors: resource_unavailable, as openSecurityFolder().
-Result<trust::KnownServers> knownServers();
+Result<security::KnownServers> knownServers();
 
 /// What is to be done about a connection that was refused; empty if that is not known.
 std::string adviceOn(const opcua::Failure& refusal);

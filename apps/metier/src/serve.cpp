@@ -61,7 +61,7 @@ std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t por
 }
 
 /// Beside what else outlives a server, unless somebody says where.
-void chooseRecords(const ServeOptions& options, configuration::ServerConfig& config) {
+void chooseRecords(const ServeOptions& options, cell::ServerConfig& config) {
     auto& url = config.records.url;
     url = options.records.empty() ? url : options.records;
     if (url == "off") {
@@ -71,11 +71,11 @@ void chooseRecords(const ServeOptions& options, configuration::ServerConfig& con
     }
 }
 
-Result<void> chooseMetrics(const ServeOptions& options, configuration::ServerConfig& config) {
+Result<void> chooseMetrics(const ServeOptions& options, cell::ServerConfig& config) {
     if (options.metrics == "off") {
         config.metrics.reset();
     } else if (!options.metrics.empty()) {
-        auto address = configuration::parseHttpAddress(options.metrics);
+        auto address = cell::parseHttpAddress(options.metrics);
         if (!address) {
             return fail(address.error().code, "--metrics " + address.error().message);
         }
@@ -85,8 +85,8 @@ Result<void> chooseMetrics(const ServeOptions& options, configuration::ServerCon
 }
 
 /// A virtual controller of the same file is reached at its configured address.
-void resolveController(const configuration::CellConfig& cell, const std::string& other_address,
-                       configuration::DriverChoice& driver) {
+void resolveController(const cell::CellConfig& cell, const std::string& other_address,
+                       cell::DriverChoice& driver) {
     if (!other_address.empty()) {
         driver.controller = other_address;
     } else if (const auto* controller = cell.findVirtual(driver.controller)) {
@@ -94,7 +94,7 @@ void resolveController(const configuration::CellConfig& cell, const std::string&
     }
 }
 
-Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig& cell,
+Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
                                                  const ServeOptions& options) {
     const auto* server = options.server.empty() && cell.servers.size() == 1
                              ? &cell.servers.front()
@@ -135,16 +135,16 @@ Result<configuration::ServerConfig> chosenServer(const configuration::CellConfig
 }
 
 /// A component of the same file is reached at its configured port.
-void resolveRobot(const configuration::CellConfig& cell, configuration::ServerConfig& config) {
+void resolveRobot(const cell::CellConfig& cell, cell::ServerConfig& config) {
     if (const auto* robot = cell.find(config.move.robot)) {
         config.move.robot = fmt::format("opc.tcp://{}:{}", robot->address, robot->port);
     }
 }
 
 /// The addresses of the servers that composed skills use: as the command line says, or the file.
-Result<void> resolveUsed(const configuration::CellConfig& cell,
+Result<void> resolveUsed(const cell::CellConfig& cell,
                          const std::vector<std::string>& given,
-                         std::vector<configuration::UsedServer>& used) {
+                         std::vector<cell::UsedServer>& used) {
     for (const auto& option : given) {
         const auto equals = option.find('=');
         const auto found = std::find_if(used.begin(), used.end(), [&](const auto& server) {
@@ -167,7 +167,7 @@ Result<void> resolveUsed(const configuration::CellConfig& cell,
 }
 
 /// A server at another port is another application.
-Result<void> becomeServer(const configuration::ServerConfig& config) {
+Result<void> becomeServer(const cell::ServerConfig& config) {
     std::vector<std::string> hosts{hostName()};
     for (const auto& host : {config.address, config.discovery.announce_as}) {
         const bool names_one = !host.empty() && host != "0.0.0.0";
@@ -205,7 +205,7 @@ Exit serveUntil(const StopSignal& stop, const ServeOptions& options, Start start
 Exit runServe(const ServeOptions& options) {
     const StopSignal stop;
     StopSignal::outliveOutput();
-    const auto cell = configuration::loadCell(options.cell);
+    const auto cell = cell::loadCell(options.cell);
     if (!cell) {
         return reportUsage(cell.error());
     }
@@ -219,19 +219,19 @@ Exit runServe(const ServeOptions& options) {
     if (config->port == 0) {
         config->port = options.again_at;
     }
-    if (config->kind == configuration::ServerKind::arm) {
+    if (config->kind == cell::ServerKind::arm) {
         return serveUntil(stop, options, [&] { return ArmServer::start(*config); });
     }
-    if (config->kind == configuration::ServerKind::gripper) {
+    if (config->kind == cell::ServerKind::gripper) {
         return serveUntil(stop, options, [&] { return GripperServer::start(*config); });
     }
     if (const auto right = resolveUsed(*cell, options.used, config->usedServers()); !right) {
         return reportUsage(right.error());
     }
-    if (config->kind == configuration::ServerKind::composition) {
+    if (config->kind == cell::ServerKind::composition) {
         return serveUntil(stop, options, [&] { return CompositionServer::start(*config, stop); });
     }
-    if (config->kind == configuration::ServerKind::synchronized) {
+    if (config->kind == cell::ServerKind::synchronized) {
         return serveUntil(stop, options, [&] { return SynchronizedServer::start(*config); });
     }
     resolveRobot(*cell, *config);

@@ -22,7 +22,7 @@ constexpr auto kWarnEvery = 24h;
 constexpr std::size_t kMostWaiting = 16;
 constexpr std::size_t kMostRemembered = 1'000;
 
-fs::file_time_type latestChange(const trust::SecurityFolder& folder) {
+fs::file_time_type latestChange(const security::SecurityFolder& folder) {
     const auto trust = folder.trustFolder();
     const std::array places{trust / "trusted" / "certs", trust / "trusted" / "crl",
                             trust / "issuers" / "certs", trust / "issuers" / "crl",
@@ -44,11 +44,11 @@ Result<std::unique_ptr<ServerAccess>> ServerAccess::open(opcua::Credentials own,
     if (!folder) {
         return fail(folder.error());
     }
-    auto logins = trust::LoginGuard::open(folder->usersFile(), clock);
+    auto logins = security::LoginGuard::open(folder->usersFile(), clock);
     if (!logins) {
         return fail(logins.error());
     }
-    auto store = trust::TrustStore::open(folder->trustFolder());
+    auto store = security::TrustStore::open(folder->trustFolder());
     if (!store) {
         return fail(store.error());
     }
@@ -56,8 +56,8 @@ Result<std::unique_ptr<ServerAccess>> ServerAccess::open(opcua::Credentials own,
                                                           std::move(*logins), std::move(*store)));
 }
 
-ServerAccess::ServerAccess(opcua::Credentials own, trust::SecurityFolder folder,
-                           trust::LoginGuard logins, trust::TrustStore store)
+ServerAccess::ServerAccess(opcua::Credentials own, security::SecurityFolder folder,
+                           security::LoginGuard logins, security::TrustStore store)
     : own_(std::move(own)),
       identity_folder_(own_.identity_folder),
       folder_(std::move(folder)),
@@ -72,10 +72,10 @@ ServerAccess::~ServerAccess() = default;
 
 std::shared_ptr<const ServerAccess::Folder> ServerAccess::read() const {
     return std::make_shared<Folder>(
-        Folder{trust::loadIdentity(identity_folder_), folder_.roles(), latestChange(folder_)});
+        Folder{security::loadIdentity(identity_folder_), folder_.roles(), latestChange(folder_)});
 }
 
-std::optional<trust::Role> ServerAccess::roleOf(const std::string& thumbprint) {
+std::optional<security::Role> ServerAccess::roleOf(const std::string& thumbprint) {
     const auto now = folder_now_.get();
     const auto role = now->roles.find(thumbprint);
     return role == now->roles.end() ? std::nullopt : std::optional(role->second);
@@ -92,7 +92,7 @@ void ServerAccess::follow(opcua::Server& server) {
 }
 
 Result<opcua::Admission> ServerAccess::authenticate(const opcua::Login& login) {
-    Result<trust::Role> role =
+    Result<security::Role> role =
         fail(Errc::access_denied,
              fmt::format("the application {} has no role of its own: log in as a user",
                          login.thumbprint));
@@ -115,8 +115,8 @@ Result<opcua::Admission> ServerAccess::authenticate(const opcua::Login& login) {
 }
 
 void ServerAccess::noteRefused(const opcua::RefusedPeer& peer) {
-    auto certificate = trust::Certificate::fromDer(peer.der);
-    if (!certificate || peer.refusal.kind != trust::RefusalKind::untrusted) {
+    auto certificate = security::Certificate::fromDer(peer.der);
+    if (!certificate || peer.refusal.kind != security::RefusalKind::untrusted) {
         return;
     }
     {
@@ -136,7 +136,7 @@ void ServerAccess::keepRefused(const std::stop_token& stop) {
         const auto certificate = std::move(refused_.front());
         refused_.pop_front();
         lock.unlock();
-        if (auto store = trust::TrustStore::open(folder_.trustFolder())) {
+        if (auto store = security::TrustStore::open(folder_.trustFolder())) {
             store->keepRejected(certificate);
         }
         lock.lock();
@@ -154,7 +154,7 @@ void ServerAccess::look(opcua::Server& server) {
     timer_ = server.after(kLookEvery, [this, &server] { look(server); });
 }
 
-void ServerAccess::takeRenewed(opcua::Server& server, const Result<trust::Identity>& present) {
+void ServerAccess::takeRenewed(opcua::Server& server, const Result<security::Identity>& present) {
     if (!present) {
         if (unread_ != present.error().message) {
             unread_ = present.error().message;
@@ -180,9 +180,9 @@ void ServerAccess::warnOfEnd() {
     }
     warned_ = now;
     const auto end = own_.identity.certificate.notAfter();
-    if (std::chrono::system_clock::now() + trust::kRenewalTime > end) {
+    if (std::chrono::system_clock::now() + security::kRenewalTime > end) {
         spdlog::warn("the certificate of this server ends on {}: metier trust renew {}",
-                     trust::dateText(end), own_.identity_folder.filename().string());
+                     security::dateText(end), own_.identity_folder.filename().string());
     }
 }
 
@@ -193,7 +193,7 @@ bool ServerAccess::isTrustedStill(const std::string& thumbprint) {
     if (let_in == let_in_.end()) {
         return false;
     }
-    const auto certificate = trust::Certificate::fromDer(let_in->second);
+    const auto certificate = security::Certificate::fromDer(let_in->second);
     if (!certificate) {
         return false;
     }
@@ -202,7 +202,7 @@ bool ServerAccess::isTrustedStill(const std::string& thumbprint) {
     return store_.check(let_in->second, within).has_value();
 }
 
-std::optional<trust::Role> ServerAccess::roleNow(const std::string& user,
+std::optional<security::Role> ServerAccess::roleNow(const std::string& user,
                                                  const std::string& thumbprint) {
     if (!isTrustedStill(thumbprint)) {
         return std::nullopt;

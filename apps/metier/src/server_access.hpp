@@ -15,8 +15,8 @@
 #include "metier/base/error.hpp"
 #include "metier/opcua/security.hpp"
 #include "metier/opcua/server.hpp"
-#include "metier/trust/login_guard.hpp"
-#include "metier/trust/security_folder.hpp"
+#include "metier/security/login_guard.hpp"
+#include "metier/security/security_folder.hpp"
 
 namespace metier::app {
 
@@ -31,7 +31,7 @@ namespace metier::app {
 class ServerAccess {
 public:
     /// \param clock must outlive this
-    /// Errors: as openSecurityFolder(), trust::LoginGuard::open().
+    /// Errors: as openSecurityFolder(), security::LoginGuard::open().
     static Result<std::unique_ptr<ServerAccess>> open(opcua::Credentials own, const Clock& clock);
     ~ServerAccess();
     ServerAccess(const ServerAccess&) = delete;
@@ -43,32 +43,32 @@ public:
     void follow(opcua::Server& server);
 
 private:
-    ServerAccess(opcua::Credentials own, trust::SecurityFolder folder, trust::LoginGuard logins,
-                 trust::TrustStore store);
+    ServerAccess(opcua::Credentials own, security::SecurityFolder folder, security::LoginGuard logins,
+                 security::TrustStore store);
     Result<opcua::Admission> authenticate(const opcua::Login& login);
     bool isTrustedStill(const std::string& thumbprint);
-    std::optional<trust::Role> roleNow(const std::string& user, const std::string& thumbprint);
+    std::optional<security::Role> roleNow(const std::string& user, const std::string& thumbprint);
     void noteRefused(const opcua::RefusedPeer& peer);
     void look(opcua::Server& server);
-    void takeRenewed(opcua::Server& server, const Result<trust::Identity>& present);
+    void takeRenewed(opcua::Server& server, const Result<security::Identity>& present);
     void warnOfEnd();
     void closeStrangers(opcua::Server& server);
     void keepRefused(const std::stop_token& stop);
 
     /// Contents of the security folder besides users and trusted certificates.
     struct Folder {
-        Result<trust::Identity> identity;
-        std::map<std::string, trust::Role> roles;         ///< by thumbprint
+        Result<security::Identity> identity;
+        std::map<std::string, security::Role> roles;         ///< by thumbprint
         std::filesystem::file_time_type latest_change{};  ///< of what decides on rights
     };
     std::shared_ptr<const Folder> read() const;
-    std::optional<trust::Role> roleOf(const std::string& thumbprint);
+    std::optional<security::Role> roleOf(const std::string& thumbprint);
 
     opcua::Credentials own_;
     const std::filesystem::path identity_folder_;
-    const trust::SecurityFolder folder_;
-    trust::LoginGuard logins_;
-    trust::TrustStore store_;
+    const security::SecurityFolder folder_;
+    security::LoginGuard logins_;
+    security::TrustStore store_;
     std::map<std::string, std::string> let_in_;  // DER of applications by thumbprint
     std::filesystem::file_time_type seen_{};     // the latest change of the folder
     std::string unread_;  // why the folder's certificate could not be read; empty: it could
@@ -77,7 +77,7 @@ private:
 
     std::mutex mutex_;  // of what follows
     std::condition_variable_any wake_;
-    std::deque<trust::Certificate> refused_;
+    std::deque<security::Certificate> refused_;
     std::jthread keeper_;
     BackgroundRead<Folder> folder_now_;  // last: its thread uses both folders
 };

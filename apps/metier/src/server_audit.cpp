@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "metier/opcua_skill/namespaces.hpp"
-#include "metier/trust/users.hpp"
+#include "metier/security/users.hpp"
 
 namespace metier::app {
 namespace {
 
-audit::Entry entryOf(const opcua::AuditRecord& record) {
-    audit::Entry entry{record.time, record.event, {}};
+security::Entry entryOf(const opcua::AuditRecord& record) {
+    security::Entry entry{record.time, record.event, {}};
     const auto add = [&](const char* name, const std::string& value) {
         if (!value.empty()) {
             entry.fields.emplace_back(name, value);
@@ -22,7 +22,7 @@ audit::Entry entryOf(const opcua::AuditRecord& record) {
     const auto& session = record.session;
     const bool of_client = !session.id.isNull();
     add("user", session.user);
-    add("role", of_client ? std::string(trust::toString(session.role)) : "");
+    add("role", of_client ? std::string(security::toString(session.role)) : "");
     add("application", session.application_name);
     add("application_uri", session.application_uri);
     add("thumbprint", session.thumbprint);
@@ -38,7 +38,7 @@ audit::Entry entryOf(const opcua::AuditRecord& record) {
 
 }  // namespace
 
-Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::ServerConfig& config,
+Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const cell::ServerConfig& config,
                                                        opcua::ServerOptions& options) {
     if (config.state_folder.empty()) {
         const auto level = options.security ? spdlog::level::warn : spdlog::level::info;
@@ -46,10 +46,10 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const configuration::Serv
         return nullptr;
     }
     std::unique_ptr<ServerAudit> audit(new ServerAudit(config.name));
-    auto log = audit::AuditLog::open(
+    auto log = security::AuditLog::open(
         {.file = config.state_folder / "audit" /
                  fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
-         .on_health = [&audit = *audit](audit::Health health, const std::string& why) {
+         .on_health = [&audit = *audit](security::Health health, const std::string& why) {
              audit.tell(health, why);
          }});
     if (!log) {
@@ -96,8 +96,8 @@ Result<void> ServerAudit::publishAnchor(opcua::AddressSpace& nodes) {
                     .write = {}});
 }
 
-void ServerAudit::tell(audit::Health health, const std::string& why) {
-    if (health == audit::Health::failing) {
+void ServerAudit::tell(security::Health health, const std::string& why) {
+    if (health == security::Health::failing) {
         alarm_.tell(
             ServerAlarm::Kind::begins,
             fmt::format("the audit log cannot be written: {}; up to 10000 entries wait", why));

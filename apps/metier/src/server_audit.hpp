@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "metier/audit/audit_log.hpp"
+#include "metier/security/audit_log.hpp"
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/skill/executor.hpp"
 #include "server_alarm.hpp"
@@ -25,7 +25,7 @@ public:
     /// Has what a server of these options does and refuses written; before the server is made.
     /// \return null without a state folder, which the program's log tells
     /// Errors: resource_unavailable (the file); invalid_argument (it is no audit log).
-    static Result<std::unique_ptr<ServerAudit>> open(const configuration::ServerConfig& config,
+    static Result<std::unique_ptr<ServerAudit>> open(const cell::ServerConfig& config,
                                                      opcua::ServerOptions& options);
     ServerAudit(const ServerAudit&) = delete;
     ServerAudit& operator=(const ServerAudit&) = delete;
@@ -40,10 +40,10 @@ private:
     explicit ServerAudit(const std::string& name) : alarm_(name, "AuditLog") {}
     Result<void> publishAnchor(opcua::AddressSpace& nodes);
     /// On the log's thread.
-    void tell(audit::Health health, const std::string& why);
+    void tell(security::Health health, const std::string& why);
 
     ServerAlarm alarm_;
-    std::unique_ptr<audit::AuditLog> log_;  // ends first, and its thread
+    std::unique_ptr<security::AuditLog> log_;  // ends first, and its thread
 };
 
 }  // namespace metier::app

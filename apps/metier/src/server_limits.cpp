@@ -56,7 +56,7 @@ void put(double value, Number& field) {
 
 }  // namespace
 
-ServerLimits limitsOf(const std::vector<configuration::Limit>& limits) {
+ServerLimits limitsOf(const std::vector<cell::Limit>& limits) {
     ServerLimits result;
     for (const auto& limit : limits) {
         const auto named =

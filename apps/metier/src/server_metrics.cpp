@@ -45,7 +45,7 @@ void addDevice(TextPage& page, const std::string& name, SafetyState now) {
 }  // namespace
 
 Result<std::unique_ptr<ServerMetrics>> ServerMetrics::start(
-    const configuration::ServerConfig& config, Watched watched) {
+    const cell::ServerConfig& config, Watched watched) {
     std::unique_ptr<ServerMetrics> made(new ServerMetrics(config, std::move(watched)));
     auto endpoint = metrics::Endpoint::start({.address = config.metrics->host,
                                               .port = config.metrics->port,
@@ -60,7 +60,7 @@ Result<std::unique_ptr<ServerMetrics>> ServerMetrics::start(
     return made;
 }
 
-ServerMetrics::ServerMetrics(const configuration::ServerConfig& config, Watched watched)
+ServerMetrics::ServerMetrics(const cell::ServerConfig& config, Watched watched)
     : name_(config.name), watched_(std::move(watched)) {
     for (auto* program : watched_.programs) {
         meters_.push_back(std::make_unique<metrics::ProgramMeter>(*program));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/device/gripper.hpp"
 #include "metier/metrics/endpoint.hpp"
@@ -37,13 +37,13 @@ public:
     };
 
     /// Errors: resource_unavailable (the address is taken).
-    static Result<std::unique_ptr<ServerMetrics>> start(const configuration::ServerConfig& config,
+    static Result<std::unique_ptr<ServerMetrics>> start(const cell::ServerConfig& config,
                                                         Watched watched);
     ServerMetrics(const ServerMetrics&) = delete;
     ServerMetrics& operator=(const ServerMetrics&) = delete;
 
 private:
-    ServerMetrics(const configuration::ServerConfig& config, Watched watched);
+    ServerMetrics(const cell::ServerConfig& config, Watched watched);
 
     // Threads of the endpoint.
     std::string page() const;

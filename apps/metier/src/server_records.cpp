@@ -6,7 +6,7 @@
 namespace metier::app {
 namespace {
 
-records::Retention retentionOf(const configuration::Records& config) {
+records::Retention retentionOf(const cell::Records& config) {
     constexpr double kHoursPerDay = 24.0;
     constexpr double kMegabyte = 1e6;
     return {.age = std::chrono::hours(std::llround(config.keep_days * kHoursPerDay)),
@@ -16,7 +16,7 @@ records::Retention retentionOf(const configuration::Records& config) {
 }  // namespace
 
 Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
-    const configuration::ServerConfig& config, const std::string& server) {
+    const cell::ServerConfig& config, const std::string& server) {
     if (config.records.url.empty()) {
         return nullptr;
     }

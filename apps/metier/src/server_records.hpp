@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/device/force_torque_sensor.hpp"
 #include "metier/opcua/server.hpp"
@@ -35,7 +35,7 @@ public:
     /// \param server ApplicationUri
     /// \return null if nothing is to be recorded
     /// Errors: invalid_argument (the URL).
-    static Result<std::unique_ptr<ServerRecords>> open(const configuration::ServerConfig& config,
+    static Result<std::unique_ptr<ServerRecords>> open(const cell::ServerConfig& config,
                                                        const std::string& server);
     ServerRecords(const ServerRecords&) = delete;
     ServerRecords& operator=(const ServerRecords&) = delete;

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "security.hpp"
 
 namespace metier::app {
@@ -17,7 +17,7 @@ void addServerChoice(CLI::App& command, ServerChoice& choice) {
 Result<std::vector<std::string>> addressesOf(const ServerChoice& choice) {
     auto urls = choice.urls;
     if (!choice.cell.empty()) {
-        const auto cell = configuration::loadCell(choice.cell);
+        const auto cell = cell::loadCell(choice.cell);
         if (!cell) {
             return fail(cell.error());
         }
@@ -90,11 +90,11 @@ Result<OpenSkill> openSkill(const SkillChoice& choice, OnLoss on_loss) {
     if (!client) {
         return fail(client.error());
     }
-    auto address = skill_client::findSkill(**client, choice.skill);
+    auto address = client::findSkill(**client, choice.skill);
     if (!address) {
         return fail(address.error());
     }
-    auto skill = skill_client::SkillHandle::open(**client, std::move(*address));
+    auto skill = client::SkillHandle::open(**client, std::move(*address));
     if (!skill) {
         return fail(skill.error());
     }

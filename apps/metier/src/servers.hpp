@@ -7,7 +7,7 @@
 #include "commands.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/client.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::app {
 
@@ -49,7 +49,7 @@ void addSkillChoice(CLI::App& command, SkillChoice& choice);
 /// A skill and the client that leads to it.
 struct OpenSkill {
     std::unique_ptr<opcua::Client> client;
-    skill_client::SkillHandle skill;  // ends before its client
+    client::SkillHandle skill;  // ends before its client
 };
 
 /// Errors: those of connectTo(), findSkill() and SkillHandle::open().

@@ -10,7 +10,7 @@
 
 #include "kinematics_conversion.hpp"
 #include "metier/base/recent_mean.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/opcua_skill/base_placement.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
@@ -46,7 +46,7 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::Robot
     result.joint_position.assign(state.position.begin(), state.position.end());
     if (const auto joints = motion::JointVector::from(result.joint_position);
         joints && joints->size() == model.axisCount()) {
-        result.pose = geometry::toFrame(model.kinematics().forward(*joints));
+        result.pose = motion::toFrame(model.kinematics().forward(*joints));
     }
     result.safety_state = safetyKind(state.safety);
     result.missed_cycles = state.missed_cycles;
@@ -120,7 +120,7 @@ Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
 
 }  // namespace
 
-Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::ServerConfig& config,
+Result<std::unique_ptr<SkillHost>> SkillHost::create(const cell::ServerConfig& config,
                                                      std::vector<std::string> nodesets,
                                                      std::shared_ptr<skill::ExecutionNames> names) {
     auto port_lock = lockPort(config);
@@ -169,7 +169,7 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const configuration::Server
 }
 
 /// A server is the same one after a restart if it has the same name, address and port.
-Result<void> SkillHost::keepNames(const configuration::ServerConfig& config) {
+Result<void> SkillHost::keepNames(const cell::ServerConfig& config) {
     if (config.state_folder.empty()) {
         names_ = std::make_shared<skill::ExecutionNames>();
         return {};
@@ -184,7 +184,7 @@ Result<void> SkillHost::keepNames(const configuration::ServerConfig& config) {
     return {};
 }
 
-SkillHost::SkillHost(configuration::ServerConfig config) : config_(std::move(config)) {}
+SkillHost::SkillHost(cell::ServerConfig config) : config_(std::move(config)) {}
 
 Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     opcua::ServerOptions options;

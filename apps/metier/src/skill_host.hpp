@@ -9,13 +9,13 @@
 #include "announcement.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
-#include "metier/process/name_lock.hpp"
+#include "metier/link/name_lock.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
 #include "metier/robot_skills/device_watch.hpp"
 #include "metier/robot_skills/stall_watch.hpp"
@@ -45,7 +45,7 @@ public:
     /// \param names of a server before this one in the same place, shared with the Programs; null:
     ///              those of the state folder
     static Result<std::unique_ptr<SkillHost>> create(
-        const configuration::ServerConfig& config, std::vector<std::string> nodesets,
+        const cell::ServerConfig& config, std::vector<std::string> nodesets,
         std::shared_ptr<skill::ExecutionNames> names = nullptr);
     /// Brakes what moves and waits until it stands, 2 s at most; then ends the server.
     ~SkillHost();
@@ -107,14 +107,14 @@ public:
     Result<void> start();
 
 private:
-    explicit SkillHost(configuration::ServerConfig config);
+    explicit SkillHost(cell::ServerConfig config);
     Result<void> makeServer(std::vector<std::string> nodesets);
-    Result<void> keepNames(const configuration::ServerConfig& config);
+    Result<void> keepNames(const cell::ServerConfig& config);
     Result<void> watchPrograms();
     void watchStalls();
 
-    std::optional<process::NameLock> port_lock_;  // until the server is gone
-    const configuration::ServerConfig config_;
+    std::optional<link::NameLock> port_lock_;  // until the server is gone
+    const cell::ServerConfig config_;
     std::string application_uri_;
     SystemClock clock_;
     std::unique_ptr<ServerAccess> access_;  // none in an insecure lab

@@ -32,7 +32,7 @@ std::string namesOf(const std::vector<OfferedSkill>& skills) {
 
 }  // namespace
 
-bool isOfType(const skill_client::SkillAddress& skill, const std::string& type) {
+bool isOfType(const client::SkillAddress& skill, const std::string& type) {
     return skill.type_name == type || skill.type_name + "Type" == type ||
            skill.name + "Type" == type;
 }

@@ -6,7 +6,7 @@
 #include "arm_figures.hpp"
 #include "metier/base/error.hpp"
 #include "metier/composition/definition.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::app {
 
@@ -14,13 +14,13 @@ namespace metier::app {
 struct OfferedSkill {
     std::string server;     ///< its name in the cell file, or its address
     std::size_t index = 0;  ///< of the server
-    skill_client::SkillAddress address;
+    client::SkillAddress address;
     ArmFigures arm{};  ///< that it moves
 };
 
 /// Whether a skill is of that type: by the BrowseName of its type, or, for composed skills, which
 /// all are of SequenceSkillType, by its own name with "Type".
-bool isOfType(const skill_client::SkillAddress& skill, const std::string& type);
+bool isOfType(const client::SkillAddress& skill, const std::string& type);
 
 /// Errors: invalid_argument, if a use that a skill of the same server serves asks for more than
 /// that.

@@ -29,10 +29,10 @@ opcua::ClientOptions optionsFor(std::chrono::milliseconds limit) {
 /// What is asked about the skills of one server; about types and arms once each.
 class Questions {
 public:
-    Questions(opcua::Client& client, const skill_client::ReferenceReader& references)
+    Questions(opcua::Client& client, const client::ReferenceReader& references)
         : client_(client), references_(references) {}
 
-    opcua::Answer<SurveyedSkill> ask(skill_client::SkillAddress address) {
+    opcua::Answer<SurveyedSkill> ask(client::SkillAddress address) {
         auto own = references_.read(address.node);
         const auto purpose = own ? purposeOf(address) : tl::unexpected(own.error());
         if (!purpose) {
@@ -64,12 +64,12 @@ private:
         });
     }
 
-    opcua::Answer<const Purpose*> purposeOf(const skill_client::SkillAddress& address) {
+    opcua::Answer<const Purpose*> purposeOf(const client::SkillAddress& address) {
         const auto [purpose, is_new] = purposes_.try_emplace(address.type);
         if (!is_new) {
             return &purpose->second;
         }
-        const auto types = skill_client::typeChain(client_, address);
+        const auto types = client::typeChain(client_, address);
         if (!types) {
             return tl::unexpected(types.error());
         }
@@ -85,14 +85,14 @@ private:
     }
 
     opcua::Client& client_;
-    const skill_client::ReferenceReader& references_;
+    const client::ReferenceReader& references_;
     std::map<opcua::NodeId, Purpose> purposes_;  // by type
     std::map<opcua::NodeId, ArmFigures> arms_;   // by controller
 };
 
 opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client) {
-    auto found = skill_client::findSkills(client);
-    const auto references = found ? skill_client::ReferenceReader::create(client)
+    auto found = client::findSkills(client);
+    const auto references = found ? client::ReferenceReader::create(client)
                                   : tl::unexpected(std::move(found.error()));
     if (!references) {
         return tl::unexpected(references.error());
@@ -161,7 +161,7 @@ private:
 /// Servers that are asked at the same time, each by a thread of its own.
 class Round {
 public:
-    Round(std::vector<discovery::FoundServer> servers, std::chrono::milliseconds limit)
+    Round(std::vector<opcua::FoundServer> servers, std::chrono::milliseconds limit)
         : servers_(std::move(servers)),
           interviews_(servers_.size()),
           answers_(servers_.size()),
@@ -202,7 +202,7 @@ private:
         cutters.clear();
     }
 
-    std::vector<discovery::FoundServer> servers_;
+    std::vector<opcua::FoundServer> servers_;
     std::vector<Interview> interviews_;
     std::vector<std::optional<Result<std::vector<SurveyedSkill>>>> answers_;
     std::size_t open_;
@@ -213,7 +213,7 @@ private:
 
 }  // namespace
 
-std::vector<SurveyedServer> survey(const std::vector<discovery::FoundServer>& servers,
+std::vector<SurveyedServer> survey(const std::vector<opcua::FoundServer>& servers,
                                    std::chrono::milliseconds limit) {
     std::vector<SurveyedServer> result;
     for (std::size_t begin = 0; begin < servers.size(); begin += kAtOnce) {

@@ -7,31 +7,31 @@
 
 #include "arm_figures.hpp"
 #include "metier/base/error.hpp"
-#include "metier/discovery/search.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_references.hpp"
+#include "metier/opcua/search.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_references.hpp"
 
 namespace metier::app {
 
 /// A skill, as its server's address space tells.
 struct SurveyedSkill {
-    skill_client::SkillAddress address;
+    client::SkillAddress address;
     std::vector<std::string> types;  ///< its own, and those that it is derived from
     /// What it is for: identifiers of dictionary entries, its own, then those of its types.
     std::vector<std::string> terms{};
-    std::vector<skill_client::UsedSkill> uses{};
+    std::vector<client::UsedSkill> uses{};
     ArmFigures arm{};  ///< of what it moves; of nothing that it uses
 };
 
 struct SurveyedServer {
-    discovery::FoundServer server;
+    opcua::FoundServer server;
     Result<std::vector<SurveyedSkill>> skills;
 };
 
 /// Asks servers for their skills, many at the same time. Whoever has not answered everything
 /// within `limit` has an error instead.
 /// Threads: any; waits, about a second longer than `limit` for each 32 servers at most.
-std::vector<SurveyedServer> survey(const std::vector<discovery::FoundServer>& servers,
+std::vector<SurveyedServer> survey(const std::vector<opcua::FoundServer>& servers,
                                    std::chrono::milliseconds limit = std::chrono::seconds(2));
 
 /// Whether a skill is of a type, with or without its ending "Type", or of one derived from it; or

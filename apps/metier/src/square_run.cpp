@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "kinematics_conversion.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/motion/kinematics.hpp"
 #include "metier/path_evaluation/placement.hpp"
-#include "metier/skill_client/kinematics_reader.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "second_try.hpp"
 
 namespace metier::app {
@@ -20,8 +20,8 @@ namespace {
 
 using path_evaluation::kCorners;
 using path_evaluation::Square;
-using skill_client::SkillAddress;
-using skill_client::SkillHandle;
+using client::SkillAddress;
+using client::SkillHandle;
 
 constexpr const char* kPtpType = "CartesianPtpMoveSkillType";
 constexpr const char* kLinearType = "CartesianLinearMoveSkillType";
@@ -83,7 +83,7 @@ public:
 
 private:
     Result<void> prepare() {
-        auto nodes = skill_client::findKinematics(client_, arm_.linear);
+        auto nodes = client::findKinematics(client_, arm_.linear);
         if (!nodes) {
             return fail(nodes.error());
         }
@@ -103,11 +103,11 @@ private:
 
     /// Knows nothing of the robot but what its server publishes.
     Result<void> place() {
-        const auto data = skill_client::readKinematics(client_, nodes_);
+        const auto data = client::readKinematics(client_, nodes_);
         if (!data) {
             return fail(data.error());
         }
-        const auto joints = skill_client::readJointPosition(client_, nodes_);
+        const auto joints = client::readJointPosition(client_, nodes_);
         if (!joints) {
             return fail(joints.error());
         }
@@ -126,7 +126,7 @@ private:
     }
 
     Result<void> move(SkillHandle& skill, std::size_t corner) {
-        const skill::ValueMap target{{"TargetPosition", geometry::toFrame(square_.corner(corner))}};
+        const skill::ValueMap target{{"TargetPosition", motion::toFrame(square_.corner(corner))}};
         const auto result = tryToRun(skill, target);
         if (!result) {
             return fail(result.error());
@@ -154,10 +154,10 @@ private:
     }
 
     Result<SquareResult> goAround() {
-        auto subscription = skill_client::subscribeJointPosition(
+        auto subscription = client::subscribeJointPosition(
             client_, nodes_, kSampling,
             [recorder = recorder_](const auto& joints) { recorder->add(joints); });
-        const auto missed_before = skill_client::readMissedCycles(client_, nodes_);
+        const auto missed_before = client::readMissedCycles(client_, nodes_);
         if (!subscription || !missed_before) {
             return fail(subscription ? missed_before.error() : subscription.error());
         }
@@ -174,7 +174,7 @@ private:
         if (auto noted = noteNow(); !noted) {
             return fail(noted.error());
         }
-        const auto missed = skill_client::readMissedCycles(client_, nodes_);
+        const auto missed = client::readMissedCycles(client_, nodes_);
         if (!missed) {
             return fail(missed.error());
         }
@@ -196,7 +196,7 @@ private:
 
     /// Takes the arm's place at a standstill into the recorded path.
     Result<void> noteNow() {
-        const auto joints = skill_client::readJointPosition(client_, nodes_);
+        const auto joints = client::readJointPosition(client_, nodes_);
         if (!joints) {
             return fail(joints.error());
         }
@@ -222,7 +222,7 @@ private:
     const SquareArm& arm_;
     const SquareSettings& settings_;
     const SquareProgress& progress_;
-    skill_client::KinematicsNodes nodes_;
+    client::KinematicsNodes nodes_;
     Square square_;
     std::shared_ptr<PathRecorder> recorder_;
     std::optional<SkillHandle> ptp_;
@@ -233,7 +233,7 @@ private:
 }  // namespace
 
 Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url) {
-    const auto skills = skill_client::findSkills(client);
+    const auto skills = client::findSkills(client);
     if (!skills) {
         return fail(skills.error());
     }
@@ -251,7 +251,7 @@ Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::
         if (arm.ptp.name.empty() || arm.linear.name.empty()) {
             continue;
         }
-        const auto nodes = skill_client::findKinematics(client, arm.linear);
+        const auto nodes = client::findKinematics(client, arm.linear);
         if (!nodes) {
             return fail(nodes.error());
         }

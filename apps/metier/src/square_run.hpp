@@ -8,7 +8,7 @@
 #include "metier/base/error.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/path_evaluation/drawing.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::app {
 
@@ -16,8 +16,8 @@ namespace metier::app {
 struct SquareArm {
     std::string name;  ///< of its motion device
     std::string url;
-    skill_client::SkillAddress ptp;
-    skill_client::SkillAddress linear;
+    client::SkillAddress ptp;
+    client::SkillAddress linear;
 };
 
 struct SquareSettings {

@@ -11,7 +11,7 @@
 
 namespace metier::app {
 
-using synchronized_move::Arm;
+using composition::Arm;
 
 namespace {
 
@@ -26,7 +26,7 @@ std::string originOf(const std::string& component) {
 }  // namespace
 
 Result<std::unique_ptr<SynchronizedServer>> SynchronizedServer::start(
-    const configuration::ServerConfig& config) {
+    const cell::ServerConfig& config) {
     auto host = SkillHost::create(config, {});
     if (!host) {
         return fail(host.error());
@@ -42,7 +42,7 @@ Result<std::unique_ptr<SynchronizedServer>> SynchronizedServer::start(
 }
 
 Result<std::unique_ptr<composition::Child>> SynchronizedServer::use(
-    remote_skill::RemoteServer& server, const std::string& type, const std::string& component) {
+    client::RemoteServer& server, const std::string& type, const std::string& component) {
     auto skills = server.skills();
     if (!skills) {
         return fail(std::move(skills.error()));
@@ -64,9 +64,9 @@ Result<std::unique_ptr<composition::Child>> SynchronizedServer::use(
     return server.use(address, originOf(component));
 }
 
-Result<Arm> SynchronizedServer::connect(const configuration::UsedServer& used,
+Result<Arm> SynchronizedServer::connect(const cell::UsedServer& used,
                                         const std::string& component) {
-    auto server = remote_skill::RemoteServer::connect({.url = used.url,
+    auto server = client::RemoteServer::connect({.url = used.url,
                                                        .name = used.name,
                                                        .application_name = "metier " + component,
                                                        .session_timeout = kSessionTimeout,
@@ -85,14 +85,14 @@ Result<Arm> SynchronizedServer::connect(const configuration::UsedServer& used,
     if (!joint_move) {
         return fail(std::move(joint_move.error()));
     }
-    if (const auto why = synchronized_move::unfitReason((*joint_move)->description());
+    if (const auto why = composition::unfitReason((*joint_move)->description());
         !why.empty()) {
         return fail(Errc::not_supported, fmt::format("{}: {}", used.name, why));
     }
     return Arm{used.name, std::move(*pose_move), std::move(*joint_move)};
 }
 
-Result<void> SynchronizedServer::offer(const configuration::ServerConfig& config) {
+Result<void> SynchronizedServer::offer(const cell::ServerConfig& config) {
     const auto place = opcua_skill::publishSkillController(host_->nodes(), config.name,
                                                            "Moves several arms together.");
     if (!place) {
@@ -106,16 +106,16 @@ Result<void> SynchronizedServer::offer(const configuration::ServerConfig& config
         }
         arms.push_back(std::move(*arm));
     }
-    synchronized_move::Options options{
+    composition::Options options{
         host_->skills().executor(), host_->clock(), originOf(config.name) + "~" + newLife(),
         std::chrono::duration<double>(config.synchronized.start_delay)};
     const auto published =
         host_->skills().publish(place->skills,
-                                std::make_unique<synchronized_move::SynchronizedMoveSkill>(
+                                std::make_unique<composition::SynchronizedMoveSkill>(
                                     std::move(arms), std::move(options)),
                                 {.control = host_->control(),
                                  .names = host_->names(),
-                                 .rest_deadline = synchronized_move::kRestDeadline});
+                                 .rest_deadline = composition::kRestDeadline});
     if (!published) {
         return fail(published.error());
     }

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
-#include "metier/remote_skill/remote_server.hpp"
-#include "metier/synchronized_move/synchronized_move_skill.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/composition/synchronized_move_skill.hpp"
 #include "skill_host.hpp"
 
 namespace metier::app {
@@ -21,20 +21,20 @@ public:
     /// Errors: a used server that cannot be reached, or has no arm, or several, whose moves take a
     ///         start time; the port.
     static Result<std::unique_ptr<SynchronizedServer>> start(
-        const configuration::ServerConfig& config);
+        const cell::ServerConfig& config);
 
     std::string url() const { return host_->url(); }
 
 private:
     explicit SynchronizedServer(std::unique_ptr<SkillHost> host) : host_(std::move(host)) {}
-    Result<void> offer(const configuration::ServerConfig& config);
-    Result<synchronized_move::Arm> connect(const configuration::UsedServer& used,
+    Result<void> offer(const cell::ServerConfig& config);
+    Result<composition::Arm> connect(const cell::UsedServer& used,
                                            const std::string& component);
-    Result<std::unique_ptr<composition::Child>> use(remote_skill::RemoteServer& server,
+    Result<std::unique_ptr<composition::Child>> use(client::RemoteServer& server,
                                                     const std::string& type,
                                                     const std::string& component);
 
-    std::vector<std::unique_ptr<remote_skill::RemoteServer>> servers_;
+    std::vector<std::unique_ptr<client::RemoteServer>> servers_;
     std::vector<opcua_skill::RemoteSkill> used_;
     std::unique_ptr<SkillHost> host_;  // ends before the servers that its skill uses
 };

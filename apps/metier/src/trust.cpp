@@ -8,15 +8,15 @@
 
 #include "commands.hpp"
 #include "metier/opcua/text.hpp"
-#include "metier/trust/security_folder.hpp"
+#include "metier/security/security_folder.hpp"
 #include "security.hpp"
 
 namespace metier::app {
 namespace {
 
-using trust::Certificate;
-using trust::SecurityFolder;
-using trust::TrustStore;
+using security::Certificate;
+using security::SecurityFolder;
+using security::TrustStore;
 
 struct TrustOptions {
     std::string what;  // a thumbprint, a file or a name
@@ -45,9 +45,9 @@ Result<Place> openPlace() {
 std::string endText(const Certificate& certificate) {
     const auto now = std::chrono::system_clock::now();
     const auto* remark = certificate.notAfter() < now                         ? ", is over"
-                         : certificate.notAfter() < now + trust::kRenewalTime ? ", renew it"
+                         : certificate.notAfter() < now + security::kRenewalTime ? ", renew it"
                                                                               : "";
-    return fmt::format("ends {}{}", trust::dateText(certificate.notAfter()), remark);
+    return fmt::format("ends {}{}", security::dateText(certificate.notAfter()), remark);
 }
 
 void print(const Certificate& certificate, const std::string& remark) {
@@ -59,7 +59,7 @@ void print(const Certificate& certificate, const std::string& remark) {
 
 std::string roleText(const SecurityFolder& folder, const Certificate& certificate) {
     const auto role = folder.roleOf(certificate.thumbprint());
-    return role ? fmt::format("{} without a user", trust::toString(*role)) : "";
+    return role ? fmt::format("{} without a user", security::toString(*role)) : "";
 }
 
 Result<void> list(Place& place) {
@@ -95,7 +95,7 @@ Result<Certificate> trustOne(Place& place, const std::string& what) {
 }
 
 Result<void> accept(Place& place, const TrustOptions& options) {
-    const auto role = trust::roleNamed(options.role);
+    const auto role = security::roleNamed(options.role);
     const auto certificate = trustOne(place, options.what);
     if (!certificate) {
         return fail(certificate.error());

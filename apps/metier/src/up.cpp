@@ -56,7 +56,7 @@ Exit lookAfter(CellRunner& cell, const StopSignal& stop, OnFailure on_failure) {
 Exit runUp(const UpOptions& options) {
     const StopSignal stop;
     StopSignal::outliveOutput();
-    const auto config = configuration::loadCell(options.cell);
+    const auto config = cell::loadCell(options.cell);
     if (!config) {
         return reportUsage(config.error());
     }

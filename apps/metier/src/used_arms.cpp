@@ -24,7 +24,7 @@ std::string plainUrl(std::string url) {
     return url;
 }
 
-std::string nameOf(const discovery::FoundServer& server) {
+std::string nameOf(const opcua::FoundServer& server) {
     return server.name.empty() ? server.url : fmt::format("{}, {}", server.name, server.url);
 }
 
@@ -75,7 +75,7 @@ private:
         }
     }
 
-    static void take(std::optional<double> value, const discovery::FoundServer& server,
+    static void take(std::optional<double> value, const opcua::FoundServer& server,
                      Figure& figure) {
         if (!value) {
             figure.unknown = fmt::format("{} does not tell", nameOf(server));
@@ -85,7 +85,7 @@ private:
         }
     }
 
-    void follow(const skill_client::UsedSkill& use, std::size_t user) {
+    void follow(const client::UsedSkill& use, std::size_t user) {
         const auto server = use.endpoint_url.empty() ? user : serverAt(use.endpoint_url);
         if (server == servers_.size()) {
             loseSight(fmt::format("{} was not asked", use.endpoint_url));
@@ -112,7 +112,7 @@ private:
         return static_cast<std::size_t>(found - servers_.begin());
     }
 
-    std::size_t skillOf(std::size_t server, const skill_client::UsedSkill& use) const {
+    std::size_t skillOf(std::size_t server, const client::UsedSkill& use) const {
         const auto& skills = *servers_[server].skills;
         const auto found = std::find_if(skills.begin(), skills.end(), [&](const auto& skill) {
             return use.endpoint_url.empty()

@@ -4,13 +4,13 @@
 #include <string>
 
 #include "commands.hpp"
-#include "metier/trust/users.hpp"
+#include "metier/security/users.hpp"
 #include "security.hpp"
 
 namespace metier::app {
 namespace {
 
-using trust::UserTable;
+using security::UserTable;
 
 struct UserOptions {
     std::string name;
@@ -19,7 +19,7 @@ struct UserOptions {
 
 Result<void> list(UserTable& users, const UserOptions& /*options*/) {
     for (const auto& user : users.users()) {
-        fmt::print("{:<24} {}\n", user.name, trust::toString(user.role));
+        fmt::print("{:<24} {}\n", user.name, security::toString(user.role));
     }
     return {};
 }
@@ -29,7 +29,7 @@ Result<void> add(UserTable& users, const UserOptions& options) {
     if (!password) {
         return fail(password.error());
     }
-    const auto role = trust::roleNamed(options.role).value_or(trust::Role::observer);
+    const auto role = security::roleNamed(options.role).value_or(security::Role::observer);
     return users.add(options.name, role, *password);
 }
 

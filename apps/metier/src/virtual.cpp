@@ -10,7 +10,7 @@
 
 #include "commands.hpp"
 #include "metier/base/text.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/virtual_controller/host.hpp"
@@ -36,7 +36,7 @@ struct VirtualRunOptions {
 };
 
 Result<Exit> runController(const VirtualRunOptions& options, const StopSignal& stop) {
-    const auto cell = configuration::loadCell(options.cell);
+    const auto cell = cell::loadCell(options.cell);
     if (!cell) {
         return fail(cell.error());
     }
@@ -88,7 +88,7 @@ struct ControlOptions {
 /// "127.0.1.1", "127.0.1.1:7400", or the name of a virtual controller of the cell file.
 Result<std::pair<std::string, std::uint16_t>> controlAddress(const ControlOptions& options) {
     if (!options.cell.empty()) {
-        const auto cell = configuration::loadCell(options.cell);
+        const auto cell = cell::loadCell(options.cell);
         if (!cell) {
             return fail(cell.error());
         }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "servers.hpp"
 #include "stop_signal.hpp"
 #include "wake_event.hpp"
@@ -14,7 +14,7 @@ namespace metier::app {
 namespace {
 
 using skill::TransitionEvent;
-using skill_client::SkillHandle;
+using client::SkillHandle;
 
 struct WatchOptions {
     std::string url;
@@ -114,7 +114,7 @@ private:
 /// Opens what is to be watched. Errors: those of the server; not_found.
 Result<std::vector<SkillHandle>> openAll(opcua::Client& client, const WatchOptions& options,
                                          Printer& printer) {
-    const auto skills = skill_client::findSkills(client);
+    const auto skills = client::findSkills(client);
     if (!skills) {
         return fail(skills.error());
     }

@@ -16,7 +16,7 @@ namespace metier::app {
 namespace {
 
 using namespace std::chrono_literals;
-using configuration::ServerKind;
+using cell::ServerKind;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -37,13 +37,13 @@ protected:
     }
 
     void add(const std::string& name, ServerKind kind = ServerKind::arm) {
-        configuration::ServerConfig server;
+        cell::ServerConfig server;
         server.name = name;
         server.kind = kind;
         cell_.servers.push_back(server);
     }
     void addVirtual(const std::string& name, const std::string& type) {
-        configuration::VirtualController controller;
+        cell::VirtualController controller;
         controller.name = name;
         controller.type = type;
         cell_.virtual_controllers.push_back(controller);
@@ -96,7 +96,7 @@ protected:
 
     std::filesystem::path diaryFile() const { return cell_.file.string() + ".diary"; }
 
-    configuration::CellConfig cell_;
+    cell::CellConfig cell_;
     std::vector<std::string> ready_;
     int wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 };

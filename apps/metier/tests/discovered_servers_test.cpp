@@ -13,7 +13,7 @@ using ::testing::SizeIs;
 DiscoveredServer server(const std::string& name, const std::vector<std::string>& skills) {
     DiscoveredServer result{{"opc.tcp://" + name, name, "test"}, {}};
     for (const auto& skill : skills) {
-        skill_client::SkillAddress address;
+        client::SkillAddress address;
         address.name = skill;
         address.type_name = skill + "Type";
         result.offered.push_back({name, 0, std::move(address), {0.9, 3.0}});

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::app {
 namespace {
@@ -44,7 +44,7 @@ TEST(JointText, AsksForOneValueOfEachAxis) {
 }
 
 TEST(JointText, WritesOneOfTwoEqualQuaternionsAndNoNegativeZero) {
-    auto pose = geometry::toPose({0.5, -1e-17, 0, std::numbers::pi, 0, 0});
+    auto pose = motion::toPose({0.5, -1e-17, 0, std::numbers::pi, 0, 0});
     pose.rotation.coeffs() *= -1;
     EXPECT_EQ(toJson(pose)["quaternion"]["x"], 1.0);
     EXPECT_THAT(toText(pose), HasSubstr("y 0.000000000000  z 0.0"));
@@ -52,7 +52,7 @@ TEST(JointText, WritesOneOfTwoEqualQuaternionsAndNoNegativeZero) {
 }
 
 TEST(JointText, JsonKeepsEveryBit) {
-    const auto pose = geometry::toPose({1.0 / 3, -0.1, 1e-17, 0.7, -0.2, 3.0});
+    const auto pose = motion::toPose({1.0 / 3, -0.1, 1e-17, 0.7, -0.2, 3.0});
     const auto back = nlohmann::json::parse(toJson(pose).dump());
     EXPECT_EQ(back["position"]["x"].get<double>(), 1.0 / 3);
     EXPECT_EQ(back["quaternion"]["z"].get<double>(), pose.rotation.z());

@@ -57,7 +57,7 @@ public:
             constexpr uid_t kNobody = 65534;
             const bool is_other = geteuid() != 0 || seteuid(kNobody) == 0;
             const auto name = fmt::format("port {} of 127.0.0.1", port.number());
-            const auto lock = process::NameLock::take(name, "a port");
+            const auto lock = link::NameLock::take(name, "a port");
             const char taken = lock && is_other ? 'y' : 'n';
             [[maybe_unused]] const auto told = write(ready[1], &taken, 1);
             for (;;) {
@@ -84,8 +84,8 @@ private:
     pid_t pid_ = -1;
 };
 
-configuration::ServerConfig serverAt(std::uint16_t port) {
-    configuration::ServerConfig config;
+cell::ServerConfig serverAt(std::uint16_t port) {
+    cell::ServerConfig config;
     config.name = "iiwa";
     config.address = "127.0.0.1";
     config.port = port;

@@ -12,7 +12,7 @@
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
 #include "metier/opcua_skill/server_executor.hpp"
-#include "metier/trust/security_folder.hpp"
+#include "metier/security/security_folder.hpp"
 #include "server_audit.hpp"
 
 namespace metier::app {
@@ -51,7 +51,7 @@ protected:
     std::string url() const { return server_->endpointUrl(); }
     /// As a connection to a closed server was made.
     opcua::ClientOptions secured() const {
-        auto folder = trust::SecurityFolder::open(folder_).value();
+        auto folder = security::SecurityFolder::open(folder_).value();
         opcua::ClientOptions options;
         options.security = opcua::Credentials{folder
                                                   .identity("command",
@@ -100,7 +100,7 @@ TEST_F(Connections, AreMadeToNoOpenServerWhereAClosedOneWas) {
 }
 
 TEST_F(Connections, ShowTheNewestChainValueOfTheAuditLog) {
-    configuration::ServerConfig config;
+    cell::ServerConfig config;
     config.name = "iiwa";
     config.address = "127.0.0.1";
     config.state_folder = folder_;
@@ -120,7 +120,7 @@ TEST_F(Connections, ShowTheNewestChainValueOfTheAuditLog) {
     while (shown == std::string(64, '0') && std::chrono::steady_clock::now() < deadline) {
         shown = client->read(anchor).value().as<std::string>().value();
     }
-    const auto verified = audit::verify(log, {shown});
+    const auto verified = security::verify(log, {shown});
     ASSERT_TRUE(verified) << verified.error().message;
     EXPECT_EQ(verified->anchors.size(), 1U);
     EXPECT_FALSE(client->write(anchor, opcua::Value::of(std::string("mine"))));

@@ -22,7 +22,7 @@ TEST(ServerLimits, AreThoseOfTheCellFileAndElseTheServersOwn) {
 }
 
 TEST(ServerLimits, EachThatACellFileMaySetIsOneOfTheServers) {
-    for (const auto& kind : configuration::limitKinds()) {
+    for (const auto& kind : cell::limitKinds()) {
         const std::string name(kind.name);
         EXPECT_FALSE(same(limitsOf({{name, kind.least}}), limitsOf({{name, kind.most}}))) << name;
     }

@@ -52,10 +52,10 @@ protected:
     }
     ~WatchedServer() override { server_->stop(); }
 
-    configuration::ServerConfig config() const {
-        configuration::ServerConfig config;
+    cell::ServerConfig config() const {
+        cell::ServerConfig config;
         config.name = "ur5";
-        config.metrics = configuration::HttpAddress{address_, 9464};
+        config.metrics = cell::HttpAddress{address_, 9464};
         return config;
     }
     httplib::Result get(const char* path) const {

@@ -16,8 +16,8 @@ namespace metier::composition {
 
 namespace {
 
-using configuration::TomlFile;
-using configuration::TomlTable;
+using cell::TomlFile;
+using cell::TomlTable;
 using skill::Field;
 using skill::Unit;
 using skill::ValueType;
@@ -65,7 +65,7 @@ void readLength(const TomlTable& table, Field& field) {
     if (!length) {
         return;
     }
-    const auto whole = [](const configuration::TomlValue& value) {
+    const auto whole = [](const cell::TomlValue& value) {
         const auto number = value.integer();
         return number && *number >= 0 ? std::optional(static_cast<std::size_t>(*number))
                                       : std::nullopt;

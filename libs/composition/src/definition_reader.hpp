@@ -3,28 +3,28 @@
 #include <string>
 
 #include "metier/composition/definition.hpp"
-#include "metier/configuration/toml_file.hpp"
+#include "metier/cell/toml_file.hpp"
 
 namespace metier::composition {
 
 /// Reads keys and types; what is wrong is noted in the file.
-Definition readDefinition(const configuration::TomlFile& file, std::string name);
+Definition readDefinition(const cell::TomlFile& file, std::string name);
 
 /// Steps of `[[key]]` and all within them.
-std::vector<Step> readSteps(const configuration::TomlTable& table, const std::string& key,
+std::vector<Step> readSteps(const cell::TomlTable& table, const std::string& key,
                             const std::string& path);
 
 /// `key = "Parameter"` or `key = "step.Result"`, and which number of it.
-Reference readReference(const configuration::TomlTable& table, std::string_view key,
+Reference readReference(const cell::TomlTable& table, std::string_view key,
                         std::string_view element_key);
 
 /// A constant, `{ from = "..." }`, or a list of numbers that holds either.
-Binding readBinding(const configuration::TomlValue& value, std::string key);
+Binding readBinding(const cell::TomlValue& value, std::string key);
 
-Condition readCondition(const configuration::TomlTable& table, std::string key);
+Condition readCondition(const cell::TomlTable& table, std::string key);
 
 /// Whether it can be the name of a skill, a parameter, a step; notes it if not.
-bool checkName(const configuration::TomlTable& table, std::string_view key, const std::string& name,
+bool checkName(const cell::TomlTable& table, std::string_view key, const std::string& name,
                std::size_t longest);
 
 }  // namespace metier::composition

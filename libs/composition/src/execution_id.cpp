@@ -1,4 +1,4 @@
-#include "metier/composition/execution_id.hpp"
+#include "execution_id.hpp"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@ namespace metier::composition {
 
 namespace {
 
-using configuration::TomlValue;
+using cell::TomlValue;
 using skill::Value;
 using skill::ValueType;
 

@@ -4,12 +4,12 @@
 
 #include "metier/base/error.hpp"
 #include "metier/composition/definition.hpp"
-#include "metier/configuration/toml_file.hpp"
+#include "metier/cell/toml_file.hpp"
 
 namespace metier::composition {
 
 /// The constant that a TOML value stands for; nothing if it is none.
-std::optional<Literal> literalOf(const configuration::TomlValue& value);
+std::optional<Literal> literalOf(const cell::TomlValue& value);
 
 /// The constant as a value of that type.
 /// Errors: type_mismatch, telling how such a value is written.

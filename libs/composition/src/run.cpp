@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "call_activity.hpp"
-#include "metier/composition/execution_id.hpp"
+#include "execution_id.hpp"
 
 namespace metier::composition {
 

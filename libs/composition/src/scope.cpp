@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::composition {
 
@@ -75,7 +75,7 @@ Result<Value> made(const std::vector<double>& n, ValueType type) {
 void shift(Frame& frame, const std::vector<double>& by, ShiftAxes axes) {
     Eigen::Vector3d way(by[0], by[1], by[2]);
     if (axes == ShiftAxes::own) {
-        way = geometry::toPose(frame).rotation * way;
+        way = motion::toPose(frame).rotation * way;
     }
     frame.x += way.x();
     frame.y += way.y();

@@ -12,8 +12,8 @@ namespace metier::composition {
 
 namespace {
 
-using configuration::TomlTable;
-using configuration::TomlValue;
+using cell::TomlTable;
+using cell::TomlValue;
 
 constexpr std::int64_t kMostRounds = 1'000'000;
 constexpr std::int64_t kMostRetries = 1'000;

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "live_values.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::dashboard {
@@ -30,7 +30,7 @@ double distance(const KinematicsData& data, std::size_t axis,
                 const motion::JointDescription& joint) {
     constexpr double kMetres = 0.005;
     constexpr double kRadians = 0.02;
-    const auto told = geometry::toPose(jointFrame(data, axis));
+    const auto told = motion::toPose(jointFrame(data, axis));
     const auto& direction = data.joint_axes[axis];
     const Eigen::Vector3d told_axis =
         told.rotation * Eigen::Vector3d(direction.x, direction.y, direction.z);
@@ -66,7 +66,7 @@ json toolsJson(const KinematicsData& data, const RobotModel* model) {
         } else if (const auto known = model == nullptr
                                           ? Result<motion::ToolFrame>(fail(Errc::not_found, ""))
                                           : model->tool(name)) {
-            tool["frame"] = frameJson(geometry::toFrame(known->flange_from_tool));
+            tool["frame"] = frameJson(motion::toFrame(known->flange_from_tool));
         }
         tools.push_back(std::move(tool));
     }

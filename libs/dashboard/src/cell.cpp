@@ -10,10 +10,10 @@
 namespace metier::dashboard {
 namespace {
 
-using configuration::CellConfig;
-using configuration::ServerConfig;
-using configuration::ServerKind;
-using configuration::Settings;
+using cell::CellConfig;
+using cell::ServerConfig;
+using cell::ServerKind;
+using cell::Settings;
 using nlohmann::json;
 
 std::optional<Frame> frameIn(const std::vector<double>& numbers) {
@@ -96,7 +96,7 @@ json wallsOf(const Settings& settings) {
     return walls;
 }
 
-CellWorld worldOf(const configuration::VirtualController& world, const Endpoints& endpoints) {
+CellWorld worldOf(const cell::VirtualController& world, const Endpoints& endpoints) {
     CellWorld shown{addressOf(endpoints.virtual_controllers, world.name, world.address),
                     world.control_port};
     shown.fixed["table"] = nullptr;

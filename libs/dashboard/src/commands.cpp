@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
-#include "metier/skill_json/values.hpp"
+#include "metier/skill/values.hpp"
 
 namespace metier::dashboard {
 
 using nlohmann::json;
-using skill_client::AsyncSkill;
+using client::AsyncSkill;
 
 namespace {
 
@@ -80,12 +80,12 @@ Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person&
     return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
 }
 
-opcua::Answer<> callOnce(const skill_client::AsyncSkill& skill, skill::Method method) {
+opcua::Answer<> callOnce(const client::AsyncSkill& skill, skill::Method method) {
     return awaitAnswer<void>([&](auto done) { return skill.call(method, std::move(done)); });
 }
 
 /// Asks again while the device takes its time, for a second at most.
-opcua::Answer<> resetUntilDone(const skill_client::AsyncSkill& skill) {
+opcua::Answer<> resetUntilDone(const client::AsyncSkill& skill) {
     constexpr std::chrono::milliseconds kPause{20};
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     auto asked = callOnce(skill, skill::Method::reset);
@@ -117,7 +117,7 @@ Result<skill::ValueMap> parametersIn(const json& body, const skill::SkillDescrip
             return fail(Errc::not_found, fmt::format("{} has no parameter '{}'", skill.name,
                                                      opcua::sanitise(name.substr(0, 60))));
         }
-        auto typed = skill_json::valueFrom(value, field->type, name);
+        auto typed = skill::valueFrom(value, field->type, name);
         if (!typed) {
             return fail(typed.error());
         }

@@ -10,9 +10,9 @@
 #include "board.hpp"
 #include "metier/dashboard/cell.hpp"
 #include "metier/opcua/client.hpp"
-#include "metier/skill_client/async_skill.hpp"
-#include "metier/skill_client/kinematics_reader.hpp"
-#include "metier/skill_client/skill_finder.hpp"
+#include "metier/client/async_skill.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_finder.hpp"
 
 namespace metier::motion {
 class RobotModel;
@@ -32,10 +32,10 @@ struct LinkContext {
 /// One skill of a server that is connected.
 struct LinkedSkill {
     std::string key;
-    skill_client::SkillAddress address;
+    client::SkillAddress address;
     std::string control;  ///< key of its controller's control; empty: it has none
     opcua::NodeId halt;   ///< its Method
-    std::unique_ptr<skill_client::AsyncSkill> skill;
+    std::unique_ptr<client::AsyncSkill> skill;
 };
 
 /// A controller of a server, whose skills somebody may take control of.
@@ -77,7 +77,7 @@ private:
     /// An arm of its own.
     struct Arm {
         std::string key;
-        skill_client::KinematicsNodes nodes;
+        client::KinematicsNodes nodes;
     };
     void showArm(const Arm& arm);
     void showCycles(const Arm& arm);

@@ -6,7 +6,7 @@
 
 namespace metier::dashboard {
 
-using skill_client::AsyncSkill;
+using client::AsyncSkill;
 
 opcua::Answer<std::shared_ptr<AsyncSkill>> SkillSession::skill(const LinkedSkill& linked) {
     {

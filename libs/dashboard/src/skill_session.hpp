@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "metier/opcua/client.hpp"
-#include "metier/skill_client/async_skill.hpp"
+#include "metier/client/async_skill.hpp"
 #include "server_link.hpp"
 
 namespace metier::dashboard {
@@ -27,13 +27,13 @@ public:
         return client_->state() == opcua::Client::State::connected;
     }
     /// The skill, as this session uses it. Errors: the server's.
-    opcua::Answer<std::shared_ptr<skill_client::AsyncSkill>> skill(const LinkedSkill& linked);
+    opcua::Answer<std::shared_ptr<client::AsyncSkill>> skill(const LinkedSkill& linked);
 
 private:
     const std::unique_ptr<opcua::Client> client_;  // first: the skills use it
     std::mutex mutex_;
     // With whoever waits for an answer at this moment.
-    std::map<std::string, std::shared_ptr<skill_client::AsyncSkill>> skills_;
+    std::map<std::string, std::shared_ptr<client::AsyncSkill>> skills_;
 };
 
 /// Sends a request of an AsyncSkill and waits for what it is answered, at the latest at the
@@ -55,7 +55,7 @@ opcua::Answer<T> awaitAnswer(Send send) {
 }
 
 /// A refusal with the server's own reason, where it gives one.
-Error explained(const opcua::Failure& failure, const skill_client::AsyncSkill& skill,
+Error explained(const opcua::Failure& failure, const client::AsyncSkill& skill,
                 std::string_view what);
 
 }  // namespace metier::dashboard

@@ -99,7 +99,7 @@ json fieldJson(const Field& field, const MovedArm& arm) {
 }
 
 json skillJson(const std::string& key, const std::string& server,
-               const skill_client::AsyncSkill& skill, const MovedArm& arm) {
+               const client::AsyncSkill& skill, const MovedArm& arm) {
     const auto& address = skill.address();
     const auto& description = skill.description();
     return {{"key", key},

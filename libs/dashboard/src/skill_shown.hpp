@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "metier/skill/field.hpp"
-#include "metier/skill_client/async_skill.hpp"
+#include "metier/client/async_skill.hpp"
 
 namespace metier::dashboard {
 
@@ -19,7 +19,7 @@ struct MovedArm {
 
 /// What a skill is, as the page makes a form of it.
 nlohmann::json skillJson(const std::string& key, const std::string& server,
-                         const skill_client::AsyncSkill& skill, const MovedArm& arm);
+                         const client::AsyncSkill& skill, const MovedArm& arm);
 
 nlohmann::json fieldJson(const skill::Field& field, const MovedArm& arm);
 

@@ -8,7 +8,7 @@
 #include "arm_json.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
-#include "metier/skill_client/skill_references.hpp"
+#include "metier/client/skill_references.hpp"
 #include "transitions.hpp"
 
 namespace metier::dashboard {
@@ -16,9 +16,9 @@ namespace {
 
 using opcua::Answer;
 using opcua::NodeId;
-using skill_client::AsyncSkill;
-using skill_client::KinematicsNodes;
-using skill_client::SkillAddress;
+using client::AsyncSkill;
+using client::KinematicsNodes;
+using client::SkillAddress;
 
 const NodeId kServerArray{0, 2254U};
 
@@ -41,7 +41,7 @@ double lastTransition(opcua::Client& client, const NodeId& skill) {
 
 Answer<> Survey::run() {
     auto& client = link_.client();
-    const auto skills = skill_client::findSkills(client);
+    const auto skills = client::findSkills(client);
     if (!skills) {
         return tl::unexpected(skills.error());
     }
@@ -137,7 +137,7 @@ Answer<MovedArm> Survey::armOf(const SkillAddress& address, const std::string& u
     if (const auto known = arms_by_controller_.find(node); known != arms_by_controller_.end()) {
         return known->second;
     }
-    const auto kinematics = skill_client::findKinematics(link_.client(), address);
+    const auto kinematics = client::findKinematics(link_.client(), address);
     if (!kinematics && kinematics.error().code != Errc::not_found) {
         return tl::unexpected(kinematics.error());
     }
@@ -149,11 +149,11 @@ Answer<MovedArm> Survey::armOf(const SkillAddress& address, const std::string& u
 }
 
 std::string Survey::noteUses(const SkillAddress& address) {
-    auto reader = skill_client::ReferenceReader::create(link_.client());
+    auto reader = client::ReferenceReader::create(link_.client());
     const auto references =
-        reader ? reader->read(address.node) : Answer<skill_client::SkillReferences>();
+        reader ? reader->read(address.node) : Answer<client::SkillReferences>();
     std::string first;
-    for (const auto& use : references ? references->uses : std::vector<skill_client::UsedSkill>()) {
+    for (const auto& use : references ? references->uses : std::vector<client::UsedSkill>()) {
         const auto used = use.endpoint_url.empty() ? "" : context_.server_at(use.endpoint_url);
         if (used.empty() || used == context_.server.name) {
             continue;
@@ -168,7 +168,7 @@ Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const std::string&
     if (const auto known = arms_by_object_.find(nodes.object); known != arms_by_object_.end()) {
         return known->second;
     }
-    const auto data = skill_client::readKinematics(link_.client(), nodes);
+    const auto data = client::readKinematics(link_.client(), nodes);
     if (!data) {
         return tl::unexpected(data.error());
     }

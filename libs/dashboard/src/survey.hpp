@@ -21,16 +21,16 @@ public:
     opcua::Answer<> run();
 
 private:
-    opcua::Answer<> add(const skill_client::SkillAddress& address);
-    std::string uniqueKey(const skill_client::SkillAddress& address) const;
-    std::string addController(const skill_client::SkillAddress& address);
+    opcua::Answer<> add(const client::SkillAddress& address);
+    std::string uniqueKey(const client::SkillAddress& address) const;
+    std::string addController(const client::SkillAddress& address);
     /// \param used server that the skill uses; empty: none
-    opcua::Answer<MovedArm> armOf(const skill_client::SkillAddress& address,
+    opcua::Answer<MovedArm> armOf(const client::SkillAddress& address,
                                   const std::string& used);
-    opcua::Answer<MovedArm> addArm(const skill_client::KinematicsNodes& nodes,
+    opcua::Answer<MovedArm> addArm(const client::KinematicsNodes& nodes,
                                    const std::string& used);
     /// Notes the other servers of the cell whose skills this one uses, and names the first.
-    std::string noteUses(const skill_client::SkillAddress& address);
+    std::string noteUses(const client::SkillAddress& address);
     /// Largest width of the gripper [m]: as the server tells, else as its parameters may be.
     double stroke();
     void readState(const LinkedSkill& linked);

@@ -9,7 +9,7 @@
 
 namespace metier::dashboard {
 
-using skill_client::ControlHandle;
+using client::ControlHandle;
 
 namespace {
 

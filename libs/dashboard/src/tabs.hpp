@@ -7,7 +7,7 @@
 #include <string>
 
 #include "board.hpp"
-#include "metier/skill_client/control_handle.hpp"
+#include "metier/client/control_handle.hpp"
 #include "people.hpp"
 #include "skill_session.hpp"
 #include "watches.hpp"
@@ -39,7 +39,7 @@ private:
     Board& board_;
     SkillSession session_;  // before what uses it
     mutable std::mutex mutex_;
-    std::map<std::string, skill_client::ControlHandle> controls_;
+    std::map<std::string, client::ControlHandle> controls_;
 };
 
 /// The tabs that are open, whose they are, and what they hold.

@@ -44,7 +44,7 @@ bool isAlarm(const TransitionEvent& event) {
 
 }  // namespace
 
-skill_client::AsyncSkill::OnTransition transitionsTo(Board& board, std::string key) {
+client::AsyncSkill::OnTransition transitionsTo(Board& board, std::string key) {
     return [&board, key = std::move(key)](const TransitionEvent& event) {
         board.changeSkill(key, [&](SkillState& state) { apply(event, state); });
         if (isAlarm(event)) {

@@ -5,13 +5,13 @@
 
 #include "board.hpp"
 #include "metier/opcua/client.hpp"
-#include "metier/skill_client/async_skill.hpp"
+#include "metier/client/async_skill.hpp"
 
 namespace metier::dashboard {
 
 /// Has the board told of each transition of a skill, and of an alarm for one that nobody called.
 /// \param board must outlive what it is given to
-skill_client::AsyncSkill::OnTransition transitionsTo(Board& board, std::string key);
+client::AsyncSkill::OnTransition transitionsTo(Board& board, std::string key);
 
 /// What an event with the fields Message, Severity and Time tells; nothing if it is not one.
 std::optional<Alarm> alarmOf(const std::string& server, const opcua::EventNotice& notice);

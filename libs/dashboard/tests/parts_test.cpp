@@ -223,8 +223,8 @@ TEST(Fields, OfAToolFrameHaveItsNamesToChooseFrom) {
 }
 
 TEST(CellFrom, TellsWhichServersOthersUse) {
-    using configuration::ServerKind;
-    configuration::CellConfig config;
+    using cell::ServerKind;
+    cell::CellConfig config;
     config.servers.resize(3);
     config.servers[0].name = "ur5";
     config.servers[1].name = "ur5-move";

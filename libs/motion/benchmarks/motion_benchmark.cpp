@@ -51,7 +51,7 @@ struct Fixture {
 
     RobotModel model;
     std::vector<JointVector> positions;
-    std::vector<geometry::Pose> poses;
+    std::vector<motion::Pose> poses;
 };
 
 void forwardOwn(benchmark::State& state, const std::string& robot) {
@@ -146,7 +146,7 @@ void inverseKdl(benchmark::State& state, const std::string& robot) {
         for (unsigned i = 0; i < axes; ++i) {
             seed(i) = fixture.positions[(k + 7) % kPositions][i];
         }
-        const geometry::Pose& pose = fixture.poses[k % kPositions];
+        const motion::Pose& pose = fixture.poses[k % kPositions];
         const auto& r = pose.rotation;
         const auto& t = pose.translation;
         const KDL::Frame target(KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()),
@@ -170,7 +170,7 @@ RobotModel calibrated(const RobotModel& nominal) {
     ChainDescription chain = nominal.chain();
     double sign = 1;
     for (JointDescription& joint : chain.joints) {
-        geometry::Pose& pose = joint.parent_from_joint;
+        motion::Pose& pose = joint.parent_from_joint;
         pose.translation += sign * Eigen::Vector3d(1e-3, 0, 1e-3);
         pose.rotation = pose.rotation * Eigen::AngleAxisd(sign * 1e-3, Eigen::Vector3d::UnitX());
         sign = -sign;
@@ -195,8 +195,8 @@ void inverseCalibrated(benchmark::State& state, const std::string& robot) {
 LinRequest longLine(const RobotModel& model) {
     LinRequest request = line(model, 0);
     const double half = model.kinematics().reach() > 1 ? 0.5 : 0.3;
-    const geometry::Pose home = model.kinematics().forward(model.home());
-    geometry::Pose start = home;
+    const motion::Pose home = model.kinematics().forward(model.home());
+    motion::Pose start = home;
     start.translation.y() -= half;
     request.start = model.kinematics().inverse(start, {model.home(), {}, {}}).value();
     request.target.translation = {0, 2 * half, 0};
@@ -231,7 +231,7 @@ void sampleLineKdl(benchmark::State& state, const std::string& robot) {
     const KdlOracle oracle(model.chain());
     KDL::ChainIkSolverPos_LMA solver(oracle.chain(), Eigen::Matrix<double, 6, 1>::Ones(), 1e-6, 500,
                                      1e-15);
-    const geometry::Pose home = model.kinematics().forward(model.home());
+    const motion::Pose home = model.kinematics().forward(model.home());
     const auto& r = home.rotation;
     const auto& t = home.translation;
     const KDL::Frame from(KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()),

@@ -160,7 +160,7 @@ StoppingWay MotionExecution::stoppingWay() const noexcept {
     const Profile halt = trajectory_.brake(now, kHaltFactor);
     const Seconds time = std::min(Seconds(halt.duration()), remaining());
     const SetPoint end = trajectory_.sampleOnPath({std::min(halt.end(), 1.0), 0.0, 0.0});
-    return {time, geometry::distanceBetween(trajectory_.toolPose(current_.position),
+    return {time, motion::distanceBetween(trajectory_.toolPose(current_.position),
                                             trajectory_.toolPose(end.position))};
 }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "closed_form.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/motion/kinematics.hpp"
 
 namespace metier::motion {
@@ -15,7 +15,7 @@ namespace metier::motion {
 namespace {
 
 using Eigen::Matrix3d;
-using geometry::Pose;
+using motion::Pose;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -41,7 +41,7 @@ Vector6 errorBetween(const Transform& from, const Transform& to) noexcept {
         const double scale = sine < 1e-8 ? 0.5 : 0.5 * std::asin(std::min(sine, 1.0)) / sine;
         error.tail<3>() = scale * twice_sine;
     } else {
-        error.tail<3>() = geometry::toRotationVector(Eigen::Quaterniond(turn));
+        error.tail<3>() = motion::toRotationVector(Eigen::Quaterniond(turn));
     }
     return error;
 }

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using geometry::Pose;
+using motion::Pose;
 
 /// Turned about z, then put into the frame.
 void turn(Transform& frame, const Matrix3d& turned, double q) noexcept {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::motion {
 
@@ -139,7 +139,7 @@ Track follow(const TrackRequest& request, const std::vector<double>& places, boo
     JointVector guess = request.start;
     for (std::size_t k = 1; k < places.size(); ++k) {
         const double s = places[k];
-        const geometry::Pose flange = request.path.at(s);
+        const motion::Pose flange = request.path.at(s);
         const JointVector q = kinematics.solutionNear(flange, guess, request.path.armAngleAt(s));
         const JointVector& last = track.knots.back();
         if (q.empty()) {
@@ -175,10 +175,10 @@ std::optional<std::size_t> firstOffPath(const TrackRequest& request,
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
         JointVector middle = knots[k];
         middle.view() = 0.5 * (knots[k].view() + knots[k + 1].view());
-        const geometry::Pose reached = request.model->kinematics().forward(middle);
-        const geometry::Pose planned = request.path.at((places[k] + places[k + 1]) / 2);
-        if (geometry::distanceBetween(reached, planned) > kHalfWayDistance ||
-            geometry::rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
+        const motion::Pose reached = request.model->kinematics().forward(middle);
+        const motion::Pose planned = request.path.at((places[k] + places[k + 1]) / 2);
+        if (motion::distanceBetween(reached, planned) > kHalfWayDistance ||
+            motion::rotationAngleBetween(reached.rotation, planned.rotation) > kHalfWayAngle) {
             return k;
         }
     }

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <numbers>
 
-#include "metier/configuration/toml_file.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/cell/toml_file.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::motion {
 
 namespace {
 
-using configuration::TomlFile;
-using configuration::TomlTable;
-using geometry::Pose;
+using cell::TomlFile;
+using cell::TomlTable;
+using motion::Pose;
 
 /// A required list of so many numbers.
 std::vector<double> numbers(const TomlTable& table, std::string_view key, std::size_t count) {
@@ -87,7 +87,7 @@ std::vector<double> angles(const TomlTable& table, std::string_view key, std::si
 
 Pose readFrame(const TomlTable& table, std::string_view key) {
     const std::vector<double> v = numbers(table, key, 6);
-    return geometry::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
+    return motion::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
 }
 
 Pose turnAbout(const Eigen::Vector3d& axis, double angle) {

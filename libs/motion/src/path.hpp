@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/kinematics.hpp"
 #include "tool_path.hpp"
 
@@ -27,11 +27,11 @@ struct JointLine {
 /// Path of the flange: that of a tool frame on it and, for an arm that has one, its arm angle.
 struct FlangePath {
     ToolPath tool;
-    geometry::Pose tool_from_flange;
+    motion::Pose tool_from_flange;
     double arm_angle = 0;       ///< at the start [rad]
     double arm_angle_turn = 0;  ///< from start to end [rad]
 
-    geometry::Pose at(double s) const noexcept { return tool.at(s) * tool_from_flange; }
+    motion::Pose at(double s) const noexcept { return tool.at(s) * tool_from_flange; }
     double armAngleAt(double s) const noexcept { return arm_angle + s * arm_angle_turn; }
 };
 

@@ -1,11 +1,11 @@
 #include "path_layout.hpp"
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "request_check.hpp"
 
 namespace metier::motion {
 
-using geometry::Pose;
+using motion::Pose;
 
 namespace {
 
@@ -23,8 +23,8 @@ Refusal atWaypoint(const PathRequest& request, std::size_t index, Refusal refusa
 std::optional<Refusal> refuseCorner(const ToolPath& path, const Pose& corner, const Pose& target,
                                     double radius) {
     constexpr double rounding = 1e-9;
-    const bool same = geometry::distanceBetween(corner, target) == 0 &&
-                      geometry::rotationAngleBetween(corner.rotation, target.rotation) == 0;
+    const bool same = motion::distanceBetween(corner, target) == 0 &&
+                      motion::rotationAngleBetween(corner.rotation, target.rotation) == 0;
     if (same) {
         return refuse(RefusalReason::invalid_request, Errc::invalid_argument,
                       "the next waypoint is the same pose: no line leads there");

@@ -8,13 +8,13 @@
 namespace metier::motion {
 
 /// base_from_tool that a target stands for.
-geometry::Pose absoluteTarget(const geometry::Pose& start, const geometry::Pose& target,
+motion::Pose absoluteTarget(const motion::Pose& start, const motion::Pose& target,
                               TargetReference reference);
 
 /// Makes `path` the one of the tool frame from the start through all waypoints.
 /// \return why there is none, naming the waypoint
 std::optional<Refusal> layOut(const RobotModel& model, const PathRequest& request,
-                              const geometry::Pose& flange_from_tool, ToolPath& path);
+                              const motion::Pose& flange_from_tool, ToolPath& path);
 
 /// The refusal of a place of `path`, naming the waypoint that it is on the way to if there are
 /// several.

@@ -14,7 +14,7 @@ namespace metier::motion {
 class Trajectory::Plan {
 public:
     Plan(const RobotModel& model, std::variant<JointLine, JointPath> path, SpeedPlan speed,
-         geometry::Pose flange_from_tool)
+         motion::Pose flange_from_tool)
         : kinematics_(model.kinematics()),
           path_(std::move(path)),
           braking_(
@@ -32,7 +32,7 @@ public:
     const Kinematics& kinematics() const noexcept { return kinematics_; }
     const SpeedPlan& speed() const noexcept { return speed_; }
     const LimitsAlong& braking() const noexcept { return braking_; }
-    const geometry::Pose& flangeFromTool() const noexcept { return flange_from_tool_; }
+    const motion::Pose& flangeFromTool() const noexcept { return flange_from_tool_; }
     const ToolPath* toolPath() const noexcept {
         const auto* path = std::get_if<JointPath>(&path_);
         return path != nullptr ? &path->tool() : nullptr;
@@ -47,7 +47,7 @@ private:
     std::variant<JointLine, JointPath> path_;
     LimitsAlong braking_;
     SpeedPlan speed_;
-    geometry::Pose flange_from_tool_;
+    motion::Pose flange_from_tool_;
 };
 
 }  // namespace metier::motion

@@ -16,7 +16,7 @@ namespace metier::motion {
 
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 

@@ -5,7 +5,7 @@
 
 namespace metier::motion {
 
-using geometry::Pose;
+using motion::Pose;
 
 Refusal refuse(RefusalReason reason, Errc code, std::string text) {
     Refusal refusal;

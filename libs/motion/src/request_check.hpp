@@ -18,7 +18,7 @@ tl::unexpected<Refusal> invalid(const Error& error);
 /// \param tolerance how far beyond a limit is still taken [rad]
 Checked checkPosition(const RobotModel& model, const JointVector& q, std::string_view what,
                       double tolerance);
-Checked checkPose(const geometry::Pose& pose);
+Checked checkPose(const motion::Pose& pose);
 Checked checkPtp(const RobotModel& model, const PtpRequest& request);
 Checked checkLin(const RobotModel& model, const LinRequest& request);
 Checked checkPath(const RobotModel& model, const PathRequest& request);

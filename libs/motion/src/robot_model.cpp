@@ -30,7 +30,7 @@ Result<void> checkLimits(const JointDescription& joint, std::size_t axis) {
     return {};
 }
 
-bool isRigid(const geometry::Pose& pose) {
+bool isRigid(const motion::Pose& pose) {
     return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1.0) < 1e-9;
 }
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::motion {
 
 namespace {
 
 using Eigen::Vector3d;
-using geometry::Pose;
+using motion::Pose;
 
 /// Length that a rotation counts for where it is more than the translation [m/rad].
 constexpr double kLengthPerAngle = 0.25;
@@ -77,7 +77,7 @@ ToolPath::ToolPath(const Pose& start, const Pose& target) : end_(start) {
 
 ToolPath::Piece ToolPath::lineBetween(const Pose& start, const Pose& target) {
     const Vector3d direction = target.translation - start.translation;
-    const Vector3d turn = geometry::rotationVectorBetween(start.rotation, target.rotation);
+    const Vector3d turn = motion::rotationVectorBetween(start.rotation, target.rotation);
     Piece piece;
     piece.length = std::max(direction.norm(), kLengthPerAngle * turn.norm());
     piece.whole = piece.length;
@@ -131,7 +131,7 @@ void ToolPath::append(const Pose& target, double blend_radius) {
     to.begin += half;
     to.length -= half;
     to.pose = {to.pose.translation + half * to.in.velocity,
-               geometry::fromRotationVector(half * to.in.spin) * to.pose.rotation};
+               motion::fromRotationVector(half * to.in.spin) * to.pose.rotation};
     pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(before) + 1, corner);
 }
 
@@ -217,12 +217,12 @@ Pose ToolPath::at(double s) const noexcept {
     const double along = length - piece.begin;
     if (!piece.corner) {
         return {piece.pose.translation + along * piece.in.velocity,
-                geometry::fromRotationVector(along * piece.in.spin) * piece.pose.rotation};
+                motion::fromRotationVector(along * piece.in.spin) * piece.pose.rotation};
     }
     const double out = wayOut(piece, along);
     const double in = wayIn(piece, along);
-    return {translationIn(piece, along), geometry::fromRotationVector(out * piece.out.spin) *
-                                             geometry::fromRotationVector(in * piece.in.spin) *
+    return {translationIn(piece, along), motion::fromRotationVector(out * piece.out.spin) *
+                                             motion::fromRotationVector(in * piece.in.spin) *
                                              piece.pose.rotation};
 }
 
@@ -262,7 +262,7 @@ double ToolPath::nearestOn(const Piece& piece, const Pose& pose) const noexcept 
         const bool moves = piece.in.velocity.norm() > 0;
         return clamped(
             moves ? share(pose.translation - piece.pose.translation, piece.in.velocity)
-                  : share(geometry::rotationVectorBetween(piece.pose.rotation, pose.rotation),
+                  : share(motion::rotationVectorBetween(piece.pose.rotation, pose.rotation),
                           piece.in.spin));
     }
     return clamped(nearestInCorner(piece, pose.translation));
@@ -302,7 +302,7 @@ double ToolPath::nearest(const Pose& pose) const noexcept {
                 continue;
             }
             const double s = nearestOn(piece, pose);
-            const double off = geometry::distanceBetween(at(s), pose);
+            const double off = motion::distanceBetween(at(s), pose);
             if (least < 0 || off < least) {
                 least = off;
                 best = s;
@@ -318,7 +318,7 @@ double ToolPath::nearestPossible(const Piece& piece, const Pose& pose) noexcept 
     }
     const double reach =
         0.5 * piece.length * std::max(piece.in.velocity.norm(), piece.out.velocity.norm());
-    return geometry::distanceBetween(piece.pose, pose) - reach;
+    return motion::distanceBetween(piece.pose, pose) - reach;
 }
 
 }  // namespace metier::motion

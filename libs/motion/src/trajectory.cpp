@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "plan.hpp"
 
 namespace metier::motion {
@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-PathDeviation deviationAt(const geometry::Pose& planned, const geometry::Pose& pose, double s) {
-    return {geometry::distanceBetween(planned, pose),
-            geometry::rotationAngleBetween(planned.rotation, pose.rotation), s};
+PathDeviation deviationAt(const motion::Pose& planned, const motion::Pose& pose, double s) {
+    return {motion::distanceBetween(planned, pose),
+            motion::rotationAngleBetween(planned.rotation, pose.rotation), s};
 }
 
 }  // namespace
@@ -83,17 +83,17 @@ JointVector Trajectory::positionAt(double fraction) const noexcept {
     return plan_->pathAt(std::clamp(fraction, 0.0, 1.0)).q;
 }
 
-geometry::Pose Trajectory::toolPose(const JointVector& q) const noexcept {
+motion::Pose Trajectory::toolPose(const JointVector& q) const noexcept {
     return plan_->kinematics().forward(q) * plan_->flangeFromTool();
 }
 
-geometry::Pose Trajectory::poseAt(double fraction) const noexcept {
+motion::Pose Trajectory::poseAt(double fraction) const noexcept {
     const ToolPath* path = plan_->toolPath();
     const double s = std::clamp(fraction, 0.0, 1.0);
     return path != nullptr ? path->at(s) : toolPose(plan_->pathAt(s).q);
 }
 
-PathDeviation Trajectory::deviation(const geometry::Pose& base_from_tool) const noexcept {
+PathDeviation Trajectory::deviation(const motion::Pose& base_from_tool) const noexcept {
     if (const ToolPath* path = plan_->toolPath()) {
         const double s = path->nearest(base_from_tool);
         return deviationAt(path->at(s), base_from_tool, s);

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "kdl_oracle.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
@@ -18,7 +18,7 @@
 namespace metier::motion {
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 
 LinRequest vertical(const RobotModel& model, double length) {
     LinRequest request;
@@ -37,7 +37,7 @@ LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
         q += 0.2 * unit(random);
     }
     request.target.translation = 0.15 * Eigen::Vector3d(unit(random), unit(random), unit(random));
-    request.target.rotation = geometry::fromRotationVector(
+    request.target.rotation = motion::fromRotationVector(
         0.4 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
     return request;
 }
@@ -156,7 +156,7 @@ std::vector<double> fingerprint(const RobotModel& model) {
             values.insert(values.end(), point.position.begin(), point.position.end());
             values.insert(values.end(), point.acceleration.begin(), point.acceleration.end());
         }
-        const geometry::Pose pose = plan->endPose();
+        const motion::Pose pose = plan->endPose();
         const auto numeric = model.kinematics().inverseNumerically(
             plan->toolPose(randomPosition(model, random)), {model.home(), {}, {}});
         values.insert(values.end(), numeric->begin(), numeric->end());
@@ -188,7 +188,7 @@ TEST_P(AcceptanceOf, AHalfTurnIsTheSameWayEveryTime) {
     LinRequest request = vertical(model_, 0);
     request.reference = TargetReference::relative_tool;
     for (const double angle : {std::numbers::pi, -std::numbers::pi}) {
-        request.target.rotation = geometry::fromRotationVector({0, 0, angle});
+        request.target.rotation = motion::fromRotationVector({0, 0, angle});
         const auto plan = Planner(model_).lin(request);
         if (!plan) {
             EXPECT_EQ(plan.error().reason, RefusalReason::joint_limit);
@@ -196,7 +196,7 @@ TEST_P(AcceptanceOf, AHalfTurnIsTheSameWayEveryTime) {
         }
         const Pose quarter = plan->poseAt(0.5);
         const Eigen::Vector3d turned =
-            geometry::rotationVectorBetween(plan->poseAt(0).rotation, quarter.rotation);
+            motion::rotationVectorBetween(plan->poseAt(0).rotation, quarter.rotation);
         EXPECT_NEAR(turned.norm(), std::numbers::pi / 2, 1e-9);
         EXPECT_GT(turned.z() + 1e-9, 0.0);
     }
@@ -240,7 +240,7 @@ TEST(Acceptance, ALineThroughTheWristSingularityRunsIfTheAxesStayContinuous) {
     LinRequest request;
     request.start = JointVector{0, 0.1, 1.2, 0, 0.3, 0};
     request.reference = TargetReference::relative_base;
-    request.target.rotation = geometry::fromRotationVector({0, -0.6, 0});
+    request.target.rotation = motion::fromRotationVector({0, -0.6, 0});
     const auto plan = Planner(model).lin(request);
     ASSERT_TRUE(plan) << plan.error().error.message;
     EXPECT_LT(maxDifference(plan->end(), plan->start()), 1.0);
@@ -254,7 +254,7 @@ TEST(Acceptance, ALineCloseByASingularityIsSlowOrRefusedButNeverTooFast) {
     for (int i = 0; i < scaled(30); ++i) {
         LinRequest request = vertical(model, 0);
         request.start[4] = 0.3;  // the line turns the wrist past 0, a little beside it
-        request.target.rotation = geometry::fromRotationVector(
+        request.target.rotation = motion::fromRotationVector(
             {0.02 * unit(random), 0.02 * unit(random), -0.6 * (unit(random) > 0 ? 1 : -1)});
         request.target.translation = {0.0, 0.05 * unit(random), 0};
         const auto plan = Planner(model).lin(request);

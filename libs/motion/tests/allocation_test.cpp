@@ -72,7 +72,7 @@ TEST_P(AllocationOf, AFollowedStreamDoesNotAllocate) {
 }
 
 TEST_P(AllocationOf, KinematicsThatSucceedDoNotAllocate) {
-    const geometry::Pose pose = kinematics_.forward(model_.home());
+    const motion::Pose pose = kinematics_.forward(model_.home());
     const IkRequest request{model_.home(), {}, {}};
     const std::size_t before = allocationCount();
     for (int i = 0; i < 10; ++i) {

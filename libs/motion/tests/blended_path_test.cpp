@@ -3,14 +3,14 @@
 #include <cmath>
 #include <random>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using testing::HasSubstr;
 
 constexpr double kRadius = 0.03;
@@ -23,7 +23,7 @@ PathRequest roundedSquare(const RobotModel& model) {
     request.lin.max_velocity = {0.25, 0.25, 0.25, 1, 1, 1};
     request.lin.max_acceleration = {1.2, 1.2, 1.2, 4, 4, 4};
     const auto side = [](double y, double z, double turn) {
-        return PathWaypoint{{{0, y, z}, geometry::fromRotationVector({0, 0, turn})}, kRadius};
+        return PathWaypoint{{{0, y, z}, motion::fromRotationVector({0, 0, turn})}, kRadius};
     };
     request.waypoints = {side(0.1, 0, 0.2), side(0, 0.1, -0.3), side(-0.1, 0, 0.1)};
     return request;
@@ -78,7 +78,7 @@ TEST_P(BlendedPathOf, HasNoJumpInVelocityOrAngularVelocityAndKeepsTheLimits) {
         const Pose now = pose(time);
         const Eigen::Vector3d v = (now.translation - before.translation) / cycle;
         const Eigen::Vector3d w =
-            geometry::rotationVectorBetween(before.rotation, now.rotation) / cycle;
+            motion::rotationVectorBetween(before.rotation, now.rotation) / cycle;
         ASSERT_LE((v - velocity).norm() / cycle, 1.02 * acceleration) << time;
         ASSERT_LE((w - spin).norm() / cycle, 1.02 * angular_acceleration) << time;
         ASSERT_LE(v.norm(), 1.001 * std::min(0.25, own.velocity));
@@ -193,7 +193,7 @@ TEST(BlendedPath, TellsTheWaypointThatAWayLeadsTo) {
     request.lin.axis_bounds = {model.home(), model.home()};
     request.lin.axis_bounds.lower.view() -= axis.view();
     request.lin.axis_bounds.upper.view() += axis.view();
-    request.waypoints[1].target.rotation = geometry::fromRotationVector({0, 0, 0.8});
+    request.waypoints[1].target.rotation = motion::fromRotationVector({0, 0, 0.8});
     const auto plan = Planner(model).path(request);
     ASSERT_FALSE(plan);
     EXPECT_EQ(plan.error().reason, RefusalReason::joint_limit);
@@ -205,9 +205,9 @@ TEST(BlendedPath, WithOneSlowLineIsFiniteAndAsLongAsItSays) {
     PathRequest request;
     request.lin.start = model.home();
     request.lin.reference = TargetReference::relative_base;
-    geometry::Pose aside;
+    motion::Pose aside;
     aside.translation = {0, 0.2, 0};
-    geometry::Pose down;
+    motion::Pose down;
     down.translation = {0, 0, -0.05};
     request.waypoints = {{.target = aside, .blend_radius = 0.02, .max_velocity = 0.25},
                          {.target = down, .blend_radius = 0, .max_velocity = 0.001}};

@@ -12,7 +12,7 @@
 namespace metier::motion {
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 
 Pose turnAbout(const Eigen::Vector3d& axis, double angle) {
     return {Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis))};

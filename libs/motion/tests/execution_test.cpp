@@ -231,7 +231,7 @@ protected:
     double step(Seconds step) {
         const JointVector before = execution_.current().position;
         const JointVector after = execution_.next(step).position;
-        return geometry::distanceBetween(trajectory_.toolPose(before), trajectory_.toolPose(after));
+        return motion::distanceBetween(trajectory_.toolPose(before), trajectory_.toolPose(after));
     }
 
     static constexpr int kMostSkipped = 3;

@@ -11,7 +11,7 @@
 namespace metier::motion {
 namespace {
 
-using geometry::Wrench;
+using motion::Wrench;
 using testing::HasSubstr;
 
 constexpr double kLimit = 50.0;
@@ -162,7 +162,7 @@ TEST(ForceLimit, StopsALineAtAWallWithinTheBrakingDistanceOfTwiceTheLimits) {
         double tripped_at = 0;
         double depth = 0;
         while (!execution.atRest() || depth == 0) {
-            const geometry::Pose pose = trajectory.toolPose(execution.next(cycle).position);
+            const motion::Pose pose = trajectory.toolPose(execution.next(cycle).position);
             ASSERT_LE(trajectory.deviation(pose).distance, 1e-9);
             depth = surface - pose.translation.z();
             const double force = std::max(0.0, stiffness * depth);

@@ -4,7 +4,7 @@ namespace metier::motion {
 
 namespace {
 
-KDL::Frame toKdl(const geometry::Pose& pose) {
+KDL::Frame toKdl(const motion::Pose& pose) {
     const auto& r = pose.rotation;
     const auto& t = pose.translation;
     return {KDL::Rotation::Quaternion(r.x(), r.y(), r.z(), r.w()), {t.x(), t.y(), t.z()}};
@@ -36,7 +36,7 @@ KDL::JntArray KdlOracle::joints(const JointVector& q) const {
     return array;
 }
 
-geometry::Pose KdlOracle::forward(const JointVector& q) {
+motion::Pose KdlOracle::forward(const JointVector& q) {
     KDL::Frame frame;
     forward_.JntToCart(joints(q), frame);
     Eigen::Quaterniond rotation;

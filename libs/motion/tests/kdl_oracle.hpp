@@ -13,7 +13,7 @@ class KdlOracle {
 public:
     explicit KdlOracle(const ChainDescription& description);
 
-    geometry::Pose forward(const JointVector& q);
+    motion::Pose forward(const JointVector& q);
     Jacobian jacobian(const JointVector& q);
     const KDL::Chain& chain() const { return chain_; }
 

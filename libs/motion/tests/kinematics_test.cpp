@@ -6,7 +6,7 @@
 
 #include "kdl_oracle.hpp"
 #include "kinematics_vectors.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
@@ -21,7 +21,7 @@ TEST(KinematicsVectors, ForwardAgreesWithEveryReferenceVector) {
     for (const KinematicsVector& vector : kKinematicsVectors) {
         const RobotModel model = loadRobot(std::string(vector.robot));
         const auto& [w, x, y, z] = vector.quaternion_wxyz;
-        const geometry::Pose expected{Eigen::Vector3d(vector.position.data()),
+        const motion::Pose expected{Eigen::Vector3d(vector.position.data()),
                                       Eigen::Quaterniond(w, x, y, z)};
         EXPECT_LT(poseError(model.kinematics().forward(vector.q), expected), 1e-11) << vector.robot;
     }
@@ -49,11 +49,11 @@ TEST_P(KinematicsOf, LinkFramesFollowTheDescribedChain) {
     std::mt19937_64 random(2);
     const JointVector q = randomPosition(model_, random);
     const auto frames = kinematics_.forwardAll(q);
-    geometry::Pose frame;
+    motion::Pose frame;
     for (std::size_t i = 0; i < model_.axisCount(); ++i) {
         const JointDescription& joint = model_.chain().joints[i];
         frame = frame * joint.parent_from_joint *
-                geometry::Pose{{0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(q[i], joint.axis))};
+                motion::Pose{{0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(q[i], joint.axis))};
         EXPECT_LT(poseError(frames[i], frame), 1e-12);
     }
     EXPECT_LT(poseError(frames[model_.axisCount()], kinematics_.forward(q)), 1e-12);
@@ -69,7 +69,7 @@ TEST_P(KinematicsOf, EverySolutionReachesThePoseAndOneIsTheOriginalPosition) {
     int without_original = 0;
     for (int i = 0; i < kPoses; ++i) {
         const JointVector q = randomPosition(model_, random);
-        const geometry::Pose pose = kinematics_.forward(q);
+        const motion::Pose pose = kinematics_.forward(q);
         const JointSolutions solutions =
             kinematics_.allSolutions(pose, model_.home(), kinematics_.redundancyAngle(q));
         double nearest = 10;
@@ -87,7 +87,7 @@ TEST_P(KinematicsOf, EverySolutionReachesThePoseAndOneIsTheOriginalPosition) {
 TEST_P(KinematicsOf, InverseFindsAPositionInsideTheLimitsForEveryReachablePose) {
     std::mt19937_64 random(4);
     for (int i = 0; i < kPoses; ++i) {
-        const geometry::Pose pose = kinematics_.forward(randomPosition(model_, random));
+        const motion::Pose pose = kinematics_.forward(randomPosition(model_, random));
         const auto q = kinematics_.inverse(pose, {randomPosition(model_, random), {}, {}});
         ASSERT_TRUE(q) << i << ": " << q.error().message;
         ASSERT_LT(poseError(kinematics_.forward(*q), pose), 1e-10);
@@ -99,7 +99,7 @@ TEST_P(KinematicsOf, InverseGivesTheNearestOfAllSolutionsAndTurns) {
     std::mt19937_64 random(5);
     constexpr double kTwoPi = 2 * std::numbers::pi;
     for (int i = 0; i < scaled(10000); ++i) {
-        const geometry::Pose pose = kinematics_.forward(randomPosition(model_, random));
+        const motion::Pose pose = kinematics_.forward(randomPosition(model_, random));
         const JointVector reference = randomPosition(model_, random);
         double least = 1e9;
         for (const JointVector& solution : kinematics_.allSolutions(pose, reference)) {
@@ -137,7 +137,7 @@ TEST_P(KinematicsOf, LevenbergMarquardtReachesThePoseFromNearby) {
     int missed = 0;
     for (int i = 0; i < kPoses; ++i) {
         const JointVector q = randomPosition(model_, random);
-        const geometry::Pose pose = kinematics_.forward(q);
+        const motion::Pose pose = kinematics_.forward(q);
         JointVector seed = q;
         for (double& angle : seed) {
             angle += near(random);
@@ -152,7 +152,7 @@ TEST_P(KinematicsOf, LevenbergMarquardtReachesThePoseFromNearby) {
 TEST_P(KinematicsOf, LevenbergMarquardtWithOtherSeedsSolvesEveryReachablePose) {
     std::mt19937_64 random(9);
     for (int i = 0; i < kPoses; ++i) {
-        const geometry::Pose pose = kinematics_.forward(randomPosition(model_, random));
+        const motion::Pose pose = kinematics_.forward(randomPosition(model_, random));
         const auto q =
             kinematics_.inverseNumerically(pose, {randomPosition(model_, random), {}, {}});
         ASSERT_TRUE(q) << i << ": " << q.error().message;
@@ -163,7 +163,7 @@ TEST_P(KinematicsOf, LevenbergMarquardtWithOtherSeedsSolvesEveryReachablePose) {
 
 TEST_P(KinematicsOf, InverseGivesTheSameBitsEveryTime) {
     std::mt19937_64 random(7);
-    const geometry::Pose pose = kinematics_.forward(randomPosition(model_, random));
+    const motion::Pose pose = kinematics_.forward(randomPosition(model_, random));
     const auto first = kinematics_.inverse(pose, {model_.home(), {}, {}});
     for (int i = 0; i < 100; ++i) {
         EXPECT_EQ(*kinematics_.inverse(pose, {model_.home(), {}, {}}), *first);
@@ -171,7 +171,7 @@ TEST_P(KinematicsOf, InverseGivesTheSameBitsEveryTime) {
 }
 
 TEST_P(KinematicsOf, InverseRefusesAPoseOutOfReachWithDistanceAndReach) {
-    const geometry::Pose far{{5, 0, 0}, Eigen::Quaterniond::Identity()};
+    const motion::Pose far{{5, 0, 0}, Eigen::Quaterniond::Identity()};
     const auto refused = kinematics_.inverse(far, {model_.home(), {}, {}});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::unreachable);
@@ -180,7 +180,7 @@ TEST_P(KinematicsOf, InverseRefusesAPoseOutOfReachWithDistanceAndReach) {
 }
 
 TEST_P(KinematicsOf, InverseKeepsToTheAxisBounds) {
-    const geometry::Pose pose = kinematics_.forward(model_.home());
+    const motion::Pose pose = kinematics_.forward(model_.home());
     AxisBounds bounds{model_.home(), model_.home()};
     for (std::size_t i = 0; i < model_.axisCount(); ++i) {
         bounds.lower[i] -= 0.01;
@@ -206,7 +206,7 @@ TEST_P(KinematicsOf, TheHomePositionIsFarFromASingularity) {
 
 TEST(Kinematics, InverseRefusesWrongSizesAndWhatIsNotFinite) {
     const RobotModel model = loadRobot("ur5");
-    const geometry::Pose pose = model.kinematics().forward(model.home());
+    const motion::Pose pose = model.kinematics().forward(model.home());
     EXPECT_EQ(model.kinematics().inverse(pose, {JointVector(7), {}, {}}).error().code,
               Errc::invalid_argument);
     JointVector nan = model.home();
@@ -227,7 +227,7 @@ TEST(Kinematics, SolvesAnyOtherChainNumerically) {
     EXPECT_EQ(model.kinematics().ikKind(), IkKind::numeric);
     std::mt19937_64 random(8);
     for (int i = 0; i < 1000; ++i) {
-        const geometry::Pose pose = model.kinematics().forward(randomPosition(model, random));
+        const motion::Pose pose = model.kinematics().forward(randomPosition(model, random));
         const auto q = model.kinematics().inverse(pose, {model.home(), {}, {}});
         ASSERT_TRUE(q) << i << ": " << q.error().message;
         ASSERT_LT(poseError(model.kinematics().forward(*q), pose), 1e-8);

@@ -7,13 +7,13 @@
 #include <limits>
 #include <numbers>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
 
 using Eigen::Vector3d;
-using geometry::Pose;
+using motion::Pose;
 
 namespace {
 
@@ -85,7 +85,7 @@ Pose PlanFuzz::anyStep() {
         step.translation = anySize(kind == 1 ? 1e-9 : 1e-4, 0.3) * anyDirection();
     }
     if (kind == 0 || kind >= 6) {
-        step.rotation = geometry::fromRotationVector(
+        step.rotation = motion::fromRotationVector(
             (kind == 9 ? std::numbers::pi : anySize(1e-9, 1.0)) * anyDirection());
     }
     return oneOf(200) ? Pose{} : step;
@@ -142,7 +142,7 @@ PathRequest PlanFuzz::anyPath() {
         for (const int n : {i, i + 1}) {
             const Pose& step = request.waypoints[static_cast<std::size_t>(n)].target;
             const double way = step.translation.norm();
-            const double turn = geometry::rotationAngleBetween(Pose{}.rotation, step.rotation);
+            const double turn = motion::rotationAngleBetween(Pose{}.rotation, step.rotation);
             const double length = std::max(way, 0.25 * turn);
             shorter = std::min(shorter, length);
             fastest = std::max(fastest, way / std::max(length, 1e-300));
@@ -233,9 +233,9 @@ std::string PlanFuzz::check(const Planned<Trajectory>& planned, const ToolLimits
         const Vector3d v0 = (pose[1].translation - pose[0].translation) / step;
         const Vector3d v1 = (pose[2].translation - pose[1].translation) / step;
         const Vector3d w0 =
-            geometry::rotationVectorBetween(pose[0].rotation, pose[1].rotation) / step;
+            motion::rotationVectorBetween(pose[0].rotation, pose[1].rotation) / step;
         const Vector3d w1 =
-            geometry::rotationVectorBetween(pose[1].rotation, pose[2].rotation) / step;
+            motion::rotationVectorBetween(pose[1].rotation, pose[2].rotation) / step;
         const double noise = kRounding * 8;
         use("tool velocity", v0.norm(), tool.velocity, noise / step);
         use("tool angular velocity", w0.norm(), tool.angular_velocity, noise / step);

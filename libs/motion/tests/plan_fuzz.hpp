@@ -31,7 +31,7 @@ private:
     double anySize(double low, double high);
     bool oneOf(int count) { return std::uniform_int_distribution<int>(1, count)(random_) == 1; }
     Eigen::Vector3d anyDirection();
-    geometry::Pose anyStep();
+    motion::Pose anyStep();
     JointVector anyStart();
     void limit(LinRequest& request);
     PathRequest anyPath();

@@ -7,13 +7,13 @@
 #include <random>
 
 #include "kdl_oracle.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using testing::HasSubstr;
 
 /// Largest finite differences of a motion sampled at a cycle, as shares of the axis limits.
@@ -100,7 +100,7 @@ ToolShares toolShares(const RobotModel& model, const LinRequest& request,
         shares.add(translation.take((now.translation - before.translation) / cycle),
                    {v, a, std::min(own.jerk, 20 * a)});
         shares.add(
-            rotation.take(geometry::rotationVectorBetween(before.rotation, now.rotation) / cycle),
+            rotation.take(motion::rotationVectorBetween(before.rotation, now.rotation) / cycle),
             {w, b, std::min(own.angular_jerk, 20 * b)});
     }
     return shares;
@@ -128,7 +128,7 @@ LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
     }
     request.reference = TargetReference::relative_base;
     request.target.translation = 0.2 * Eigen::Vector3d(unit(random), unit(random), unit(random));
-    request.target.rotation = geometry::fromRotationVector(
+    request.target.rotation = motion::fromRotationVector(
         0.5 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
     request.max_velocity = {0.25, 0.25, 0.25, 0.5, 0.5, 0.5};
     request.max_acceleration = {1.2, 1.2, 1.2, 2.5, 2.5, 2.5};
@@ -190,7 +190,7 @@ TEST_P(PtpOf, TakesTheTimeOfItsSlowestAxis) {
 TEST_P(PtpOf, ReachesAPoseWithEveryToolFrame) {
     ChainDescription chain = model_.chain();
     chain.tools = {{"gripper", {{0, 0, 0.1}, Eigen::Quaterniond::Identity()}},
-                   {"bent", {{0.05, 0, 0.02}, geometry::fromRotationVector({0.3, -0.2, 1.0})}}};
+                   {"bent", {{0.05, 0, 0.02}, motion::fromRotationVector({0.3, -0.2, 1.0})}}};
     const RobotModel model = RobotModel::fromChain(chain).value();
     for (const std::string name : {"flange", "gripper", "bent"}) {
         const Pose flange_from_tool = model.tool(name)->flange_from_tool;
@@ -239,7 +239,7 @@ TEST_P(LinOf, StaysOnTheLineAndWithinTheLimits) {
         ASSERT_LE(tool.acceleration, 1.01) << i;
         ASSERT_LE(tool.jerk, 1.01) << i;
         const Pose start = oracle.forward(request.start);
-        ASSERT_LT(geometry::distanceBetween(
+        ASSERT_LT(motion::distanceBetween(
                       oracle.forward(samples.back()),
                       {start.translation + request.target.translation, start.rotation}),
                   1e-9);
@@ -297,7 +297,7 @@ TEST_P(LinOf, TurnsOnTheSpot) {
     LinRequest request;
     request.start = model_.home();
     request.reference = TargetReference::relative_tool;
-    request.target.rotation = geometry::fromRotationVector({0, 0, 0.5});
+    request.target.rotation = motion::fromRotationVector({0, 0, 0.5});
     const auto plan = Planner(model_).lin(request);
     ASSERT_TRUE(plan) << plan.error().error.message;
     for (const JointVector& q : sampled(*plan, 0.01)) {

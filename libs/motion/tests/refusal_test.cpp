@@ -5,7 +5,7 @@
 #include <chrono>
 #include <random>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
@@ -45,9 +45,9 @@ TEST_P(UnreachableOf, ALineWhoseTargetIsOutOfReachSaysSoWithDistanceAndReach) {
             ASSERT_GT(plan.error().fraction, 0.0);
             ASSERT_LT(plan.error().fraction, 1.0);
             // Just before that place the arm does reach.
-            const geometry::Pose start = kinematics_.forward(model_.home());
+            const motion::Pose start = kinematics_.forward(model_.home());
             const double before = plan.error().fraction - 1e-4;
-            const geometry::Pose inside{start.translation + before * length * direction,
+            const motion::Pose inside{start.translation + before * length * direction,
                                         start.rotation};
             ASSERT_FALSE(kinematics_.outOfReach(inside, model_.home()));
         }
@@ -56,11 +56,11 @@ TEST_P(UnreachableOf, ALineWhoseTargetIsOutOfReachSaysSoWithDistanceAndReach) {
 
 TEST_P(UnreachableOf, ATargetOnlyALittleOutOfReachIsUnreachableToo) {
     // Along a ray from home the first place out of reach, then a little farther.
-    const geometry::Pose home = kinematics_.forward(model_.home());
+    const motion::Pose home = kinematics_.forward(model_.home());
     double inside = 0;
     double outside = 3;
     const auto at = [&](double x) {
-        return geometry::Pose{home.translation + Eigen::Vector3d(x, 0, 0), home.rotation};
+        return motion::Pose{home.translation + Eigen::Vector3d(x, 0, 0), home.rotation};
     };
     for (int i = 0; i < 50; ++i) {
         const double middle = (inside + outside) / 2;
@@ -119,7 +119,7 @@ LinRequest pastTheWristSingularity(double beside) {
     LinRequest request;
     request.start = JointVector{0, 0.1, 1.2, 0, 0.3, 0};
     request.reference = TargetReference::relative_base;
-    request.target.rotation = geometry::fromRotationVector({0, -0.6, beside});
+    request.target.rotation = motion::fromRotationVector({0, -0.6, beside});
     return request;
 }
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <random>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
@@ -77,7 +77,7 @@ private:
         return plan ? std::optional(*plan) : std::nullopt;
     }
 
-    geometry::Pose somewhere() {
+    motion::Pose somewhere() {
         const auto vector = [&](double size) {
             Eigen::Vector3d result;
             for (double& value : result) {
@@ -85,9 +85,9 @@ private:
             }
             return result;
         };
-        geometry::Pose pose;
+        motion::Pose pose;
         pose.translation = vector(0.2);
-        pose.rotation = geometry::fromRotationVector(vector(0.4));
+        pose.rotation = motion::fromRotationVector(vector(0.4));
         return pose;
     }
 
@@ -164,7 +164,7 @@ protected:
         MotionExecution later = execution;
         constexpr double step = 1e-5;
         later.next(Seconds(step));
-        return geometry::distanceBetween(plan.toolPose(execution.current().position),
+        return motion::distanceBetween(plan.toolPose(execution.current().position),
                                          plan.toolPose(later.current().position)) /
                step;
     }
@@ -202,7 +202,7 @@ protected:
         (execution.*how)();
         comeToRest(plan, execution, factor, stop.time);
         const auto to = plan.toolPose(execution.current().position);
-        stop.farther = geometry::distanceBetween(from, to) - way.distance;
+        stop.farther = motion::distanceBetween(from, to) - way.distance;
         return stop;
     }
 

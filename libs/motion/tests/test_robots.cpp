@@ -1,12 +1,12 @@
 #include "test_robots.hpp"
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::motion {
 
-double poseError(const geometry::Pose& a, const geometry::Pose& b) {
-    return std::max(geometry::distanceBetween(a, b),
-                    geometry::rotationAngleBetween(a.rotation, b.rotation));
+double poseError(const motion::Pose& a, const motion::Pose& b) {
+    return std::max(motion::distanceBetween(a, b),
+                    motion::rotationAngleBetween(a.rotation, b.rotation));
 }
 
 }  // namespace metier::motion

@@ -41,7 +41,7 @@ inline JointVector randomPosition(const RobotModel& model, std::mt19937_64& rand
 }
 
 /// Largest difference of position [m] and rotation [rad].
-double poseError(const geometry::Pose& a, const geometry::Pose& b);
+double poseError(const motion::Pose& a, const motion::Pose& b);
 
 class EachRobot : public testing::TestWithParam<std::string> {
 protected:

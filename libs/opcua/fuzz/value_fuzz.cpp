@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "convert.hpp"
+#include "common/convert.hpp"
 #include "metier/opcua/value.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "application_sessions.hpp"
+#include "server/application_sessions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "audited_server.hpp"
 #include "bare_client.hpp"
-#include "rate_limit.hpp"
+#include "server/rate_limit.hpp"
 
 namespace metier::opcua {
 namespace {
@@ -92,7 +92,7 @@ TEST_F(AuditedServer, TellsWhoCameAndWent) {
     ASSERT_THAT(logins, SizeIs(1));
     EXPECT_EQ(logins[0].session.id, ended[0].session.id);
     EXPECT_EQ(logins[0].session.user, "Operator");
-    EXPECT_EQ(logins[0].session.role, trust::Role::operator_);
+    EXPECT_EQ(logins[0].session.role, security::Role::operator_);
     EXPECT_EQ(logins[0].session.application_uri, "urn:test:client");
     EXPECT_EQ(logins[0].session.thumbprint, clientIdentity().certificate.thumbprint());
 }

@@ -31,9 +31,9 @@ void addMethods(Server& server) {
     add(kTell, "Tell", {}, MethodEffect::tells);
 }
 
-const trust::Identity& serverIdentity() {
+const security::Identity& serverIdentity() {
     static const auto identity =
-        trust::makeIdentity({.application_name = "server", .application_uri = "urn:test:server"},
+        security::makeIdentity({.application_name = "server", .application_uri = "urn:test:server"},
                             std::chrono::system_clock::now())
             .value();
     return identity;
@@ -50,9 +50,9 @@ Result<Admission> admit(const Login& login) {
     if (login.password != "secret") {
         return fail(Errc::access_denied, "wrong password");
     }
-    for (const auto role : {trust::Role::observer, trust::Role::operator_, trust::Role::engineer,
-                            trust::Role::security_admin}) {
-        if (login.user == trust::toString(role)) {
+    for (const auto role : {security::Role::observer, security::Role::operator_, security::Role::engineer,
+                            security::Role::security_admin}) {
+        if (login.user == security::toString(role)) {
             return Admission{login.user, role};
         }
     }
@@ -61,13 +61,13 @@ Result<Admission> admit(const Login& login) {
 
 }  // namespace
 
-trust::Identity AuditedServer::identityOf(const std::string& name) {
-    return trust::makeIdentity({.application_name = name, .application_uri = "urn:test:" + name},
+security::Identity AuditedServer::identityOf(const std::string& name) {
+    return security::makeIdentity({.application_name = name, .application_uri = "urn:test:" + name},
                                std::chrono::system_clock::now())
         .value();
 }
 
-const trust::Identity& AuditedServer::clientIdentity() {
+const security::Identity& AuditedServer::clientIdentity() {
     static const auto identity = identityOf("client");
     return identity;
 }
@@ -90,13 +90,13 @@ void AuditedServer::serveClosed() {
                          .authenticate = admit});
 }
 
-void AuditedServer::trustIn(const std::string& who, const trust::Identity& peer) {
-    ASSERT_TRUE(trust::TrustStore::open(folder_ / who).value().trust(peer.certificate));
+void AuditedServer::trustIn(const std::string& who, const security::Identity& peer) {
+    ASSERT_TRUE(security::TrustStore::open(folder_ / who).value().trust(peer.certificate));
 }
 
 Answer<std::unique_ptr<Client>> AuditedServer::connect(const std::string& user,
                                                        const std::string& password,
-                                                       const trust::Identity& identity) {
+                                                       const security::Identity& identity) {
     ClientOptions options;
     options.security = Credentials{identity, folder_ / "client"};
     options.user = UserName{user, password};

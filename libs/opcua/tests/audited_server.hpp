@@ -69,11 +69,11 @@ protected:
     void serve(std::optional<ServerSecurity> security = {});
     /// Lets in, with the password "secret", users that are called as their roles.
     void serveClosed();
-    static const trust::Identity& clientIdentity();
-    static trust::Identity identityOf(const std::string& name);
+    static const security::Identity& clientIdentity();
+    static security::Identity identityOf(const std::string& name);
     Answer<std::unique_ptr<Client>> connect(const std::string& user,
                                             const std::string& password = "secret",
-                                            const trust::Identity& identity = clientIdentity());
+                                            const security::Identity& identity = clientIdentity());
     std::unique_ptr<Client> connected(const std::string& user);
 
     Records records_;
@@ -81,7 +81,7 @@ protected:
     std::unique_ptr<Server> server_;
 
 private:
-    void trustIn(const std::string& who, const trust::Identity& peer);
+    void trustIn(const std::string& who, const security::Identity& peer);
 };
 
 }  // namespace metier::opcua::testing

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-#include "convert.hpp"
+#include "common/convert.hpp"
 
 namespace metier::opcua::testing {
 

@@ -9,7 +9,7 @@
 
 #include <future>
 
-#include "convert.hpp"
+#include "common/convert.hpp"
 
 namespace metier::opcua::testing {
 

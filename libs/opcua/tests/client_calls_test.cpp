@@ -1,4 +1,4 @@
-#include "client_calls.hpp"
+#include "client/client_calls.hpp"
 
 #include <gtest/gtest.h>
 #include <open62541/types_generated.h>

@@ -1,4 +1,4 @@
-#include "client_reconnection.hpp"
+#include "client/client_reconnection.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/discovery.hpp"
 #include "metier/opcua/server.hpp"
-#include "peer_check.hpp"
+#include "common/peer_check.hpp"
 
 namespace metier::opcua {
 namespace {
@@ -19,18 +19,18 @@ using ::testing::HasSubstr;
 
 constexpr const char* kServerUri = "urn:test:server";
 
-trust::Identity identityOf(const std::string& name) {
-    return trust::makeIdentity({.application_name = name, .application_uri = "urn:test:" + name},
+security::Identity identityOf(const std::string& name) {
+    return security::makeIdentity({.application_name = name, .application_uri = "urn:test:" + name},
                                std::chrono::system_clock::now())
         .value();
 }
 
 /// Two identities for all tests: to make a key takes a while.
-const trust::Identity& serverIdentity() {
+const security::Identity& serverIdentity() {
     static const auto identity = identityOf("server");
     return identity;
 }
-const trust::Identity& clientIdentity() {
+const security::Identity& clientIdentity() {
     static const auto identity = identityOf("client");
     return identity;
 }
@@ -49,8 +49,8 @@ protected:
         std::filesystem::remove_all(folder);
         return folder;
     }
-    void trustIn(const std::string& who, const trust::Identity& peer) {
-        ASSERT_TRUE(trust::TrustStore::open(folder_ / who).value().trust(peer.certificate));
+    void trustIn(const std::string& who, const security::Identity& peer) {
+        ASSERT_TRUE(security::TrustStore::open(folder_ / who).value().trust(peer.certificate));
     }
     void start(std::optional<DiscoveryService> discovery = std::nullopt) {
         ServerOptions options;
@@ -84,7 +84,7 @@ protected:
         }
         return Admission{login.user, user->second};
     }
-    ClientOptions options(const trust::Identity& identity = clientIdentity()) const {
+    ClientOptions options(const security::Identity& identity = clientIdentity()) const {
         ClientOptions options;
         options.security = Credentials{identity, folder_ / "client"};
         options.user = UserName{"operator", "secret"};
@@ -113,18 +113,18 @@ protected:
         });
         ASSERT_TRUE(added) << added.error().message;
     }
-    trust::RefusalKind lastRefusal() {
+    security::RefusalKind lastRefusal() {
         const std::lock_guard lock(mutex_);
         return refused_.back().kind;
     }
 
     const std::filesystem::path folder_ = emptyFolder();
     std::mutex mutex_;
-    std::vector<trust::CertificateRefusal> refused_;
-    std::map<std::string, trust::Role> users_{{"observer", trust::Role::observer},
-                                              {"operator", trust::Role::operator_},
-                                              {"engineer", trust::Role::engineer},
-                                              {"admin", trust::Role::security_admin}};
+    std::vector<security::CertificateRefusal> refused_;
+    std::map<std::string, security::Role> users_{{"observer", security::Role::observer},
+                                              {"operator", security::Role::operator_},
+                                              {"engineer", security::Role::engineer},
+                                              {"admin", security::Role::security_admin}};
     std::vector<Denial> denials_;
     std::unique_ptr<Server> server_;
 };
@@ -144,7 +144,7 @@ TEST_F(ClosedServer, KnowsItsClientsByTheirCertificates) {
     ASSERT_TRUE(client) << client.error().message;
     ASSERT_TRUE((*client)->call(ids::kObjectsFolder, who));
     EXPECT_EQ(seen.user, "operator");
-    EXPECT_EQ(seen.role, trust::Role::operator_);
+    EXPECT_EQ(seen.role, security::Role::operator_);
     EXPECT_EQ(seen.thumbprint, clientIdentity().certificate.thumbprint());
     EXPECT_EQ(seen.application_uri, "urn:test:client");
 }
@@ -272,7 +272,7 @@ TEST_F(ClosedServer, LetsFailedLoginsTakeNoSessionsOfTheirApplication) {
 TEST_F(ClosedServer, RefusesAStrangerAndTellsOfIt) {
     const auto stranger = identityOf("stranger");
     EXPECT_FALSE(connect(options(stranger)));
-    EXPECT_EQ(lastRefusal(), trust::RefusalKind::untrusted);
+    EXPECT_EQ(lastRefusal(), security::RefusalKind::untrusted);
 }
 
 TEST_F(ClosedServer, TakesAStrangerOnceHeIsTrusted) {
@@ -284,7 +284,7 @@ TEST_F(ClosedServer, TakesAStrangerOnceHeIsTrusted) {
 }
 
 TEST_F(ClosedServer, IsNotTrustedByAClientThatDoesNotKnowIt) {
-    ASSERT_TRUE(trust::TrustStore::open(folder_ / "client")
+    ASSERT_TRUE(security::TrustStore::open(folder_ / "client")
                     .value()
                     .distrust(serverIdentity().certificate.thumbprint()));
     const auto refused = connect(options());
@@ -294,7 +294,7 @@ TEST_F(ClosedServer, IsNotTrustedByAClientThatDoesNotKnowIt) {
 }
 
 TEST_F(ClosedServer, IsKeptToBeDecidedOnByAClientThatDoesNotKnowIt) {
-    auto store = trust::TrustStore::open(folder_ / "client").value();
+    auto store = security::TrustStore::open(folder_ / "client").value();
     const auto& thumbprint = serverIdentity().certificate.thumbprint();
     store.distrust(thumbprint).value();
     std::filesystem::remove_all(folder_ / "client" / "rejected");
@@ -307,7 +307,7 @@ TEST_F(ClosedServer, IsKeptToBeDecidedOnByAClientThatDoesNotKnowIt) {
 TEST_F(ClosedServer, GoesOnWithARenewedCertificate) {
     const auto before = connect(options()).value();
     const auto now = std::chrono::system_clock::now();
-    const auto renewed = trust::makeSuccessor(serverIdentity(), std::chrono::days(10), now).value();
+    const auto renewed = security::makeSuccessor(serverIdentity(), std::chrono::days(10), now).value();
     const auto done = server_->call([&] { return server_->renewIdentity(renewed); });
     ASSERT_TRUE(done) << done.error().message;
     const auto refused = connect(options());
@@ -331,7 +331,7 @@ TEST_F(ClosedServer, IsConnectedToWithThePresentIdentityOfAClient) {
     auto renewing = options(identityOf("former"));
     renewing.security->identity_folder = mine;
     EXPECT_FALSE(connect(renewing)) << "nothing there, and the former is not trusted";
-    ASSERT_TRUE(trust::saveIdentity(mine, clientIdentity()));
+    ASSERT_TRUE(security::saveIdentity(mine, clientIdentity()));
     const auto client = connect(renewing);
     EXPECT_TRUE(client) << client.error().message;
 }

@@ -1,4 +1,4 @@
-#include "unused_sessions.hpp"
+#include "server/unused_sessions.hpp"
 
 #include <gtest/gtest.h>
 

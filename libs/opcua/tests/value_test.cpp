@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "convert.hpp"
+#include "common/convert.hpp"
 
 namespace metier::opcua {
 namespace {

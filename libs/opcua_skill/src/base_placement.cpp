@@ -43,7 +43,7 @@ Result<skill::Value> checked(const Placement& placement, const opcua::Value& val
 std::string writerIn(const opcua::Session& session) {
     return opcua::sanitise(fmt::format("{} ({}) of \"{}\"",
                                        session.user.empty() ? "somebody" : session.user,
-                                       trust::toString(session.role), session.application_name));
+                                       security::toString(session.role), session.application_name));
 }
 
 Result<void> write(Placement& placement, const opcua::WriteContext& writer,

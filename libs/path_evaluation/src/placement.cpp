@@ -35,7 +35,7 @@ std::vector<Eigen::Quaterniond> orientations(const Eigen::Quaterniond& current, 
             turned * Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitY())};
 }
 
-std::vector<Candidate> candidates(const Kinematics& arm, const geometry::Pose& now) {
+std::vector<Candidate> candidates(const Kinematics& arm, const motion::Pose& now) {
     const double azimuth = std::atan2(now.translation.y(), now.translation.x());
     std::vector<Candidate> result;
     for (const double turn : {0.0, -0.5, 0.5}) {
@@ -79,7 +79,7 @@ std::optional<double> room(const Kinematics& arm, const Square& square, JointVec
     for (std::size_t point = 0; point <= kCorners * kPointsPerSide; ++point) {
         const auto corner = point / kPointsPerSide;
         const double along = static_cast<double>(point % kPointsPerSide) / kPointsPerSide;
-        geometry::Pose pose = square.corner(corner);
+        motion::Pose pose = square.corner(corner);
         pose.translation += along * (square.corner(corner + 1).translation - pose.translation);
         const auto solution = arm.inverse(pose, {reference, {}, std::nullopt});
         if (!solution ||

@@ -5,9 +5,9 @@
 
 namespace metier::path_evaluation {
 
-geometry::Pose Square::corner(std::size_t index) const {
+motion::Pose Square::corner(std::size_t index) const {
     const auto turn = index % kCorners;
-    geometry::Pose pose = start;
+    motion::Pose pose = start;
     if (turn == 1 || turn == 2) {
         pose.translation += side * right;
     }
@@ -17,7 +17,7 @@ geometry::Pose Square::corner(std::size_t index) const {
     return pose;
 }
 
-std::array<geometry::Pose, kCorners> Square::corners() const {
+std::array<motion::Pose, kCorners> Square::corners() const {
     return {corner(0), corner(1), corner(2), corner(3)};
 }
 

@@ -2,14 +2,14 @@
 #include <csignal>
 #include <thread>
 
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 #include "recorded.hpp"
 #include "temporary_postgres.hpp"
 
 namespace metier::records {
 namespace {
 
-using process::ChildProcess;
+using link::ChildProcess;
 
 /// Programs that leave no core idle, as a compiler does.
 class BusyMachine {

@@ -7,14 +7,14 @@
 #include <thread>
 
 #include "either_database.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 #include "sqlite_database.hpp"
 #include "wrapped_database.hpp"
 
 namespace metier::records {
 namespace {
 
-using process::ChildProcess;
+using link::ChildProcess;
 
 class NewStore : public EitherDatabase {};
 INSTANTIATE_EITHER(NewStore);

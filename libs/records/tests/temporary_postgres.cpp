@@ -91,7 +91,7 @@ TemporaryPostgres::~TemporaryPostgres() {
 
 void TemporaryPostgres::run(const std::vector<std::string>& command) const {
     auto child =
-        process::ChildProcess::start(unprivileged(command), process::ErrorOutput::with_output);
+        link::ChildProcess::start(unprivileged(command), link::ErrorOutput::with_output);
     std::string output;
     while (child) {
         const auto line = child->readLine(soon());
@@ -107,9 +107,9 @@ void TemporaryPostgres::run(const std::vector<std::string>& command) const {
 
 void TemporaryPostgres::start() {
     auto server =
-        process::ChildProcess::start(unprivileged({programs_ / "postgres", "-D", folder_ / "data",
+        link::ChildProcess::start(unprivileged({programs_ / "postgres", "-D", folder_ / "data",
                                                    "-k", folder_, "-c", "listen_addresses=", "-F"}),
-                                     process::ErrorOutput::with_output);
+                                     link::ErrorOutput::with_output);
     std::string output;
     while (server) {
         const auto line = server->readLine(soon());
@@ -118,7 +118,7 @@ void TemporaryPostgres::start() {
         }
         output += *line + '\n';
         if (line->find("ready to accept connections") != std::string::npos) {
-            server_ = std::make_unique<process::ChildProcess>(std::move(*server));
+            server_ = std::make_unique<link::ChildProcess>(std::move(*server));
             return;
         }
     }

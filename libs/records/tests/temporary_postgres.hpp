@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::records {
 
@@ -32,7 +32,7 @@ private:
 
     const std::filesystem::path programs_;
     const std::filesystem::path folder_;
-    std::unique_ptr<process::ChildProcess> server_;
+    std::unique_ptr<link::ChildProcess> server_;
     int databases_ = 0;
 };
 

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "lateness.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 #include "recorded.hpp"
 #include "socket_deadline.hpp"
 #include "temporary_postgres.hpp"
@@ -20,7 +20,7 @@ namespace metier::records {
 namespace {
 
 using namespace std::chrono_literals;
-using process::ChildProcess;
+using link::ChildProcess;
 
 std::string postgresOrNothing() {
     auto* postgres = TemporaryPostgres::instance();

@@ -124,7 +124,7 @@ public:
         const auto state = arm_->state();
         return motion::JointVector::from(state.commanded_position.values()).value();
     }
-    geometry::Pose commandedPose() const { return model_.kinematics().forward(commanded()); }
+    motion::Pose commandedPose() const { return model_.kinematics().forward(commanded()); }
 
 private:
     void add(std::unique_ptr<skill::Skill> skill) {

@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "planned_bench.hpp"
-#include "timetable.hpp"
+#include "moves/timetable.hpp"
 
 namespace metier::robot_skills {
 namespace {

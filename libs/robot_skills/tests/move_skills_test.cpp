@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "bench.hpp"
-#include "metier/geometry/frame.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/frame.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 
 namespace metier::robot_skills {
@@ -123,14 +123,14 @@ TEST(CartesianLinearMove, MovesAlongTheToolAxes) {
 TEST(CartesianPtpMove, ReachesAnAbsolutePose) {
     Bench bench;
     const auto pose = bench.commandedPose();
-    const auto frame = geometry::toFrame(pose);
+    const auto frame = motion::toFrame(pose);
     const Frame target{frame.x + 0.1, frame.y - 0.2, frame.z, frame.a, frame.b, frame.c};
     ASSERT_TRUE(bench.start(kCartesianPtp, {{"TargetPosition", target}}));
     ASSERT_TRUE(bench.stepUntil(kCartesianPtp, State::ready));
     const auto reached = bench.commandedPose();
     EXPECT_NEAR(reached.translation.x(), target.x, 1e-9);
     EXPECT_NEAR(reached.translation.y(), target.y, 1e-9);
-    EXPECT_LE(geometry::rotationAngleBetween(reached.rotation, pose.rotation), 1e-9);
+    EXPECT_LE(motion::rotationAngleBetween(reached.rotation, pose.rotation), 1e-9);
     EXPECT_LT(number(bench.program(kCartesianPtp), "LargestPathDeviation"), 1e-9);
 }
 

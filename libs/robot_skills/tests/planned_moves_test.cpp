@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "planned_bench.hpp"
-#include "planned_motion.hpp"
+#include "moves/planned_motion.hpp"
 
 namespace metier::robot_skills {
 namespace {
@@ -222,7 +222,7 @@ motion::RobotModel withTool() {
 Result<PlannedMotion> askedFor(const motion::RobotModel& model, const Frame& relative) {
     motion::LinRequest request;
     request.start = model.home();
-    request.target = geometry::toPose(relative);
+    request.target = motion::toPose(relative);
     request.reference = motion::TargetReference::relative_tool;
     request.tool_frame = "pen";
     return plannedMotion({model, motion::planLin(model, request).value(),
@@ -234,8 +234,8 @@ TEST(PlannedMoveOfATool, IsALineOfTheFlangeWhileTheOrientationStays) {
     const auto motion = askedFor(model, Frame{0, 0, 0.05});
     ASSERT_TRUE(motion) << motion.error().message;
     const auto start = model.kinematics().forward(model.home());
-    const auto end = geometry::toPose(*motion->target_flange);
-    EXPECT_NEAR(geometry::distanceBetween(start, end), 0.05, 1e-9);
+    const auto end = motion::toPose(*motion->target_flange);
+    EXPECT_NEAR(motion::distanceBetween(start, end), 0.05, 1e-9);
 }
 
 TEST(PlannedMoveOfATool, IsNotTheControllersWhereTheFlangesLineIsNotTheTools) {

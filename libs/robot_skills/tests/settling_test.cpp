@@ -1,4 +1,4 @@
-#include "settling.hpp"
+#include "moves/settling.hpp"
 
 #include <gtest/gtest.h>
 

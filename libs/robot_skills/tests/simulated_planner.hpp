@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "metier/device/motion_planner.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/joint_simulator/joint_simulator.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/motion/planner.hpp"
@@ -125,7 +125,7 @@ private:
         if (motion.path == device::PlannedMotion::Path::line) {
             motion::LinRequest request;
             request.start = start;
-            request.target = geometry::toPose(*motion.target_flange);
+            request.target = motion::toPose(*motion.target_flange);
             request.max_velocity = {
                 motion.line_velocity, motion.line_velocity, motion.line_velocity, 0, 0, 0};
             request.max_acceleration = {motion.line_acceleration,

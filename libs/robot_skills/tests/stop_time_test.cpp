@@ -1,4 +1,4 @@
-#include "stop_time.hpp"
+#include "moves/stop_time.hpp"
 
 #include <gmock/gmock.h>
 

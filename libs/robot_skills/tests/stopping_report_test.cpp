@@ -56,9 +56,9 @@ TEST_P(Stopping, TakesNoLongerThanWasTold) {
             before = bench.commandedPose();
             bench.step();
             ++cycles;
-        } while (geometry::distanceBetween(before, bench.commandedPose()) > 0.0);
+        } while (motion::distanceBetween(before, bench.commandedPose()) > 0.0);
         EXPECT_LE(cycles * cycle, told->time.count() + 2 * cycle);
-        EXPECT_LE(geometry::distanceBetween(from, bench.commandedPose()), told->distance + 1e-6);
+        EXPECT_LE(motion::distanceBetween(from, bench.commandedPose()), told->distance + 1e-6);
         EXPECT_LE(told->time.count(), 1.05 * most_.time.count());
         EXPECT_LE(told->distance, 1.05 * most_.distance);
         ASSERT_TRUE(bench.stepUntil(kJointPtp, State::halted));

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "bench.hpp"
-#include "stream_input.hpp"
+#include "stream/stream_input.hpp"
 
 namespace metier::robot_skills {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "bench.hpp"
-#include "stream_input.hpp"
+#include "stream/stream_input.hpp"
 
 namespace metier::robot_skills {
 namespace {

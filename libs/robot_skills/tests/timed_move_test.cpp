@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "bench.hpp"
-#include "timetable.hpp"
+#include "moves/timetable.hpp"
 
 namespace metier::robot_skills {
 namespace {

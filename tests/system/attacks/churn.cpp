@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "../relay.hpp"
-#include "metier/trust/identity.hpp"
-#include "metier/trust/trust_store.hpp"
+#include "metier/security/identity.hpp"
+#include "metier/security/trust_store.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -20,26 +20,26 @@ constexpr std::size_t kStrangers = 3;  // processes
 constexpr const char* kServerUri = "urn:bench:server";
 constexpr const char* kPassword = "secret";
 
-trust::Identity identityOf(const std::string& name) {
+security::Identity identityOf(const std::string& name) {
     return orThrow(
-        trust::makeIdentity({.application_name = name, .application_uri = "urn:bench:" + name},
+        security::makeIdentity({.application_name = name, .application_uri = "urn:bench:" + name},
                             std::chrono::system_clock::now()));
 }
 
-void trustIn(const std::filesystem::path& folder, const trust::Identity& peer) {
-    orThrow(orThrow(trust::TrustStore::open(folder)).trust(peer.certificate));
+void trustIn(const std::filesystem::path& folder, const security::Identity& peer) {
+    orThrow(orThrow(security::TrustStore::open(folder)).trust(peer.certificate));
 }
 
 /// A server that trusts the operator, whom it is trusted by, and lets in whoever knows the
 /// password.
-BenchOptions closed(const std::filesystem::path& folder, const trust::Identity& operator_identity) {
+BenchOptions closed(const std::filesystem::path& folder, const security::Identity& operator_identity) {
     std::filesystem::remove_all(folder);
     const auto server = identityOf("server");
     trustIn(folder / "server", operator_identity);
     trustIn(folder / "client", server);
     const auto authenticate = [](const opcua::Login& login) -> Result<opcua::Admission> {
         return login.password == kPassword
-                   ? Result<opcua::Admission>(opcua::Admission{login.user, trust::Role::operator_})
+                   ? Result<opcua::Admission>(opcua::Admission{login.user, security::Role::operator_})
                    : fail(Errc::access_denied, "wrong password");
     };
     BenchOptions options;
@@ -65,7 +65,7 @@ Churn::Churn(Cable& cable, std::filesystem::path folder, HaltBounds bounds)
     server_.serve();
 }
 
-opcua::ClientOptions Churn::clientOf(const trust::Identity& identity) const {
+opcua::ClientOptions Churn::clientOf(const security::Identity& identity) const {
     opcua::ClientOptions options;
     options.application_uri = identity.certificate.applicationUri();
     options.security = opcua::Credentials{identity, folder_ / "client"};

@@ -40,7 +40,7 @@ private:
         std::vector<double> took_ms;
         std::uint64_t attempts = 0;
     };
-    opcua::ClientOptions clientOf(const trust::Identity& identity) const;
+    opcua::ClientOptions clientOf(const security::Identity& identity) const;
     Connecting connectAgainAndAgain(const std::string& url, SteadyTime end) const;
     std::string firstWordsOfAStranger() const;
     std::string judge(const ChurnOutcome& outcome, double load_ms) const;
@@ -48,7 +48,7 @@ private:
     Cable& cable_;
     HaltBounds bounds_;
     std::filesystem::path folder_;
-    trust::Identity operator_;
+    security::Identity operator_;
     WakeUpDelay load_;
     BenchServer server_;
 };

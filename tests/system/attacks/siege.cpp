@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 constexpr auto kPatience = 60s;
 constexpr std::size_t kSkills = 8;
 
-process::ChildProcess started(const Cable& cable, const std::string& url, AttackOrder order) {
+link::ChildProcess started(const Cable& cable, const std::string& url, AttackOrder order) {
     const auto address = Cable::addressOf(url);
     const auto host = address.find("//") + 2;
     const auto colon = address.rfind(':');
@@ -24,7 +24,7 @@ process::ChildProcess started(const Cable& cable, const std::string& url, Attack
     std::vector<std::string> command{METIER_ATTACKER};
     const auto arguments = argumentsOf(order);
     command.insert(command.end(), arguments.begin(), arguments.end());
-    return orThrow(process::ChildProcess::start(cable.atFarEnd(std::move(command))));
+    return orThrow(link::ChildProcess::start(cable.atFarEnd(std::move(command))));
 }
 
 SteadyTime patience() {

@@ -9,7 +9,7 @@
 #include "attack.hpp"
 #include "halt_meter.hpp"
 #include "metier/base/wake_up_delay.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::system_tests {
 
@@ -33,7 +33,7 @@ public:
     AttackCount end();
 
 private:
-    process::ChildProcess process_;
+    link::ChildProcess process_;
 };
 
 struct SiegeOutcome {

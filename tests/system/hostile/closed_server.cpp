@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "metier/trust/trust_store.hpp"
+#include "metier/security/trust_store.hpp"
 
 namespace metier::hostile {
 
@@ -10,15 +10,15 @@ using system_tests::orThrow;
 
 namespace {
 
-trust::Identity makeIdentity(const std::filesystem::path& folder, const std::string& uri) {
-    const auto identity = orThrow(trust::makeIdentity(
+security::Identity makeIdentity(const std::filesystem::path& folder, const std::string& uri) {
+    const auto identity = orThrow(security::makeIdentity(
         {.application_name = "hostile", .application_uri = uri}, std::chrono::system_clock::now()));
-    orThrow(trust::saveIdentity(folder, identity));
+    orThrow(security::saveIdentity(folder, identity));
     return identity;
 }
 
-void trustIn(const std::filesystem::path& folder, const trust::Identity& peer) {
-    orThrow(orThrow(trust::TrustStore::open(folder)).trust(peer.certificate));
+void trustIn(const std::filesystem::path& folder, const security::Identity& peer) {
+    orThrow(orThrow(security::TrustStore::open(folder)).trust(peer.certificate));
 }
 
 }  // namespace
@@ -31,19 +31,19 @@ void makeIdentities(const std::filesystem::path& folder) {
 }
 
 opcua::ServerSecurity securityIn(const std::filesystem::path& folder) {
-    return {.credentials = {orThrow(trust::loadIdentity(folder / "server")),
+    return {.credentials = {orThrow(security::loadIdentity(folder / "server")),
                             folder / "server" / "trust"},
             .authenticate = [](const opcua::Login& login) -> Result<opcua::Admission> {
                 if (login.user != kOperator || login.password != kPassword) {
                     return fail(Errc::access_denied, "wrong");
                 }
-                return opcua::Admission{login.user, trust::Role::operator_};
+                return opcua::Admission{login.user, security::Role::operator_};
             }};
 }
 
 opcua::ClientOptions clientOptionsIn(const std::filesystem::path& folder) {
     opcua::ClientOptions options;
-    options.security = opcua::Credentials{orThrow(trust::loadIdentity(folder / "client")),
+    options.security = opcua::Credentials{orThrow(security::loadIdentity(folder / "client")),
                                           folder / "client" / "trust"};
     options.user = opcua::UserName{kOperator, kPassword};
     return options;

@@ -4,7 +4,7 @@
 
 #include "../bench_server.hpp"
 #include "metier/opcua/security.hpp"
-#include "metier/trust/identity.hpp"
+#include "metier/security/identity.hpp"
 
 namespace metier::hostile {
 

@@ -9,10 +9,10 @@
 #include "answers.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/discovery.hpp"
-#include "metier/skill_client/control_handle.hpp"
-#include "metier/skill_client/kinematics_reader.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/control_handle.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::hostile {
 namespace {
@@ -89,13 +89,13 @@ void subscribe(Client& client) {
     });
 }
 
-void useSkill(Client& client, const skill_client::SkillAddress& address) {
-    static_cast<void>(skill_client::typeChain(client, address));
-    if (const auto nodes = skill_client::findKinematics(client, address)) {
-        static_cast<void>(skill_client::readKinematics(client, *nodes));
-        static_cast<void>(skill_client::readJointPosition(client, *nodes));
+void useSkill(Client& client, const client::SkillAddress& address) {
+    static_cast<void>(client::typeChain(client, address));
+    if (const auto nodes = client::findKinematics(client, address)) {
+        static_cast<void>(client::readKinematics(client, *nodes));
+        static_cast<void>(client::readJointPosition(client, *nodes));
     }
-    auto skill = skill_client::SkillHandle::open(client, address);
+    auto skill = client::SkillHandle::open(client, address);
     if (!skill) {
         return;
     }
@@ -111,9 +111,9 @@ void useSkill(Client& client, const skill_client::SkillAddress& address) {
 }
 
 void useSkills(Client& client) {
-    std::vector<skill_client::SkillAddress> skills;
+    std::vector<client::SkillAddress> skills;
     endsWithin(kLook, "findSkills", [&] {
-        if (auto known = skill_client::findSkills(client)) {
+        if (auto known = client::findSkills(client)) {
             skills = std::move(*known);
         }
     });
@@ -126,7 +126,7 @@ void useSkills(Client& client) {
     endsWithin(kLook, "a skill", [&] { useSkill(client, skills.front()); });
     endsWithin(kLook, "the last skill", [&] { useSkill(client, skills.back()); });
     endsWithin(kLook, "control",
-               [&] { static_cast<void>(skill_client::ControlHandle::acquire(client, kNode, {})); });
+               [&] { static_cast<void>(client::ControlHandle::acquire(client, kNode, {})); });
 }
 
 void tryEverything(const HostileServer::Character& character) {
@@ -180,7 +180,7 @@ TEST(HostileServer, WithNodesWithoutEndIsGivenUp) {
     const auto client = Client::connect(server.url(), options);
     ASSERT_TRUE(client) << client.error().message;
     endsWithin(kLook, "findSkills", [&] {
-        const auto skills = skill_client::findSkills(**client);
+        const auto skills = client::findSkills(**client);
         ASSERT_FALSE(skills);
         EXPECT_EQ(skills.error().code, Errc::timeout);
         EXPECT_THAT(skills.error().message, HasSubstr("more than anybody would look at"));

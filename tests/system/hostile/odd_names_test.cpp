@@ -8,9 +8,9 @@
 #include "../bench_server.hpp"
 #include "../metier_program.hpp"
 #include "metier/opcua/text.hpp"
-#include "metier/skill_client/control_handle.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/control_handle.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::hostile {
 namespace {
@@ -71,8 +71,8 @@ TEST_F(OddNames, AreNotPrintedByHaltAndReset) {
 }
 
 TEST_F(OddNames, AreNotPrintedByWatch) {
-    auto watching = process::ChildProcess::start(
-        metierCommand({"watch", server_.url(), "--count", "1"}), process::ErrorOutput::with_output);
+    auto watching = link::ChildProcess::start(
+        metierCommand({"watch", server_.url(), "--count", "1"}), link::ErrorOutput::with_output);
     ASSERT_TRUE(watching) << watching.error().message;
     const auto begun = watching->readLine(inAMinute());
     ASSERT_TRUE(begun) << begun.error().message;
@@ -89,9 +89,9 @@ TEST_F(OddNames, OfAClientAreNotToldToOthers) {
     const auto odd = connectAs(server_.url(), kOdd);
     const auto other = connectAs(server_.url(), "other");
     const auto& controller = server_.system().controller;
-    const auto control = skill_client::ControlHandle::acquire(*odd, controller, {});
+    const auto control = client::ControlHandle::acquire(*odd, controller, {});
     ASSERT_TRUE(control) << control.error().message;
-    const auto refused = skill_client::ControlHandle::acquire(*other, controller, {});
+    const auto refused = client::ControlHandle::acquire(*other, controller, {});
     ASSERT_FALSE(refused);
     EXPECT_TRUE(isPrintable(refused.error().message)) << opcua::sanitise(refused.error().message);
     EXPECT_THAT(refused.error().message, HasSubstr(kShown));

@@ -7,7 +7,7 @@
 #include <array>
 #include <memory>
 
-#include "metier/trust/certificate.hpp"
+#include "metier/security/certificate.hpp"
 
 namespace metier::hostile {
 
@@ -49,7 +49,7 @@ Bytes encrypted(std::string_view plain, std::string_view der) {
 
 Bytes thumbprint(std::string_view der) {
     constexpr int hexadecimal = 16;
-    const auto hex = trust::thumbprintOf(der);
+    const auto hex = security::thumbprintOf(der);
     Bytes bytes;
     for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
         bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, hexadecimal)));

@@ -13,12 +13,12 @@ namespace metier::hostile {
 
 namespace {
 
-process::ChildProcess started(const std::string& folder) {
+link::ChildProcess started(const std::string& folder) {
     std::vector<std::string> command{METIER_HOSTILE_TARGET};
     if (!folder.empty()) {
         command.push_back(folder);
     }
-    auto child = process::ChildProcess::start(command);
+    auto child = link::ChildProcess::start(command);
     if (!child) {
         throw std::runtime_error(child.error().message);
     }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::hostile {
 
@@ -24,7 +24,7 @@ public:
 private:
     std::string procFolder() const;
 
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::string url_;
 };
 

@@ -13,9 +13,9 @@ namespace {
 
 using system_tests::orThrow;
 
-skill_client::SkillHandle guardedSkill(opcua::Client& client) {
-    return orThrow(skill_client::SkillHandle::open(
-        client, orThrow(skill_client::findSkill(client, "Guarded"))));
+client::SkillHandle guardedSkill(opcua::Client& client) {
+    return orThrow(client::SkillHandle::open(
+        client, orThrow(client::findSkill(client, "Guarded"))));
 }
 
 /// It waits long, so that it can tell how long a late answer took.

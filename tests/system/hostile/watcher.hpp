@@ -6,7 +6,7 @@
 #include <string>
 
 #include "metier/opcua/client.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::hostile {
 
@@ -24,7 +24,7 @@ public:
 
 private:
     std::unique_ptr<opcua::Client> client_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
     std::chrono::milliseconds longest_{};
     std::atomic<int> transitions_{0};
 };

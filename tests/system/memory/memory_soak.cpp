@@ -20,16 +20,16 @@
 
 #include "../bench_server.hpp"
 #include "../hostile/target_process.hpp"
-#include "metier/process/child_process.hpp"
-#include "metier/skill_client/skill_finder.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/link/child_process.hpp"
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace {
 
 using namespace metier;
 using namespace std::chrono_literals;
 using hostile::TargetProcess;
-using skill_client::SkillHandle;
+using client::SkillHandle;
 using system_tests::orThrow;
 
 constexpr double kLimit = 1'024.0;      // [kB]
@@ -38,7 +38,7 @@ constexpr auto kPatience = 60s;
 constexpr const char* kClient = "--client";
 
 SkillHandle openSkill(opcua::Client& client, const std::string& name) {
-    return orThrow(SkillHandle::open(client, orThrow(skill_client::findSkill(client, name))));
+    return orThrow(SkillHandle::open(client, orThrow(client::findSkill(client, name))));
 }
 
 const skill::ValueMap kTarget{{"TargetJointPosition", std::vector<double>{0.1, 0.2}}};
@@ -141,7 +141,7 @@ bool runCrashes(TargetProcess& target, std::size_t count) {
     Memory memory("killed clients", target, count);
     std::size_t started = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        auto client = orThrow(process::ChildProcess::start({self, kClient, target.url()}));
+        auto client = orThrow(link::ChildProcess::start({self, kClient, target.url()}));
         const auto line = orThrow(client.readLine(std::chrono::steady_clock::now() + kPatience));
         client.signal(SIGKILL);
         started += line == "started" ? 1 : 0;

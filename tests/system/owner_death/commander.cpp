@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "commander.hpp"
-#include "metier/skill_client/skill_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 using opcua::NodeId;
 using opcua::Value;
-using skill_client::SkillHandle;
+using client::SkillHandle;
 
 constexpr int kBeatsPerLease = 4;
 
@@ -114,7 +114,7 @@ public:
         : client_(client),
           order_(order),
           skill_(orThrow(
-              SkillHandle::open(client, orThrow(skill_client::findSkill(client, order.skill))))),
+              SkillHandle::open(client, orThrow(client::findSkill(client, order.skill))))),
           lease_(client, skill_.address().controller()->node, order.lease,
                  static_cast<std::int32_t>(order.on_loss)) {}
 

@@ -13,9 +13,9 @@
 namespace metier::system_tests {
 namespace {
 
-process::ChildProcess started(const std::vector<std::string>& arguments) {
+link::ChildProcess started(const std::vector<std::string>& arguments) {
     auto child =
-        process::ChildProcess::start(metierCommand(arguments), process::ErrorOutput::with_output);
+        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output);
     if (!child) {
         throw std::runtime_error(child.error().message);
     }

@@ -8,7 +8,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/queue.hpp"
-#include "metier/process/child_process.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace metier::system_tests {
 
@@ -30,7 +30,7 @@ public:
 private:
     void read(const std::stop_token& stop);
 
-    process::ChildProcess process_;
+    link::ChildProcess process_;
     std::string url_;
     Queue<UtcTime> losses_{100};
     std::jthread reader_;  // last: it uses everything above

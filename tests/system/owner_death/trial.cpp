@@ -104,7 +104,7 @@ skill::ValueMap DeathRow::nextMove() {
     return {{"TargetJointPosition", target}, {"SpeedOverride", kSpeed}};
 }
 
-process::ChildProcess DeathRow::startCommander(const Trial& trial) {
+link::ChildProcess DeathRow::startCommander(const Trial& trial) {
     move_ = nextMove();
     const auto planned = orThrow(skill_.check(move_));
     if (!planned.possible) {
@@ -127,11 +127,11 @@ process::ChildProcess DeathRow::startCommander(const Trial& trial) {
     if (cable_ != nullptr) {
         command = cable_->atFarEnd(std::move(command));
     }
-    return orThrow(process::ChildProcess::start(command, process::ErrorOutput::with_output));
+    return orThrow(link::ChildProcess::start(command, link::ErrorOutput::with_output));
 }
 
 /// The line that has `word`; takes note of the others.
-std::string DeathRow::readUntil(process::ChildProcess& commander, const std::string& word,
+std::string DeathRow::readUntil(link::ChildProcess& commander, const std::string& word,
                                 Seen& seen) {
     std::string text;
     const auto deadline = in(kLongEnough);
@@ -158,7 +158,7 @@ std::string DeathRow::readUntil(process::ChildProcess& commander, const std::str
     throw std::runtime_error(fmt::format("the commander did not tell '{}': {}", word, text));
 }
 
-void DeathRow::strike(const Trial& trial, process::ChildProcess& commander) {
+void DeathRow::strike(const Trial& trial, link::ChildProcess& commander) {
     switch (trial.fault) {
         case Fault::killed:
             commander.signal(SIGKILL);
@@ -290,7 +290,7 @@ bool DeathRow::atTarget() {
 }
 
 /// Nothing that a commander does whose time is over may change anything.
-void DeathRow::judgeStale(const Trial& trial, process::ChildProcess& commander, Seen& seen,
+void DeathRow::judgeStale(const Trial& trial, link::ChildProcess& commander, Seen& seen,
                           Outcome& outcome) {
     const auto state = orThrow(skill_.state());
     while (transitions_.popUntil(SteadyTime{})) {

@@ -90,13 +90,13 @@ private:
     };
 
     skill::ValueMap nextMove();
-    process::ChildProcess startCommander(const Trial& trial);
-    std::string readUntil(process::ChildProcess& commander, const std::string& word, Seen& seen);
-    void strike(const Trial& trial, process::ChildProcess& commander);
+    link::ChildProcess startCommander(const Trial& trial);
+    std::string readUntil(link::ChildProcess& commander, const std::string& word, Seen& seen);
+    void strike(const Trial& trial, link::ChildProcess& commander);
     void judgeTimes(const Trial& trial, Outcome& outcome) const;
     void judgeEnd(const Trial& trial, Outcome& outcome, UtcTime stop);
     void judgeTransition(const Trial& trial, Outcome& outcome, UtcTime stop);
-    void judgeStale(const Trial& trial, process::ChildProcess& commander, Seen& seen,
+    void judgeStale(const Trial& trial, link::ChildProcess& commander, Seen& seen,
                     Outcome& outcome);
     bool atTarget();
     std::string movedWithin(std::chrono::milliseconds time);
@@ -108,7 +108,7 @@ private:
     WakeUpDelay meter_;
     Queue<skill::TransitionEvent> transitions_{1000};
     std::unique_ptr<opcua::Client> watcher_;
-    skill_client::SkillHandle skill_;
+    client::SkillHandle skill_;
     std::vector<double> home_;
     skill::ValueMap move_;
     std::chrono::milliseconds duration_{};  // of that move, undisturbed

@@ -66,7 +66,7 @@ class Tree(unittest.TestCase):
         self.assertEqual(len(public_headers.problems()), 2)
 
     def test_cmake_may_write_the_source_that_includes(self):
-        self.write("libs/driver/include/metier/driver/driver.hpp")
+        self.write("libs/device/include/metier/driver/driver.hpp")
         self.write("cmake/Tables.cmake", "metier/driver/driver.hpp")
         self.assertEqual(public_headers.problems(), [])
 

@@ -41,7 +41,7 @@ std::optional<double> number(const Json& object, const char* key) {
     return found->get<double>();
 }
 
-std::optional<geometry::Pose> poseOf(const Json& object, const char* key) {
+std::optional<motion::Pose> poseOf(const Json& object, const char* key) {
     const auto v = numbers(object, key, 7);
     if (v.empty()) {
         return std::nullopt;
@@ -50,10 +50,10 @@ std::optional<geometry::Pose> poseOf(const Json& object, const char* key) {
     if (!(rotation.norm() >= 0.5 && std::isfinite(rotation.norm()))) {
         return std::nullopt;
     }
-    return geometry::Pose{{v[0], v[1], v[2]}, rotation.normalized()};
+    return motion::Pose{{v[0], v[1], v[2]}, rotation.normalized()};
 }
 
-Json toJson(const geometry::Pose& pose) {
+Json toJson(const motion::Pose& pose) {
     const auto& t = pose.translation;
     const auto& r = pose.rotation;
     return Json::array({t.x(), t.y(), t.z(), r.w(), r.x(), r.y(), r.z()});

@@ -6,7 +6,7 @@ namespace metier::virtual_controller {
 namespace {
 
 TEST(WorldMessages, KeepAReport) {
-    NamedReport sent{"iiwa", {geometry::Pose{{0.1, 0.2, 0.3}, {0.6, 0.8, 0.0, 0.0}}, 0.05, true}};
+    NamedReport sent{"iiwa", {motion::Pose{{0.1, 0.2, 0.3}, {0.6, 0.8, 0.0, 0.0}}, 0.05, true}};
     const auto line = toLine(sent);
     EXPECT_EQ(line.back(), '\n');
     const auto got = reportOf(line).value();

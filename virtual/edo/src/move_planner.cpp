@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "codes.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::virtual_edo {
 namespace {
@@ -26,9 +26,9 @@ constexpr double kJogMargin = 0.1;
 constexpr double kGripperJogMargin = 0.2;
 constexpr double kJogOverride = 0.5;
 
-geometry::Pose interpolate(const geometry::Pose& from, const geometry::Pose& to, double share) {
+motion::Pose interpolate(const motion::Pose& from, const motion::Pose& to, double share) {
     return {.translation = from.translation + share * (to.translation - from.translation),
-            .rotation = geometry::slerp(from.rotation, to.rotation, share)};
+            .rotation = motion::slerp(from.rotation, to.rotation, share)};
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ geometry::Pose interpolate(const geometry::Pose& from, const geometry::Pose& to,
 struct MovePlanner::Way {
     double length = 0.0;                       // [m]
     double angle = 0.0;                        // [rad]
-    std::function<geometry::Pose(double)> at;  // flange, from 0 to 1
+    std::function<motion::Pose(double)> at;  // flange, from 0 to 1
 };
 
 MovePlanner::MovePlanner(const motion::RobotModel& model)
@@ -47,7 +47,7 @@ void MovePlanner::setReference(const Movement& movement) {
     flange_from_tool_ = toPose(movement.tool);
 }
 
-geometry::Pose MovePlanner::baseFromFlange(const AxisValues& position) const {
+motion::Pose MovePlanner::baseFromFlange(const AxisValues& position) const {
     return model_.kinematics().forward(armRadians(position));
 }
 
@@ -55,12 +55,12 @@ CartesianPose MovePlanner::cartesian(const AxisValues& position) const {
     return toCartesian(base_from_frame_.inverse() * baseFromFlange(position) * flange_from_tool_);
 }
 
-geometry::Pose MovePlanner::flangeGoal(const CartesianPose& target) const {
+motion::Pose MovePlanner::flangeGoal(const CartesianPose& target) const {
     return base_from_frame_ * toPose(target) * flange_from_tool_.inverse();
 }
 
 Result<AxisValues> MovePlanner::inverse(const AxisValues& near,
-                                        const geometry::Pose& base_from_flange) const {
+                                        const motion::Pose& base_from_flange) const {
     METIER_ASSIGN(auto solution,
                   model_.kinematics().inverse(
                       base_from_flange,
@@ -182,15 +182,15 @@ Result<Segment> MovePlanner::follow(const AxisValues& start, const AxisValues& t
 }
 
 Result<Segment> MovePlanner::planLine(const AxisValues& start, const AxisValues& target,
-                                      const geometry::Pose& goal) const {
+                                      const motion::Pose& goal) const {
     // The tool frame moves on the line, not the flange.
     const auto from = baseFromFlange(start) * flange_from_tool_;
     const auto to = goal * flange_from_tool_;
     const auto tool_from_flange = flange_from_tool_.inverse();
     return follow(
         start, target,
-        {.length = geometry::distanceBetween(from, to),
-         .angle = geometry::rotationAngleBetween(from.rotation, to.rotation),
+        {.length = motion::distanceBetween(from, to),
+         .angle = motion::rotationAngleBetween(from.rotation, to.rotation),
          .at = [=](double share) { return interpolate(from, to, share) * tool_from_flange; }});
 }
 
@@ -216,7 +216,7 @@ Result<Segment> MovePlanner::planArc(const AxisValues& start, const AxisValues& 
     const auto tool_from_flange = flange_from_tool_.inverse();
     return follow(start, target,
                   {.length = arm.norm() * turn,
-                   .angle = geometry::rotationAngleBetween(from.rotation, to.rotation),
+                   .angle = motion::rotationAngleBetween(from.rotation, to.rotation),
                    .at = [=](double share) {
                        auto pose = interpolate(from, to, share);
                        pose.translation = centre + Eigen::AngleAxisd(share * turn, axis) * arm;
@@ -264,9 +264,9 @@ Result<Segment> MovePlanner::planLinearJog(const AxisValues& start,
     const auto from = baseFromFlange(start) * flange_from_tool_;
     // As far as the arm can go, looked for from far to near.
     for (double reach = kJogReach; reach > kStep; reach *= 0.7) {
-        geometry::Pose to = from;
+        motion::Pose to = from;
         to.translation += along / size * reach;
-        to.rotation = geometry::fromRotationVector(turn / size * reach) * from.rotation;
+        to.rotation = motion::fromRotationVector(turn / size * reach) * from.rotation;
         auto segment = planLine(start, start, to * flange_from_tool_.inverse());
         if (segment) {
             return segment;

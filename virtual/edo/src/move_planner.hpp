@@ -32,10 +32,10 @@ public:
 
     /// Pose of the last move's tool in its frame.
     CartesianPose cartesian(const AxisValues& position) const;
-    geometry::Pose baseFromFlange(const AxisValues& position) const;
+    motion::Pose baseFromFlange(const AxisValues& position) const;
     /// Errors: unreachable.
     Result<AxisValues> inverse(const AxisValues& near,
-                               const geometry::Pose& base_from_flange) const;
+                               const motion::Pose& base_from_flange) const;
     const AxisLimits& limits() const { return limits_; }
 
 private:
@@ -46,22 +46,22 @@ private:
     Result<AxisValues> moveTarget(const AxisValues& start, std::size_t axes,
                                   const Point& point) const;
     Result<Segment> planLine(const AxisValues& start, const AxisValues& target,
-                             const geometry::Pose& goal) const;
+                             const motion::Pose& goal) const;
     Result<Segment> planArc(const AxisValues& start, const AxisValues& via,
                             const AxisValues& target) const;
     Result<Segment> follow(const AxisValues& start, const AxisValues& target, const Way& way) const;
     Result<Segment> planJoints(const AxisValues& start, const AxisValues& target) const;
     AxisValues jogTarget(const AxisValues& start, std::size_t axes, const Point& point);
     Result<Segment> planLinearJog(const AxisValues& start, const CartesianPose& direction);
-    geometry::Pose flangeGoal(const CartesianPose& target) const;
+    motion::Pose flangeGoal(const CartesianPose& target) const;
     SpeedProfile profileFor(const std::vector<AxisValues>& path, double length, double angle) const;
     void setReference(const Movement& movement);
 
     const motion::RobotModel& model_;
     AxisLimits limits_;
     double override_ = 1.0;  // part of the full speed
-    geometry::Pose base_from_frame_;
-    geometry::Pose flange_from_tool_;
+    motion::Pose base_from_frame_;
+    motion::Pose flange_from_tool_;
 };
 
 }  // namespace metier::virtual_edo

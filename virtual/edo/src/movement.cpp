@@ -36,7 +36,7 @@ Json toJson(const CartesianPose& pose) {
             {"config_flags", ""}};
 }
 
-geometry::Pose toPose(const CartesianPose& wire) {
+motion::Pose toPose(const CartesianPose& wire) {
     using Eigen::AngleAxisd;
     return {.translation = Eigen::Vector3d(wire.x, wire.y, wire.z) / 1000.0,
             .rotation = Eigen::Quaterniond(AngleAxisd(wire.a * kDegree, Eigen::Vector3d::UnitZ()) *
@@ -44,7 +44,7 @@ geometry::Pose toPose(const CartesianPose& wire) {
                                            AngleAxisd(wire.r * kDegree, Eigen::Vector3d::UnitZ()))};
 }
 
-CartesianPose toCartesian(const geometry::Pose& pose) {
+CartesianPose toCartesian(const motion::Pose& pose) {
     const Eigen::Matrix3d rotation = pose.rotation.toRotationMatrix();
     const double sine = std::hypot(rotation(0, 2), rotation(1, 2));
     double a = 0.0;

@@ -5,7 +5,7 @@
 
 #include "axes.hpp"
 #include "message_types.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 
 namespace metier::virtual_edo {
 
@@ -21,9 +21,9 @@ struct CartesianPose {
     bool operator==(const CartesianPose&) const = default;
 };
 
-geometry::Pose toPose(const CartesianPose& wire);
+motion::Pose toPose(const CartesianPose& wire);
 /// e in [0, 180]; a is 0 where only the sum of a and r is defined.
-CartesianPose toCartesian(const geometry::Pose& pose);
+CartesianPose toCartesian(const motion::Pose& pose);
 
 /// A point of a move: joints, a pose, or both.
 struct Point {

@@ -39,7 +39,7 @@ private:
     virtual_controller::WorldEffect effect_;
 };
 
-using Values = std::map<std::string, configuration::Settings::Value>;
+using Values = std::map<std::string, cell::Settings::Value>;
 
 Result<std::unique_ptr<Controller>> startEdo(asio::io_context& context, EmptyWorld& world,
                                              virtual_controller::LinkFaults& faults,
@@ -48,7 +48,7 @@ Result<std::unique_ptr<Controller>> startEdo(asio::io_context& context, EmptyWor
         ControllerRequest{.context = context,
                           .name = "edo",
                           .address = "127.0.0.1",
-                          .settings = configuration::Settings("test", settings),
+                          .settings = cell::Settings("test", settings),
                           .model = &edoModel(),
                           .faults = faults,
                           .world = world});

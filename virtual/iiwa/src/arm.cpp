@@ -46,7 +46,7 @@ void Arm::servoTo(const JointVector& target, const MotionLimits& limits) {
     };
 }
 
-void Arm::servoTo(const MovingFrame& frame, const geometry::Pose& base_from_tool,
+void Arm::servoTo(const MovingFrame& frame, const motion::Pose& base_from_tool,
                   const MotionLimits& limits) {
     if (linear_servo_ != nullptr && !braking_) {
         linear_servo_->follow(base_from_tool);

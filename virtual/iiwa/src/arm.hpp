@@ -30,7 +30,7 @@ public:
     void move(Plan plan);
     /// Follows the target from now on; begins a servo motion if there is none of its kind.
     void servoTo(const motion::JointVector& target, const MotionLimits& limits);
-    void servoTo(const MovingFrame& frame, const geometry::Pose& base_from_tool,
+    void servoTo(const MovingFrame& frame, const motion::Pose& base_from_tool,
                  const MotionLimits& limits);
     /// Brakes on its path; the motion ends so when the arm stands, at once if it had not begun.
     void brake(End end);

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "arm.hpp"
-#include "metier/geometry/twist.hpp"
+#include "metier/motion/twist.hpp"
 
 namespace metier::virtual_iiwa {
 
 /// The cabinet that the robot application runs on.
 struct Cabinet {
     Arm arm;
-    geometry::Wrench wrench{};         ///< from outside on the flange, in the flange frame
+    motion::Wrench wrench{};         ///< from outside on the flange, in the flange frame
     motion::JointVector torque_noise;  ///< of this cycle [Nm]
     bool emergency_stop = false;
     bool enabled = true;

@@ -7,13 +7,13 @@
 #include <functional>
 #include <numbers>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::virtual_iiwa {
 
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using motion::JointVector;
 using motion::ScalarLimits;
 
@@ -170,9 +170,9 @@ Planned planLinear(const MovingFrame& frame, const JointVector& start, const Pos
     }
     METIER_TRY(check(limits));
     const Pose from = frame.model->kinematics().forward(start) * frame.flange_from_tool;
-    const double length = std::max(geometry::distanceBetween(from, base_from_tool), kNoWay);
+    const double length = std::max(motion::distanceBetween(from, base_from_tool), kNoWay);
     const double angle =
-        std::max(geometry::rotationAngleBetween(from.rotation, base_from_tool.rotation), kNoWay);
+        std::max(motion::rotationAngleBetween(from.rotation, base_from_tool.rotation), kNoWay);
     const auto& turning = frame.model->cartesianLimits();
     const ScalarLimits path_limits{
         std::min(limits.velocity / length, turning.angular_velocity / angle),
@@ -180,7 +180,7 @@ Planned planLinear(const MovingFrame& frame, const JointVector& start, const Pos
         std::min(kPathJerk / length, turning.angular_jerk / angle)};
     const auto pose = [from, to = base_from_tool](double parameter) {
         return Pose{from.translation + parameter * (to.translation - from.translation),
-                    geometry::slerp(from.rotation, to.rotation, parameter)};
+                    motion::slerp(from.rotation, to.rotation, parameter)};
     };
     auto path = std::make_unique<PosePath>(frame, start, pose);
     path->limits = path_limits;

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "metier/base/error.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/profile.hpp"
 #include "metier/motion/robot_model.hpp"
 
@@ -39,7 +39,7 @@ public:
 /// What moves: a tool frame on the flange, or the flange itself.
 struct MovingFrame {
     const motion::RobotModel* model = nullptr;
-    geometry::Pose flange_from_tool;
+    motion::Pose flange_from_tool;
 };
 
 using Planned = Result<std::unique_ptr<Path>>;
@@ -50,11 +50,11 @@ Planned planPtp(const motion::RobotModel& model, const motion::JointVector& star
                 const motion::JointVector& target, const MotionLimits& limits);
 /// The same to a pose, with the joint position nearest to the start.
 Planned planPtp(const MovingFrame& frame, const motion::JointVector& start,
-                const geometry::Pose& base_from_tool, const MotionLimits& limits);
+                const motion::Pose& base_from_tool, const MotionLimits& limits);
 /// Along a straight line while the orientation turns the short way; slower where an axis needs it.
 /// Errors: unreachable on the way, invalid_argument.
 Planned planLinear(const MovingFrame& frame, const motion::JointVector& start,
-                   const geometry::Pose& base_from_tool, const MotionLimits& limits);
+                   const motion::Pose& base_from_tool, const MotionLimits& limits);
 
 struct CirclePoints {
     Eigen::Vector3d auxiliary;  ///< [m]

@@ -10,7 +10,7 @@ namespace metier::virtual_iiwa {
 
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using motion::JointVector;
 using Arguments = std::array<double, 7>;
 

@@ -64,14 +64,14 @@ private:
     bool attachTool(double index);
     bool conditionHolds() const;
     MovingFrame frame() const;
-    geometry::Pose pose() const;
+    motion::Pose pose() const;
 
     Cabinet& cabinet_;
     MotionLimits limits_;
     std::array<std::optional<double>, 3> force_thresholds_;  // [N]
     std::array<std::optional<Interval>, 7> torque_limits_;   // [Nm]
     std::map<int, std::array<double, 7>> impedance_;         // by command
-    geometry::Pose flange_from_tool_;
+    motion::Pose flange_from_tool_;
     bool servo_ = false;
     bool synchronous_ = false;
     int motion_type_ = 21;

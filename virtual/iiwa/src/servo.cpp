@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::virtual_iiwa {
 
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using motion::JointVector;
 using motion::ScalarLimits;
 
@@ -103,14 +103,14 @@ LinearServo::LinearServo(const MovingFrame& frame, const JointVector& start,
 void LinearServo::follow(const Pose& base_from_tool) noexcept {
     const auto& at = base_from_tool.translation;
     const Eigen::Vector3d turn =
-        geometry::rotationVectorBetween(start_rotation_, base_from_tool.rotation);
+        motion::rotationVectorBetween(start_rotation_, base_from_tool.rotation);
     follower_.follow({at.x(), at.y(), at.z(), turn.x(), turn.y(), turn.z()});
 }
 
 std::optional<JointVector> LinearServo::position(const JointVector& near) const {
     const auto v = follower_.values();
     const Pose base_from_tool{{v[0], v[1], v[2]},
-                              geometry::fromRotationVector({v[3], v[4], v[5]}) * start_rotation_};
+                              motion::fromRotationVector({v[3], v[4], v[5]}) * start_rotation_};
     const auto& kinematics = frame_.model->kinematics();
     const auto found = kinematics.solutionNear(base_from_tool * frame_.flange_from_tool.inverse(),
                                                near, redundancy_angle_);

@@ -71,7 +71,7 @@ class LinearServo final : public Servo {
 public:
     LinearServo(const MovingFrame& frame, const motion::JointVector& start,
                 const MotionLimits& limits);
-    void follow(const geometry::Pose& base_from_tool) noexcept;
+    void follow(const motion::Pose& base_from_tool) noexcept;
 
 private:
     std::optional<motion::JointVector> position(const motion::JointVector& near) const override;

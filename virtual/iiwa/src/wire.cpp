@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::virtual_iiwa {
 
@@ -58,13 +58,13 @@ std::vector<std::byte> encodeState(const StateNumbers& state, Precision precisio
     return bytes;
 }
 
-geometry::Pose toPose(const std::array<double, 6>& xyzabc) {
-    return geometry::toPose({xyzabc[0] * kMillimetre, xyzabc[1] * kMillimetre,
+motion::Pose toPose(const std::array<double, 6>& xyzabc) {
+    return motion::toPose({xyzabc[0] * kMillimetre, xyzabc[1] * kMillimetre,
                              xyzabc[2] * kMillimetre, xyzabc[5], xyzabc[4], xyzabc[3]});
 }
 
-std::array<double, 6> toNumbers(const geometry::Pose& pose) {
-    const auto frame = geometry::toFrame(pose);
+std::array<double, 6> toNumbers(const motion::Pose& pose) {
+    const auto frame = motion::toFrame(pose);
     return {frame.x / kMillimetre,
             frame.y / kMillimetre,
             frame.z / kMillimetre,

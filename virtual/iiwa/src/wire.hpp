@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 
 /// The numbers that a PC and the robot application on the cabinet exchange (libiiwa).
 namespace metier::virtual_iiwa {
@@ -45,8 +45,8 @@ using StateNumbers = std::array<double, state_index::kCount>;
 std::vector<std::byte> encodeState(const StateNumbers& state, Precision precision);
 
 /// A pose from X, Y, Z [mm] and A, B, C [rad], which turn about z, y and x, and back.
-geometry::Pose toPose(const std::array<double, 6>& xyzabc);
-std::array<double, 6> toNumbers(const geometry::Pose& pose);
+motion::Pose toPose(const std::array<double, 6>& xyzabc);
+std::array<double, 6> toNumbers(const motion::Pose& pose);
 
 /// What element 34 of the state says, until another error comes.
 enum class ErrorCode : std::int8_t {

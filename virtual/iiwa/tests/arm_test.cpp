@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "iiwa_model.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::virtual_iiwa {
 namespace {
 
-using geometry::Pose;
+using motion::Pose;
 using motion::JointVector;
 
 class ArmTest : public ::testing::Test {
@@ -109,12 +109,12 @@ TEST_F(ArmTest, RunsAlongALineAtItsSpeed) {
                   const auto now = pose();
                   const Eigen::Vector3d way = now.translation - from.translation;
                   EXPECT_LT((way - way.dot(direction) * direction).norm(), 1e-6);
-                  EXPECT_LT(geometry::rotationAngleBetween(now.rotation, from.rotation), 1e-6);
+                  EXPECT_LT(motion::rotationAngleBetween(now.rotation, from.rotation), 1e-6);
                   fastest = std::max(fastest, (now.translation - last).norm() / kCycleSeconds);
                   last = now.translation;
               }),
               Arm::End::done);
-    EXPECT_LT(geometry::distanceBetween(pose(), to), 1e-6);
+    EXPECT_LT(motion::distanceBetween(pose(), to), 1e-6);
     EXPECT_NEAR(fastest, 0.1, 1e-3);
 }
 
@@ -123,7 +123,7 @@ TEST_F(ArmTest, TurnsAlongALineTheShortWay) {
     to.rotation = Eigen::AngleAxisd(0.6, Eigen::Vector3d::UnitX()) * to.rotation;
     line(to);
     EXPECT_EQ(run(), Arm::End::done);
-    EXPECT_LT(geometry::rotationAngleBetween(pose().rotation, to.rotation), 1e-6);
+    EXPECT_LT(motion::rotationAngleBetween(pose().rotation, to.rotation), 1e-6);
 }
 
 TEST_F(ArmTest, SlowsALineDownWhereAnAxisNeedsIt) {
@@ -182,7 +182,7 @@ TEST_F(ArmTest, BrakesOnItsPath) {
               }),
               Arm::End::cancelled);
     EXPECT_FALSE(arm_.moving());
-    EXPECT_GT(geometry::distanceBetween(pose(), to), 0.05);
+    EXPECT_GT(motion::distanceBetween(pose(), to), 0.05);
     EXPECT_LT(largest_acceleration_, 15.0);
 }
 
@@ -231,8 +231,8 @@ TEST_F(ArmTest, FollowsPoses) {
     to.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) * to.rotation;
     arm_.servoTo(flange(), to, limits_);
     run({}, 3000);
-    EXPECT_LT(geometry::distanceBetween(pose(), to), 1e-6);
-    EXPECT_LT(geometry::rotationAngleBetween(pose().rotation, to.rotation), 1e-6);
+    EXPECT_LT(motion::distanceBetween(pose(), to), 1e-6);
+    EXPECT_LT(motion::rotationAngleBetween(pose().rotation, to.rotation), 1e-6);
     arm_.servoTo(flange(), shifted({3.0, 0.0, 0.0}), limits_);
     EXPECT_EQ(run(), Arm::End::failed);
 }

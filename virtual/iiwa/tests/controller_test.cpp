@@ -99,7 +99,7 @@ private:
 
 class IiwaTest : public ::testing::Test {
 protected:
-    RunningController cabinet(std::map<std::string, configuration::Settings::Value> settings = {}) {
+    RunningController cabinet(std::map<std::string, cell::Settings::Value> settings = {}) {
         settings.insert({{"pc_port", pc_.port()}, {"redial_delay", 0.02}});
         return {virtual_controller::iiwaController(),
                 {.settings = std::move(settings), .model = &iiwaModel()}};

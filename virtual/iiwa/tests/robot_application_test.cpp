@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "iiwa_model.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::virtual_iiwa {
 namespace {
@@ -57,7 +57,7 @@ TEST_F(ApplicationTest, OnlyTellsItsStateOnCommandZero) {
     for (std::size_t axis = 0; axis < 7; ++axis) {
         EXPECT_EQ(element(state_index::kJointPosition + axis), home(axis));
     }
-    const auto frame = geometry::toFrame(iiwaModel().kinematics().forward(iiwaModel().home()));
+    const auto frame = motion::toFrame(iiwaModel().kinematics().forward(iiwaModel().home()));
     EXPECT_NEAR(element(state_index::kPosition), 1000 * frame.x, 1e-9);
     EXPECT_NEAR(element(state_index::kPosition + 2), 1000 * frame.z, 1e-9);
     EXPECT_NEAR(element(state_index::kOrientation), frame.c, 1e-9);

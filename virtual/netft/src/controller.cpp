@@ -34,7 +34,7 @@ constexpr std::array kStatuses{
                 status::kTemperature},
 };
 
-Unit readUnit(const configuration::Settings& settings, std::string_view name,
+Unit readUnit(const cell::Settings& settings, std::string_view name,
               std::span<const Unit> units) {
     const auto wanted = settings.textOr(name, std::string(units.front().name));
     const auto found = std::ranges::find(units, wanted, &Unit::name);
@@ -54,7 +54,7 @@ std::chrono::nanoseconds period(int samples_per_record) {
     return std::chrono::nanoseconds(std::llround(1e9 * samples_per_record / kSampleRate));
 }
 
-Options readOptions(const configuration::Settings& settings) {
+Options readOptions(const cell::Settings& settings) {
     Options options;
     auto& calibration = options.calibration;
     options.port = static_cast<std::uint16_t>(settings.numberOr("port", 49152, 0, 65535));
@@ -79,7 +79,7 @@ Options readOptions(const configuration::Settings& settings) {
 }
 
 /// "fx fy fz tx ty tz"; an empty text is no load.
-Result<geometry::Wrench> parseWrench(const std::string& text) {
+Result<motion::Wrench> parseWrench(const std::string& text) {
     std::istringstream in(text);
     std::array<double, 6> values{};
     std::size_t count = 0;
@@ -90,7 +90,7 @@ Result<geometry::Wrench> parseWrench(const std::string& text) {
         return fail(Errc::invalid_argument,
                     fmt::format("\"{}\" is not three forces [N] and three torques [Nm]", text));
     }
-    return geometry::Wrench{{values[0], values[1], values[2]}, {values[3], values[4], values[5]}};
+    return motion::Wrench{{values[0], values[1], values[2]}, {values[3], values[4], values[5]}};
 }
 
 template <typename Number>
@@ -248,7 +248,7 @@ void NetFtController::handle(const UdpPort::Endpoint& from, const Request& reque
 void NetFtController::cycle() {
     ft_sequence_ += static_cast<std::uint32_t>(samples_per_record_);
     world_.report({});  // asks for the newest effect
-    geometry::Wrench load = world_.effect().wrench;
+    motion::Wrench load = world_.effect().wrench;
     load.force += extra_load_.force;
     load.torque += extra_load_.torque;
     last_ = sensor_->read(load);
@@ -311,7 +311,7 @@ Result<void> NetFtController::inject(const virtual_controller::Injection& inject
         });
     }
     if (injection.name == "wrench") {
-        return parseWrench(injection.value).map([this](const geometry::Wrench& load) {
+        return parseWrench(injection.value).map([this](const motion::Wrench& load) {
             extra_load_ = load;
         });
     }

@@ -65,7 +65,7 @@ private:
     int filter_ = 0;
     virtual_controller::WorldLink& world_;
     std::optional<Sensor> sensor_;
-    geometry::Wrench extra_load_;
+    motion::Wrench extra_load_;
     std::uint32_t ft_sequence_ = 0;  // the sensor's own samples
     std::uint64_t records_to_lose_ = 0;
     Sensor::Reading last_;

@@ -46,7 +46,7 @@ std::span<const Unit> torqueUnits() noexcept {
     return kTorqueUnits;
 }
 
-Sensor::Reading Sensor::read(const geometry::Wrench& load) {
+Sensor::Reading Sensor::read(const motion::Wrench& load) {
     Reading reading;
     reading.status = status_;
     for (std::size_t axis = 0; axis < last_.size(); ++axis) {

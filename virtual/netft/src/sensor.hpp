@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "metier/geometry/twist.hpp"
+#include "metier/motion/twist.hpp"
 #include "rdt.hpp"
 
 namespace metier::virtual_netft {
@@ -51,7 +51,7 @@ public:
         std::array<std::int32_t, 6> counts{};
         std::uint32_t status = 0;
     };
-    Reading read(const geometry::Wrench& load);
+    Reading read(const motion::Wrench& load);
 
     /// The last load becomes zero.
     void setBias() noexcept { bias_ = last_; }

@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-const geometry::Wrench kLoad{{10.0, -20.0, 30.0}, {1.0, -2.0, 3.0}};
+const motion::Wrench kLoad{{10.0, -20.0, 30.0}, {1.0, -2.0, 3.0}};
 
 TEST(Sensor, GivesCountsOfItsUnits) {
     Sensor sensor({});

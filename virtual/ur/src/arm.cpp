@@ -95,7 +95,7 @@ void Arm::servo(const Vector6& target, double duration, double lag) {
     servo_->retarget(target, duration, lag);
 }
 
-void Arm::servoLine(const geometry::Pose& base_from_target, const PathSpeed& speed) {
+void Arm::servoLine(const motion::Pose& base_from_target, const PathSpeed& speed) {
     if (braking_) {
         return;
     }

@@ -39,7 +39,7 @@ public:
     // What a program asks for; each takes over from the motion before.
     void servo(const Vector6& target, double duration, double lag);
     /// The tool along a line; speeds as those of moveL().
-    void servoLine(const geometry::Pose& base_from_target, const PathSpeed& speed);
+    void servoLine(const motion::Pose& base_from_target, const PathSpeed& speed);
     void begin(std::unique_ptr<Motion> motion);
     /// A motion that begins at standstill: the arm is stopped first.
     using FromStandstill = std::function<std::unique_ptr<Motion>(const Vector6& start)>;
@@ -68,7 +68,7 @@ public:
     std::optional<Vector6> history(std::size_t cycles) const;
 
     ToolKinematics tool() const { return {model_.kinematics(), flange_from_tool_}; }
-    void setTool(const geometry::Pose& flange_from_tool) { flange_from_tool_ = flange_from_tool; }
+    void setTool(const motion::Pose& flange_from_tool) { flange_from_tool_ = flange_from_tool; }
     const motion::RobotModel& model() const { return model_; }
 
 private:
@@ -80,7 +80,7 @@ private:
     const ArmOptions options_;
     joint_simulator::Guard guard_;
     joint_simulator::Lag lag_;
-    geometry::Pose flange_from_tool_;
+    motion::Pose flange_from_tool_;
     JointState target_;
     Vector6 acceleration_{};
     std::unique_ptr<Motion> motion_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::virtual_ur {
 
@@ -135,7 +135,7 @@ Eigen::Matrix<double, 6, 6> toolJacobian(const ToolKinematics& tool, const motio
 }
 
 /// Axes near `near` that put the tool there; empty if there are none.
-std::optional<Vector6> axesAt(const ToolKinematics& tool, const geometry::Pose& base_from_tool,
+std::optional<Vector6> axesAt(const ToolKinematics& tool, const motion::Pose& base_from_tool,
                               const Vector6& near) {
     const auto solution = tool.arm.solutionNear(base_from_tool * tool.flange_from_tool.inverse(),
                                                 toJointVector(near), 0.0);
@@ -227,8 +227,8 @@ private:
 class MoveL final : public Motion {
 public:
     struct Line {
-        geometry::Pose start;
-        geometry::Pose target;
+        motion::Pose start;
+        motion::Pose target;
         double length = 0.0;
     };
     MoveL(const Line& line, const PathSpeed& speed, const ToolKinematics& tool)
@@ -239,9 +239,9 @@ public:
         const double share =
             line_.length > 0.0 && !done() ? profile_.at(time_) / line_.length : 1.0;
         const auto& start = line_.start;
-        const geometry::Pose base_from_tool{
+        const motion::Pose base_from_tool{
             start.translation + share * (line_.target.translation - start.translation),
-            geometry::slerp(start.rotation, line_.target.rotation, share)};
+            motion::slerp(start.rotation, line_.target.rotation, share)};
         return axesAt(tool_, base_from_tool, now.position);
     }
     bool done() const override { return profile_.over(time_); }
@@ -280,7 +280,7 @@ std::optional<Vector6> ServoMotion::next(const JointState& now, double step) {
     return result;
 }
 
-void LineServo::retarget(const geometry::Pose& base_from_target, const PathSpeed& speed,
+void LineServo::retarget(const motion::Pose& base_from_target, const PathSpeed& speed,
                          const ToolKinematics& tool) {
     base_from_target_ = base_from_target;
     speed_ = speed;
@@ -311,7 +311,7 @@ std::optional<Vector6> LineServo::next(const JointState& now, double step) {
     Twist way;
     way << base_from_target_.translation - base_from_tool.translation,
         kTurnRadius *
-            geometry::rotationVectorBetween(base_from_tool.rotation, base_from_target_.rotation);
+            motion::rotationVectorBetween(base_from_tool.rotation, base_from_target_.rotation);
     const double most = speed_.acceleration * step;
     if (way.norm() < kThere && twist_->norm() <= most) {
         twist_->setZero();
@@ -319,9 +319,9 @@ std::optional<Vector6> LineServo::next(const JointState& now, double step) {
     }
     const Twist change = wanted(way, step) - *twist_;
     *twist_ += change.norm() > most ? Twist(change * (most / change.norm())) : change;
-    const geometry::Pose next{
+    const motion::Pose next{
         base_from_tool.translation + twist_->head<3>() * step,
-        geometry::fromRotationVector(twist_->tail<3>() * (step / kTurnRadius)) *
+        motion::fromRotationVector(twist_->tail<3>() * (step / kTurnRadius)) *
             base_from_tool.rotation};
     return axesAt(*tool_, next, now.position);
 }
@@ -344,24 +344,24 @@ std::unique_ptr<Motion> moveJ(const Vector6& start, const Vector6& target, const
     return std::make_unique<MoveJ>(start, target, speed);
 }
 
-std::unique_ptr<Motion> moveL(const Vector6& start, const geometry::Pose& base_from_target,
+std::unique_ptr<Motion> moveL(const Vector6& start, const motion::Pose& base_from_target,
                               const PathSpeed& speed, const ToolKinematics& tool) {
     MoveL::Line line{tool.arm.forward(toJointVector(start)) * tool.flange_from_tool,
                      base_from_target};
-    line.length = geometry::distanceBetween(line.start, line.target);
+    line.length = motion::distanceBetween(line.start, line.target);
     if (line.length < kOnTheSpot) {
-        line.length = geometry::rotationAngleBetween(line.start.rotation, line.target.rotation);
+        line.length = motion::rotationAngleBetween(line.start.rotation, line.target.rotation);
     }
     return std::make_unique<MoveL>(line, speed, tool);
 }
 
-geometry::Pose toPose(const Vector6& pose) {
+motion::Pose toPose(const Vector6& pose) {
     return {Eigen::Vector3d(pose[0], pose[1], pose[2]),
-            geometry::fromRotationVector(Eigen::Vector3d(pose[3], pose[4], pose[5]))};
+            motion::fromRotationVector(Eigen::Vector3d(pose[3], pose[4], pose[5]))};
 }
 
-Vector6 toVector(const geometry::Pose& pose) {
-    const auto turn = geometry::toRotationVector(pose.rotation);
+Vector6 toVector(const motion::Pose& pose) {
+    const auto turn = motion::toRotationVector(pose.rotation);
     return {pose.translation.x(),
             pose.translation.y(),
             pose.translation.z(),

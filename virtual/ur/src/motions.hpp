@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/kinematics.hpp"
 #include "robot_state.hpp"
 
@@ -33,7 +33,7 @@ public:
 /// Where the tool's origin sits on the arm.
 struct ToolKinematics {
     const motion::Kinematics& arm;
-    geometry::Pose flange_from_tool;
+    motion::Pose flange_from_tool;
 };
 
 /// How fast a move may be along its path.
@@ -73,7 +73,7 @@ public:
     /// Where to go from now on.
     /// \param speed velocity [m/s] and acceleration [m/s2] of the tool's origin, > 0; a turn counts
     ///              as the way of a point kTurnRadius beside it. The duration has no meaning.
-    void retarget(const geometry::Pose& base_from_target, const PathSpeed& speed,
+    void retarget(const motion::Pose& base_from_target, const PathSpeed& speed,
                   const ToolKinematics& tool);
 
     static constexpr double kTurnRadius = 0.1;  ///< [m]; the controller tells it, too
@@ -88,7 +88,7 @@ private:
 
     Vector6 start_velocity_;
     std::optional<ToolKinematics> tool_;
-    geometry::Pose base_from_target_;
+    motion::Pose base_from_target_;
     PathSpeed speed_;
     std::optional<Twist> twist_;  // base frame [m/s]; its turn times kTurnRadius
     bool waited_ = false;
@@ -106,12 +106,12 @@ std::unique_ptr<Motion> stopJ(double acceleration);
 /// From standstill, all axes arriving together. Speeds [rad/s] are those of the leading axis.
 std::unique_ptr<Motion> moveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed);
 /// From standstill, the tool along a line. Speeds [m/s]; of a turn on the spot [rad/s].
-std::unique_ptr<Motion> moveL(const Vector6& start, const geometry::Pose& base_from_target,
+std::unique_ptr<Motion> moveL(const Vector6& start, const motion::Pose& base_from_target,
                               const PathSpeed& speed, const ToolKinematics& tool);
 
 /// base_from_pose of x, y, z and a rotation vector, and back.
-geometry::Pose toPose(const Vector6& pose);
-Vector6 toVector(const geometry::Pose& pose);
+motion::Pose toPose(const Vector6& pose);
+Vector6 toVector(const motion::Pose& pose);
 motion::JointVector toJointVector(const Vector6& q);
 
 }  // namespace metier::virtual_ur

@@ -48,7 +48,7 @@ void Robot::begin() {
     state_.cycle = static_cast<std::uint64_t>(std::llround(kFirstSecond * rate_));
     state_.timestamp = kFirstSecond;
     arm_.reset(options_.arm.start);
-    arm_.setTool(geometry::Pose::identity());
+    arm_.setTool(motion::Pose::identity());
     modes_.emplace(options_.times, options_.power);
     told_safety_ = modes_->safetyMode();
     script_robot_.emplace(ScriptRobot::Parts{

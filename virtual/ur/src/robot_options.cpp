@@ -12,7 +12,7 @@ namespace metier::virtual_ur {
 
 namespace {
 
-using configuration::Settings;
+using cell::Settings;
 
 // What the maker's configuration package tells of a UR5 (captured stream) [rad/s2].
 constexpr double kJointAcceleration = 40.0;

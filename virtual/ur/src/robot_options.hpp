@@ -5,7 +5,7 @@
 
 #include "arm.hpp"
 #include "metier/base/error.hpp"
-#include "metier/configuration/settings.hpp"
+#include "metier/cell/settings.hpp"
 #include "primary_packages.hpp"
 #include "robot_modes.hpp"
 
@@ -42,7 +42,7 @@ struct RobotOptions {
 
 /// \param model of six axes; outlives what is made of the options
 /// Errors: invalid_argument with all that is wrong; README.md has the settings.
-Result<RobotOptions> readOptions(const configuration::Settings& settings,
+Result<RobotOptions> readOptions(const cell::Settings& settings,
                                  const motion::RobotModel& model);
 
 }  // namespace metier::virtual_ur

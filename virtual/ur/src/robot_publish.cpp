@@ -31,8 +31,8 @@ ToolMotion toolMotion(const ToolKinematics& tool, const JointState& joints) {
     const Eigen::Vector3d arm = base_from_flange.rotation * tool.flange_from_tool.translation;
     const Eigen::Vector3d turn = flange.tail<3>();
     const Eigen::Vector3d linear = flange.head<3>() + turn.cross(arm);
-    const geometry::Pose base_from_tool =
-        geometry::Pose{base_from_flange.translation,
+    const motion::Pose base_from_tool =
+        motion::Pose{base_from_flange.translation,
                        Eigen::Quaterniond(base_from_flange.rotation)} *
         tool.flange_from_tool;
     return {toVector(base_from_tool),
@@ -40,8 +40,8 @@ ToolMotion toolMotion(const ToolKinematics& tool, const JointState& joints) {
 }
 
 /// A wrench on the flange, in its frame, as the maker tells it: on the tool's origin, base frame.
-Vector6 forceOnTool(const geometry::Wrench& wrench, const geometry::Pose& base_from_flange,
-                    const geometry::Pose& flange_from_tool) {
+Vector6 forceOnTool(const motion::Wrench& wrench, const motion::Pose& base_from_flange,
+                    const motion::Pose& flange_from_tool) {
     const Eigen::Vector3d force = base_from_flange.rotation * wrench.force;
     const Eigen::Vector3d arm = base_from_flange.rotation * flange_from_tool.translation;
     const Eigen::Vector3d torque = base_from_flange.rotation * wrench.torque - arm.cross(force);

@@ -31,7 +31,7 @@ bool isFinite(const Vector6& values) {
     return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-Result<Vector6> solve(const Arm& arm, const geometry::Pose& base_from_flange, const Vector6& near) {
+Result<Vector6> solve(const Arm& arm, const motion::Pose& base_from_flange, const Vector6& near) {
     motion::IkRequest request;
     request.reference = toJointVector(near);
     return arm.model().kinematics().inverse(base_from_flange, request).map([](const auto& found) {
@@ -42,7 +42,7 @@ Result<Vector6> solve(const Arm& arm, const geometry::Pose& base_from_flange, co
 }
 
 /// Of the tool's origin, in the base frame.
-geometry::Pose poseOf(const ToolKinematics& tool, const Target& target) {
+motion::Pose poseOf(const ToolKinematics& tool, const Target& target) {
     if (const auto* q = std::get_if<Vector6>(&target)) {
         return tool.arm.forward(toJointVector(*q)) * tool.flange_from_tool;
     }
@@ -92,7 +92,7 @@ public:
     Result<void> operator()(const urscript::MoveP& move) { return line(move, pathOf(move)); }
     Result<void> operator()(const urscript::MoveC& move) { return line(move, pathOf(move)); }
     Result<void> operator()(const urscript::ServoC& servo) {
-        return pose(servo.target).map([&](const geometry::Pose& target) {
+        return pose(servo.target).map([&](const motion::Pose& target) {
             arm_.servoLine(
                 target, {positive(servo.velocity, 0.25), positive(servo.acceleration, 1.2), 0.0});
         });
@@ -145,7 +145,7 @@ private:
         return {};
     }
     Result<void> line(const urscript::Move& move, const PathSpeed& speed) {
-        return pose(move.target).map([&](const geometry::Pose& target) {
+        return pose(move.target).map([&](const motion::Pose& target) {
             arm_.beginStanding(
                 [target, speed, tool = arm_.tool()](const Vector6& start) {
                     return moveL(start, target, speed, tool);
@@ -154,7 +154,7 @@ private:
         });
     }
     /// Of the tool; a target that no axes reach is refused before the arm moves.
-    Result<geometry::Pose> pose(const Target& target) const {
+    Result<motion::Pose> pose(const Target& target) const {
         return jointTarget(target).map([&](const Vector6&) { return poseOf(arm_.tool(), target); });
     }
     Result<Vector6> jointTarget(const Target& target) const {

@@ -138,7 +138,7 @@ int ScriptRobot::toolContact(const Vector6& direction) const {
     return touched ? static_cast<int>(parts_.state.cycle - contact_since_ + 1) : 0;
 }
 
-void ScriptRobot::setTool(const geometry::Pose& flange_from_tool) {
+void ScriptRobot::setTool(const motion::Pose& flange_from_tool) {
     parts_.arm.setTool(flange_from_tool);
     parts_.state.tcp_offset = toVector(flange_from_tool);
 }

@@ -82,7 +82,7 @@ private:
         double silent = 0.0;  // [s]
         std::string action;
     };
-    void setTool(const geometry::Pose& flange_from_tool);
+    void setTool(const motion::Pose& flange_from_tool);
     const Registers& bank(urscript::RegisterBank which) const;
 
     Parts parts_;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/rotation.hpp"
 #include "robot_fixture.hpp"
 
 namespace metier::virtual_ur {
@@ -221,8 +221,8 @@ TEST(Motions, ALineServoArrivesWithinItsSpeedsAndRests) {
         EXPECT_LE((after - velocity).norm() / kStep, 1.0 + 1e-3);
         velocity = after;
     } while (drive.now.velocity != Vector6{} && ++cycles < 1000);
-    EXPECT_LT(geometry::distanceBetween(poseOf(drive.now.position), target), 1e-8);
-    EXPECT_LT(geometry::rotationAngleBetween(poseOf(drive.now.position).rotation, target.rotation),
+    EXPECT_LT(motion::distanceBetween(poseOf(drive.now.position), target), 1e-8);
+    EXPECT_LT(motion::rotationAngleBetween(poseOf(drive.now.position).rotation, target.rotation),
               1e-7);
     // 0.119 m, the turn counted as 0.04 m across it.
     EXPECT_NEAR(cycles * kStep, 0.1188 / 0.2 + 0.2 / 1.0, 0.03);
@@ -242,7 +242,7 @@ TEST(Motions, ALineServoTakesOverFromAMovingArmWithoutAJump) {
     } while (drive.now.velocity != Vector6{} && drive.cycles < 1000);
     EXPECT_LT(drive.cycles, 1000U);
     EXPECT_LT(drive.hardest, 10.0);
-    EXPECT_LT(geometry::distanceBetween(
+    EXPECT_LT(motion::distanceBetween(
                   model.kinematics().forward(toJointVector(drive.now.position)), target),
               1e-8);
 }

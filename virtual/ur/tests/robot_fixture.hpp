@@ -28,12 +28,12 @@ public:
 /// A virtual robot without ports; time is moved by hand.
 class RobotOnTable {
 public:
-    using Values = std::map<std::string, configuration::Settings::Value>;
+    using Values = std::map<std::string, cell::Settings::Value>;
 
     explicit RobotOnTable(const std::string& model_name = "ur5", Values settings = {})
         : model(modelOf(model_name)),
           robot(
-              readOptions(configuration::Settings("test", std::move(settings)), model).value(),
+              readOptions(cell::Settings("test", std::move(settings)), model).value(),
               {context, faults, world, [this](const Bytes& message) { told.push_back(message); }}) {
     }
 

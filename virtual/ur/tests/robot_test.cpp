@@ -424,7 +424,7 @@ TEST(Robot, ModelsOfAnotherKindAndWrongSettingsAreRefused) {
     EXPECT_FALSE(readOptions({}, iiwa));
     const auto ur5 = modelOf("ur5");
     const auto options =
-        readOptions(configuration::Settings("cell.toml:3: x",
+        readOptions(cell::Settings("cell.toml:3: x",
                                             {{"series", std::string("f")},
                                              {"unlock_delai", 1.0},
                                              {"start", std::vector{9.0, 0.0, 0.0, 0.0, 0.0, 0.0}}}),

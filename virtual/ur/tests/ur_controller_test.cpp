@@ -38,7 +38,7 @@ SteadyTime in(std::chrono::milliseconds time) {
 class Cell {
 public:
     explicit Cell(const std::string& model_name = "ur5",
-                  std::map<std::string, configuration::Settings::Value> settings = {})
+                  std::map<std::string, cell::Settings::Value> settings = {})
         : model_(modelOf(model_name)) {
         for (const auto* port :
              {"dashboard_port", "primary_port", "secondary_port", "realtime_port", "rtde_port",
@@ -47,7 +47,7 @@ public:
         }
         controller_ = virtual_controller::urController()
                           .start({context_, "arm", "127.0.0.1",
-                                  configuration::Settings("test", std::move(settings)), &model_,
+                                  cell::Settings("test", std::move(settings)), &model_,
                                   faults, world_})
                           .value();
         thread_ = std::jthread([this](const std::stop_token& stop) {

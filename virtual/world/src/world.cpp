@@ -19,7 +19,7 @@ double halfExtent(const Eigen::Vector3d& size, const Eigen::Vector3d& direction)
 }
 
 /// How wide a part is between jaws that close along their x axis [m].
-double widthBetween(const geometry::Pose& world_from_jaws, const Part& part) {
+double widthBetween(const motion::Pose& world_from_jaws, const Part& part) {
     const Eigen::Vector3d closing = world_from_jaws.rotation * Eigen::Vector3d::UnitX();
     return 2.0 * halfExtent(part.size, part.world_from_part.rotation.conjugate() * closing);
 }
@@ -48,7 +48,7 @@ WorldEffect World::report(const std::string& controller, const WorldReport& repo
     return effect;
 }
 
-void World::moveArm(const std::string& controller, const geometry::Pose& base_from_flange,
+void World::moveArm(const std::string& controller, const motion::Pose& base_from_flange,
                     SteadyTime now) {
     const auto& mount = mountOf(controller);
     const auto world_from_flange = mount.world_from_base * base_from_flange;
@@ -98,7 +98,7 @@ std::optional<double> World::grip(const std::string& controller, const WorldRepo
     return std::nullopt;
 }
 
-bool World::isBetween(const geometry::Pose& world_from_jaws, double jaw_width,
+bool World::isBetween(const motion::Pose& world_from_jaws, double jaw_width,
                       const Part& part) const {
     const Eigen::Vector3d centre = world_from_jaws.inverse() * part.world_from_part.translation;
     const double room = 0.5 * std::max(0.0, jaw_width - widthBetween(world_from_jaws, part)) +
@@ -117,7 +117,7 @@ void World::release(Part& part) const {
     }
 }
 
-geometry::Wrench World::wrenchOn(const std::string& arm) const {
+motion::Wrench World::wrenchOn(const std::string& arm) const {
     const auto found = arms_.find(arm);
     if (found == arms_.end()) {
         return {};
@@ -131,7 +131,7 @@ geometry::Wrench World::wrenchOn(const std::string& arm) const {
             force += std::max(0.0, wall.stiffness * depth + wall.damping * approach) * wall.normal;
         }
     }
-    geometry::Wrench wrench;
+    motion::Wrench wrench;
     const auto flange_from_world = world_from_flange.rotation.conjugate();
     wrench.force = flange_from_world * force;
     wrench.torque = mountOf(arm).contact_point.cross(wrench.force);
@@ -175,7 +175,7 @@ Result<void> World::remove(const std::string& part) {
     return {};
 }
 
-std::optional<geometry::Pose> World::flangeOf(const std::string& controller) const {
+std::optional<motion::Pose> World::flangeOf(const std::string& controller) const {
     const auto found = arms_.find(controller);
     if (found == arms_.end()) {
         return std::nullopt;

@@ -8,7 +8,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/virtual_controller/world_link.hpp"
 
 namespace metier::virtual_world {
@@ -19,10 +19,10 @@ using virtual_controller::WorldReport;
 /// A box that can be gripped along its x axis.
 struct Part {
     Eigen::Vector3d size;             ///< [m]
-    geometry::Pose world_from_part;   ///< of its centre
+    motion::Pose world_from_part;   ///< of its centre
     double mass = 0.0;                ///< [kg]
     std::string held_by{};            ///< the gripper's controller; empty: nobody
-    geometry::Pose jaws_from_part{};  ///< while it is held
+    motion::Pose jaws_from_part{};  ///< while it is held
 };
 
 /// A plane that pushes back like a spring with a damper.
@@ -35,9 +35,9 @@ struct Wall {
 
 /// Where a controller's device stands or hangs.
 struct Mount {
-    geometry::Pose world_from_base{};  ///< of an arm
+    motion::Pose world_from_base{};  ///< of an arm
     std::string on{};  ///< of a gripper or sensor: the arm's controller; empty: an arm
-    geometry::Pose flange_from_jaws{};  ///< of a gripper: between the jaws, x from jaw to jaw
+    motion::Pose flange_from_jaws{};  ///< of a gripper: between the jaws, x from jaw to jaw
     /// What of an arm touches walls first: in the flange frame [m].
     Eigen::Vector3d contact_point = Eigen::Vector3d::Zero();
 };
@@ -70,22 +70,22 @@ public:
 
     const std::map<std::string, Part>& parts() const noexcept { return options_.parts; }
     /// Nothing before an arm's first report.
-    std::optional<geometry::Pose> flangeOf(const std::string& controller) const;
+    std::optional<motion::Pose> flangeOf(const std::string& controller) const;
 
 private:
     struct Arm {
-        geometry::Pose world_from_flange;
+        motion::Pose world_from_flange;
         Eigen::Vector3d contact;                                     ///< in the world [m]
         Eigen::Vector3d contact_velocity = Eigen::Vector3d::Zero();  ///< [m/s]
         SteadyTime stamp{};
     };
     const Mount& mountOf(const std::string& controller) const;
-    void moveArm(const std::string& controller, const geometry::Pose& base_from_flange,
+    void moveArm(const std::string& controller, const motion::Pose& base_from_flange,
                  SteadyTime now);
     std::optional<double> grip(const std::string& controller, const WorldReport& report);
-    bool isBetween(const geometry::Pose& world_from_jaws, double jaw_width, const Part& part) const;
+    bool isBetween(const motion::Pose& world_from_jaws, double jaw_width, const Part& part) const;
     void release(Part& part) const;
-    geometry::Wrench wrenchOn(const std::string& arm) const;
+    motion::Wrench wrenchOn(const std::string& arm) const;
 
     WorldOptions options_;
     std::map<std::string, Arm> arms_;

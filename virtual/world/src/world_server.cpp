@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/virtual_controller/controller.hpp"
 #include "metier/virtual_controller/peer_lines.hpp"
 #include "metier/virtual_controller/remote_world.hpp"
@@ -66,7 +66,7 @@ public:
     nlohmann::ordered_json state() const override {
         auto parts = nlohmann::ordered_json::object();
         for (const auto& [name, part] : world_.parts()) {
-            const auto frame = geometry::toFrame(part.world_from_part);
+            const auto frame = motion::toFrame(part.world_from_part);
             parts[name] = {{"pose", {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c}},
                            {"size", {part.size.x(), part.size.y(), part.size.z()}},
                            {"held_by", part.held_by}};

@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <utility>
 
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::virtual_world {
 namespace {
 
-using configuration::Settings;
+using cell::Settings;
 
 Eigen::Vector3d vectorAt(const std::vector<double>& values, std::size_t first) {
     return {values[first], values[first + 1], values[first + 2]};
 }
 
-geometry::Pose poseIn(const std::vector<double>& v) {
-    return geometry::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
+motion::Pose poseIn(const std::vector<double>& v) {
+    return motion::toPose({v[0], v[1], v[2], v[3], v[4], v[5]});
 }
 
 /// x, y, z of the centre, length along x, y, z [m], mass [kg].

@@ -37,7 +37,7 @@ TEST(WorldServer, AnswersAReportWithItsEffect) {
     const auto deadline = std::chrono::steady_clock::now() + 10s;
     while (!gripper.effect().part_width && std::chrono::steady_clock::now() < deadline) {
         arm.report(
-            {.base_from_flange = geometry::Pose{{0, 0, 0.015}, Eigen::Quaterniond::Identity()}});
+            {.base_from_flange = motion::Pose{{0, 0, 0.015}, Eigen::Quaterniond::Identity()}});
         gripper.report({.jaw_width = 0.05});
         host->context().run_one_for(100ms);
     }

@@ -12,12 +12,12 @@ using namespace std::chrono_literals;
 
 constexpr SteadyTime kStart{};
 
-geometry::Pose at(double x, double y, double z) {
+motion::Pose at(double x, double y, double z) {
     return {{x, y, z}, Eigen::Quaterniond::Identity()};
 }
 
 /// Jaws that point down, 0.1 m below the flange; the flange looks down.
-geometry::Pose flangeOver(double x, double y, double z) {
+motion::Pose flangeOver(double x, double y, double z) {
     return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()))};
 }
 
@@ -37,7 +37,7 @@ struct Cell : ::testing::Test {
         return options;
     }
 
-    WorldEffect moveArm(const geometry::Pose& flange, std::chrono::milliseconds time = 0ms) {
+    WorldEffect moveArm(const motion::Pose& flange, std::chrono::milliseconds time = 0ms) {
         return world.report("arm", {.base_from_flange = flange}, kStart + time);
     }
     WorldEffect jaws(double width, bool gripping) {

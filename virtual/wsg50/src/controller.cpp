@@ -24,7 +24,7 @@ constexpr double kMillimetre = 1e-3;
 constexpr std::array<std::string_view, 8> kGraspingStates{
     "idle", "grasping", "no part", "part lost", "holding", "releasing", "positioning", "error"};
 
-Options readOptions(const configuration::Settings& settings) {
+Options readOptions(const cell::Settings& settings) {
     Options options;
     auto& can = options.capability;
     options.port = static_cast<std::uint16_t>(settings.numberOr("port", 1000, 0, 65535));

@@ -2,9 +2,9 @@
 #include <utility>
 
 #include "edo_connection.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver edoDriver();
 
@@ -39,4 +39,4 @@ Driver edoDriver() {
             {"port", 9090}};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

@@ -42,7 +42,7 @@ void readAxes(const motion::RobotModel* model, EdoOptions& options) {
     }
 }
 
-std::optional<Generation> readGeneration(const configuration::Settings& settings) {
+std::optional<Generation> readGeneration(const cell::Settings& settings) {
     const auto text = settings.textOr("generation", "auto");
     if (text == "classic") {
         return classicGeneration();
@@ -56,7 +56,7 @@ std::optional<Generation> readGeneration(const configuration::Settings& settings
     return std::nullopt;
 }
 
-void readGripper(const configuration::Settings& settings, GripperOptions& gripper) {
+void readGripper(const cell::Settings& settings, GripperOptions& gripper) {
     gripper.stroke = settings.numberOr("stroke", gripper.stroke, 0.001, 0.2);
     gripper.speed = settings.numberOr("gripper_speed", gripper.speed, 0.001, 1.0);
     gripper.grasp_shortfall =
@@ -66,7 +66,7 @@ void readGripper(const configuration::Settings& settings, GripperOptions& grippe
     gripper.timeout = seconds(settings.numberOr("gripper_timeout", 10, 0.1, 120));
 }
 
-void readTimes(const configuration::Settings& settings, EdoOptions& options) {
+void readTimes(const cell::Settings& settings, EdoOptions& options) {
     const auto read = [&](std::string_view name, Duration& value, double low, double high) {
         value = seconds(
             settings.numberOr(name, std::chrono::duration<double>(value).count(), low, high));
@@ -79,7 +79,7 @@ void readTimes(const configuration::Settings& settings, EdoOptions& options) {
 
 }  // namespace
 
-Result<EdoOptions> readOptions(const driver::OpenRequest& request) {
+Result<EdoOptions> readOptions(const device::OpenRequest& request) {
     const auto& settings = request.settings;
     EdoOptions options;
     options.name = request.name;

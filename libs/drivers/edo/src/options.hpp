@@ -5,7 +5,7 @@
 #include <string>
 
 #include "metier/base/clock.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 #include "metier/edo_driver/generation.hpp"
 #include "metier/edo_driver/messages.hpp"
 
@@ -59,6 +59,6 @@ struct EdoOptions {
 
 /// Reads the settings of docs/protocols/edo.md#settings.
 /// Errors: invalid_argument with everything that is wrong.
-Result<EdoOptions> readOptions(const driver::OpenRequest& request);
+Result<EdoOptions> readOptions(const device::OpenRequest& request);
 
 }  // namespace metier::edo_driver

@@ -8,12 +8,12 @@
 
 #include "edo_connection.hpp"
 #include "fake_edo.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 #include "rosbridge_server.hpp"
 
-namespace metier::driver {
+namespace metier::device {
 Driver edoDriver();
-}  // namespace metier::driver
+}  // namespace metier::device
 
 namespace metier::edo_driver {
 namespace {
@@ -92,8 +92,8 @@ private:
     std::future<EndCause> ended_ = end_.get_future();
 };
 
-driver::OpenRequest requestFor(std::uint16_t port) {
-    driver::OpenRequest request;
+device::OpenRequest requestFor(std::uint16_t port) {
+    device::OpenRequest request;
     request.name = "edo";
     request.address = "127.0.0.1";
     request.settings.set("port", static_cast<double>(port));
@@ -104,8 +104,8 @@ driver::OpenRequest requestFor(std::uint16_t port) {
 
 class EdoConnectionTest : public ::testing::TestWithParam<const char*> {
 protected:
-    const driver::OpenDevice& open() {
-        device_ = driver::edoDriver().open(requestFor(robot_.server().port())).value();
+    const device::OpenDevice& open() {
+        device_ = device::edoDriver().open(requestFor(robot_.server().port())).value();
         watch_ = device_.arm->onSafetyChange([this](const device::Safety&) {
             const std::lock_guard lock(mutex_);
             changed_.notify_all();
@@ -130,7 +130,7 @@ protected:
     Robot robot_{GetParam()};
     std::mutex mutex_;
     std::condition_variable changed_;
-    driver::OpenDevice device_;
+    device::OpenDevice device_;
     device::Registration watch_;  // ends before its arm
 };
 INSTANTIATE_TEST_SUITE_P(Edo, EdoConnectionTest, ::testing::Values("edo_2.4.0", "edo_3.2.0"),
@@ -207,7 +207,7 @@ TEST_P(EdoConnectionTest, GivesControlBackWhenItEnds) {
 }
 
 TEST(EdoDriver, IsDisconnectedWhileNobodyAnswers) {
-    const auto device = driver::edoDriver().open(requestFor(1)).value();
+    const auto device = device::edoDriver().open(requestFor(1)).value();
     EXPECT_EQ(device.arm->safety().state, SafetyState::disconnected);
     EXPECT_EQ(device.arm->resetFault().error().code, Errc::connection_lost);
     EXPECT_EQ(device.arm->attach(std::make_shared<Source>(1)).error().code, Errc::device_fault);
@@ -219,7 +219,7 @@ TEST(EdoDriver, IsDisconnectedWhileNobodyAnswers) {
 TEST(EdoDriver, HasNoGripperIfTheSettingsSaySo) {
     auto request = requestFor(1);
     request.settings.set("gripper", false);
-    EXPECT_EQ(driver::edoDriver().open(request)->gripper, nullptr);
+    EXPECT_EQ(device::edoDriver().open(request)->gripper, nullptr);
 }
 
 }  // namespace

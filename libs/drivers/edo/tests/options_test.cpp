@@ -12,8 +12,8 @@ using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-driver::OpenRequest request() {
-    driver::OpenRequest request;
+device::OpenRequest request() {
+    device::OpenRequest request;
     request.name = "edo";
     request.address = "10.42.0.49";
     return request;

@@ -16,7 +16,7 @@ inline constexpr const char* kClassic = "edo_2.4.0";
 inline constexpr const char* kExternal = "edo_3.2.0";
 
 inline EdoOptions benchOptions() {
-    driver::OpenRequest request;
+    device::OpenRequest request;
     request.name = "edo";
     request.address = "127.0.0.1";
     return readOptions(request).value();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "input.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "pilot.hpp"
 
@@ -112,7 +112,7 @@ private:
     void place() {
         motion::JointVector joints(kAxes);
         std::copy_n(state_.position.begin(), kAxes, joints.begin());
-        state_.pose = geometry::toFrame(iiwa7().kinematics().forward(joints));
+        state_.pose = motion::toFrame(iiwa7().kinematics().forward(joints));
     }
 
     void check(const Command& command) const {

@@ -1,4 +1,4 @@
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ std::chrono::nanoseconds milliseconds(double ms) {
 }
 
 /// Notes what is wrong in the settings; finish() tells.
-IiwaOptions read(const driver::OpenRequest& request) {
+IiwaOptions read(const device::OpenRequest& request) {
     const auto& settings = request.settings;
     IiwaOptions options;
     options.name = request.name;
@@ -32,7 +32,7 @@ IiwaOptions read(const driver::OpenRequest& request) {
     return options;
 }
 
-Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+Result<device::OpenDevice> open(const device::OpenRequest& request) {
     const auto options = read(request);
     METIER_TRY(request.settings.finish());
     if (request.model == nullptr) {
@@ -41,7 +41,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
     METIER_ASSIGN(auto arm, IiwaArm::create(options, *request.model));
     // Shared, as OpenDevice asks for.
     const std::shared_ptr<IiwaArm> owner = std::move(arm);
-    driver::OpenDevice device;
+    device::OpenDevice device;
     device.owner = owner;
     device.arm = owner.get();
     device.planner = owner.get();
@@ -53,7 +53,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
 
 }  // namespace metier::iiwa_driver
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver iiwaDriver();
 
@@ -64,4 +64,4 @@ Driver iiwaDriver() {
             {"port", 12225}};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metier/geometry/frame.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/frame.hpp"
+#include "metier/motion/rotation.hpp"
 #include "metier/iiwa_driver/wire.hpp"
 
 namespace metier::iiwa_driver {
@@ -67,7 +67,7 @@ Result<void> checkFlange(const motion::RobotModel& model, const Frame& target) {
             return fail(Errc::invalid_argument, "a target pose that is not finite");
         }
     }
-    const auto miss = model.kinematics().outOfReach(geometry::toPose(target), model.home());
+    const auto miss = model.kinematics().outOfReach(motion::toPose(target), model.home());
     if (miss) {
         return fail(Errc::unreachable, motion::toString(*miss));
     }
@@ -89,9 +89,9 @@ Result<void> checkMotion(const motion::RobotModel& model, const device::PlannedM
         .and_then([&] { return checkForces(motion.until); });
 }
 
-Result<void> checkSameFlange(const geometry::Pose& by_model, const geometry::Pose& by_cabinet) {
-    const double distance = geometry::distanceBetween(by_model, by_cabinet);
-    const double angle = geometry::rotationAngleBetween(by_model.rotation, by_cabinet.rotation);
+Result<void> checkSameFlange(const motion::Pose& by_model, const motion::Pose& by_cabinet) {
+    const double distance = motion::distanceBetween(by_model, by_cabinet);
+    const double angle = motion::rotationAngleBetween(by_model.rotation, by_cabinet.rotation);
     if (distance <= kSamePlace && angle <= kSameRotation) {
         return {};
     }

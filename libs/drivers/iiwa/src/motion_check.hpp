@@ -1,7 +1,7 @@
 #pragma once
 
 #include "metier/device/motion_planner.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::iiwa_driver {
@@ -13,6 +13,6 @@ Result<void> checkMotion(const motion::RobotModel& model, const device::PlannedM
 
 /// Whether the cabinet sees the flange where the model does. Errors: device_fault with both poses'
 /// distance.
-Result<void> checkSameFlange(const geometry::Pose& by_model, const geometry::Pose& by_cabinet);
+Result<void> checkSameFlange(const motion::Pose& by_model, const motion::Pose& by_cabinet);
 
 }  // namespace metier::iiwa_driver

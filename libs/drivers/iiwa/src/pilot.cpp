@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "metier/geometry/frame.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/frame.hpp"
+#include "metier/motion/rotation.hpp"
 #include "motion_check.hpp"
 
 namespace metier::iiwa_driver {
@@ -46,7 +46,7 @@ Pilot::Pilot(device::ArmInfo info, const motion::RobotModel& model, const PilotO
 void Pilot::connected(const CabinetState& first, SteadyTime now) {
     settings_.forget();
     readiness_ = Readiness();
-    flange_from_tool_ = geometry::Pose::identity();
+    flange_from_tool_ = motion::Pose::identity();
     last_answer_ = now;
     state_.cycle = 0;
     state_.missed_cycles = 0;
@@ -90,7 +90,7 @@ void Pilot::takeSettingIn(const Command& sent, const CabinetState& answer) {
 void Pilot::settledIn(const CabinetState& answer) {
     mode_ = Mode::idle;
     const auto flange = model_.kinematics().forward(toVector(answer.position));
-    const auto pose = geometry::toPose(answer.pose);
+    const auto pose = motion::toPose(answer.pose);
     if (options_.tool >= 0) {
         flange_from_tool_ = flange.inverse() * pose;
     } else if (auto same = checkSameFlange(flange, pose); !same) {

@@ -91,7 +91,7 @@ private:
     PlannedRun planned_;
     ServoRun servo_;
     Readiness readiness_;
-    geometry::Pose flange_from_tool_;
+    motion::Pose flange_from_tool_;
     CabinetState answer_;
     device::ArmState state_;
     SteadyTime last_answer_{};

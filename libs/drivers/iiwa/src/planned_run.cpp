@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "metier/geometry/frame.hpp"
-#include "metier/geometry/rotation.hpp"
+#include "metier/motion/frame.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -101,8 +101,8 @@ Command PlannedRun::moveCommand(const Request& request) noexcept {
         target_joints_ = request.motion.target_joints;
         return moveJoints(target_joints_);
     }
-    target_ = geometry::toPose(*request.motion.target_flange) * request.flange_from_tool;
-    return movePose(geometry::toFrame(target_));
+    target_ = motion::toPose(*request.motion.target_flange) * request.flange_from_tool;
+    return movePose(motion::toFrame(target_));
 }
 
 void PlannedRun::requireSettings(const Request& request, const CabinetSettings& settings) noexcept {
@@ -254,13 +254,13 @@ Miss PlannedRun::missOf(const CabinetState& state) const noexcept {
     if (by_joints_) {
         return worstAxis(state.position, target_joints_);
     }
-    const auto pose = geometry::toPose(state.pose);
-    const double distance = geometry::distanceBetween(pose, target_);
+    const auto pose = motion::toPose(state.pose);
+    const double distance = motion::distanceBetween(pose, target_);
     if (distance > kPositionTolerance) {
         return {Miss::Quantity::position, 0, distance, kPositionTolerance};
     }
     return {Miss::Quantity::rotation, 0,
-            geometry::rotationAngleBetween(pose.rotation, target_.rotation), kRotationTolerance};
+            motion::rotationAngleBetween(pose.rotation, target_.rotation), kRotationTolerance};
 }
 
 }  // namespace metier::iiwa_driver

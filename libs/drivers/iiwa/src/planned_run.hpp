@@ -4,7 +4,7 @@
 
 #include "cabinet_settings.hpp"
 #include "metier/device/motion_planner.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/iiwa_driver/wire.hpp"
 
 namespace metier::iiwa_driver {
@@ -53,7 +53,7 @@ class PlannedRun {
 public:
     struct Request {
         const device::PlannedMotion& motion;
-        geometry::Pose flange_from_tool;  ///< what the cabinet adds to the flange in its poses
+        motion::Pose flange_from_tool;  ///< what the cabinet adds to the flange in its poses
         double force_tolerance = 10.0;    ///< of the cabinet's estimate [N]
     };
 
@@ -91,7 +91,7 @@ private:
     CommandList list_;
     bool by_joints_ = true;
     device::JointArray target_joints_;
-    geometry::Pose target_;  ///< of the cabinet's tool
+    motion::Pose target_;  ///< of the cabinet's tool
     device::JointArray start_;
     int error_before_ = 0;
     bool started_ = false;         ///< seen to move

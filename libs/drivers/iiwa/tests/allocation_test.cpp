@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "pilot.hpp"
 #include "scripted_cabinet.hpp"
 
@@ -27,7 +27,7 @@ public:
         motion::JointVector joints(kAxes);
         std::copy_n(state_.position.begin(), kAxes, joints.begin());
         const auto pose = model.kinematics().forward(joints);
-        state_.pose = geometry::toFrame(pose);
+        state_.pose = motion::toFrame(pose);
         return state_;
     }
 

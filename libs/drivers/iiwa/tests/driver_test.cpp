@@ -1,10 +1,10 @@
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 
 #include <gmock/gmock.h>
 
 #include "arm_bench.hpp"
 
-namespace metier::driver {
+namespace metier::device {
 Driver iiwaDriver();
 }
 
@@ -12,14 +12,14 @@ namespace metier::iiwa_driver {
 namespace {
 
 using ::testing::HasSubstr;
-using Values = std::map<std::string, configuration::Settings::Value>;
+using Values = std::map<std::string, cell::Settings::Value>;
 
 class IiwaDriver : public ::testing::Test {
 protected:
-    Result<driver::OpenDevice> open(Values values) {
+    Result<device::OpenDevice> open(Values values) {
         values.try_emplace("port", 0.0);
-        return driver::iiwaDriver().open(
-            {"arm", "127.0.0.1", configuration::Settings("cell.toml: arm", std::move(values)),
+        return device::iiwaDriver().open(
+            {"arm", "127.0.0.1", cell::Settings("cell.toml: arm", std::move(values)),
              &model});
     }
     const motion::RobotModel model = iiwa7();
@@ -49,14 +49,14 @@ TEST_F(IiwaDriver, TellsAllThatIsWrongInItsSettings) {
 }
 
 TEST_F(IiwaDriver, NeedsAModelOfSevenAxesAndAnAddressOfThisComputer) {
-    driver::OpenRequest request{"arm", "127.0.0.1", {}, nullptr};
-    EXPECT_FALSE(driver::iiwaDriver().open(request));
+    device::OpenRequest request{"arm", "127.0.0.1", {}, nullptr};
+    EXPECT_FALSE(device::iiwaDriver().open(request));
     const auto ur5 = motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/ur5.toml").value();
     request.model = &ur5;
-    EXPECT_THAT(driver::iiwaDriver().open(request).error().message, HasSubstr("6 axes"));
+    EXPECT_THAT(device::iiwaDriver().open(request).error().message, HasSubstr("6 axes"));
     request.model = &model;
     request.address = "192.0.2.1";
-    EXPECT_EQ(driver::iiwaDriver().open(request).error().code, Errc::invalid_argument);
+    EXPECT_EQ(device::iiwaDriver().open(request).error().code, Errc::invalid_argument);
 }
 
 TEST_F(IiwaDriver, ThePortCanBeTakenOnlyOnce) {

@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "arm_bench.hpp"
-#include "metier/geometry/frame.hpp"
+#include "metier/motion/frame.hpp"
 #include "planned_run.hpp"
 
 namespace metier::iiwa_driver {
@@ -39,7 +39,7 @@ protected:
         const auto joints = ArmBench::toJoints(first_axis).target_joints;
         PlannedMotion motion;
         motion.path = PlannedMotion::Path::line;
-        motion.target_flange = geometry::toFrame(
+        motion.target_flange = motion::toFrame(
             bench.model.kinematics().forward(motion::JointVector::from(joints.values()).value()));
         return motion;
     }
@@ -315,7 +315,7 @@ TEST(PlannedMovesWithATool, AreSentForTheToolThatTheCabinetKnows) {
     EXPECT_EQ(cabinet.codes().back(), 400);
     const auto joints = ArmBench::toJoints(0.3).target_joints;
     PlannedMotion motion;
-    motion.target_flange = geometry::toFrame(
+    motion.target_flange = motion::toFrame(
         model.kinematics().forward(motion::JointVector::from(joints.values()).value()));
     Outcome outcome;
     ASSERT_TRUE(arm->move(motion, outcome.taker()));

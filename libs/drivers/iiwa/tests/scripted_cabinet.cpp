@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -194,12 +194,12 @@ bool ScriptedCabinet::executeMove(const Numbers& command) {
             }
         }
     } else {
-        const geometry::Pose flange{
+        const motion::Pose flange{
             Eigen::Vector3d(command[1], command[2], command[3]) / 1000.0 - Eigen::Vector3d::Zero(),
             Eigen::AngleAxisd(command[4], Eigen::Vector3d::UnitZ()) *
                 Eigen::AngleAxisd(command[5], Eigen::Vector3d::UnitY()) *
                 Eigen::AngleAxisd(command[6], Eigen::Vector3d::UnitX())};
-        const geometry::Pose tool{{0, 0, behaviour_.tool_length}, {1, 0, 0, 0}};
+        const motion::Pose tool{{0, 0, behaviour_.tool_length}, {1, 0, 0, 0}};
         const auto found =
             model_.kinematics().inverse(flange * tool.inverse(), {position_, {}, {}});
         if (!found) {
@@ -247,7 +247,7 @@ void ScriptedCabinet::advance() {
 }
 
 std::array<double, 6> ScriptedCabinet::pose() const {
-    const geometry::Pose tool{{0, 0, behaviour_.tool_length}, {1, 0, 0, 0}};
+    const motion::Pose tool{{0, 0, behaviour_.tool_length}, {1, 0, 0, 0}};
     const auto at = model_.kinematics().forward(position_) * tool;
     const Eigen::Matrix3d r = at.rotation.toRotationMatrix();
     return {1000 * at.translation.x(),

@@ -14,19 +14,19 @@ std::chrono::milliseconds milliseconds(double seconds) {
     return std::chrono::milliseconds(std::llround(seconds * 1e3));
 }
 
-std::optional<double> numberIfSet(const configuration::Settings& settings, std::string_view name,
+std::optional<double> numberIfSet(const cell::Settings& settings, std::string_view name,
                                   double least, double most) {
     return settings.has(name) ? std::optional(settings.numberOr(name, least, least, most))
                               : std::nullopt;
 }
 
-std::uint16_t portOr(const configuration::Settings& settings, std::string_view name,
+std::uint16_t portOr(const cell::Settings& settings, std::string_view name,
                      std::uint16_t fallback) {
     return static_cast<std::uint16_t>(settings.numberOr(name, fallback, 1, 65535));
 }
 
 /// Counts by setting: both, or none.
-std::optional<Calibration> givenCalibration(const configuration::Settings& settings) {
+std::optional<Calibration> givenCalibration(const cell::Settings& settings) {
     const bool force = settings.has("counts_per_force");
     const bool torque = settings.has("counts_per_torque");
     if (force != torque) {
@@ -40,7 +40,7 @@ std::optional<Calibration> givenCalibration(const configuration::Settings& setti
                            settings.numberOr("counts_per_torque", 1.0, 1e-3, 1e12));
 }
 
-std::string unitText(const configuration::Settings& settings, std::string_view name,
+std::string unitText(const cell::Settings& settings, std::string_view name,
                      Result<double> (*parse)(std::string_view)) {
     auto text = settings.textOr(name, "");
     if (!text.empty()) {
@@ -51,10 +51,10 @@ std::string unitText(const configuration::Settings& settings, std::string_view n
     return text;
 }
 
-Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+Result<device::OpenDevice> open(const device::OpenRequest& request) {
     METIER_ASSIGN(auto options, readOptions(request));
     auto sensor = std::make_shared<NetftSensor>(std::move(options));
-    driver::OpenDevice device;
+    device::OpenDevice device;
     device.force_torque_sensor = sensor.get();
     device.owner = std::move(sensor);
     return device;
@@ -62,7 +62,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
 
 }  // namespace
 
-Result<NetftOptions> readOptions(const driver::OpenRequest& request) {
+Result<NetftOptions> readOptions(const device::OpenRequest& request) {
     const auto& settings = request.settings;
     NetftOptions options;
     options.name = request.name;
@@ -85,7 +85,7 @@ std::chrono::milliseconds silenceAt(double rate) {
 
 }  // namespace metier::netft_driver
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver netftDriver();
 
@@ -95,4 +95,4 @@ Driver netftDriver() {
             .open = netft_driver::open};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

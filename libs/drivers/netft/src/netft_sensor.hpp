@@ -8,7 +8,7 @@
 
 #include "calibration.hpp"
 #include "metier/device/force_torque_sensor.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 
 namespace metier::netft_driver {
 
@@ -35,7 +35,7 @@ std::chrono::milliseconds silenceAt(double rate);
 /// Reads `settings`: port, http_port, rate, silence, counts_per_force and counts_per_torque, or
 /// force_unit and torque_unit.
 /// Errors: invalid_argument for all that is wrong.
-Result<NetftOptions> readOptions(const driver::OpenRequest& request);
+Result<NetftOptions> readOptions(const device::OpenRequest& request);
 
 /// An ATI Net F/T sensor. Connects, and connects again, by itself; each time it reads the
 /// calibration anew, and without one it gives no value.

@@ -2,7 +2,7 @@
 
 #include "netft_sensor.hpp"
 
-namespace metier::driver {
+namespace metier::device {
 Driver netftDriver();
 }
 
@@ -12,10 +12,10 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-driver::OpenRequest request(std::map<std::string, configuration::Settings::Value> values) {
+device::OpenRequest request(std::map<std::string, cell::Settings::Value> values) {
     return {.name = "wrist",
             .address = "127.0.0.1",
-            .settings = configuration::Settings("cell.toml:3: sensor", std::move(values))};
+            .settings = cell::Settings("cell.toml:3: sensor", std::move(values))};
 }
 
 TEST(NetftDriver, NeedsNoSettings) {
@@ -51,7 +51,7 @@ TEST(NetftDriver, TakesCountsInsteadOfTheSensorsPage) {
 }
 
 TEST(NetftDriver, TellsEverySettingThatIsWrong) {
-    const auto device = driver::netftDriver().open(
+    const auto device = device::netftDriver().open(
         request({{"rate", 9000.0}, {"force_unit", std::string("stone")}, {"prt", 1.0}}));
     ASSERT_FALSE(device);
     EXPECT_THAT(device.error().message, HasSubstr("rate: 9000 is not within 1 to 7000"));
@@ -60,7 +60,7 @@ TEST(NetftDriver, TellsEverySettingThatIsWrong) {
 }
 
 TEST(NetftDriver, OpensASensorThatIsNotThereYet) {
-    auto device = driver::netftDriver().open(request({{"http_port", 9.0}}));
+    auto device = device::netftDriver().open(request({{"http_port", 9.0}}));
     ASSERT_TRUE(device);
     ASSERT_NE(device->force_torque_sensor, nullptr);
     EXPECT_EQ(device->force_torque_sensor->sample().health, device::SafetyState::disconnected);

@@ -2,7 +2,7 @@
 // everything that is above a driver.
 #include <utility>
 
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 #include "metier/joint_simulator/joint_simulator.hpp"
 #include "metier/joint_simulator/robot_options.hpp"
 #include "metier/joint_simulator/simulator_drive.hpp"
@@ -18,7 +18,7 @@ struct SimulatedArm {
     joint_simulator::SimulatorDrive drive;
 };
 
-Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+Result<device::OpenDevice> open(const device::OpenRequest& request) {
     METIER_TRY(request.settings.finish());
     if (request.model == nullptr) {
         return fail(Errc::invalid_argument, request.name + ": the simulator is one of arms only");
@@ -27,7 +27,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
     options.name = request.name;
     METIER_ASSIGN(auto arm, joint_simulator::JointSimulator::create(std::move(options)));
     auto owner = std::make_shared<SimulatedArm>(std::move(arm));
-    driver::OpenDevice device;
+    device::OpenDevice device;
     device.arm = owner->arm.get();
     device.owner = std::move(owner);
     return device;
@@ -36,11 +36,11 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
 }  // namespace
 }  // namespace metier::simulator_driver
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver simulatorDriver() {
     return {"simulator", "An arm in the server's own process: no controller, no wire",
             simulator_driver::open};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

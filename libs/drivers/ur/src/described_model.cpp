@@ -6,7 +6,7 @@
 
 namespace metier::ur_driver {
 
-using geometry::Pose;
+using motion::Pose;
 using motion::ChainDescription;
 using motion::RobotModel;
 
@@ -57,7 +57,7 @@ double flangeDistance(const RobotModel& first, const RobotModel& second) {
     for (const double offset : {0.0, 0.7, -1.1}) {
         auto q = first.home();
         q.view().array() += offset;
-        largest = std::max(largest, geometry::distanceBetween(first.kinematics().forward(q),
+        largest = std::max(largest, motion::distanceBetween(first.kinematics().forward(q),
                                                               second.kinematics().forward(q)));
     }
     return largest;

@@ -1,4 +1,4 @@
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -19,7 +19,7 @@ namespace {
 constexpr int kFirstESeries = 5;  // major version
 
 /// What the controller tells of itself; nothing if it is not there yet.
-ControllerDescription describe(const driver::OpenRequest& request, const UrSettings& settings) {
+ControllerDescription describe(const device::OpenRequest& request, const UrSettings& settings) {
     const auto deadline = std::chrono::steady_clock::now() + settings.open_wait;
     auto description = readDescription(request.address, settings.primary_port, deadline);
     if (!description) {
@@ -30,7 +30,7 @@ ControllerDescription describe(const driver::OpenRequest& request, const UrSetti
     return *description;
 }
 
-motion::RobotModel modelOf(const driver::OpenRequest& request,
+motion::RobotModel modelOf(const device::OpenRequest& request,
                            const ControllerDescription& description) {
     auto model = describedModel(*request.model, description);
     if (!model) {
@@ -48,7 +48,7 @@ double frequencyOf(const motion::RobotModel& model, const ControllerDescription&
     return std::round(1.0 / model.cycleTime());
 }
 
-Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+Result<device::OpenDevice> open(const device::OpenRequest& request) {
     METIER_ASSIGN(auto settings, UrSettings::read(request.settings));
     if (request.model == nullptr || request.model->axisCount() != kAxes) {
         return fail(Errc::invalid_argument,
@@ -64,7 +64,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
         description.configuration ? description.configuration->max_velocity : Joints{};
     auto arm = std::make_shared<UrArm>(
         UrArmOptions{request.name, request.address, model, settings, max_velocity});
-    driver::OpenDevice device;
+    device::OpenDevice device;
     device.arm = arm.get();
     device.owner = std::move(arm);
     device.model = std::move(model);
@@ -75,7 +75,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
 
 }  // namespace metier::ur_driver
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver urDriver();
 
@@ -86,4 +86,4 @@ Driver urDriver() {
             {"rtde_port", 30004}};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

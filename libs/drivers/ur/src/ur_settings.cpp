@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int32_t kHighestBase = 42;  // registers 0 to 47, a position needs six
 
-std::int32_t wholeNumber(const configuration::Settings& settings, std::string_view name,
+std::int32_t wholeNumber(const cell::Settings& settings, std::string_view name,
                          std::int32_t fallback, std::int32_t high) {
     const double number = settings.numberOr(name, fallback, 0.0, high);
     if (number != std::floor(number)) {
@@ -18,7 +18,7 @@ std::int32_t wholeNumber(const configuration::Settings& settings, std::string_vi
     return static_cast<std::int32_t>(number);
 }
 
-std::uint16_t port(const configuration::Settings& settings, std::string_view name,
+std::uint16_t port(const cell::Settings& settings, std::string_view name,
                    std::uint16_t fallback) {
     return static_cast<std::uint16_t>(wholeNumber(settings, name, fallback, 65535));
 }
@@ -29,7 +29,7 @@ std::chrono::nanoseconds seconds(double time) {
 
 }  // namespace
 
-Result<UrSettings> UrSettings::read(const configuration::Settings& settings) {
+Result<UrSettings> UrSettings::read(const cell::Settings& settings) {
     UrSettings read;
     read.rtde_port = port(settings, "rtde_port", read.rtde_port);
     read.primary_port = port(settings, "primary_port", read.primary_port);

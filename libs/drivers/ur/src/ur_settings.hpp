@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/settings.hpp"
+#include "metier/cell/settings.hpp"
 
 namespace metier::ur_driver {
 
@@ -32,7 +32,7 @@ struct UrSettings {
 
     /// Asks for every setting and calls finish().
     /// Errors: invalid_argument with everything that is wrong.
-    static Result<UrSettings> read(const configuration::Settings& settings);
+    static Result<UrSettings> read(const cell::Settings& settings);
 };
 
 }  // namespace metier::ur_driver

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "fake_controller.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 #include "moving_source.hpp"
 #include "ur_arm.hpp"
 
-namespace metier::driver {
+namespace metier::device {
 Driver urDriver();
 }
 
@@ -29,7 +29,7 @@ inline motion::RobotModel ur5() {
 /// An arm that the driver opened at a fake controller.
 class ArmTest : public testing::Test {
 protected:
-    using Values = std::map<std::string, configuration::Settings::Value>;
+    using Values = std::map<std::string, cell::Settings::Value>;
 
     /// \param changed settings that differ from the fake's
     void open(const Values& changed = {}) {
@@ -37,8 +37,8 @@ protected:
         for (const auto& [name, value] : changed) {
             values[name] = value;
         }
-        auto opened = driver::urDriver().open(
-            {"ur5", "127.0.0.1", configuration::Settings("test", values), &model_});
+        auto opened = device::urDriver().open(
+            {"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
         ASSERT_TRUE(opened) << opened.error().message;
         device_ = std::move(*opened);
     }
@@ -80,7 +80,7 @@ protected:
 
     FakeController fake_;
     motion::RobotModel model_ = ur5();
-    driver::OpenDevice device_;  // ends before the controller
+    device::OpenDevice device_;  // ends before the controller
 };
 
 }  // namespace metier::ur_driver

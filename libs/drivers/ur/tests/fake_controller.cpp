@@ -120,7 +120,7 @@ FakeController::~FakeController() {
     }
 }
 
-std::map<std::string, configuration::Settings::Value> FakeController::settings() const {
+std::map<std::string, cell::Settings::Value> FakeController::settings() const {
     return {{"rtde_port", static_cast<double>(ports_[0])},
             {"primary_port", static_cast<double>(ports_[1])},
             {"secondary_port", static_cast<double>(ports_[2])},

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "metier/configuration/settings.hpp"
+#include "metier/cell/settings.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "wire_bytes.hpp"
 
@@ -62,7 +62,7 @@ public:
     ~FakeController();
 
     /// The settings of a driver that finds it, with time-outs for a busy machine.
-    std::map<std::string, configuration::Settings::Value> settings() const;
+    std::map<std::string, cell::Settings::Value> settings() const;
 
     void set(const std::function<void(Knobs&)>& change);
     /// Waits until it is so, looked at in every cycle; false if that took 10 s.

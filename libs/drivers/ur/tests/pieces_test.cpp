@@ -11,7 +11,7 @@ namespace metier::ur_driver {
 namespace {
 
 using namespace std::chrono_literals;
-using configuration::Settings;
+using cell::Settings;
 using device::SafetyState;
 using testing::HasSubstr;
 
@@ -134,7 +134,7 @@ TEST(DescribedModel, OfANominalArmIsTheFile) {
     for (const double angle : {-1.0, 0.3, 1.2}) {
         const auto q = motion::JointVector::constant(6, angle);
         EXPECT_LT(
-            geometry::distanceBetween(model->kinematics().forward(q), file.kinematics().forward(q)),
+            motion::distanceBetween(model->kinematics().forward(q), file.kinematics().forward(q)),
             1e-9);
     }
     for (std::size_t axis = 0; axis < 6; ++axis) {

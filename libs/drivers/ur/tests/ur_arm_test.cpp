@@ -135,7 +135,7 @@ TEST_F(ArmTest, UsesTheKinematicsAndLimitsThatTheControllerTells) {
     EXPECT_EQ(device_.model->name(), "ur5");
     EXPECT_FALSE(device_.model->capsules().empty());
     const auto& home = model_.home();
-    EXPECT_GT(geometry::distanceBetween(device_.model->kinematics().forward(home),
+    EXPECT_GT(motion::distanceBetween(device_.model->kinematics().forward(home),
                                         model_.kinematics().forward(home)),
               1e-3);
     EXPECT_NEAR(device_.model->limits(0).velocity, 180.0 / 191.0, 1e-9);
@@ -147,8 +147,8 @@ TEST_F(ArmTest, TakesTheFrequencyFromTheMajorVersion) {
     fake_.set([](auto& k) { k.major = 5; });
     auto values = fake_.settings();
     values.erase("frequency");
-    auto opened = driver::urDriver().open(
-        {"ur5", "127.0.0.1", configuration::Settings("test", values), &model_});
+    auto opened = device::urDriver().open(
+        {"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
     ASSERT_TRUE(opened);
     EXPECT_EQ(opened->arm->info().cycle, std::chrono::milliseconds(2));
 }

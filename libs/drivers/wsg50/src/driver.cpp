@@ -11,16 +11,16 @@ std::chrono::milliseconds milliseconds(double seconds) {
     return std::chrono::milliseconds(std::llround(seconds * 1e3));
 }
 
-std::optional<double> optionalNumber(const configuration::Settings& settings, std::string_view name,
+std::optional<double> optionalNumber(const cell::Settings& settings, std::string_view name,
                                      double low, double high) {
     return settings.has(name) ? std::optional(settings.numberOr(name, low, low, high))
                               : std::nullopt;
 }
 
-Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
+Result<device::OpenDevice> open(const device::OpenRequest& request) {
     METIER_ASSIGN(auto options, readOptions(request));
     auto gripper = std::make_shared<Wsg50Gripper>(std::move(options));
-    driver::OpenDevice device;
+    device::OpenDevice device;
     device.gripper = gripper.get();
     device.owner = std::move(gripper);
     return device;
@@ -28,7 +28,7 @@ Result<driver::OpenDevice> open(const driver::OpenRequest& request) {
 
 }  // namespace
 
-Result<Wsg50Options> readOptions(const driver::OpenRequest& request) {
+Result<Wsg50Options> readOptions(const device::OpenRequest& request) {
     const auto& settings = request.settings;
     Wsg50Options options;
     options.name = request.name;
@@ -53,7 +53,7 @@ Result<Wsg50Options> readOptions(const driver::OpenRequest& request) {
 
 }  // namespace metier::wsg50_driver
 
-namespace metier::driver {
+namespace metier::device {
 
 Driver wsg50Driver();
 
@@ -64,4 +64,4 @@ Driver wsg50Driver() {
             .port = {"port", 1000}};
 }
 
-}  // namespace metier::driver
+}  // namespace metier::device

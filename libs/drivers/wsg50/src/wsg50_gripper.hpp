@@ -8,7 +8,7 @@
 
 #include "conversation.hpp"
 #include "metier/device/gripper.hpp"
-#include "metier/driver/driver.hpp"
+#include "metier/device/driver.hpp"
 
 namespace metier::wsg50_driver {
 
@@ -29,7 +29,7 @@ struct Wsg50Options {
 /// Reads `settings`: port, update_period, silence_periods, speed, grasp_speed, part_width, force,
 /// open_width, acceleration, motion_timeout, acknowledge_on_connect, home_on_connect.
 /// Errors: invalid_argument for all that is wrong.
-Result<Wsg50Options> readOptions(const driver::OpenRequest& request);
+Result<Wsg50Options> readOptions(const device::OpenRequest& request);
 
 /// A Weiss WSG 50 gripper over TCP. Connects, and connects again, by itself.
 ///

@@ -4,7 +4,7 @@
 #include "talk.hpp"
 #include "wsg50_gripper.hpp"
 
-namespace metier::driver {
+namespace metier::device {
 Driver wsg50Driver();
 }
 
@@ -13,10 +13,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-driver::OpenRequest request(std::map<std::string, configuration::Settings::Value> values) {
+device::OpenRequest request(std::map<std::string, cell::Settings::Value> values) {
     return {.name = "tool",
             .address = "127.0.0.1",
-            .settings = configuration::Settings("cell.toml:3: driver", std::move(values))};
+            .settings = cell::Settings("cell.toml:3: driver", std::move(values))};
 }
 
 TEST(Wsg50Driver, NeedsNoSettings) {
@@ -54,7 +54,7 @@ TEST(Wsg50Driver, TakesItsSettings) {
 
 TEST(Wsg50Driver, TellsEverySettingThatIsWrong) {
     const auto device =
-        driver::wsg50Driver().open(request({{"speed", 3.0}, {"sped", 1.0}, {"force", true}}));
+        device::wsg50Driver().open(request({{"speed", 3.0}, {"sped", 1.0}, {"force", true}}));
     ASSERT_FALSE(device);
     EXPECT_EQ(device.error().code, Errc::invalid_argument);
     EXPECT_THAT(device.error().message, HasSubstr("speed: 3 is not within 0.005 to 0.42"));
@@ -63,7 +63,7 @@ TEST(Wsg50Driver, TellsEverySettingThatIsWrong) {
 }
 
 TEST(Wsg50Driver, OpensAGripperThatIsNotThereYet) {
-    auto device = driver::wsg50Driver().open(request({{"port", 9.0}}));
+    auto device = device::wsg50Driver().open(request({{"port", 9.0}}));
     ASSERT_TRUE(device);
     ASSERT_NE(device->gripper, nullptr);
     EXPECT_EQ(device->arm, nullptr);

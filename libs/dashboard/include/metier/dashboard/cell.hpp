@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "metier/base/quantities.hpp"
-#include "metier/configuration/cell.hpp"
+#include "metier/cell/cell.hpp"
 
 namespace metier::dashboard {
 
@@ -42,7 +42,7 @@ struct Cell {
     std::string name;
     std::vector<CellServer> servers;
     std::optional<CellWorld> world{};
-    std::string records{};  ///< as configuration::Records::url
+    std::string records{};  ///< as cell::Records::url
 };
 
 /// Addresses that `metier up --endpoints` wrote, by name, instead of those of the cell file.
@@ -55,6 +55,6 @@ struct Endpoints {
 Result<Endpoints> loadEndpoints(const std::string& file);
 
 /// Threads: any; pure.
-Cell cellFrom(const configuration::CellConfig& config, const Endpoints& endpoints = {});
+Cell cellFrom(const cell::CellConfig& config, const Endpoints& endpoints = {});
 
 }  // namespace metier::dashboard

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/joint_vector.hpp"
 
 namespace metier::motion {
@@ -22,7 +22,7 @@ struct JointLimits {
 struct JointDescription {
     std::string name;
     /// Joint frame in the frame of the joint before (of the base for axis 1), at joint position 0.
-    geometry::Pose parent_from_joint;
+    motion::Pose parent_from_joint;
     /// Turning axis in the joint frame; a unit vector.
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     JointLimits limits;
@@ -41,7 +41,7 @@ struct CartesianLimits {
 /// A named frame on the flange, with what it weighs for the driver.
 struct ToolFrame {
     std::string name;
-    geometry::Pose flange_from_tool;
+    motion::Pose flange_from_tool;
     double mass = 0;                                           ///< [kg]
     Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< in the flange frame [m]
 };
@@ -49,7 +49,7 @@ struct ToolFrame {
 /// A robot as a server publishes it and a client reads it back: enough to plan with.
 struct ChainDescription {
     std::vector<JointDescription> joints;  ///< 1 to kMaxAxes
-    geometry::Pose last_from_flange;       ///< flange in the last joint's frame
+    motion::Pose last_from_flange;       ///< flange in the last joint's frame
     CartesianLimits cartesian_limits;
     JointVector home;              ///< a usable, non-singular working position [rad]
     std::vector<ToolFrame> tools;  ///< besides "flange", which always exists

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "metier/base/error.hpp"
-#include "metier/geometry/twist.hpp"
+#include "metier/motion/twist.hpp"
 #include "metier/motion/trajectory.hpp"
 
 namespace metier::motion {
@@ -44,10 +44,10 @@ public:
     static Result<ForceLimit> create(const WrenchLimits& limits, Seconds cycle);
 
     /// Takes the wrench of this cycle. \return the limit it is beyond, the first one found
-    std::optional<ForceExcess> check(const geometry::Wrench& measured) noexcept;
+    std::optional<ForceExcess> check(const motion::Wrench& measured) noexcept;
 
     /// After the low-pass.
-    const geometry::Wrench& filtered() const noexcept { return filtered_; }
+    const motion::Wrench& filtered() const noexcept { return filtered_; }
     /// Forgets the past, as before the first check().
     void restart() noexcept { started_ = false; }
 
@@ -57,7 +57,7 @@ private:
     WrenchLimits limits_;
     double gain_;
     bool started_ = false;
-    geometry::Wrench filtered_;
+    motion::Wrench filtered_;
 };
 
 }  // namespace metier::motion

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "metier/base/error.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/chain.hpp"
 #include "metier/motion/joint_vector.hpp"
 
@@ -115,13 +115,13 @@ public:
     /// Why no joint position at all has this pose; nothing if it is in reach, or if that can only
     /// be found by trying.
     /// \param reference as for allSolutions()
-    std::optional<ReachMiss> outOfReach(const geometry::Pose& base_from_flange,
+    std::optional<ReachMiss> outOfReach(const motion::Pose& base_from_flange,
                                         const JointVector& reference) const noexcept;
 
     /// base_from_flange. \param q [rad], size axisCount(), finite; limits are not checked
-    geometry::Pose forward(const JointVector& q) const noexcept;
+    motion::Pose forward(const JointVector& q) const noexcept;
     /// base_from_joint for every axis (the joint frames of the chain, turned), then the flange.
-    std::array<geometry::Pose, kMaxAxes + 1> forwardAll(const JointVector& q) const noexcept;
+    std::array<motion::Pose, kMaxAxes + 1> forwardAll(const JointVector& q) const noexcept;
     Jacobian jacobian(const JointVector& q) const noexcept;
     /// Both at the price of one. \param jacobian filled; any content before
     Transform forward(const JointVector& q, Jacobian& jacobian) const noexcept;
@@ -132,28 +132,28 @@ public:
     /// those with the arm angle of `reference`, or with `redundancy_angle`; of a numeric chain the
     /// one found from `reference`.
     /// \param reference gives the free axis where the pose leaves one free
-    JointSolutions allSolutions(const geometry::Pose& base_from_flange,
+    JointSolutions allSolutions(const motion::Pose& base_from_flange,
                                 const JointVector& reference) const noexcept;
-    JointSolutions allSolutions(const geometry::Pose& base_from_flange,
+    JointSolutions allSolutions(const motion::Pose& base_from_flange,
                                 const JointVector& reference,
                                 double redundancy_angle) const noexcept;
 
     /// The solution with these axes that follows `guess` without a jump, whole turns included;
     /// empty if there is none. Limits are not applied.
     /// \param guess an extrapolated position [rad]
-    JointVector solutionNear(const geometry::Pose& base_from_flange, const JointVector& guess,
+    JointVector solutionNear(const motion::Pose& base_from_flange, const JointVector& guess,
                              double redundancy_angle) const noexcept;
 
     /// The solution within limits and bounds nearest to the reference: smallest largest
     /// |difference| / velocity limit over the axes, whole turns included, ties by index.
     /// Errors: unreachable (distance and reach, or the axis, its value and limit),
     ///         invalid_argument (sizes, not finite).
-    Result<JointVector> inverse(const geometry::Pose& base_from_flange,
+    Result<JointVector> inverse(const motion::Pose& base_from_flange,
                                 const IkRequest& request) const;
 
     /// As inverse(), by Levenberg-Marquardt from the reference and then from fixed other seeds: for
     /// chains without a closed form. The solution found first, not the nearest.
-    Result<JointVector> inverseNumerically(const geometry::Pose& base_from_flange,
+    Result<JointVector> inverseNumerically(const motion::Pose& base_from_flange,
                                            const IkRequest& request) const;
 
     /// Angle of the elbow about the line from shoulder to wrist, 0 where the elbow is in the plane
@@ -162,7 +162,7 @@ public:
 
     /// Levenberg-Marquardt from `seed`, at most `max_iterations`; limits are not applied.
     /// The fallback of inverse() and the means to polish a solution on a calibrated chain.
-    std::optional<JointVector> solveNumerically(const geometry::Pose& base_from_flange,
+    std::optional<JointVector> solveNumerically(const motion::Pose& base_from_flange,
                                                 const JointVector& seed,
                                                 int max_iterations) const noexcept;
 
@@ -170,11 +170,11 @@ public:
     bool withinLimits(const JointVector& q) const noexcept;
 
 private:
-    Result<JointVector> search(const geometry::Pose& base_from_flange, const IkRequest& request,
+    Result<JointVector> search(const motion::Pose& base_from_flange, const IkRequest& request,
                                IkKind method) const;
-    JointSolutions closedForm(const geometry::Pose& base_from_flange, const JointVector& reference,
+    JointSolutions closedForm(const motion::Pose& base_from_flange, const JointVector& reference,
                               double redundancy_angle) const noexcept;
-    bool refine(const geometry::Pose& base_from_flange, JointVector& solution) const noexcept;
+    bool refine(const motion::Pose& base_from_flange, JointVector& solution) const noexcept;
     Eigen::Vector3d reachCentre(const JointVector& q) const noexcept;
     bool polish(const Transform& target, JointVector& solution) const noexcept;
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/execution.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/motion/trajectory.hpp"
@@ -26,7 +26,7 @@ enum class TargetReference {
 /// A motion straight in joint space.
 struct PtpRequest {
     JointVector start;  ///< at rest there [rad]
-    std::variant<JointVector, geometry::Pose>
+    std::variant<JointVector, motion::Pose>
         target;  ///< joint position, or pose of the tool frame
     TargetReference reference = TargetReference::base;  ///< of a pose
     std::string tool_frame;                             ///< "": the flange
@@ -44,7 +44,7 @@ using CartesianVector = std::array<double, 6>;
 /// A motion whose tool frame runs along a straight line and turns the short way meanwhile.
 struct LinRequest {
     JointVector start;      ///< at rest there [rad]
-    geometry::Pose target;  ///< of the tool frame
+    motion::Pose target;  ///< of the tool frame
     TargetReference reference = TargetReference::base;
     std::string tool_frame;
     /// > 0 [m/s], [rad/s] and [m/s2], [rad/s2]; a 0: the robot's own, which also caps. Three equal
@@ -64,7 +64,7 @@ struct JointLinearRequest {
 
 /// A place on a path of several lines.
 struct PathWaypoint {
-    geometry::Pose target;  ///< of the tool frame
+    motion::Pose target;  ///< of the tool frame
     /// The corner here may be cut by this much, 1e-9 m or more, at most half of the shorter line
     /// beside it, where a turn counts for 0.25 m/rad; not used for the last one.
     double blend_radius = 0;

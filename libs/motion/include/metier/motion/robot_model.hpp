@@ -11,7 +11,7 @@
 #include "metier/motion/chain.hpp"
 #include "metier/motion/kinematics.hpp"
 
-namespace metier::configuration {
+namespace metier::cell {
 class TomlFile;
 }
 
@@ -77,7 +77,7 @@ public:
 
 private:
     explicit RobotModel(ChainDescription chain);
-    static Result<RobotModel> read(const configuration::TomlFile& toml,
+    static Result<RobotModel> read(const cell::TomlFile& toml,
                                    const std::string& file_name);
 
     std::string name_;

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/joint_vector.hpp"
 #include "metier/motion/profile.hpp"
 
@@ -60,12 +60,12 @@ public:
     /// Planned joint position at a path parameter in [0, 1].
     JointVector positionAt(double fraction) const noexcept;
     /// Planned base_from_tool at a path parameter in [0, 1].
-    geometry::Pose poseAt(double fraction) const noexcept;
-    geometry::Pose endPose() const noexcept { return poseAt(1.0); }
+    motion::Pose poseAt(double fraction) const noexcept;
+    motion::Pose endPose() const noexcept { return poseAt(1.0); }
     /// base_from_tool of any joint position, with this motion's tool frame.
-    geometry::Pose toolPose(const JointVector& q) const noexcept;
+    motion::Pose toolPose(const JointVector& q) const noexcept;
     /// How far a pose (a measured one) is from the path. Not for the cycle thread on PTP paths.
-    PathDeviation deviation(const geometry::Pose& base_from_tool) const noexcept;
+    PathDeviation deviation(const motion::Pose& base_from_tool) const noexcept;
 
     /// Speed of the clock that runs from 0 to clockEnd(), 1 unless the motion was stretched [1].
     double clockSpeed() const noexcept;

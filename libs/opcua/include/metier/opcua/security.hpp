@@ -6,19 +6,19 @@
 
 #include "metier/base/error.hpp"
 #include "metier/opcua/session.hpp"
-#include "metier/trust/identity.hpp"
-#include "metier/trust/trust_store.hpp"
-#include "metier/trust/users.hpp"
+#include "metier/security/identity.hpp"
+#include "metier/security/trust_store.hpp"
+#include "metier/security/users.hpp"
 
 namespace metier::opcua {
 
 /// Who an application is, and whom it trusts.
 struct Credentials {
     /// Its certificate names the ApplicationUri.
-    trust::Identity identity;
-    /// Of a trust::TrustStore, which is read again after changes.
+    security::Identity identity;
+    /// Of a security::TrustStore, which is read again after changes.
     std::filesystem::path trust_folder;
-    /// Where the identity is kept, see trust::loadIdentity(): each new connection of a client takes
+    /// Where the identity is kept, see security::loadIdentity(): each new connection of a client takes
     /// the present one. Empty: `identity` for ever.
     std::filesystem::path identity_folder{};
 };
@@ -34,7 +34,7 @@ struct Login {
 /// As whom somebody was let in.
 struct Admission {
     std::string user;
-    trust::Role role = trust::Role::observer;
+    security::Role role = security::Role::observer;
 };
 
 /// Something that a session wanted to do and may not in its role.
@@ -47,7 +47,7 @@ struct Denial {
 /// A peer whose certificate was refused. All text came from the peer, printable.
 struct RefusedPeer {
     std::string der;
-    trust::CertificateRefusal refusal;
+    security::CertificateRefusal refusal;
 };
 
 /// What makes a server closed: it serves over Basic256Sha256, Aes128_Sha256_RsaOaep and

@@ -200,7 +200,7 @@ public:
     /// Server's thread.
     /// Errors: invalid_argument (another ApplicationUri, a key that does not fit), invalid_state
     ///         (a server without security).
-    Result<> renewIdentity(const trust::Identity& identity);
+    Result<> renewIdentity(const security::Identity& identity);
 
     /// When the server's thread was last seen working; it is at least every 100 ms. Any thread.
     SteadyTime lastTick() const noexcept;

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "metier/opcua/node_id.hpp"
-#include "metier/trust/users.hpp"
+#include "metier/security/users.hpp"
 
 namespace metier::opcua {
 
@@ -17,17 +17,17 @@ struct Session {
     std::string user;          ///< empty: anonymous
     std::string thumbprint{};  ///< of the trusted certificate of its application; empty: none
     /// What it may do; in a lab everybody is an engineer.
-    trust::Role role = trust::Role::observer;
+    security::Role role = security::Role::observer;
 };
 
 /// Whether a role may change anything: write Variables and call Methods that do more than tell.
-constexpr bool mayCommand(trust::Role role) noexcept {
-    return role == trust::Role::operator_ || role == trust::Role::engineer;
+constexpr bool mayCommand(security::Role role) noexcept {
+    return role == security::Role::operator_ || role == security::Role::engineer;
 }
 
 /// Whether a role may read what others did: the content of audit events.
-constexpr bool mayAudit(trust::Role role) noexcept {
-    return role == trust::Role::engineer || role == trust::Role::security_admin;
+constexpr bool mayAudit(security::Role role) noexcept {
+    return role == security::Role::engineer || role == security::Role::security_admin;
 }
 
 }  // namespace metier::opcua

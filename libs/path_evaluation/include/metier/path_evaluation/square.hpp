@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "metier/geometry/pose.hpp"
+#include "metier/motion/pose.hpp"
 
 namespace metier::path_evaluation {
 
@@ -14,7 +14,7 @@ inline constexpr std::size_t kCorners = 4;
 /// A square that stands upright in the robot's base frame; the tool keeps its orientation on it.
 struct Square {
     /// First corner, lower left as the robot's base sees it: base_from_tool.
-    geometry::Pose start;
+    motion::Pose start;
     /// Unit vectors of the lower and of the left side, in the base frame. `up` is the base's z
     /// axis.
     Eigen::Vector3d right = Eigen::Vector3d::UnitY();
@@ -23,8 +23,8 @@ struct Square {
     double side = 0.1;
 
     /// Pose at a corner: 0 start, 1 right, 2 upper right, 3 upper left; 4 is 0 again.
-    geometry::Pose corner(std::size_t index) const;
-    std::array<geometry::Pose, kCorners> corners() const;
+    motion::Pose corner(std::size_t index) const;
+    std::array<motion::Pose, kCorners> corners() const;
 };
 
 /// Distance of a point from a straight line between two points [m].

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/configuration/settings.hpp"
+#include "metier/cell/settings.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/virtual_controller/link_faults.hpp"
 #include "metier/virtual_controller/world_link.hpp"
@@ -50,7 +50,7 @@ struct ControllerRequest {
     asio::io_context& context;
     std::string name;
     std::string address;                        ///< to listen on, as 127.0.1.1
-    configuration::Settings settings;           ///< the controller's own; it calls finish()
+    cell::Settings settings;           ///< the controller's own; it calls finish()
     const motion::RobotModel* model = nullptr;  ///< of the arm; nullptr for other devices
     LinkFaults& faults;                         ///< outlives the controller
     WorldLink& world;                           ///< outlives the controller

@@ -19,7 +19,7 @@ struct HostOptions {
     std::string name;
     std::string type;     ///< of controllerTypes()
     std::string address;  ///< for every port, as 127.0.1.1
-    configuration::Settings settings;
+    cell::Settings settings;
     const motion::RobotModel* model = nullptr;
     std::string world_address;          ///< empty: no world
     std::uint16_t control_port = 7400;  ///< 0: a free one

@@ -2,22 +2,22 @@
 
 #include <optional>
 
-#include "metier/geometry/pose.hpp"
-#include "metier/geometry/twist.hpp"
+#include "metier/motion/pose.hpp"
+#include "metier/motion/twist.hpp"
 
 namespace metier::virtual_controller {
 
 /// What the world does to one controller's device.
 struct WorldEffect {
     /// On the flange, in the flange frame: contact with a wall, the weight of a held part.
-    geometry::Wrench wrench{};
+    motion::Wrench wrench{};
     /// Width of the part between the jaws, if there is one [m].
     std::optional<double> part_width{};
 };
 
 /// What one controller's device shows the world. What it does not have stays empty.
 struct WorldReport {
-    std::optional<geometry::Pose> base_from_flange{};
+    std::optional<motion::Pose> base_from_flange{};
     std::optional<double> jaw_width{};  ///< [m]
     /// The jaws press on a part. It is held from then on until they are wider than it.
     bool gripping = false;

@@ -36,7 +36,7 @@ private:
 
 /// What a test starts a controller with.
 struct Start {
-    std::map<std::string, configuration::Settings::Value> settings;
+    std::map<std::string, cell::Settings::Value> settings;
     const motion::RobotModel* model = nullptr;
     std::string address = "127.0.0.1";
 };
@@ -46,7 +46,7 @@ class RunningController {
 public:
     RunningController(const ControllerType& type, const Start& start) {
         auto controller = type.start({context_, "test", start.address,
-                                      configuration::Settings("test", start.settings), start.model,
+                                      cell::Settings("test", start.settings), start.model,
                                       faults, world_});
         if (!controller) {
             throw std::runtime_error(controller.error().message);

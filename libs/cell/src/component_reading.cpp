@@ -1,0 +1,78 @@
+#include "component_reading.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "cell_reading.hpp"
+
+namespace metier::cell {
+namespace {
+
+// Arms are told of a start that is nearer too late, of a later one with more doubt [s].
+constexpr double kShortestStartDelay = 0.05;
+constexpr double kLongestStartDelay = 30.0;
+// A shorter absence is that of a server that is started again [s].
+constexpr double kShortestAbsence = 0.5;
+constexpr double kLongestAbsence = 3'600.0;
+
+std::vector<UsedServer> readUsedServers(const TomlTable& table) {
+    std::vector<UsedServer> servers;
+    for (const auto& server : table.texts("servers")) {
+        servers.push_back({server, isAddress(server) ? server : ""});
+    }
+    return servers;
+}
+
+double readRebindAfter(const TomlTable& table, double preset) {
+    return secondsWithin(table, "rebind_after", preset, {kShortestAbsence, kLongestAbsence});
+}
+
+}  // namespace
+
+MoveComponent readMove(const TomlTable& table) {
+    MoveComponent move;
+    move.robot = table.text("robot");
+    if (move.robot != kDiscover) {
+        return move;
+    }
+    move.robot.clear();
+    move.discover = true;
+    move.reach = table.amount("reach", "m");
+    move.payload = table.amount("payload", "kg");
+    move.rebind_after = readRebindAfter(table, move.rebind_after);
+    return move;
+}
+
+CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder) {
+    CompositionServer composition;
+    composition.files = readFiles(table, "compositions", folder);
+    for (const auto& server : textOrTexts(table, "servers")) {
+        if (server == kDiscover) {
+            composition.discover = true;
+        } else {
+            composition.servers.push_back({server, isAddress(server) ? server : ""});
+        }
+    }
+    composition.rebind_after = readRebindAfter(table, composition.rebind_after);
+    return composition;
+}
+
+SynchronizedServer readSynchronized(const TomlTable& table) {
+    SynchronizedServer synchronized;
+    synchronized.servers = readUsedServers(table);
+    synchronized.start_delay = secondsWithin(table, "start_delay", synchronized.start_delay,
+                                             {kShortestStartDelay, kLongestStartDelay});
+    std::set<std::string> names;
+    for (const auto& server : synchronized.servers) {
+        if (!names.insert(server.name).second) {
+            table.reject("servers", fmt::format("\"{}\" is there twice", server.name));
+        }
+    }
+    if (names.size() < 2) {
+        table.reject("servers", "needs at least two arms");
+    }
+    return synchronized;
+}
+
+}  // namespace metier::cell

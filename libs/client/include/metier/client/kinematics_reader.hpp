@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "metier/opcua/client.hpp"
+#include "metier/opcua_skill/kinematics_data.hpp"
+#include "metier/client/skill_finder.hpp"
+
+namespace metier::client {
+
+/// The Kinematics object of the arm that a skill moves.
+struct KinematicsNodes {
+    std::string device_name;  ///< BrowseName of the motion device
+    opcua::NodeId device;
+    opcua::NodeId object;
+    opcua::NodeId actual_joint_position;
+    opcua::NodeId safety_state;
+    opcua::NodeId missed_cycles;
+    opcua::NodeId commanded_joint_position;  ///< null if the server does not tell, as the next
+    opcua::NodeId standstill;
+    opcua::NodeId cycle_jitter;
+    opcua::NodeId flange_force;
+    opcua::NodeId flange_torque;
+};
+
+/// Finds it: the motion device of the system that the skill's controller belongs to.
+/// Errors: not_found, for a skill that moves no published arm.
+opcua::Answer<KinematicsNodes> findKinematics(opcua::Client& client, const SkillAddress& skill);
+
+/// Reads the chain, the limits, and the payload where the server tells it.
+/// Errors: not_found, type_mismatch, with the name of what is missing or wrong;
+///         invalid_argument if lists have different lengths.
+opcua::Answer<opcua_skill::KinematicsData> readKinematics(opcua::Client& client,
+                                                          const KinematicsNodes& nodes);
+
+/// Measured joint positions now [rad].
+opcua::Answer<std::vector<double>> readJointPosition(opcua::Client& client,
+                                                     const KinematicsNodes& nodes);
+/// Control cycles without a set-point in time, since the arm's server started.
+opcua::Answer<std::uint64_t> readMissedCycles(opcua::Client& client, const KinematicsNodes& nodes);
+
+/// Hears of the measured joint positions [rad], at most every `interval`. The callback runs on
+/// the client's thread.
+opcua::Answer<opcua::Subscription> subscribeJointPosition(
+    opcua::Client& client, const KinematicsNodes& nodes, std::chrono::milliseconds interval,
+    std::function<void(const std::vector<double>&)> callback);
+
+}  // namespace metier::client

@@ -1,0 +1,97 @@
+#include "method_values.hpp"
+
+#include <algorithm>
+
+#include "metier/opcua/text.hpp"
+#include "metier/opcua/types.hpp"
+#include "metier/opcua_skill/start_keys.hpp"
+#include "metier/opcua_skill/values.hpp"
+
+namespace metier::client {
+namespace {
+
+constexpr std::size_t kCheckOutputs = 5;  // of every server; the stopping way may follow
+constexpr std::size_t kWithStoppingWay = 7;
+constexpr std::size_t kExecutionOutputs = 6;
+
+skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& results) {
+    skill::ValueMap values;
+    for (const auto& [key, value] :
+         pairs.as<std::vector<opcua::KeyValue>>().value_or(std::vector<opcua::KeyValue>{})) {
+        const auto field =
+            std::find_if(results.begin(), results.end(),
+                         [&name = key.name](const auto& result) { return result.name == name; });
+        if (field != results.end()) {
+            values[key.name] = opcua_skill::fromOpcua(value, field->type).value_or(skill::Value{});
+        }
+    }
+    return values;
+}
+
+std::vector<opcua::KeyValue> listOf(const skill::ValueMap& values) {
+    std::vector<opcua::KeyValue> pairs;
+    for (const auto& [name, value] : values) {
+        pairs.push_back({{0, name}, opcua_skill::toOpcua(value)});
+    }
+    return pairs;
+}
+
+}  // namespace
+
+opcua::Value pairsOf(const skill::ValueMap& values) {
+    return opcua::Value::of(listOf(values));
+}
+
+std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,
+                                          const SkillNodes& nodes) {
+    auto parameters = listOf(request.parameters);
+    if (!nodes.records.isNull() && !request.parent.id.empty()) {
+        parameters.push_back(
+            {{0, std::string(opcua_skill::kParentExecution)}, opcua::Value::of(request.parent.id)});
+        parameters.push_back({{0, std::string(opcua_skill::kParentServer)},
+                              opcua::Value::of(request.parent.server)});
+    }
+    return {opcua::Value::of(request.execution_id), opcua::Value::of(parameters),
+            opcua::Value::of(static_cast<std::int32_t>(request.on_owner_loss)),
+            opcua::Value::of(request.epoch),
+            opcua::Value::of(request.deadline.value_or(UtcTime{}))};
+}
+
+opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value>& outputs,
+                                                  std::string_view skill) {
+    if (outputs.size() < kCheckOutputs) {
+        return opcua::failed(opcua::status::kBadUnexpectedError, std::string(skill) + " Check");
+    }
+    skill::CheckReport report;
+    report.possible = outputs[0].as<bool>().value_or(false);
+    report.reason = opcua::sanitise(outputs[1].as<std::string>().value_or(""));
+    report.first_failing_fraction = outputs[2].as<double>().value_or(0.0);
+    report.planned_duration = outputs[3].as<double>().value_or(0.0);
+    report.joint_path = outputs[4].asRows().value_or(std::vector<std::vector<double>>{});
+    if (outputs.size() >= kWithStoppingWay) {
+        report.stopping_time = outputs[5].as<double>().value_or(0.0);
+        report.stopping_distance = outputs[6].as<double>().value_or(0.0);
+    }
+    return report;
+}
+
+opcua::Answer<skill::ExecutionRecord> executionFrom(const std::vector<opcua::Value>& outputs,
+                                                    const std::string& id,
+                                                    const skill::Fields& results,
+                                                    std::string_view skill) {
+    if (outputs.size() != kExecutionOutputs) {
+        return opcua::failed(opcua::status::kBadUnexpectedError,
+                             std::string(skill) + " GetExecution");
+    }
+    skill::ExecutionRecord record;
+    record.id = id;
+    record.state = static_cast<skill::State>(outputs[0].as<std::uint32_t>().value_or(0));
+    record.reason = static_cast<skill::Reason>(outputs[1].as<std::int32_t>().value_or(0));
+    record.reason_text = opcua::sanitise(outputs[2].as<std::string>().value_or(""));
+    record.start_time = outputs[3].as<UtcTime>().value_or(UtcTime{});
+    record.end_time = outputs[4].as<UtcTime>().value_or(UtcTime{});
+    record.result = resultsIn(outputs[5], results);
+    return record;
+}
+
+}  // namespace metier::client

@@ -1,0 +1,491 @@
+#include "remote_arm/worker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace metier::client {
+namespace {
+
+using namespace std::chrono_literals;
+using device::EndCause;
+using device::Safety;
+using device::SafetyState;
+
+constexpr auto kIdlePause = 100ms;
+// How long the server's safety state may take to follow its Reset.
+constexpr auto kResetWait = 2s;
+// How long the words of a robot that has stopped are waited for; it stands meanwhile.
+constexpr auto kLongestSilence = 100ms;
+// How long a stream may take to be Ready again after its last set-point.
+constexpr auto kLongestEnding = 2s;
+// Where the server does not tell it, the arm stands without a change of the measured position for
+// so long: the shorter time where it is at its last set-point, the longer one elsewhere, since news
+// of its motion may be late.
+constexpr auto kStandstillAtTarget = 60ms;
+constexpr auto kStandstill = 300ms;
+// How near its last set-point an arm is there [rad].
+constexpr double kAtTarget = 1e-3;
+// After a longer pause of this thread it does not catch up set-point by set-point.
+constexpr std::uint64_t kMostCyclesBehind = 50;
+// Where the measured arm is farther from the last set-point, it was moved by someone else [rad].
+constexpr double kMoved = 2e-3;
+
+device::ArmInfo infoOf(const StreamSession& session) {
+    device::ArmInfo info;
+    info.name = session.deviceName();
+    for (std::size_t axis = 1; axis <= session.kinematics().axisCount(); ++axis) {
+        info.axis_names.push_back(fmt::format("Axis {}", axis));
+    }
+    info.cycle = std::chrono::duration_cast<std::chrono::nanoseconds>(
+        std::chrono::duration<double>(session.kinematics().cycle_time));
+    return info;
+}
+
+}  // namespace
+
+RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> bell,
+                          std::unique_ptr<StreamSession> session)
+    : options_(std::move(options)),
+      bell_(std::move(bell)),
+      session_(std::move(session)),
+      kinematics_(session_->kinematics()),
+      info_(infoOf(*session_)) {
+    observe();
+    publish();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+RemoteArm::Worker::~Worker() {
+    thread_.request_stop();
+    bell_->ring();
+    thread_ = {};
+}
+
+Safety RemoteArm::Worker::safety() const {
+    const std::lock_guard lock(mutex_);
+    return safety_;
+}
+
+std::optional<RemoteArm::Absence> RemoteArm::Worker::absence() const {
+    const std::lock_guard lock(mutex_);
+    return absence_;
+}
+
+Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> source) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (safety_.state != SafetyState::normal) {
+            return fail(Errc::device_fault, safety_.text);
+        }
+        if (taken_) {
+            return fail(Errc::resource_unavailable, info_.name + ": something moves it already");
+        }
+        taken_ = true;
+        stop_asked_ = false;
+        pending_ = std::move(source);
+    }
+    bell_->ring();
+    return {};
+}
+
+void RemoteArm::Worker::nameOwner(std::string application_uri) {
+    const std::lock_guard lock(mutex_);
+    owner_ = std::move(application_uri);
+}
+
+skill::ParentExecution RemoteArm::Worker::parent() const {
+    const std::lock_guard lock(mutex_);
+    return owner_.empty() ? skill::ParentExecution{}
+                          : skill::ParentExecution{std::string(source_->execution()), owner_};
+}
+
+void RemoteArm::Worker::stop() noexcept {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_asked_ = taken_;
+    }
+    bell_->ring();
+}
+
+Result<void> RemoteArm::Worker::resetFault() {
+    const auto now = safety();
+    if (now.state == SafetyState::disconnected) {
+        return fail(Errc::connection_lost, now.text);
+    }
+    if (now.state == SafetyState::normal) {
+        return {};
+    }
+    if (auto outcome = resets_.ask()) {
+        return std::move(*outcome);
+    }
+    bell_->ring();
+    return fail(Errc::timeout, fmt::format("{}: the reset goes on at {}, ask again ({})",
+                                           info_.name, options_.url, now.text));
+}
+
+device::Registration RemoteArm::Worker::onSafetyChange(device::Arm::SafetyCallback callback) {
+    const auto listeners = listeners_;
+    const std::lock_guard lock(listeners->first);
+    listeners->second.push_back({std::move(callback)});
+    return device::Registration([listeners, entry = std::prev(listeners->second.end())] {
+        const std::lock_guard erase_lock(listeners->first);
+        listeners->second.erase(entry);
+    });
+}
+
+void RemoteArm::Worker::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        if (session_ == nullptr) {
+            reconnect(stop);
+        } else {
+            observe();
+        }
+        takeRequests();
+        serveSource();
+        if (stream_ == Stream::running) {
+            cycle();
+        }
+        publish();
+        if (session_ != nullptr) {
+            bell_->wait(stop, nextWake());
+        }
+    }
+    letGo(EndCause::disconnected);
+}
+
+void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
+    auto session = StreamSession::open(options_, bell_);
+    if (!session) {
+        bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
+        return;
+    }
+    if (const auto change = changeIn(**session); !change.empty()) {
+        session->reset();  // without its stream nothing of it moves
+        noteAbsence(Absence{absence_->since, true});
+        enter({SafetyState::disconnected, fmt::format("{}: {}", info_.name, change)});
+        bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
+        return;
+    }
+    noteAbsence({});
+    session_ = std::move(*session);
+    fault_.clear();
+    fault_is_limit_ = false;
+    halted_by_stop_ = false;
+}
+
+std::string RemoteArm::Worker::changeIn(const StreamSession& session) const {
+    if (session.deviceName() != info_.name) {
+        return fmt::format("{} has another arm now, {}", options_.url, session.deviceName());
+    }
+    if (session.kinematics().axisCount() != kinematics_.axisCount()) {
+        return fmt::format("{} has another arm now, with {} axes instead of {}", options_.url,
+                           session.kinematics().axisCount(), kinematics_.axisCount());
+    }
+    return session.kinematics() == kinematics_
+               ? ""
+               : fmt::format("{} tells of other kinematics or limits than before", options_.url);
+}
+
+void RemoteArm::Worker::noteAbsence(std::optional<Absence> absence) {
+    const std::lock_guard lock(mutex_);
+    absence_ = absence;
+}
+
+void RemoteArm::Worker::observe() {
+    const auto seen = session_->observed();
+    observeStream(seen);
+    observeArm(seen);
+    enter(judge(seen));
+    if (!seen.broken.empty()) {
+        stream_ = Stream::none;
+        noteAbsence(Absence{std::chrono::steady_clock::now()});
+        letGo(EndCause::disconnected);
+        session_.reset();
+        if (reset_deadline_) {
+            endReset(fail(Errc::connection_lost, safety().text));
+        }
+        return;
+    }
+    if (state_.safety != SafetyState::normal) {
+        letGo(state_.safety == SafetyState::disconnected ? EndCause::disconnected
+                                                         : EndCause::safety);
+    }
+    answerReset();
+}
+
+void RemoteArm::Worker::observeStream(const StreamSession::Observed& seen) {
+    if (stream_ == Stream::none) {
+        return;
+    }
+    if (seen.stream_end) {
+        const auto& end = *seen.stream_end;
+        const bool expected = end.to == skill::State::ready && stream_ == Stream::ending;
+        stream_ = Stream::none;
+        if (expected && done_) {
+            letGo(EndCause::done);
+        }
+        if (!expected && !halted_by_stop_) {
+            fault_ = fmt::format("{}: the position stream ended ({}): {}", info_.name,
+                                 toString(end.reason), end.reason_text);
+            fault_is_limit_ = end.reason == skill::Reason::limit_violated;
+        }
+    } else if (!seen.refused.empty()) {
+        fault_ = fmt::format("{}: {}", info_.name, seen.refused);
+        enterEnding();
+    }
+}
+
+void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
+    const double time = std::chrono::duration<double>(seen.sampled - sampled_).count();
+    if (state_.velocity.size() != seen.position.size()) {
+        state_.velocity = device::JointArray(seen.position.size());
+    } else if (time > 0) {
+        for (std::size_t axis = 0; axis < seen.position.size(); ++axis) {
+            state_.velocity[axis] = (seen.position[axis] - state_.position[axis]) / time;
+        }
+    }
+    sampled_ = seen.sampled;
+    state_.position = seen.position;
+    const bool at_target =
+        state_.commanded_position.size() == state_.position.size() &&
+        device::largestDifference(state_.commanded_position, state_.position) < kAtTarget;
+    state_.standstill = judgeStandstill(seen, at_target);
+    state_.missed_cycles = seen.missed_cycles;
+}
+
+bool RemoteArm::Worker::judgeStandstill(const StreamSession::Observed& seen, bool at_target) const {
+    if (seen.standstill) {
+        // While a stream runs, the news may be from before its begin until the arm is at its end.
+        return *seen.standstill && (at_target || source_ == nullptr);
+    }
+    const auto unmoved = std::chrono::steady_clock::now() - seen.moved;
+    // Late news of a motion that has come to its end is no motion.
+    return unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
+}
+
+Safety RemoteArm::Worker::judge(const StreamSession::Observed& seen) const {
+    if (!seen.broken.empty()) {
+        return {SafetyState::disconnected, fmt::format("{}: the connection to {} is lost: {}",
+                                                       info_.name, options_.url, seen.broken)};
+    }
+    if (!fault_.empty()) {
+        const auto state = seen.safety == SafetyState::normal ? SafetyState::fault : seen.safety;
+        return {state, fault_, fault_is_limit_};
+    }
+    if (seen.safety != SafetyState::normal && !awaitsWords(seen)) {
+        const auto text = seen.words.empty() ? std::string(toString(seen.safety)) : seen.words;
+        const bool named = text.starts_with(info_.name);
+        return {seen.safety, named ? text : fmt::format("{}: {}", info_.name, text)};
+    }
+    return {};
+}
+
+/// The state of a stopped robot may be seen before the transition that says why.
+bool RemoteArm::Worker::awaitsWords(const StreamSession::Observed& seen) const {
+    return seen.words.empty() && state_.safety == SafetyState::normal &&
+           std::chrono::steady_clock::now() - seen.safety_since < kLongestSilence;
+}
+
+void RemoteArm::Worker::enter(Safety safety) {
+    bool changed = false;
+    {
+        const std::lock_guard lock(mutex_);
+        changed = safety_.state != safety.state || safety_.text != safety.text;
+        safety_ = safety;
+    }
+    state_.safety = safety.state;
+    if (!changed) {
+        return;
+    }
+    std::vector<device::Arm::SafetyCallback> callbacks;
+    {
+        const std::lock_guard lock(listeners_->first);
+        for (const auto& listener : listeners_->second) {
+            callbacks.push_back(listener.callback);
+        }
+    }
+    for (const auto& callback : callbacks) {
+        callback(safety);
+    }
+}
+
+void RemoteArm::Worker::publish() {
+    const bool moved_by_others =
+        state_.commanded_position.size() != state_.position.size() ||
+        device::largestDifference(state_.commanded_position, state_.position) > kMoved;
+    if (stream_ == Stream::none && moved_by_others) {
+        state_.commanded_position = state_.position;
+    }
+    state_.stamp = std::chrono::steady_clock::now();
+    published_.write(state_);
+}
+
+void RemoteArm::Worker::takeRequests() {
+    bool stop_asked = false;
+    {
+        const std::lock_guard lock(mutex_);
+        stop_asked = std::exchange(stop_asked_, false);
+        if (pending_ != nullptr) {
+            source_ = std::exchange(pending_, nullptr);
+            settled_ = false;
+        }
+    }
+    if (resets_.taken()) {
+        beginReset();
+    }
+    if (stop_asked && source_ != nullptr) {
+        stopNow();
+    }
+}
+
+void RemoteArm::Worker::beginReset() {
+    reset_deadline_ = std::chrono::steady_clock::now() + kResetWait;
+    if (session_ == nullptr) {
+        endReset(fail(Errc::connection_lost, safety().text));
+        return;
+    }
+    const auto state = session_->streamState();
+    // A skill that is Ready while its arm is stopped resets the arm by way of Halted.
+    const bool stopped = session_->observed().safety != SafetyState::normal;
+    auto reset =
+        state && *state == skill::State::ready && stopped ? session_->haltStream() : Result<void>();
+    if (reset && state && (*state == skill::State::halted || stopped)) {
+        reset = session_->resetStream();
+    }
+    if (!state || !reset) {
+        endReset(fail(state ? reset.error() : state.error()));
+        return;
+    }
+    fault_.clear();
+    fault_is_limit_ = false;
+}
+
+/// The server's safety state follows its Reset a moment later: only then the fault is gone.
+void RemoteArm::Worker::answerReset() {
+    if (!reset_deadline_) {
+        return;
+    }
+    if (state_.safety == SafetyState::normal) {
+        endReset({});
+    } else if (std::chrono::steady_clock::now() > *reset_deadline_) {
+        endReset(fail(Errc::device_fault, safety().text));
+    }
+}
+
+void RemoteArm::Worker::endReset(Result<void> outcome) {
+    reset_deadline_.reset();
+    resets_.answer(std::move(outcome));
+}
+
+void RemoteArm::Worker::stopNow() {
+    if (stream_ == Stream::running && session_ != nullptr) {
+        halted_by_stop_ = true;
+        if (const auto halted = session_->haltStream(); !halted) {
+            fault_ = halted.error().message;
+        }
+        enterEnding();
+    }
+    letGo(EndCause::stopped);
+}
+
+void RemoteArm::Worker::serveSource() {
+    if (source_ == nullptr || stream_ == Stream::running) {
+        return;
+    }
+    if (session_ == nullptr) {
+        letGo(EndCause::disconnected);
+    } else if (stream_ == Stream::none) {
+        startStream();
+    } else if (std::chrono::steady_clock::now() - ending_since_ > kLongestEnding) {
+        fault_ = fmt::format("{}: the position stream did not end", info_.name);
+    }
+}
+
+void RemoteArm::Worker::startStream() {
+    if (std::exchange(halted_by_stop_, false)) {
+        if (const auto reset = session_->resetStream(); !reset) {
+            fault_ = reset.error().message;
+            return;
+        }
+    }
+    if (const auto started = session_->startStream(parent()); !started) {
+        fault_ = started.error().message;  // the next look at it ends the motion
+        return;
+    }
+    stream_ = Stream::running;
+    stream_start_ = std::chrono::steady_clock::now();
+    stream_start_utc_ = std::chrono::system_clock::now();
+    sent_ = 0;
+}
+
+SteadyTime RemoteArm::Worker::nextWake() const {
+    if (stream_ == Stream::running) {
+        return stream_start_ + sent_ * info_.cycle;
+    }
+    // What is under way is looked at often, so that its end and its deadline are seen in time.
+    const bool busy = source_ != nullptr || state_.safety != SafetyState::normal;
+    return std::chrono::steady_clock::now() + (busy ? 10ms : kIdlePause);
+}
+
+UtcTime RemoteArm::Worker::meantFor() const {
+    return stream_start_utc_ + std::chrono::duration_cast<UtcTime::duration>(sent_ * info_.cycle);
+}
+
+void RemoteArm::Worker::cycle() {
+    const auto now = std::chrono::steady_clock::now();
+    const auto due = static_cast<std::uint64_t>((now - stream_start_) / info_.cycle) + 1;
+    if (due > sent_ + kMostCyclesBehind) {
+        sent_ = due - 1;  // the stream paused: it goes on from here, the path is not jumped over
+    }
+    while (stream_ == Stream::running && sent_ < due) {
+        nextSetPoint();
+    }
+}
+
+void RemoteArm::Worker::nextSetPoint() {
+    if (source_ == nullptr) {  // it was taken from the arm: the server ends the stream by itself
+        enterEnding();
+        return;
+    }
+    state_.cycle = sent_;
+    auto set_point = state_.commanded_position;
+    done_ = source_->next(state_, set_point) == device::SetPointSource::Next::done;
+    state_.commanded_position = set_point;
+    session_->send(set_point, meantFor());
+    ++sent_;
+    if (done_) {
+        finishStream();
+    }
+}
+
+/// The source is told once the stream has ended: then the arm is free for whoever is next.
+void RemoteArm::Worker::finishStream() {
+    enterEnding();
+    if (!session_->endStream()) {
+        letGo(EndCause::done);  // the silence that ends it is longer than anybody would wait
+    }
+}
+
+void RemoteArm::Worker::enterEnding() {
+    stream_ = Stream::ending;
+    ending_since_ = std::chrono::steady_clock::now();
+}
+
+void RemoteArm::Worker::letGo(EndCause cause) {
+    done_ = false;
+    const auto source = std::exchange(source_, nullptr);
+    if (source == nullptr) {
+        return;
+    }
+    settled_ = cause == EndCause::done;
+    publish();  // whoever hears of the end may ask for the state at once
+    {
+        const std::lock_guard lock(mutex_);
+        taken_ = false;
+    }
+    source->ended(cause, safety());
+}
+
+}  // namespace metier::client

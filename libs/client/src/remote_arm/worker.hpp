@@ -1,0 +1,116 @@
+#pragma once
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+#include "remote_arm/doorbell.hpp"
+#include "metier/device/arm.hpp"
+#include "metier/device/reset_desk.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/client/remote_arm.hpp"
+#include "remote_arm/stream_session.hpp"
+
+namespace metier::client {
+
+/// The thread of a RemoteArm: keeps the connection, and is the cycle while something moves.
+class RemoteArm::Worker {
+public:
+    Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> bell,
+           std::unique_ptr<StreamSession> session);
+    ~Worker();
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+
+    const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }
+    const device::ArmInfo& info() const noexcept { return info_; }
+    device::ArmState state() const noexcept { return published_.read(); }
+    device::Safety safety() const;
+    std::optional<Absence> absence() const;
+    void nameOwner(std::string application_uri);
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source);
+    void stop() noexcept;
+    Result<void> resetFault();
+    device::Registration onSafetyChange(device::Arm::SafetyCallback callback);
+
+private:
+    enum class Stream {
+        none,
+        running,
+        ending,  ///< without further set-points; the skill is Ready soon
+    };
+    void run(const std::stop_token& stop);
+    void reconnect(const std::stop_token& stop);
+    /// Empty, or in which way what a server tells now is not the arm that it was.
+    std::string changeIn(const StreamSession& session) const;
+    void noteAbsence(std::optional<Absence> absence);
+    void observe();
+    void observeStream(const StreamSession::Observed& seen);
+    void observeArm(const StreamSession::Observed& seen);
+    /// \param at_target whether the measured arm is at its last set-point
+    bool judgeStandstill(const StreamSession::Observed& seen, bool at_target) const;
+    device::Safety judge(const StreamSession::Observed& seen) const;
+    bool awaitsWords(const StreamSession::Observed& seen) const;
+    void enter(device::Safety safety);
+    void publish();
+    void takeRequests();
+    void serveSource();
+    void beginReset();
+    void answerReset();
+    void endReset(Result<void> outcome);
+    void stopNow();
+
+    void startStream();
+    skill::ParentExecution parent() const;
+    void cycle();
+    void nextSetPoint();
+    void finishStream();
+    void enterEnding();
+    void letGo(device::EndCause cause);
+    SteadyTime nextWake() const;
+    UtcTime meantFor() const;
+
+    const RemoteArmOptions options_;
+    const std::shared_ptr<Doorbell> bell_;  // rung by the session's late answers, too
+    std::unique_ptr<StreamSession> session_;
+    const opcua_skill::KinematicsData kinematics_;
+    const device::ArmInfo info_;
+    device::SharedValue<device::ArmState> published_;
+
+    device::ResetDesk resets_;
+    mutable std::mutex mutex_;
+    std::string owner_;  // ApplicationUri of the server whose motions these are
+    bool stop_asked_ = false;
+    bool taken_ = false;  // a source is attached or about to be
+    std::shared_ptr<device::SetPointSource> pending_;
+    device::Safety safety_;
+    std::optional<Absence> absence_;
+    struct Listener {
+        device::Arm::SafetyCallback callback;
+    };
+    // Shared with the registrations, which may outlive this.
+    std::shared_ptr<std::pair<std::mutex, std::list<Listener>>> listeners_ =
+        std::make_shared<std::pair<std::mutex, std::list<Listener>>>();
+
+    // Of the thread alone.
+    device::ArmState state_;
+    SteadyTime sampled_;  // when its position was measured
+    std::shared_ptr<device::SetPointSource> source_;
+    std::optional<SteadyTime> reset_deadline_;  // of the reset that has begun
+    Stream stream_ = Stream::none;
+    bool done_ = false;     // the source has nothing more; it is told when the stream has ended
+    bool settled_ = false;  // the last source came to its end, where the arm stands
+    bool halted_by_stop_ = false;
+    SteadyTime ending_since_;
+    SteadyTime stream_start_;
+    UtcTime stream_start_utc_;
+    std::uint64_t sent_ = 0;
+    std::string fault_;  // a stop of the stream that only resetFault() ends
+    bool fault_is_limit_ = false;
+    std::jthread thread_;  // last: it uses everything above
+};
+
+}  // namespace metier::client

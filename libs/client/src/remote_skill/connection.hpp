@@ -1,0 +1,105 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "metier/opcua/client.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/client/async_skill.hpp"
+
+namespace metier::client {
+
+class RemoteChild;
+
+/// A skill together with the client that leads to it, which ends after it.
+struct OpenSkill {
+    std::shared_ptr<opcua::Client> client;  // shared by the skills of one session
+    client::AsyncSkill skill;
+};
+
+/// The way to a child on the owner's thread, for as long as both are there.
+class ChildLink : public std::enable_shared_from_this<ChildLink> {
+public:
+    explicit ChildLink(std::shared_ptr<skill::Executor> executor)
+        : executor_(std::move(executor)) {}
+
+    /// Runs `work` with the child, on the owner's thread. Any thread.
+    void post(std::function<void(RemoteChild&)> work);
+    /// The owner's thread.
+    void attach(RemoteChild* child) { child_ = child; }
+
+private:
+    std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
+    RemoteChild* child_ = nullptr;
+};
+
+/// The thread that waits for the other server: connects again, reads, and ends what takes time.
+class Connection {
+public:
+    /// A skill that is opened again with each session.
+    struct Use {
+        std::string skill;  ///< "Controller/Name"
+        std::shared_ptr<ChildLink> link;
+    };
+
+    Connection(RemoteServerOptions options, std::shared_ptr<opcua::Client> client);
+    ~Connection();
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
+
+    const RemoteServerOptions& options() const noexcept { return options_; }
+    opcua::Client& client() { return *client_; }
+    /// Opens a skill of the present session, and of each one to come.
+    Result<std::shared_ptr<OpenSkill>> open(const client::SkillAddress& address,
+                                            const std::shared_ptr<ChildLink>& link);
+    /// Runs `job` on this thread; jobs may wait.
+    void run(std::function<void()> job);
+    /// Has the thread connect again, as after a loss. Any thread.
+    /// \param client whose connection is of no use any more
+    void noteLoss(const opcua::Client& client, const std::string& why);
+    /// As RemoteServer::awaySince().
+    std::optional<SteadyTime> awaySince() const;
+
+    static opcua::Answer<std::unique_ptr<opcua::Client>> connect(
+        const RemoteServerOptions& options);
+
+private:
+    void work(const std::stop_token& stop);
+    void watch(opcua::Client& client);
+    client::AsyncSkill::Watch watchFor(const opcua::Client& client,
+                                             const std::shared_ptr<ChildLink>& link);
+    void lose(const std::string& why);
+    /// Whether all is there again.
+    bool reconnect();
+    /// Has the child of a use go on with the present session; nothing if its skill is not there.
+    std::function<void()> adoptionOf(const Use& use);
+    /// Warns of a reason that is not the last one of its kind; the log of what comes again and
+    /// again is for those who look for it.
+    void warn(std::string& last, std::string text) const;
+    std::shared_ptr<opcua::Client> present() const;
+
+    const RemoteServerOptions options_;
+    // Both guarded by mutex_; the client with its OpenSkills, whichever ends last.
+    std::shared_ptr<opcua::Client> client_;
+    std::vector<Use> uses_;
+
+    mutable std::mutex mutex_;
+    std::optional<SteadyTime> away_since_;  // guarded by mutex_
+    std::condition_variable_any changed_;
+    std::vector<std::function<void()>> jobs_;
+    std::string lost_;         // why; empty while connected
+    bool loss_noted_ = false;  // of client_; guarded by mutex_
+    // Of the thread: what the log has been told of since the connection was there.
+    std::string told_loss_;
+    std::string told_attempt_;
+    std::jthread thread_;
+};
+
+}  // namespace metier::client

@@ -1,0 +1,100 @@
+#include "metier/client/remote_server.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "remote_skill/connection.hpp"
+#include "remote_skill/remote_child.hpp"
+
+namespace metier::client {
+
+class RemoteServer::Worker {
+public:
+    Worker(RemoteServerOptions options, std::unique_ptr<opcua::Client> client,
+           std::shared_ptr<skill::Executor> owner)
+        : connection(std::move(options), std::move(client)), executor(std::move(owner)) {}
+
+    Connection connection;
+    std::shared_ptr<skill::Executor> executor;  // shared by what its thread owns
+};
+
+Result<std::unique_ptr<RemoteServer>> RemoteServer::connect(
+    RemoteServerOptions options, std::shared_ptr<skill::Executor> executor) {
+    if (options.name.empty()) {
+        options.name = options.url;
+    }
+    auto client = Connection::connect(options);
+    if (!client) {
+        return fail(client.error().code,
+                    fmt::format("{}: {}", options.url, client.error().message));
+    }
+    return std::unique_ptr<RemoteServer>(new RemoteServer(
+        std::make_unique<Worker>(std::move(options), std::move(*client), std::move(executor))));
+}
+
+RemoteServer::RemoteServer(std::unique_ptr<Worker> worker) : worker_(std::move(worker)) {}
+
+RemoteServer::~RemoteServer() = default;
+
+const std::string& RemoteServer::url() const noexcept {
+    return worker_->connection.options().url;
+}
+
+const std::string& RemoteServer::name() const noexcept {
+    return worker_->connection.options().name;
+}
+
+std::optional<SteadyTime> RemoteServer::awaySince() const {
+    return worker_->connection.awaySince();
+}
+
+opcua::Client& RemoteServer::client() {
+    return worker_->connection.client();
+}
+
+Result<std::vector<client::SkillAddress>> RemoteServer::skills() {
+    auto found = client::findSkills(worker_->connection.client());
+    return found ? Result<std::vector<client::SkillAddress>>(std::move(*found))
+                 : fail(found.error());
+}
+
+Result<std::unique_ptr<composition::Child>> RemoteServer::use(
+    const client::SkillAddress& skill, std::string origin) {
+    auto opened = open(skill, std::move(origin));
+    return opened ? child(std::move(*opened))
+                  : Result<std::unique_ptr<composition::Child>>(fail(std::move(opened.error())));
+}
+
+Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::string origin) {
+    const auto link = std::make_shared<ChildLink>(worker_->executor);
+    auto open = worker_->connection.open(skill, link);
+    if (!open) {
+        return fail(std::move(open.error()));
+    }
+    const auto now = (*open)->skill.now();
+    if (!now) {
+        return fail(now.error());
+    }
+    if (!(*open)->skill.knowsExecutions()) {
+        return fail(Errc::not_supported,
+                    fmt::format("{}: {} has no StartWith and GetExecution", url(), skill.name));
+    }
+    return PendingUse{link, std::move(*open), *now, fmt::format("{} of {}", skill.name, name()),
+                      std::move(origin)};
+}
+
+std::unique_ptr<composition::Child> RemoteServer::child(PendingUse use) {
+    auto child = std::make_unique<RemoteChild>(worker_->connection, use.link, std::move(use.name),
+                                               std::move(use.origin));
+    child->adopt(use.skill, use.now);
+    // What happened since it was opened has reached no child.
+    worker_->connection.run([skill = std::move(use.skill), link = std::move(use.link)] {
+        if (const auto now = skill->skill.now()) {
+            link->post([now = *now](RemoteChild& other) { other.refresh(now); });
+        }
+    });
+    return child;
+}
+
+}  // namespace metier::client

@@ -1,0 +1,181 @@
+#include "metier/client/skill_finder.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "metier/opcua/text.hpp"
+#include "questions.hpp"
+
+namespace metier::client {
+namespace {
+
+using opcua::Answer;
+using opcua::BrowseQuery;
+using opcua::Client;
+using opcua::NodeClass;
+using opcua::NodeId;
+using opcua::ReferenceDescription;
+using opcua::sanitise;
+
+constexpr std::size_t kMaxDepth = 12;
+
+/// Walks the objects of a server, each once.
+class Walk {
+public:
+    explicit Walk(Client& client) : questions_(client) {}
+
+    Answer<> below(const NodeId& node, std::vector<SkillAddress::Above>& above) {
+        if (above.size() > kMaxDepth) {
+            return {};
+        }
+        METIER_ASSIGN(auto children,
+                      questions_.browse({.node = node, .node_classes = {NodeClass::object}}));
+        for (const auto& child : children) {
+            METIER_TRY(visit(child, above));
+        }
+        return {};
+    }
+
+    std::vector<SkillAddress> found;
+
+private:
+    Answer<> visit(const ReferenceDescription& child, std::vector<SkillAddress::Above>& above) {
+        if (child.target == opcua::ids::kServer || !seen_.insert(child.target).second) {
+            return {};
+        }
+        METIER_ASSIGN(const auto is_program, isProgram(child.type_definition));
+        if (is_program) {
+            return add(child, above);
+        }
+        above.push_back({sanitise(child.browse_name.name), child.target});
+        auto walked = below(child.target, above);
+        above.pop_back();
+        return walked;
+    }
+
+    Answer<> add(const ReferenceDescription& skill, const std::vector<SkillAddress::Above>& above) {
+        METIER_ASSIGN(const auto type_name,
+                      questions_.read(skill.type_definition, opcua::AttributeId::browse_name));
+        const auto type = type_name.as<opcua::QualifiedName>().value_or(opcua::QualifiedName{});
+        found.push_back({sanitise(skill.browse_name.name), sanitise(skill.display_name.text),
+                         skill.target, skill.type_definition, sanitise(type.name), above});
+        return {};
+    }
+
+    /// A type that is derived from itself, over whatever way, is none.
+    Answer<bool> isProgram(const NodeId& type) {
+        std::vector<NodeId> chain;
+        NodeId next = type;
+        std::optional<bool> answer;
+        while (!answer) {
+            answer = known(next, chain.size());
+            if (!answer) {
+                chain.push_back(next);
+                METIER_ASSIGN(const auto parents,
+                              questions_.browse({.node = next,
+                                                 .reference_type = opcua::ids::kHasSubtype,
+                                                 .direction = BrowseQuery::Direction::inverse,
+                                                 .node_classes = {}}));
+                next = parents.empty() ? NodeId{} : parents.front().target;
+            }
+        }
+        for (const auto& derived : chain) {
+            is_program_[derived] = *answer;
+        }
+        return *answer;
+    }
+
+    /// What needs no further look, so many types above the first.
+    std::optional<bool> known(const NodeId& type, std::size_t above) const {
+        if (type == opcua::ids::kProgramStateMachineType) {
+            return true;
+        }
+        if (type == NodeId{} || type == opcua::ids::kBaseObjectType || above > kMaxDepth) {
+            return false;
+        }
+        const auto decided = is_program_.find(type);
+        return decided == is_program_.end() ? std::nullopt : std::optional(decided->second);
+    }
+
+    Questions questions_;
+    std::set<NodeId> seen_;
+    std::map<NodeId, bool> is_program_;
+};
+
+bool matches(const SkillAddress& skill, std::string_view name) {
+    return skill.name == name || fmt::format("{}/{}", skill.controllerName(), skill.name) == name;
+}
+
+std::vector<std::string> namesOf(const std::vector<SkillAddress>& skills) {
+    std::vector<std::string> names;
+    for (const auto& skill : skills) {
+        names.push_back(skill.name);
+    }
+    return names;
+}
+
+tl::unexpected<opcua::Failure> refusal(Errc code, std::string text) {
+    return tl::unexpected(opcua::Failure{{code, std::move(text)}, opcua::status::kBadNoMatch, {}});
+}
+
+}  // namespace
+
+const SkillAddress::Above* SkillAddress::controller() const {
+    const auto skills = std::find_if(above.rbegin(), above.rend(),
+                                     [](const Above& object) { return object.name == "Skills"; });
+    return skills == above.rend() || std::next(skills) == above.rend() ? nullptr
+                                                                       : &*std::next(skills);
+}
+
+std::string SkillAddress::controllerName() const {
+    const auto* object = controller();
+    return object == nullptr ? "" : object->name;
+}
+
+Answer<std::vector<SkillAddress>> findSkills(Client& client) {
+    Walk walk(client);
+    std::vector<SkillAddress::Above> above;
+    METIER_TRY(walk.below(opcua::ids::kObjectsFolder, above));
+    return std::move(walk.found);
+}
+
+Answer<std::vector<SkillType>> typeChain(Client& client, const SkillAddress& skill) {
+    std::vector<SkillType> types{{skill.type_name, skill.type}};
+    while (types.size() <= kMaxDepth) {
+        METIER_ASSIGN(const auto parents,
+                      client.browse({.node = types.back().node,
+                                     .reference_type = opcua::ids::kHasSubtype,
+                                     .direction = BrowseQuery::Direction::inverse,
+                                     .node_classes = {}}));
+        if (parents.empty() || parents.front().target == opcua::ids::kProgramStateMachineType) {
+            break;
+        }
+        types.push_back({sanitise(parents.front().browse_name.name), parents.front().target});
+    }
+    return types;
+}
+
+Answer<SkillAddress> findSkill(Client& client, std::string_view name) {
+    METIER_ASSIGN(auto skills, findSkills(client));
+    std::vector<SkillAddress> matching;
+    std::copy_if(skills.begin(), skills.end(), std::back_inserter(matching),
+                 [&](const auto& skill) { return matches(skill, name); });
+    if (matching.empty()) {
+        return refusal(Errc::not_found, fmt::format("no skill '{}'; there are: {}", name,
+                                                    fmt::join(namesOf(skills), ", ")));
+    }
+    if (matching.size() > 1) {
+        return refusal(Errc::invalid_argument,
+                       fmt::format("{} controllers have a skill '{}'; say Controller/{}",
+                                   matching.size(), name, name));
+    }
+    return std::move(matching.front());
+}
+
+}  // namespace metier::client

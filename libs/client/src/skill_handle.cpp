@@ -1,0 +1,358 @@
+#include "metier/client/skill_handle.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "method_values.hpp"
+#include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/values.hpp"
+#include "skill_handle_impl.hpp"
+
+namespace metier::client {
+namespace {
+
+using opcua::Answer;
+using opcua::Failure;
+using skill::Method;
+using skill::State;
+using skill::TransitionEvent;
+
+// How long a device that takes its time for a Reset is asked for the outcome, and the pause
+// between.
+constexpr auto kResetTime = std::chrono::seconds(1);
+constexpr auto kResetPause = std::chrono::milliseconds(10);
+constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
+
+std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes) {
+    std::vector<skill::Field> fields;
+    for (const auto& node : nodes) {
+        fields.push_back(node.field);
+    }
+    return fields;
+}
+
+/// As OPC UA calls it: `Double`, `Double[]`, `3DFrame`.
+std::string typeNameOf(skill::ValueType type) {
+    switch (type) {
+        case skill::ValueType::null:
+            return "Null";
+        case skill::ValueType::boolean:
+            return "Boolean";
+        case skill::ValueType::int32:
+            return "Int32";
+        case skill::ValueType::uint32:
+            return "UInt32";
+        case skill::ValueType::uint64:
+            return "UInt64";
+        case skill::ValueType::number:
+            return "Double";
+        case skill::ValueType::text:
+            return "String";
+        case skill::ValueType::frame:
+            return "3DFrame";
+        case skill::ValueType::vector3:
+            return "3DVector";
+        case skill::ValueType::numbers:
+            return "Double[]";
+        case skill::ValueType::texts:
+            return "String[]";
+        case skill::ValueType::ranges:
+            return "Range[]";
+        case skill::ValueType::frames:
+            return "3DFrame[]";
+    }
+    return "";
+}
+
+const FieldNode* findField(const std::vector<FieldNode>& nodes, std::string_view name) {
+    const auto found = std::find_if(nodes.begin(), nodes.end(),
+                                    [&](const auto& node) { return node.field.name == name; });
+    return found == nodes.end() ? nullptr : &*found;
+}
+
+/// A server that does not yet list the namespace has no extra event fields: any index will do.
+std::uint16_t deviceNamespace(opcua::Client& client) {
+    return client.namespaceIndex(kDeviceNamespace).value_or(1);
+}
+
+}  // namespace
+
+Answer<> SkillHandle::Impl::readNodes() {
+    METIER_ASSIGN(auto read, readSkillNodes(client, address));
+    nodes = std::move(read);
+    parameters = fieldsOf(nodes.parameters);
+    results = fieldsOf(nodes.results);
+    return {};
+}
+
+Answer<> SkillHandle::Impl::subscribe() {
+    subscription = {};
+    auto subscribed =
+        client.subscribeEvents(address.node, transitionFilter(deviceNamespace(client)),
+                               [log = log](const opcua::EventNotice& notice) { log->add(notice); });
+    if (!subscribed) {
+        return tl::unexpected(subscribed.error());
+    }
+    subscription = std::move(*subscribed);
+    return {};
+}
+
+Answer<> SkillHandle::Impl::refresh() {
+    const auto now = client.boot();
+    if (now == boot) {
+        return {};
+    }
+    const auto controller = address.controllerName();
+    METIER_ASSIGN(
+        auto found,
+        findSkill(client, controller.empty() ? address.name
+                                             : fmt::format("{}/{}", controller, address.name)));
+    const bool moved = found.node != address.node;
+    address = std::move(found);
+    METIER_TRY(readNodes());
+    METIER_TRY(moved ? subscribe() : Answer<>());
+    boot = now;
+    return {};
+}
+
+Failure SkillHandle::Impl::refused(Failure failure, std::string_view what) const {
+    if (failure.delivery != Failure::Delivery::answered) {
+        failure.message = fmt::format("{} {}: {}", address.name, what, failure.message);
+        return failure;
+    }
+    const auto reason = reasonText();
+    failure.message = fmt::format("{} refused {}: {}{}{}", address.name, what,
+                                  failure.status.name(), reason.empty() ? "" : ": ", reason);
+    return failure;
+}
+
+Failure SkillHandle::Impl::wrongType(Failure failure, const FieldNode& node,
+                                     const skill::Value& given) const {
+    failure.message =
+        fmt::format("{} refused {}: {}: {}: {} expected, {} given", address.name, node.field.name,
+                    failure.status.name(), node.field.name, typeNameOf(node.field.type),
+                    opcua_skill::toOpcua(given).typeName());
+    return failure;
+}
+
+std::string SkillHandle::Impl::reasonText() const {
+    if (nodes.reason_text == opcua::NodeId{}) {
+        return {};
+    }
+    const auto value = client.read(nodes.reason_text);
+    return value ? opcua::sanitise(value->as<std::string>().value_or("")) : "";
+}
+
+Answer<const FieldNode*> SkillHandle::Impl::parameter(std::string_view name) const {
+    if (const auto* node = findField(nodes.parameters, name)) {
+        return node;
+    }
+    std::vector<std::string> known;
+    for (const auto& field : parameters) {
+        known.push_back(field.name);
+    }
+    return tl::unexpected(
+        Failure{{Errc::not_found, fmt::format("{} has no parameter '{}'; it has: {}", address.name,
+                                              name, fmt::join(known, ", "))},
+                opcua::status::kBadNoMatch,
+                {}});
+}
+
+Answer<SkillHandle> SkillHandle::open(opcua::Client& client, SkillAddress address) {
+    auto impl = std::make_unique<Impl>(Impl{client, std::move(address), client.boot()});
+    METIER_TRY(impl->readNodes());
+    METIER_TRY(impl->subscribe());
+    return SkillHandle(std::move(impl));
+}
+
+SkillHandle::SkillHandle(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SkillHandle::SkillHandle(SkillHandle&&) noexcept = default;
+SkillHandle& SkillHandle::operator=(SkillHandle&&) noexcept = default;
+SkillHandle::~SkillHandle() = default;
+
+const SkillAddress& SkillHandle::address() const noexcept {
+    return impl_->address;
+}
+
+const std::vector<skill::Field>& SkillHandle::parameters() const noexcept {
+    return impl_->parameters;
+}
+
+const std::vector<skill::Field>& SkillHandle::results() const noexcept {
+    return impl_->results;
+}
+
+bool SkillHandle::knowsExecutions() const noexcept {
+    return impl_->nodes.start_with != opcua::NodeId{} && impl_->tellsExecutions();
+}
+
+bool SkillHandle::takesParents() const noexcept {
+    return knowsExecutions() && !impl_->nodes.records.isNull();
+}
+
+Answer<> SkillHandle::refresh() {
+    return impl_->refresh();
+}
+
+Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
+    METIER_TRY(impl_->refresh());
+    METIER_ASSIGN(const auto node, impl_->parameter(name));
+    const auto written =
+        impl_->client.writeMany({{node->node, opcua_skill::toOpcua(value), {}, impl_->boot}});
+    if (!written) {
+        return tl::unexpected(impl_->refused(written.error(), name));
+    }
+    if (written->front() == opcua::status::kBadTypeMismatch) {
+        return tl::unexpected(
+            impl_->wrongType(opcua::failed(written->front(), "").value(), *node, value));
+    }
+    return written->front().isBad()
+               ? tl::unexpected(impl_->refused(opcua::failed(written->front(), "").value(), name))
+               : Answer<>();
+}
+
+Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
+                               std::function<void(Answer<>)> done) {
+    METIER_ASSIGN(const auto node, impl_->parameter(name));
+    return impl_->client.writeAsync(
+        {node->node, opcua_skill::toOpcua(value), meant_for, impl_->boot}, std::move(done));
+}
+
+Answer<> SkillHandle::call(Method method) {
+    METIER_TRY(impl_->refresh());
+    const auto& node = impl_->nodes.methods.at(static_cast<std::size_t>(method));
+    const auto ask = [&] {
+        return impl_->client.call(opcua::MethodCall{impl_->address.node, node, {}, impl_->boot});
+    };
+    const bool begins = method == Method::start || method == Method::resume;
+    const auto result = begins ? impl_->begin(ask) : ask();
+    return result ? Answer<>() : tl::unexpected(impl_->refused(result.error(), toString(method)));
+}
+
+Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId SkillNodes::*method,
+                                                                std::string_view name,
+                                                                std::vector<opcua::Value> inputs) {
+    METIER_TRY(refresh());
+    if (nodes.*method == opcua::NodeId{}) {
+        return tl::unexpected(
+            Failure{{Errc::not_supported, fmt::format("{} has no {}", address.name, name)},
+                    opcua::status::kBadMethodInvalid,
+                    {}});
+    }
+    auto result =
+        client.call(opcua::MethodCall{address.node, nodes.*method, std::move(inputs), boot});
+    if (!result) {
+        return tl::unexpected(refused(result.error(), name));
+    }
+    return std::move(result->outputs);
+}
+
+Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
+    const auto outputs = impl_->begin([&] {
+        return impl_->callMetier(&SkillNodes::start_with, "StartWith",
+                                 startWithInputs(request, impl_->nodes));
+    });
+    if (!outputs) {
+        return tl::unexpected(outputs.error());
+    }
+    return outputs->empty() ? std::string() : outputs->front().as<std::string>().value_or("");
+}
+
+Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters) {
+    METIER_ASSIGN(const auto outputs,
+                  impl_->callMetier(&SkillNodes::check, "Check", {pairsOf(parameters)}));
+    return checkReportFrom(outputs, impl_->address.name);
+}
+
+Answer<skill::ExecutionRecord> SkillHandle::execution(const std::string& id) {
+    return impl_->execution(id);
+}
+
+Answer<skill::ExecutionRecord> SkillHandle::Impl::execution(const std::string& id) {
+    METIER_ASSIGN(const auto outputs,
+                  callMetier(&SkillNodes::get_execution, "GetExecution", {opcua::Value::of(id)}));
+    return executionFrom(outputs, id, results, address.name);
+}
+
+Answer<> SkillHandle::start() {
+    return call(Method::start);
+}
+Answer<> SkillHandle::suspend() {
+    return call(Method::suspend);
+}
+Answer<> SkillHandle::resume() {
+    return call(Method::resume);
+}
+Answer<> SkillHandle::halt() {
+    return call(Method::halt);
+}
+Answer<> SkillHandle::reset() {
+    const auto deadline = std::chrono::steady_clock::now() + kResetTime;
+    for (;;) {
+        auto asked = call(Method::reset);
+        const bool goes_on = !asked && asked.error().code == Errc::timeout &&
+                             asked.error().delivery == Failure::Delivery::answered;
+        const auto now = std::chrono::steady_clock::now();
+        if (!goes_on || now >= deadline || awaitState(State::ready, now + kResetPause)) {
+            return goes_on && now < deadline ? Answer<>() : asked;
+        }
+    }
+}
+
+Answer<bool> SkillHandle::executable(Method method) {
+    METIER_TRY(impl_->refresh());
+    return impl_->client.readUserExecutable(
+        impl_->nodes.methods.at(static_cast<std::size_t>(method)));
+}
+
+Answer<State> SkillHandle::state() {
+    return impl_->state();
+}
+
+Answer<State> SkillHandle::Impl::state() {
+    METIER_TRY(refresh());
+    METIER_ASSIGN(const auto value, client.read(nodes.state_number));
+    const auto number = value.as<std::uint32_t>();
+    if (!number || *number < static_cast<std::uint32_t>(State::halted) ||
+        *number > static_cast<std::uint32_t>(State::suspended)) {
+        return opcua::failed(opcua::status::kBadTypeMismatch,
+                             address.name + ": CurrentState/Number");
+    }
+    return static_cast<State>(*number);
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::readResults() const {
+    std::vector<opcua::ReadItem> items;
+    for (const auto& result : nodes.results) {
+        items.push_back({result.node});
+    }
+    skill::ValueMap values;
+    if (items.empty()) {
+        return values;
+    }
+    METIER_ASSIGN(const auto read, client.readMany(std::move(items)));
+    for (std::size_t i = 0; i < nodes.results.size(); ++i) {
+        const auto& field = nodes.results[i].field;
+        values[field.name] =
+            opcua_skill::fromOpcua(read[i].value, field.type).value_or(skill::Value{});
+    }
+    return values;
+}
+
+Answer<skill::ValueMap> SkillHandle::result() {
+    METIER_TRY(impl_->refresh());
+    return impl_->readResults();
+}
+
+std::string SkillHandle::reasonText() {
+    return impl_->reasonText();
+}
+
+void SkillHandle::onTransition(std::function<void(const TransitionEvent&)> callback) {
+    impl_->log->watch({.on_transition = std::move(callback)});
+}
+
+}  // namespace metier::client

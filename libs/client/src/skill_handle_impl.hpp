@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/client/skill_handle.hpp"
+#include "skill_nodes.hpp"
+#include "transition_log.hpp"
+
+namespace metier::client {
+
+/// One execution that somebody waits for.
+struct AwaitedExecution {
+    TransitionLog::Mark from;         ///< transitions since may concern it
+    std::uint64_t boot = 0;           ///< run of the server that was asked to start it
+    std::optional<std::string> id{};  ///< none: the transition that starts it tells
+};
+
+/// Threading: as SkillHandle, but for the log.
+struct SkillHandle::Impl {
+    opcua::Client& client;
+    SkillAddress address;
+    std::uint64_t boot = 0;  // run of the server that the nodes are of
+    SkillNodes nodes{};
+    std::vector<skill::Field> parameters{};
+    std::vector<skill::Field> results{};
+    // Shared with the subscription's callback, which may run while this object moves.
+    std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
+    opcua::Subscription subscription{};
+    // What this handle has started or resumed, until awaitEnd() has told its end.
+    std::optional<AwaitedExecution> own{};
+
+    /// Reads what the skill is like.
+    opcua::Answer<> readNodes();
+    opcua::Answer<> subscribe();
+    /// Looks everything up again if the server was started again since.
+    opcua::Answer<> refresh();
+
+    /// Explains a refusal by the skill's own reason.
+    opcua::Failure refused(opcua::Failure failure, std::string_view what) const;
+    /// A wrong type is refused before the skill hears of it: its text would be of an older refusal.
+    opcua::Failure wrongType(opcua::Failure failure, const FieldNode& node,
+                             const skill::Value& given) const;
+    std::string reasonText() const;
+    opcua::Answer<const FieldNode*> parameter(std::string_view name) const;
+
+    opcua::Answer<std::vector<opcua::Value>> callMetier(opcua::NodeId SkillNodes::*method,
+                                                        std::string_view name,
+                                                        std::vector<opcua::Value> inputs);
+    opcua::Answer<skill::ValueMap> readResults() const;
+    opcua::Answer<skill::State> state();
+    opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
+    bool tellsExecutions() const { return nodes.get_execution != opcua::NodeId{}; }
+
+    /// Asks to start or resume, which awaitEnd() is then about.
+    template <typename Ask>
+    auto begin(const Ask& ask) {
+        const AwaitedExecution asked{log->mark(), client.boot()};
+        auto answer = ask();
+        if (answer) {
+            own = asked;
+        }
+        return answer;
+    }
+
+    // skill_handle_outcome.cpp
+
+    /// execution(), over losses of the connection.
+    /// Errors: not_found, or execution_lost if the server was started again since `since_boot` or
+    ///         keeps the name alone; those of the last attempt at the deadline.
+    opcua::Answer<skill::ExecutionRecord> learn(const std::string& id, std::uint64_t since_boot,
+                                                SteadyTime deadline);
+    /// What the server's refusal to tell of an execution means, if it means that it is over.
+    std::optional<opcua::Failure> lostExecution(const std::string& id, std::uint64_t since_boot,
+                                                const opcua::Failure& answer) const;
+    opcua::Answer<skill::ValueMap> awaitOutcome(AwaitedExecution awaited, SteadyTime deadline);
+    opcua::Answer<skill::ValueMap> outcomeOf(const AwaitedExecution& awaited,
+                                             const skill::TransitionEvent& end,
+                                             SteadyTime deadline);
+    opcua::Answer<skill::ValueMap> outcomeOf(const skill::ExecutionRecord& record) const;
+    opcua::Failure unknownOutcome(const std::string& why) const;
+    /// Whether the connection is back after `failure`; false at the deadline.
+    /// Waits until the skill is in a state that `wanted` names, and returns it.
+    opcua::Answer<skill::State> awaitState(SkillHandle& handle, SteadyTime deadline,
+                                           const std::function<bool(skill::State)>& wanted);
+    bool isBackAfter(const opcua::Failure& failure, SteadyTime deadline);
+};
+
+}  // namespace metier::client

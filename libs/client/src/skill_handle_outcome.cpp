@@ -1,0 +1,337 @@
+// Waiting for what a skill does, also over losses of the connection.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "metier/base/random.hpp"
+#include "skill_handle_impl.hpp"
+
+namespace metier::client {
+namespace {
+
+using opcua::Answer;
+using opcua::Failure;
+using skill::ExecutionRecord;
+using skill::State;
+using skill::TransitionEvent;
+using skill::TransitionNumber;
+using Delivery = Failure::Delivery;
+
+bool isOver(State state) {
+    return state == State::ready || state == State::halted;
+}
+
+bool endsExecution(const TransitionEvent& event) {
+    return isOver(event.to);
+}
+
+bool begins(const TransitionEvent& event) {
+    return event.number == TransitionNumber::ready_to_running;
+}
+
+Errc errcFor(skill::Reason reason) {
+    switch (reason) {
+        case skill::Reason::by_client:
+            return Errc::cancelled;
+        case skill::Reason::device_lost:
+            return Errc::connection_lost;
+        case skill::Reason::limit_violated:
+        case skill::Reason::force_exceeded:
+            return Errc::limit_violated;
+        default:
+            return Errc::device_fault;
+    }
+}
+
+Failure failureOf(Errc code, std::string message) {
+    return {{code, std::move(message)}, opcua::statusFrom(code), {}};
+}
+
+Failure haltedFailure(const std::string& skill, skill::Reason reason, const std::string& text) {
+    return failureOf(errcFor(reason),
+                     fmt::format("{} was halted ({}): {}", skill, toString(reason), text));
+}
+
+Failure givenUpFailure(const std::string& skill) {
+    return failureOf(Errc::cancelled, skill + " was suspended, then reset: it did not finish");
+}
+
+/// Names an execution so that its client can ask for it even if the answer to Start is lost.
+std::string newExecutionId() {
+    constexpr std::size_t kDigits = 24;
+    return randomHex(kDigits);
+}
+
+/// Whether to ask again, once the connection allows it.
+bool isForLackOfConnection(const Failure& failure) {
+    return failure.delivery != Delivery::answered || failure.code == Errc::connection_lost;
+}
+
+}  // namespace
+
+bool SkillHandle::Impl::isBackAfter(const Failure& failure, SteadyTime deadline) {
+    return isForLackOfConnection(failure) && std::chrono::steady_clock::now() < deadline &&
+           client.awaitConnected(deadline);
+}
+
+std::optional<Failure> SkillHandle::Impl::lostExecution(const std::string& id,
+                                                        std::uint64_t since_boot,
+                                                        const Failure& answer) const {
+    const bool restarted = client.boot() != since_boot;
+    if (restarted && (answer.code == Errc::not_found || answer.code == Errc::already_exists)) {
+        return failureOf(
+            Errc::execution_lost,
+            fmt::format("{}: the server was started again and {} execution {}: it was not resumed, "
+                        "the motion is over",
+                        address.name,
+                        answer.code == Errc::not_found ? "does not know" : "knows only the name of",
+                        id));
+    }
+    if (answer.code == Errc::already_exists) {
+        return failureOf(Errc::execution_lost,
+                         fmt::format("{}: execution {} is over, and the server keeps no record of "
+                                     "it any more",
+                                     address.name, id));
+    }
+    return std::nullopt;
+}
+
+Answer<ExecutionRecord> SkillHandle::Impl::learn(const std::string& id, std::uint64_t since_boot,
+                                                 SteadyTime deadline) {
+    for (;;) {
+        if (auto connected = client.awaitConnected(deadline); !connected) {
+            return tl::unexpected(unknownOutcome(connected.error().message));
+        }
+        const auto current = refresh();
+        auto record = current ? execution(id) : tl::unexpected(current.error());
+        if (record) {
+            return record;
+        }
+        if (const auto lost = lostExecution(id, since_boot, record.error())) {
+            return tl::unexpected(*lost);
+        }
+        if (!isBackAfter(record.error(), deadline)) {
+            return record;
+        }
+    }
+}
+
+Failure SkillHandle::Impl::unknownOutcome(const std::string& why) const {
+    auto failure = failureOf(
+        Errc::connection_lost,
+        fmt::format("{}: it is unknown what became of the execution: {}", address.name, why));
+    failure.delivery = Delivery::unknown;
+    return failure;
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const ExecutionRecord& record) const {
+    if (record.state == State::halted) {
+        return tl::unexpected(haltedFailure(address.name, record.reason, record.reason_text));
+    }
+    if (record.reason != skill::Reason::finished) {
+        return tl::unexpected(givenUpFailure(address.name));
+    }
+    return record.result;
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::outcomeOf(const AwaitedExecution& awaited,
+                                                     const TransitionEvent& end,
+                                                     SteadyTime deadline) {
+    if (end.to == State::halted) {
+        return tl::unexpected(haltedFailure(address.name, end.reason, end.reason_text));
+    }
+    if (end.number == TransitionNumber::suspended_to_ready) {
+        return tl::unexpected(givenUpFailure(address.name));
+    }
+    auto values = readResults();
+    if (values || !isForLackOfConnection(values.error()) || !tellsExecutions()) {
+        return values;
+    }
+    const auto record = learn(*awaited.id, awaited.boot, deadline);
+    return record ? outcomeOf(*record) : tl::unexpected(record.error());
+}
+
+Answer<skill::ValueMap> SkillHandle::Impl::awaitOutcome(AwaitedExecution awaited,
+                                                        SteadyTime deadline) {
+    for (;;) {
+        const auto found = log->await(awaited.from, deadline, [&](const TransitionEvent& event) {
+            return awaited.id ? endsExecution(event) && event.execution_id == *awaited.id
+                              : begins(event);
+        });
+        if (!found) {
+            return tl::unexpected(found.error().code == Errc::timeout
+                                      ? found.error()
+                                      : unknownOutcome(found.error().message));
+        }
+        if (*found && awaited.id) {
+            return outcomeOf(awaited, (*found)->event, deadline);
+        }
+        if (*found) {
+            awaited.id = (*found)->event.execution_id;
+            awaited.from.number = (*found)->number + 1;
+            continue;
+        }
+        if (awaited.id.value_or("").empty() || !tellsExecutions()) {
+            return tl::unexpected(unknownOutcome("transitions may have been missed"));
+        }
+        awaited.from.doubts = log->mark().doubts;  // before it is asked for
+        METIER_ASSIGN(const auto record, learn(*awaited.id, awaited.boot, deadline));
+        if (isOver(record.state)) {
+            return outcomeOf(record);
+        }
+    }
+}
+
+Answer<State> SkillHandle::Impl::awaitState(SkillHandle& handle, SteadyTime deadline,
+                                            const std::function<bool(State)>& wanted) {
+    for (;;) {
+        // Transitions from here on are waited for; the state read after it covers those before.
+        const auto from = log->mark();
+        const auto now = handle.state();
+        if (!now && !isBackAfter(now.error(), deadline)) {
+            return tl::unexpected(now.error());
+        }
+        if (!now) {
+            continue;
+        }
+        if (wanted(*now)) {
+            return *now;
+        }
+        const auto found = log->await(
+            from, deadline, [&wanted](const TransitionEvent& event) { return wanted(event.to); });
+        if (!found) {
+            return tl::unexpected(found.error());
+        }
+        if (*found) {
+            return (*found)->event.to;
+        }
+    }
+}
+
+Answer<> SkillHandle::awaitState(State wanted, SteadyTime deadline) {
+    return impl_->awaitState(*this, deadline, [wanted](State state) { return state == wanted; })
+        .map([](State) {});
+}
+
+Answer<State> SkillHandle::awaitRest(SteadyTime deadline) {
+    return impl_->awaitState(*this, deadline, [](State state) { return state != State::running; });
+}
+
+Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
+    auto [from, boot, id] =
+        impl_->own.value_or(AwaitedExecution{impl_->log->mark(), impl_->client.boot()});
+    for (;;) {
+        auto found = impl_->log->await(from, deadline, endsExecution);
+        if (!found) {
+            const bool away = impl_->client.state() != opcua::Client::State::connected;
+            return tl::unexpected(away ? impl_->unknownOutcome("there is no connection")
+                                       : found.error());
+        }
+        if (*found) {
+            impl_->own.reset();
+            return std::move((*found)->event);
+        }
+        from.doubts = impl_->log->mark().doubts;
+        const auto now = state();
+        if (now && impl_->client.boot() != boot) {
+            impl_->own.reset();
+            return tl::unexpected(failureOf(
+                Errc::execution_lost,
+                fmt::format("{}: the server was started again: what ran there was not resumed, the "
+                            "motion is over",
+                            address().name)));
+        }
+        if (now && isOver(*now)) {
+            impl_->own.reset();
+            TransitionEvent end;  // as far as the state tells
+            end.to = *now;
+            end.reason_text = reasonText();
+            return end;
+        }
+        if (!now && !impl_->isBackAfter(now.error(), deadline)) {
+            return tl::unexpected(now.error());
+        }
+    }
+}
+
+/// Parameters of a Start that was refused do not count for the next one.
+void SkillHandle::takeBack(const skill::ValueMap& parameters, const Failure& refusal) {
+    if (refusal.delivery != Delivery::answered) {
+        return;  // it may run
+    }
+    for (const auto& [name, value] : parameters) {
+        static_cast<void>(set(name, {}));  // if that fails the session ends, and with it the values
+    }
+}
+
+Answer<skill::ValueMap> SkillHandle::run(const skill::ValueMap& parameters, SteadyTime deadline) {
+    for (const auto& [name, value] : parameters) {
+        if (auto written = set(name, value); !written) {
+            takeBack(parameters, written.error());
+            return tl::unexpected(written.error());
+        }
+    }
+    const AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
+    if (auto started = start(); !started) {
+        takeBack(parameters, started.error());
+        return tl::unexpected(started.error());
+    }
+    impl_->own.reset();  // waited for here
+    return orHalt(impl_->awaitOutcome(awaited, deadline));
+}
+
+Answer<skill::ValueMap> SkillHandle::runWith(const skill::StartRequest& request,
+                                             SteadyTime deadline) {
+    METIER_TRY(impl_->refresh());
+    auto named = request;
+    if (named.execution_id.empty() && impl_->tellsExecutions()) {
+        named.execution_id = newExecutionId();
+    }
+    AwaitedExecution awaited{impl_->log->mark(), impl_->boot};
+    auto started = startWith(named);
+    if (started) {
+        impl_->own.reset();  // waited for here
+    }
+    const bool unsure = !started && started.error().delivery == Delivery::unknown;
+    if (!started && started.error().code == Errc::already_exists) {
+        started.error().code = Errc::execution_lost;  // it began, and nothing began now
+    }
+    if (!started && !(unsure && impl_->tellsExecutions())) {
+        return tl::unexpected(started.error());
+    }
+    awaited.id = started ? *started : named.execution_id;
+    if (unsure || !request.execution_id.empty()) {  // it may have been started, or be over, before
+        auto record = impl_->learn(*awaited.id, awaited.boot, deadline);
+        if (unsure && !record && record.error().code == Errc::not_found) {
+            record.error().message = started.error().message + "; it was not: nothing was started";
+            record.error().code = Errc::connection_lost;
+            record.error().delivery = Delivery::not_sent;
+        }
+        if (!record) {
+            return tl::unexpected(record.error());
+        }
+        if (isOver(record->state)) {
+            return impl_->outcomeOf(*record);
+        }
+    }
+    return orHalt(impl_->awaitOutcome(awaited, deadline));
+}
+
+Answer<skill::ValueMap> SkillHandle::orHalt(Answer<skill::ValueMap> outcome) {
+    if (outcome || outcome.error().code != Errc::timeout) {
+        return outcome;
+    }
+    // The work has lost its client's interest: it must not go on alone.
+    const auto halted = halt();
+    if (halted) {
+        return outcome;
+    }
+    if (isForLackOfConnection(halted.error())) {
+        return tl::unexpected(impl_->unknownOutcome(
+            "it was not done in its time, and Halt did not reach it: " + halted.error().message));
+    }
+    outcome.error().message += "; " + halted.error().message;
+    return outcome;
+}
+
+}  // namespace metier::client

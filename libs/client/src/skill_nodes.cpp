@@ -1,0 +1,196 @@
+#include "skill_nodes.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "metier/opcua/text.hpp"
+#include "metier/opcua_skill/values.hpp"
+#include "questions.hpp"
+
+namespace metier::client {
+namespace {
+
+using opcua::Answer;
+using opcua::AttributeId;
+using opcua::Client;
+using opcua::NodeClass;
+using opcua::NodeId;
+using opcua::ReferenceDescription;
+using skill::Field;
+using skill::Place;
+
+constexpr std::array kMethods{skill::Method::start, skill::Method::suspend, skill::Method::resume,
+                              skill::Method::halt, skill::Method::reset};
+
+constexpr std::int32_t kScalar = -1;
+
+const ReferenceDescription* findNamed(const std::vector<ReferenceDescription>& references,
+                                      std::string_view name) {
+    const auto found = std::find_if(references.begin(), references.end(),
+                                    [&](const auto& r) { return r.browse_name.name == name; });
+    return found == references.end() ? nullptr : &*found;
+}
+
+Answer<std::vector<ReferenceDescription>> childrenOf(Questions& questions, const NodeId& node) {
+    return questions.browse({.node = node, .node_classes = {}});
+}
+
+/// What the attributes and properties of a field's Variable say.
+class FieldReader {
+public:
+    FieldReader(Questions& questions, Place place) : questions_(questions), place_(place) {}
+
+    /// All fields directly below `folder`; none of types that skills do not have.
+    Answer<std::vector<FieldNode>> read(const NodeId& folder) {
+        METIER_ASSIGN(auto variables,
+                      questions_.browse({.node = folder, .node_classes = {NodeClass::variable}}));
+        std::vector<FieldNode> fields;
+        for (const auto& variable : variables) {
+            METIER_ASSIGN(auto field, readOne(variable));
+            if (field.field.type != skill::ValueType::null) {
+                fields.push_back(std::move(field));
+            }
+        }
+        return fields;
+    }
+
+private:
+    Answer<FieldNode> readOne(const ReferenceDescription& variable) {
+        const auto& node = variable.target;
+        METIER_ASSIGN(auto attributes, questions_.readMany({{node, AttributeId::value},
+                                                            {node, AttributeId::description},
+                                                            {node, AttributeId::data_type},
+                                                            {node, AttributeId::value_rank}}));
+        FieldNode result{{.name = opcua::sanitise(variable.browse_name.name), .place = place_},
+                         node};
+        auto& field = result.field;
+        const auto& value = attributes[0].value;
+        field.type = typeOf(value, attributes[2].value, attributes[3].value);
+        field.default_value = opcua_skill::fromOpcua(value, field.type).value_or(skill::Value{});
+        if (const auto text = attributes[1].value.as<opcua::LocalizedText>()) {
+            field.description = opcua::sanitise(text->text);
+        }
+        METIER_TRY(readProperties(node, field));
+        return result;
+    }
+
+    static skill::ValueType typeOf(const opcua::Value& value, const opcua::Value& data_type,
+                                   const opcua::Value& rank) {
+        const auto type = data_type.as<NodeId>();
+        const auto declared_rank = rank.as<std::int32_t>();
+        // "Any rank" (-2) and "scalar or one dimension" (-3) are taken as scalar.
+        const auto declared = type && declared_rank
+                                  ? opcua_skill::valueTypeOf(opcua_skill::VariableShape{
+                                        *type, std::max(*declared_rank, kScalar)})
+                                  : skill::ValueType::null;
+        return declared != skill::ValueType::null ? declared : opcua_skill::valueTypeOf(value);
+    }
+
+    Answer<> readProperties(const NodeId& variable, Field& field) {
+        METIER_ASSIGN(const auto children, childrenOf(questions_, variable));
+        if (const auto* range = findNamed(children, "EURange")) {
+            const auto value = questions_.read(range->target);
+            if (const auto read = value ? value->as<opcua::Range>() : Result<opcua::Range>{}) {
+                field.range = skill::Range{read->low, read->high};
+            }
+        }
+        if (const auto* unit = findNamed(children, "EngineeringUnits")) {
+            const auto value = questions_.read(unit->target);
+            const auto read =
+                value ? value->as<opcua::EuInformation>() : Result<opcua::EuInformation>{};
+            field.unit = read ? unitOf(*read) : skill::kOne;
+        }
+        return {};
+    }
+
+    static skill::Unit unitOf(const opcua::EuInformation& unit) {
+        constexpr std::array kKnown{skill::kMetre,
+                                    skill::kRadian,
+                                    skill::kSecond,
+                                    skill::kNewton,
+                                    skill::kNewtonMetre,
+                                    skill::kMetrePerSecond,
+                                    skill::kRadianPerSecond,
+                                    skill::kMetrePerSecondSquared,
+                                    skill::kRadianPerSecondSquared,
+                                    skill::kKilogram};
+        const auto symbol = opcua_skill::symbolOf(unit);
+        const auto found = std::find_if(kKnown.begin(), kKnown.end(),
+                                        [&](const auto& known) { return known.symbol == symbol; });
+        return found == kKnown.end() ? skill::kOne : *found;
+    }
+
+    Questions& questions_;
+    Place place_;
+};
+
+Answer<> appendFields(Questions& questions, const ReferenceDescription* folder, Place place,
+                      std::vector<FieldNode>& fields) {
+    if (folder == nullptr) {
+        return {};
+    }
+    METIER_ASSIGN(auto read, FieldReader(questions, place).read(folder->target));
+    std::move(read.begin(), read.end(), std::back_inserter(fields));
+    return {};
+}
+
+tl::unexpected<opcua::Failure> lacks(const SkillAddress& address, std::string_view what) {
+    return opcua::failed(opcua::status::kBadNoMatch, address.name + " has no " + std::string(what));
+}
+
+Answer<> findProgramNodes(Client& client, const SkillAddress& address,
+                          const std::vector<ReferenceDescription>& children, SkillNodes& nodes) {
+    for (const auto method : kMethods) {
+        const auto* found = findNamed(children, toString(method));
+        if (found == nullptr) {
+            return lacks(address, toString(method));
+        }
+        nodes.methods.at(static_cast<std::size_t>(method)) = found->target;
+    }
+    const auto number = client.translate(address.node, {{0, "CurrentState"}, {0, "Number"}});
+    if (!number) {
+        return lacks(address, "CurrentState/Number");
+    }
+    nodes.state_number = *number;
+    const std::array<std::pair<std::string_view, NodeId*>, 6> optional{
+        {{"ReasonText", &nodes.reason_text},
+         {"ExecutionId", &nodes.execution_id},
+         {"StartWith", &nodes.start_with},
+         {"Check", &nodes.check},
+         {"GetExecution", &nodes.get_execution},
+         {"ExecutionRecords", &nodes.records}}};
+    for (const auto& [name, node] : optional) {
+        if (const auto* found = findNamed(children, name)) {
+            *node = found->target;
+        }
+    }
+    nodes.methods.at(static_cast<std::size_t>(skill::Method::start_with)) = nodes.start_with;
+    return {};
+}
+
+}  // namespace
+
+Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
+    Questions questions(client);
+    METIER_ASSIGN(const auto children, childrenOf(questions, address.node));
+    SkillNodes nodes;
+    METIER_TRY(findProgramNodes(client, address, children, nodes));
+    if (const auto* suspendable = findNamed(children, "Suspendable")) {
+        const auto value = questions.read(suspendable->target);
+        nodes.suspendable = (value ? value->as<bool>() : Result<bool>(true)).value_or(true);
+    }
+    struct Folder {
+        std::string_view name;
+        Place place;
+        std::vector<FieldNode>& fields;
+    };
+    for (const auto& folder : {Folder{"ParameterSet", Place::parameter_set, nodes.parameters},
+                               Folder{"Options", Place::options, nodes.parameters},
+                               Folder{"FinalResultData", Place::final_result, nodes.results}}) {
+        METIER_TRY(
+            appendFields(questions, findNamed(children, folder.name), folder.place, folder.fields));
+    }
+    return nodes;
+}
+
+}  // namespace metier::client

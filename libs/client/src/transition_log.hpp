@@ -1,0 +1,76 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/skill/program_observer.hpp"
+
+namespace metier::client {
+
+/// The transitions of one skill as they arrive, numbered from 0; the newest thousand are kept.
+///
+/// Threading: add...() on the client's thread, the rest on any.
+class TransitionLog {
+public:
+    /// Callbacks for what arrives; each may be empty. On the client's thread.
+    struct Watch {
+        std::function<void(const skill::TransitionEvent&)> on_transition{};
+        std::function<void()> on_missed{};  ///< transitions may have been missed
+        std::function<void(const std::string& why)> on_ended{};  ///< nothing will come any more
+    };
+
+    void add(const opcua::EventNotice& notice);
+    void watch(Watch watch);
+
+    /// A point in what arrives.
+    struct Mark {
+        std::uint64_t number = 0;  ///< of the next transition
+        std::uint64_t doubts = 0;  ///< times that transitions may have been missed before
+    };
+    Mark mark() const;
+
+    struct Found {
+        std::uint64_t number = 0;
+        skill::TransitionEvent event;
+    };
+    /// The first transition from `from` on that `wanted` accepts. Nothing, if transitions may have
+    /// been missed since: the server lost some, or the connection was away and is back. Who waits
+    /// then looks what has become of the skill, and waits again from the present doubts.
+    /// Errors: timeout at the deadline; connection_lost when nothing will come any more.
+    opcua::Answer<std::optional<Found>> await(
+        Mark from, SteadyTime deadline,
+        const std::function<bool(const skill::TransitionEvent&)>& wanted);
+
+private:
+    std::optional<Found> findFrom(
+        std::uint64_t from, const std::function<bool(const skill::TransitionEvent&)>& wanted) const;
+    void append(skill::TransitionEvent event);
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<skill::TransitionEvent> events_;
+    std::uint64_t first_number_ = 0;
+    std::uint64_t doubts_ = 0;
+    std::optional<opcua::StatusCode> ended_;
+    Watch watch_;
+};
+
+/// Has `on_stopping` called when a skill begins to come to rest, on the client's thread.
+/// Errors: the server's, also if it raises no such events.
+opcua::Answer<opcua::Subscription> watchStopping(
+    opcua::Client& client, const opcua::NodeId& skill,
+    std::function<void(const skill::StoppingEvent&)> on_stopping);
+
+/// What to ask of an event so that TransitionLog understands it.
+/// \param device_namespace index of the Device namespace on this server
+opcua::EventFilter transitionFilter(std::uint16_t device_namespace);
+
+}  // namespace metier::client

@@ -1,0 +1,97 @@
+// Events of a used skill that do not arrive: what became of it is asked, so that nothing waits.
+#include <gmock/gmock.h>
+
+#include <optional>
+
+#include "bench_server.hpp"
+#include "remote_skill/connection.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/skill/testing/manual_executor.hpp"
+#include "remote_skill/remote_child.hpp"
+
+namespace metier::client {
+namespace {
+
+using composition::ChildEnd;
+using skill::State;
+
+const skill::Caller kPanel{"session", "panel", "user"};
+
+class Listener final : public composition::ChildListener {
+public:
+    void onReset(const Result<void>& /*outcome*/) override {}
+    void onSuspended() override {}
+    void onResumed() override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
+    void onEnd(ChildEnd told) override { end = std::move(told); }
+
+    std::optional<ChildEnd> end;
+};
+
+class LostEvents : public ::testing::Test {
+protected:
+    LostEvents() {
+        skill::SkillFunctions functions;
+        functions.start = [this](const skill::ValueMap& /*parameters*/,
+                                 const skill::Execution& execution) { execution_ = execution; };
+        program_ = &bench_.addSkill(system_tests::benchDescription("MoveSkill"), functions);
+        bench_.serve();
+        connection_.emplace(RemoteServerOptions{.url = bench_.url(), .name = "other"},
+                            std::shared_ptr(system_tests::connectAs(bench_.url(), "component")));
+        link_ = std::make_shared<ChildLink>(executor_);
+        child_.emplace(*connection_, link_, "MoveSkill of other", "here.Test");
+        const auto address = client::findSkill(connection_->client(), "MoveSkill").value();
+        const auto opened = connection_->open(address, link_).value();
+        child_->adopt(opened, opened->skill.now().value());
+        child_->begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
+                      listener_);
+        EXPECT_TRUE(until([this] { return child_->state() == State::running; }));
+    }
+    ~LostEvents() override {
+        child_.reset();
+        connection_.reset();
+    }
+    static opcua::ServerLimits shortQueues() {
+        opcua::ServerLimits limits;
+        limits.event_queue = 3;
+        return limits;
+    }
+    bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
+
+    skill::Execution execution_;  // of the server's thread
+    system_tests::BenchServer bench_{{.limits = shortQueues()}};
+    skill::Program* program_ = nullptr;
+    std::shared_ptr<skill::testing::ManualExecutor> executor_ =
+        std::make_shared<skill::testing::ManualExecutor>();
+    std::shared_ptr<ChildLink> link_;
+    std::optional<Connection> connection_;
+    std::optional<RemoteChild> child_;
+    Listener listener_;
+};
+
+TEST_F(LostEvents, OfAnEndThatTheServersQueueHasDroppedDoNotHideIt) {
+    bench_.onServer([this] {
+        execution_.fail(skill::Reason::error, "axis 2 is hot");
+        bench_.server().post([this] {
+            for (int i = 0; i < 10; ++i) {  // more than the queue keeps
+                EXPECT_TRUE(program_->reset(kPanel));
+                EXPECT_TRUE(program_->halt(kPanel));
+            }
+        });
+    });
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->text, "axis 2 is hot");
+}
+
+TEST_F(LostEvents, ThatHaveEndedAreTheLossOfTheSkillUntilTheComponentHasConnectedAgain) {
+    connection_->client().close();  // no loss of a connection: nobody else says that it is away
+    ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
+    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_THAT(listener_.end->text, ::testing::HasSubstr("its events have ended"));
+    EXPECT_TRUE(until([this] { return child_->available().has_value(); }));
+}
+
+}  // namespace
+}  // namespace metier::client

@@ -1,0 +1,132 @@
+#include "served_arm.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <future>
+
+#include "metier/motion/frame.hpp"
+#include "metier/opcua_skill/live_figures.hpp"
+#include "metier/opcua_skill/motion_device_system.hpp"
+#include "metier/robot_skills/arm_skills.hpp"
+
+namespace metier::client {
+namespace {
+
+using namespace std::chrono_literals;
+
+motion::RobotModel loadModel() {
+    return motion::RobotModel::load(std::filesystem::path(METIER_MODELS) / "ur5.toml").value();
+}
+
+joint_simulator::JointSimulatorOptions simulatorOptions(const motion::RobotModel& model) {
+    joint_simulator::JointSimulatorOptions options;
+    options.name = "ur5";
+    for (const auto& joint : model.chain().joints) {
+        const auto& limits = joint.limits;
+        options.axis_names.push_back(joint.name);
+        options.limits.push_back(
+            {limits.lower, limits.upper, limits.velocity, limits.acceleration});
+    }
+    options.start_position.assign(model.home().begin(), model.home().end());
+    options.cycle = 8ms;
+    return options;
+}
+
+opcua::ThreeDFrame frameOf(const motion::Pose& pose) {
+    const auto frame = motion::toFrame(pose);
+    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
+}
+
+opcua_skill::KinematicsData dataOf(const motion::RobotModel& model, double fastest) {
+    const auto& chain = model.chain();
+    opcua_skill::KinematicsData data;
+    data.base_from_first_joint = frameOf(chain.joints.front().parent_from_joint);
+    data.last_joint_from_flange = frameOf(chain.last_from_flange);
+    for (const auto& joint : chain.joints) {
+        data.joint_frames.push_back(data.joint_frames.empty() ? opcua::ThreeDFrame{}
+                                                              : frameOf(joint.parent_from_joint));
+        data.joint_axes.push_back({joint.axis.x(), joint.axis.y(), joint.axis.z()});
+        data.min_joint_position.push_back(joint.limits.lower);
+        data.max_joint_position.push_back(joint.limits.upper);
+        data.max_joint_velocity.push_back(joint.limits.velocity * fastest);
+        data.max_joint_acceleration.push_back(joint.limits.acceleration);
+        data.max_joint_jerk.push_back(joint.limits.jerk);
+    }
+    data.max_cartesian_velocity = {1, 2};
+    data.max_cartesian_acceleration = {2, 5};
+    data.max_cartesian_jerk = {50, 100};
+    data.cycle_time = model.cycleTime();
+    data.tool_frames = {"flange"};
+    return data;
+}
+
+opcua_skill::KinematicsState stateOf(const device::Arm& arm) {
+    const auto state = arm.state();
+    opcua_skill::KinematicsState result;
+    result.joint_position.assign(state.position.begin(), state.position.end());
+    result.safety_state = state.safety == device::SafetyState::normal ? 1 : 3;
+    result.missed_cycles = state.missed_cycles;
+    return result;
+}
+
+}  // namespace
+
+ServedArm::ServedArm(std::uint16_t port, double fastest) : model_(loadModel()) {
+    arm_ = joint_simulator::JointSimulator::create(simulatorOptions(model_)).value();
+    opcua::ServerOptions options;
+    options.port = port;
+    options.nodesets = {"device", "robotics", "metier", "universal_robots"};
+    server_ = opcua::Server::create(options).value();
+    skills_ = opcua_skill::SkillServer::create(*server_, clock_).value();
+    const auto system = opcua_skill::findMotionDeviceSystem(server_->nodes()).value();
+    auto skills = robot_skills::makeArmSkills(*arm_, model_, clock_).value();
+    const auto node = server_->nodes().browse(system.skills).value().front().target;
+    program_ = skills_->bind(node, std::move(skills.position_stream)).value();
+    program_->attach(*this);
+    const auto published = opcua_skill::publishKinematics(
+        server_->nodes(), system, dataOf(model_, fastest), [this] { return stateOf(*arm_); });
+    EXPECT_TRUE(published);
+    EXPECT_TRUE(opcua_skill::publishArmFigures(
+        server_->nodes(), system.kinematics,
+        {.standstill = [this] { return std::optional(arm_->state().standstill); }}));
+    drive_ = std::make_unique<joint_simulator::SimulatorDrive>(*arm_);
+    const auto started = server_->start();
+    EXPECT_TRUE(started) << (started ? "" : started.error().message);
+}
+
+ServedArm::~ServedArm() {
+    watch_.reset();
+    skills_.reset();
+}
+
+void ServedArm::watchDevice() {
+    watch_.emplace(*arm_, skills_->executor(), std::vector<skill::Program*>{program_});
+}
+
+std::shared_ptr<void> ServedArm::keepBusy() {
+    // Shared by the server's thread, which waits for its end.
+    const auto ends = std::make_shared<std::promise<void>>();
+    const auto begun = std::make_shared<std::promise<void>>();
+    server_->post([begun, ended = std::make_shared<std::future<void>>(ends->get_future())] {
+        begun->set_value();
+        ended->wait_for(10s);
+    });
+    begun->get_future().wait();
+    return {nullptr, [ends](void*) { ends->set_value(); }};
+}
+
+void ServedArm::onTransition(const skill::TransitionEvent& event) {
+    {
+        const std::lock_guard lock(mutex_);
+        running_ = event.to == skill::State::running;
+    }
+    changed_.notify_all();
+}
+
+bool ServedArm::awaitRunning(bool wanted) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, 10s, [&] { return running_ == wanted; });
+}
+
+}  // namespace metier::client

@@ -1,0 +1,139 @@
+#include "metier/composition/synchronized_move_skill.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "synchronized/synchronized_body.hpp"
+#include "synchronized/synchronized_fields.hpp"
+
+namespace metier::composition {
+
+using skill::State;
+
+namespace {
+
+std::vector<std::string> namesOf(const std::vector<Arm>& arms) {
+    std::vector<std::string> names;
+    for (const auto& arm : arms) {
+        names.push_back(arm.name);
+    }
+    return names;
+}
+
+skill::SkillDescription describeMove() {
+    return {.name = "SynchronizedMoveSkill",
+            .type = "SynchronizedMoveSkillType",
+            .description = "Moves several arms so that they start and arrive together",
+            .on_owner_loss = skill::OwnerLossAction::halt};
+}
+
+Result<void> checkCounts(const Parameters& parameters) {
+    const auto arms = parameters.arms.size();
+    if (parameters.target_poses.size() != arms) {
+        return fail(Errc::invalid_argument, fmt::format("TargetPoses: {} poses for {} arms",
+                                                        parameters.target_poses.size(), arms));
+    }
+    if (!parameters.tool_frames.empty() && parameters.tool_frames.size() != arms) {
+        return fail(Errc::invalid_argument, fmt::format("ToolFrames: {} names for {} arms",
+                                                        parameters.tool_frames.size(), arms));
+    }
+    return {};
+}
+
+Result<void> checkReachable(const Arm& arm) {
+    for (const auto* move : {arm.pose_move.get(), arm.joint_move.get()}) {
+        if (const auto available = move->available(); !available) {
+            return fail(available.error().code, fmt::format("{} cannot be reached: {}", arm.name,
+                                                            available.error().message));
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+/// A Reset that nobody waits for: what it leads to shows at the next Start.
+class SynchronizedMoveSkill::Unheard final : public composition::ChildListener {
+public:
+    void onReset(const Result<void>& /*outcome*/) override {}
+    void onSuspended() override {}
+    void onResumed() override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
+    void onEnd(composition::ChildEnd /*end*/) override {}
+};
+
+SynchronizedMoveSkill::SynchronizedMoveSkill(std::vector<Arm> arms, Options options)
+    : TypedSkill(describeMove(), parameterFields(namesOf(arms)), resultFields()),
+      arms_(std::move(arms)),
+      options_(std::move(options)),
+      unheard_(std::make_unique<Unheard>()) {}
+
+SynchronizedMoveSkill::~SynchronizedMoveSkill() = default;
+
+Result<Arm*> SynchronizedMoveSkill::find(const std::string& name) {
+    const auto found =
+        std::find_if(arms_.begin(), arms_.end(), [&](const Arm& arm) { return arm.name == name; });
+    if (found == arms_.end()) {
+        return fail(Errc::invalid_argument, fmt::format("Arms: there is no \"{}\"; there are: {}",
+                                                        name, fmt::join(namesOf(arms_), ", ")));
+    }
+    return &*found;
+}
+
+Result<std::unique_ptr<skill::Body>> SynchronizedMoveSkill::plan(const Parameters& parameters) {
+    if (auto counted = checkCounts(parameters); !counted) {
+        return fail(std::move(counted.error()));
+    }
+    SynchronizedBody::Setup setup{options_, {}, parameters.duration};
+    std::set<std::string> taken;
+    for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
+        const auto arm = find(parameters.arms[i]);
+        if (!arm) {
+            return fail(arm.error());
+        }
+        if (!taken.insert(parameters.arms[i]).second) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("Arms: \"{}\" is there twice", parameters.arms[i]));
+        }
+        if (auto reachable = checkReachable(**arm); !reachable) {
+            return fail(std::move(reachable.error()));
+        }
+        setup.arms.push_back(
+            {**arm, parameters.target_poses[i],
+             parameters.tool_frames.empty() ? std::string() : parameters.tool_frames[i]});
+    }
+    return std::make_unique<SynchronizedBody>(std::move(setup));
+}
+
+Result<void> SynchronizedMoveSkill::reset() {
+    for (auto& arm : arms_) {
+        auto& move = *arm.joint_move;
+        if (!arm.mayReset() || !move.available() || move.state() != State::halted) {
+            continue;
+        }
+        if (const auto asked = move.reset(*unheard_); !asked) {
+            return fail(asked.error().code,
+                        fmt::format("{} refused Reset: {}", arm.name, asked.error().message));
+        }
+    }
+    return {};
+}
+
+std::string unfitReason(const skill::SkillDescription& joint_move) {
+    for (const auto* name : {"TargetJointPosition", "ToolFrame", "Duration", "StartTime"}) {
+        const bool known =
+            std::any_of(joint_move.parameters.begin(), joint_move.parameters.end(),
+                        [&](const skill::Field& field) { return field.name == name; });
+        if (!known) {
+            return fmt::format("{} has no parameter {}", joint_move.name, name);
+        }
+    }
+    return "";
+}
+
+}  // namespace metier::composition

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+
+namespace metier::link {
+
+/// Where a child's standard error goes.
+enum class ErrorOutput { inherited, with_output };
+
+/// Process group of a child. A terminal sends Ctrl-C, Ctrl-Z and its own end to the owner's group.
+enum class Group { owners, own };
+
+/// Start of a child that differs from the usual.
+struct ChildOptions {
+    ErrorOutput error_output = ErrorOutput::inherited;
+    Group group = Group::owners;
+    /// Sent by the kernel when the owner dies. With another signal than SIGKILL the program ends
+    /// by itself, and it is up to the program that it does so in time.
+    int on_owners_death = SIGKILL;
+};
+
+/// A program that runs as a child and does not outlive its owner: it is ended with this object,
+/// and the kernel signals it when the owner dies, even by kill -9.
+///
+/// Threading: one thread, which must live as long as the child: for the kernel it is the owner.
+class ChildProcess {
+public:
+    /// \param command program (a path, or a name found in PATH) and its arguments, not empty
+    /// Errors: not_found if the program cannot be started.
+    static Result<ChildProcess> start(const std::vector<std::string>& command,
+                                      const ChildOptions& options);
+    static Result<ChildProcess> start(const std::vector<std::string>& command,
+                                      ErrorOutput error_output = ErrorOutput::inherited) {
+        return start(command, ChildOptions{.error_output = error_output});
+    }
+
+    ChildProcess(ChildProcess&& other) noexcept;
+    ChildProcess& operator=(ChildProcess&& other) noexcept;
+    /// Ends the child: SIGTERM, and SIGKILL after 2 s.
+    ~ChildProcess();
+
+    pid_t pid() const noexcept { return pid_; }
+    /// File descriptor of the child's standard output, for poll(); -1 once it is closed.
+    int outputDescriptor() const noexcept { return output_; }
+    /// File descriptor that becomes readable when the child ends, for poll().
+    int endDescriptor() const noexcept { return handle_; }
+
+    /// The next line of the child's standard output, without its newline.
+    /// Errors: timeout at the deadline, connection_lost when the child closed its output.
+    Result<std::string> readLine(SteadyTime deadline);
+
+    /// How the child ended; nothing if it still runs at the deadline.
+    /// \return its exit status, or 128 + the number of the signal that ended it
+    std::optional<int> waitUntil(SteadyTime deadline);
+    bool running() { return !waitUntil(SteadyTime{}).has_value(); }
+
+    /// Sends a signal, such as SIGTERM; nothing if it ended already.
+    void signal(int number) noexcept;
+
+private:
+    ChildProcess(pid_t pid, int output, int handle) : pid_(pid), output_(output), handle_(handle) {}
+    void release() noexcept;
+    Result<void> readMore(SteadyTime deadline);
+
+    pid_t pid_;
+    int output_;
+    int handle_;  // pidfd: becomes readable when the child ends
+    std::string buffered_;
+    std::optional<int> exit_status_;
+};
+
+}  // namespace metier::link

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <chrono>
+
+namespace metier::link {
+
+/// Pauses before a program that ended by itself is started again: 0.5 s at first, doubled up to
+/// 30 s by each further end. A program that ran for a minute begins anew with the shortest.
+///
+/// Threading: one thread.
+class RestartPause {
+public:
+    static constexpr std::chrono::milliseconds kShortest{500};
+    static constexpr std::chrono::milliseconds kLongest{30'000};
+    static constexpr std::chrono::seconds kProven{60};
+
+    /// \param ran_for from the program's start to its end
+    /// \return how long to wait before the next start
+    std::chrono::milliseconds next(std::chrono::nanoseconds ran_for) noexcept;
+
+private:
+    std::chrono::milliseconds next_ = kShortest;
+};
+
+}  // namespace metier::link

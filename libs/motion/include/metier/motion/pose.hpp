@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace metier::motion {
+
+/// A rigid transform, named target_from_source: maps coordinates of the source frame into the
+/// target frame. Neighbours match: base_from_tool = base_from_flange * flange_from_tool.
+struct Pose {
+    Eigen::Vector3d translation = Eigen::Vector3d::Zero();         ///< [m]
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit quaternion
+
+    static Pose identity() { return {}; }
+    /// source_from_target.
+    Pose inverse() const;
+};
+
+/// a_from_c = a_from_b * b_from_c.
+Pose operator*(const Pose& a_from_b, const Pose& b_from_c);
+
+/// The point, given in source coordinates, in target coordinates [m].
+Eigen::Vector3d operator*(const Pose& target_from_source, const Eigen::Vector3d& point);
+
+/// Distance of the two origins [m].
+double distanceBetween(const Pose& first, const Pose& second);
+
+}  // namespace metier::motion

@@ -1,0 +1,36 @@
+#include "metier/motion/frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace metier::motion {
+
+namespace {
+/// Below this cosine of b, a and c cannot be told apart: the matrix entries are rounding noise.
+constexpr double kGimbalLock = 1e-9;
+}  // namespace
+
+Pose toPose(const Frame& frame) {
+    using Eigen::AngleAxisd;
+    using Eigen::Vector3d;
+    const Eigen::Quaterniond rotation = AngleAxisd(frame.c, Vector3d::UnitZ()) *
+                                        AngleAxisd(frame.b, Vector3d::UnitY()) *
+                                        AngleAxisd(frame.a, Vector3d::UnitX());
+    return {Vector3d(frame.x, frame.y, frame.z), rotation.normalized()};
+}
+
+Frame toFrame(const Pose& pose) {
+    const Eigen::Matrix3d r = pose.rotation.normalized().toRotationMatrix();
+    Frame frame{pose.translation.x(), pose.translation.y(), pose.translation.z()};
+    const double cos_b = std::hypot(r(0, 0), r(1, 0));
+    frame.b = std::atan2(-r(2, 0), cos_b);
+    if (cos_b > kGimbalLock) {
+        frame.a = std::atan2(r(2, 1), r(2, 2));
+        frame.c = std::atan2(r(1, 0), r(0, 0));
+    } else {
+        frame.c = std::atan2(-r(0, 1), r(1, 1));
+    }
+    return frame;
+}
+
+}  // namespace metier::motion

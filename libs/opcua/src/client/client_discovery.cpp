@@ -1,0 +1,194 @@
+// Services that a server offers before there is a session.
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "client/client_core.hpp"
+#include "common/convert.hpp"
+#include "metier/opcua/discovery.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+EndpointDescription fromNative(const UA_EndpointDescription& native) {
+    EndpointDescription endpoint;
+    endpoint.url = textFrom(native.endpointUrl);
+    endpoint.security_mode = static_cast<EndpointDescription::SecurityMode>(native.securityMode);
+    endpoint.security_policy_uri = textFrom(native.securityPolicyUri);
+    endpoint.security_level = native.securityLevel;
+    for (std::size_t i = 0; i < native.userIdentityTokensSize; ++i) {
+        endpoint.tokens.push_back(
+            static_cast<EndpointDescription::TokenType>(native.userIdentityTokens[i].tokenType));
+    }
+    return endpoint;
+}
+
+ServerDescription fromNative(const UA_ApplicationDescription& native) {
+    using opcua::fromNative;
+    ServerDescription server{textFrom(native.applicationUri),
+                             textFrom(native.productUri),
+                             fromNative(native.applicationName),
+                             static_cast<ApplicationType>(native.applicationType),
+                             {}};
+    for (std::size_t i = 0; i < native.discoveryUrlsSize; ++i) {
+        server.discovery_urls.push_back(textFrom(native.discoveryUrls[i]));
+    }
+    return server;
+}
+
+ClientOptions optionsFor(std::chrono::milliseconds timeout) {
+    ClientOptions options;
+    options.connect_timeout = timeout;
+    return options;
+}
+
+/// One question that needs no session, on a connection of its own.
+template <typename Request, typename T>
+class Question {
+public:
+    using Response = typename Service<Request>::Response;
+    using Fill = std::function<void(Request&)>;
+    using Convert = std::function<Answer<T>(const Response&)>;
+
+    Question(std::string url, ClientOptions options, Fill fill, Convert convert)
+        : url_(std::move(url)),
+          deadline_(Deadline::in(options.connect_timeout)),
+          fill_(std::move(fill)),
+          convert_(std::move(convert)),
+          core_(std::move(options), ClientPurpose::discovery) {}
+
+    Answer<T> ask() {
+        core_.whenOpen([this] { send(); });
+        const auto connected = core_.connect(url_);
+        core_.close();
+        return connected ? std::move(*answer_) : Answer<T>(tl::unexpected(connected.error()));
+    }
+
+private:
+    void send() {
+        Owned<Request> request(UA_TYPES[Service<Request>::kRequest]);
+        fill_(*request);
+        core_.send(*request, {"asking " + url_, deadline_},
+                   [this](Answer<Response*> response) { take(std::move(response)); });
+    }
+
+    void take(Answer<Response*> response) {
+        if (response) {
+            answer_ = convert_(**response);
+        } else if (response.error().code == Errc::connection_lost) {
+            return;  // the stack opens another connection, or says why it does not
+        } else {
+            answer_ = tl::unexpected(std::move(response.error()));
+        }
+        core_.settle({});
+    }
+
+    const std::string url_;
+    const Deadline deadline_;
+    const Fill fill_;
+    const Convert convert_;
+    std::optional<Answer<T>> answer_;  // the client's thread, until connect() has returned
+    ClientCore core_;
+};
+
+template <typename T, typename Native>
+std::vector<T> listFrom(const Native* first, std::size_t count) {
+    std::vector<T> list;
+    for (std::size_t i = 0; i < count; ++i) {
+        list.push_back(fromNative(first[i]));
+    }
+    return list;
+}
+
+template <typename Native>
+Native* arrayOf(std::size_t count, const UA_DataType& type) {
+    auto* array = static_cast<Native*>(UA_Array_new(count, &type));
+    checkAllocated(array == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
+    return array;
+}
+
+void fill(const std::vector<std::string>& texts, UA_String*& array, std::size_t& size) {
+    array = arrayOf<UA_String>(texts.size(), UA_TYPES[UA_TYPES_STRING]);
+    size = texts.size();
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        toNative(texts[i], array[i]);
+    }
+}
+
+void fill(const ServerRegistration& registration, UA_RegisteredServer& target) {
+    toNative(registration.application_uri, target.serverUri);
+    toNative(registration.product_uri, target.productUri);
+    target.serverNames = arrayOf<UA_LocalizedText>(1, UA_TYPES[UA_TYPES_LOCALIZEDTEXT]);
+    target.serverNamesSize = 1;
+    toNative(LocalizedText{"", registration.name}, target.serverNames[0]);
+    target.serverType = UA_APPLICATIONTYPE_SERVER;
+    fill(registration.discovery_urls, target.discoveryUrls, target.discoveryUrlsSize);
+    target.isOnline = registration.presence == ServerRegistration::Presence::online;
+}
+
+void fillMdns(const ServerRegistration& registration, UA_RegisterServer2Request& request) {
+    auto* mdns = UA_MdnsDiscoveryConfiguration_new();
+    checkAllocated(mdns == nullptr ? UA_STATUSCODE_BADOUTOFMEMORY : UA_STATUSCODE_GOOD);
+    request.discoveryConfiguration =
+        arrayOf<UA_ExtensionObject>(1, UA_TYPES[UA_TYPES_EXTENSIONOBJECT]);
+    request.discoveryConfigurationSize = 1;
+    UA_ExtensionObject_setValue(request.discoveryConfiguration, mdns,
+                                &UA_TYPES[UA_TYPES_MDNSDISCOVERYCONFIGURATION]);
+    toNative(registration.name, mdns->mdnsServerName);
+    fill(registration.capabilities, mdns->serverCapabilities, mdns->serverCapabilitiesSize);
+}
+
+/// Tells it by one of the two services, which both answer no more than that it went well.
+template <typename Request>
+Answer<> tell(const std::string& url, const ClientOptions& options,
+              std::function<void(Request&)> prepare) {
+    Question<Request, void> question(url, options, std::move(prepare),
+                                     [](const auto& /*response*/) { return Answer<>(); });
+    return question.ask();
+}
+
+}  // namespace
+
+Answer<std::vector<EndpointDescription>> getEndpoints(const std::string& url,
+                                                      std::chrono::milliseconds timeout) {
+    using List = std::vector<EndpointDescription>;
+    Question<UA_GetEndpointsRequest, List> question(
+        url, optionsFor(timeout), [&url](auto& request) { toNative(url, request.endpointUrl); },
+        [](const UA_GetEndpointsResponse& response) {
+            return listFrom<EndpointDescription>(response.endpoints, response.endpointsSize);
+        });
+    return question.ask();
+}
+
+Answer<std::vector<ServerDescription>> findServers(const std::string& url,
+                                                   std::chrono::milliseconds timeout) {
+    using List = std::vector<ServerDescription>;
+    // No EndpointUrl: a discovery server on open62541 1.4 would tell it as the address of all that
+    // registered there.
+    Question<UA_FindServersRequest, List> question(
+        url, optionsFor(timeout), [](auto& /*request*/) {},
+        [](const UA_FindServersResponse& response) {
+            return listFrom<ServerDescription>(response.servers, response.serversSize);
+        });
+    return question.ask();
+}
+
+Answer<> registerServer(const std::string& url, const ServerRegistration& registration,
+                        std::chrono::milliseconds timeout,
+                        const std::optional<Credentials>& security) {
+    auto options = optionsFor(timeout);
+    options.security = security;
+    auto told = tell<UA_RegisterServer2Request>(url, options, [&](auto& request) {
+        fill(registration, request.server);
+        fillMdns(registration, request);
+    });
+    if (told || told.error().status != status::kBadServiceUnsupported) {
+        return told;
+    }
+    return tell<UA_RegisterServerRequest>(
+        url, options, [&](auto& request) { fill(registration, request.server); });
+}
+
+}  // namespace metier::opcua

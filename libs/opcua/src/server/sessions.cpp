@@ -1,0 +1,335 @@
+#include "server/sessions.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/convert.hpp"
+#include "common/guard.hpp"
+#include "metier/opcua/text.hpp"
+#include "metier/security/certificate.hpp"
+#include "server/server_core.hpp"
+
+namespace metier::opcua {
+
+namespace {
+
+constexpr std::uint8_t kAllAccess = 0xFF;
+constexpr std::uint8_t kReadAccess = UA_ACCESSLEVELMASK_READ | UA_ACCESSLEVELMASK_HISTORYREAD;
+
+/// Takes the same time wherever the first difference is.
+bool samePassword(std::string_view left, std::string_view right) noexcept {
+    unsigned difference = left.size() == right.size() ? 0U : 1U;
+    for (std::size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
+        difference |= static_cast<unsigned char>(left[i]) ^ static_cast<unsigned char>(right[i]);
+    }
+    return difference == 0;
+}
+
+template <typename Native>
+const Native* decodedAs(const UA_ExtensionObject& token, const UA_DataType& type) noexcept {
+    const bool decoded = token.encoding == UA_EXTENSIONOBJECT_DECODED ||
+                         token.encoding == UA_EXTENSIONOBJECT_DECODED_NODELETE;
+    return decoded && token.content.decoded.type == &type
+               ? static_cast<const Native*>(token.content.decoded.data)
+               : nullptr;
+}
+
+bool isAbsent(const UA_ExtensionObject& token) noexcept {
+    return token.encoding == UA_EXTENSIONOBJECT_ENCODED_NOBODY;
+}
+
+void addTokenPolicy(UA_AccessControl& control, UA_UserTokenType type, std::string_view id) {
+    UA_UserTokenPolicy policy{};
+    policy.tokenType = type;
+    policy.policyId = viewOf(id);
+    checkAllocated(UA_Array_appendCopy(
+        reinterpret_cast<void**>(&control.userTokenPolicies),  // NOLINT(*-reinterpret-cast)
+        &control.userTokenPoliciesSize, &policy, &UA_TYPES[UA_TYPES_USERTOKENPOLICY]));
+}
+
+UA_NodeId idOf(const Session& session) noexcept {
+    return viewOf(session.id);
+}
+
+void describe(UA_Server* server, Session& session) {
+    const UA_NodeId id = idOf(session);
+    UA_ApplicationDescription client{};
+    if (UA_Server_getSessionAttribute_scalar(
+            server, &id, UA_QualifiedName{0, viewOf("clientDescription")},
+            &UA_TYPES[UA_TYPES_APPLICATIONDESCRIPTION], &client) == UA_STATUSCODE_GOOD) {
+        session.application_uri = sanitise(textFrom(client.applicationUri));
+        session.application_name = sanitise(textFrom(client.applicationName.text));
+    }
+    UA_String name{};
+    if (UA_Server_getSessionAttribute_scalar(
+            server, &id, UA_QualifiedName{0, viewOf("sessionName")}, &UA_TYPES[UA_TYPES_STRING],
+            &name) == UA_STATUSCODE_GOOD) {
+        session.name = sanitise(textFrom(name));
+    }
+}
+
+StatusCode refusalOf(const Error& error) noexcept {
+    return error.code == Errc::not_supported ? status::kBadIdentityTokenInvalid
+                                             : status::kBadUserAccessDenied;
+}
+
+}  // namespace
+
+/// What the stack calls. It passes the session's context, which is ours or null.
+struct Sessions::Callbacks {
+    static Sessions& owner(UA_AccessControl* control) noexcept {
+        return *static_cast<Sessions*>(control->context);
+    }
+    static UA_StatusCode activate(UA_Server* server, UA_AccessControl* control,
+                                  const UA_EndpointDescription* /*endpoint*/,
+                                  const UA_ByteString* certificate, const UA_NodeId* id,
+                                  const UA_ExtensionObject* token, void** context) noexcept {
+        return guarded([&] {
+            const auto der =
+                certificate == nullptr ? std::string() : std::string(bytesOf(*certificate));
+            const auto thumbprint = der.empty() ? der : security::thumbprintOf(der);
+            return owner(control).activate(server, *id, {*token, thumbprint, der}, context).value();
+        });
+    }
+    static void close(UA_Server* server, UA_AccessControl* control, const UA_NodeId* id,
+                      void* /*context*/) noexcept {
+        guarded([&]() -> UA_StatusCode {
+            owner(control).close(server, *id);
+            return UA_STATUSCODE_GOOD;
+        });
+    }
+    static UA_Byte accessLevel(UA_Server* server, UA_AccessControl* control,
+                               const UA_NodeId* session_id, void* context, const UA_NodeId* node,
+                               void* node_context) noexcept {
+        const bool for_auditors = node_context == auditorsOnly();
+        if (!ServerCore::of(server).mayWorkOn() ||
+            (session_id == nullptr && (for_auditors || isOfTheStack(*node, node_context)))) {
+            return 0;
+        }
+        if (for_auditors && context != nullptr && !mayAudit(owner(control).of(context).role)) {
+            return 0;
+        }
+        return context == nullptr || mayCommand(owner(control).of(context).role) ? kAllAccess
+                                                                                 : kReadAccess;
+    }
+    /// Diagnostics of a session, which the stack keeps in namespace 1. Asked for by a Subscription
+    /// that has outlived its session, they would be looked up for a session that is null.
+    static bool isOfTheStack(const UA_NodeId& node, const void* node_context) noexcept {
+        return node.namespaceIndex == 1 && node_context == nullptr;
+    }
+    /// Methods of ours answer for themselves, with the StatusCode that the stack has not.
+    static UA_Boolean executableOnObject(UA_Server* server, UA_AccessControl* /*control*/,
+                                         const UA_NodeId* /*session_id*/, void* context,
+                                         const UA_NodeId* method, void* method_context,
+                                         const UA_NodeId* /*object*/,
+                                         void* /*object_context*/) noexcept {
+        return ServerCore::of(server).hooks().at(method_context) != nullptr ||
+               mayCall(server, context, *method, method_context);
+    }
+    static void clear(UA_AccessControl* control) noexcept {
+        UA_Array_delete(control->userTokenPolicies, control->userTokenPoliciesSize,
+                        &UA_TYPES[UA_TYPES_USERTOKENPOLICY]);
+        control->userTokenPolicies = nullptr;
+        control->userTokenPoliciesSize = 0;
+    }
+    static UA_Boolean sameUser(UA_Server* /*server*/, UA_AccessControl* control,
+                               const UA_NodeId* /*old_id*/, void* old_context,
+                               const UA_NodeId* /*new_id*/, void* new_context) noexcept {
+        const auto& sessions = owner(control);
+        if (new_context == nullptr || old_context == nullptr) {
+            return new_context != nullptr;
+        }
+        const auto& before = sessions.of(old_context);
+        const auto& now = sessions.of(new_context);
+        return before.user == now.user &&
+               (!now.user.empty() || before.thumbprint == now.thumbprint);
+    }
+};
+
+Sessions::Sessions(const ServerOptions& options)
+    : options_(options),
+      by_application_(options.limits.sessions_per_application, options.limits.session_timeout) {}
+
+bool Sessions::mayCreate(const ApplicationSessions::Application& application) {
+    return by_application_.create(application, std::chrono::steady_clock::now());
+}
+
+void Sessions::created(UA_Server* server, const NodeId& id, std::uintptr_t connection) {
+    unused_.created(id, connection);
+    limitStack(*UA_Server_getConfig(server));
+    if (sessions_.size() + unused_.count() > options_.limits.sessions) {
+        ServerCore::of(server).post([this, server] { makeRoom(server); });
+    }
+}
+
+void Sessions::makeRoom(UA_Server* server) {
+    while (sessions_.size() + unused_.count() > options_.limits.sessions) {
+        const auto surplus = unused_.surplus();
+        if (!surplus) {
+            return;
+        }
+        const UA_NodeId native = viewOf(*surplus);
+        UA_Server_closeSession(server, &native);
+        unused_.gone(*surplus);
+    }
+}
+
+/// The stack would refuse a new session for the sake of those that are not activated. While there
+/// is room for one that is, it makes some more, and others go once it has.
+void Sessions::limitStack(UA_ServerConfig& config) const {
+    constexpr std::uint32_t kInOneTurn = 32;
+    const std::uint32_t most = options_.limits.sessions;
+    const auto with_unused =
+        std::min<std::uint32_t>(2 * most + kInOneTurn, std::numeric_limits<UA_UInt16>::max());
+    config.maxSessions = static_cast<UA_UInt16>(sessions_.size() < most ? with_unused : most);
+}
+
+void Sessions::install(UA_ServerConfig& config) {
+    limitStack(config);
+    UA_AccessControl& control = config.accessControl;
+    control.context = this;
+    control.clear = Callbacks::clear;
+    control.activateSession = Callbacks::activate;
+    control.closeSession = Callbacks::close;
+    control.allowTransferSubscription = Callbacks::sameUser;
+    control.getUserRightsMask = [](auto...) -> UA_UInt32 { return 0; };
+    control.getUserAccessLevel = Callbacks::accessLevel;
+    control.getUserExecutableOnObject = Callbacks::executableOnObject;
+    control.allowBrowseNode = [](UA_Server* server, auto...) -> UA_Boolean {
+        return ServerCore::of(server).mayWorkOn();
+    };
+    control.allowAddNode = [](auto...) -> UA_Boolean { return false; };
+    control.allowAddReference = [](auto...) -> UA_Boolean { return false; };
+    control.allowDeleteNode = [](auto...) -> UA_Boolean { return false; };
+    control.allowDeleteReference = [](auto...) -> UA_Boolean { return false; };
+    control.allowHistoryUpdateUpdateData = [](auto...) -> UA_Boolean { return false; };
+    control.allowHistoryUpdateDeleteRawModified = [](auto...) -> UA_Boolean { return false; };
+    addTokenPolicy(control, UA_USERTOKENTYPE_ANONYMOUS, "anonymous");
+    if (options_.security || !options_.users.empty()) {
+        addTokenPolicy(control, UA_USERTOKENTYPE_USERNAME, "username");
+        config.allowNonePolicyPassword = !options_.security;
+    }
+}
+
+const Session& Sessions::of(const void* context) const noexcept {
+    return context == nullptr ? server_session_ : *static_cast<const Session*>(context);
+}
+
+Result<Admission> Sessions::admit(const Presented& presented) const {
+    const auto& token = presented.token;
+    if (isAbsent(token) || decodedAs<UA_AnonymousIdentityToken>(
+                               token, UA_TYPES[UA_TYPES_ANONYMOUSIDENTITYTOKEN]) != nullptr) {
+        return options_.security ? options_.security->authenticate(
+                                       {"", "", presented.thumbprint, presented.certificate})
+                                 : Result<Admission>(Admission{"", security::Role::engineer});
+    }
+    const auto* named =
+        decodedAs<UA_UserNameIdentityToken>(token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
+    if (named == nullptr) {
+        return fail(Errc::not_supported, "a kind of identity this server does not know");
+    }
+    Login login{textFrom(named->userName), textFrom(named->password), presented.thumbprint,
+                presented.certificate};
+    return login.user.empty() ? fail(Errc::access_denied, "a user without a name")
+                              : authenticate(login);
+}
+
+Result<Admission> Sessions::authenticate(const Login& login) const {
+    if (options_.security) {
+        return options_.security->authenticate(login);
+    }
+    const auto& users = options_.users;
+    const bool known = std::any_of(users.begin(), users.end(), [&](const UserPassword& entry) {
+        return entry.user == login.user && samePassword(entry.password, login.password);
+    });
+    return known ? Result<Admission>(Admission{login.user, security::Role::engineer})
+                 : fail(Errc::access_denied, "unknown user or wrong password");
+}
+
+/// A Session that nobody was let in to would count until its time-out.
+void Sessions::closeUnused(UA_Server* server, const NodeId& id) const {
+    if (sessions_.find(id) == sessions_.end()) {
+        ServerCore::of(server).post([server, id] {
+            const UA_NodeId native = viewOf(id);
+            UA_Server_closeSession(server, &native);
+        });
+    }
+}
+
+StatusCode Sessions::activate(UA_Server* server, const UA_NodeId& id, const Presented& presented,
+                              void** context) {
+    const bool is_new = sessions_.find(fromNative(id)) == sessions_.end();
+    if (is_new && sessions_.size() >= options_.limits.sessions) {
+        closeUnused(server, fromNative(id));
+        return status::kBadTooManySessions;
+    }
+    const auto admission = admit(presented);
+    if (!admission) {
+        tellRefusal(server, fromNative(id), presented, admission.error());
+        closeUnused(server, fromNative(id));
+        return refusalOf(admission.error());
+    }
+    auto& session = sessions_[fromNative(id)];
+    if (!session) {
+        session = std::make_unique<Session>();
+        session->id = fromNative(id);
+        by_application_.activated(presented.thumbprint);
+        unused_.gone(session->id);
+        limitStack(*UA_Server_getConfig(server));
+    }
+    describe(server, *session);
+    session->user = admission->user;
+    session->role = admission->role;
+    session->thumbprint = presented.thumbprint;
+    *context = session.get();
+    if (activated_) {
+        activated_(*session);
+    }
+    return status::kGood;
+}
+
+void Sessions::tellRefusal(UA_Server* server, const NodeId& id, const Presented& presented,
+                           const Error& error) {
+    if (!refused_) {
+        return;
+    }
+    Session session;
+    session.id = id;
+    session.thumbprint = presented.thumbprint;
+    describe(server, session);
+    const auto* named = decodedAs<UA_UserNameIdentityToken>(
+        presented.token, UA_TYPES[UA_TYPES_USERNAMEIDENTITYTOKEN]);
+    session.user = named == nullptr ? std::string() : textFrom(named->userName);
+    refused_(session, refusalOf(error), error.message);
+}
+
+void Sessions::close(UA_Server* server, const UA_NodeId& id) {
+    const auto node = sessions_.extract(fromNative(id));
+    unused_.gone(fromNative(id));
+    limitStack(*UA_Server_getConfig(server));
+    if (node.empty()) {
+        Session unused{fromNative(id), {}, {}, {}, {}};
+        describe(server, unused);
+        by_application_.abandoned(unused.application_uri);
+        return;
+    }
+    by_application_.closed(node.mapped()->thumbprint);
+    for (const auto& handler : closed_) {
+        handler(*node.mapped());
+    }
+}
+
+void Sessions::closeIf(UA_Server* server, const std::function<bool(const Session&)>& which) {
+    std::vector<NodeId> ids;
+    for (const auto& [id, session] : sessions_) {
+        if (which(*session)) {
+            ids.push_back(id);
+        }
+    }
+    for (const auto& id : ids) {
+        const UA_NodeId native = viewOf(id);
+        UA_Server_closeSession(server, &native);
+    }
+}
+
+}  // namespace metier::opcua

@@ -1,0 +1,84 @@
+#include "metier/robot_skills/arm_skills.hpp"
+
+#include <utility>
+
+#include "moves/force_move_skill.hpp"
+#include "moves/move_skills.hpp"
+#include "moves/planned_move_skills.hpp"
+
+namespace metier::robot_skills {
+
+namespace {
+
+using MadeSkill = Result<std::unique_ptr<skill::Skill>>;
+using Skills = std::vector<std::unique_ptr<skill::Skill>>;
+
+/// `skills` and one more.
+Result<Skills> with(Skills skills, MadeSkill made) {
+    if (!made) {
+        return fail(std::move(made.error()));
+    }
+    skills.push_back(std::move(*made));
+    return skills;
+}
+
+Result<Skills> streamedMoves(const StreamedArm& arm) {
+    Result<Skills> moves;
+    for (auto* make : {makeCartesianPtpMoveSkill, makeCartesianLinearMoveSkill,
+                       makeJointPtpMoveSkill, makeJointLinearMoveSkill}) {
+        if (moves) {
+            moves = with(std::move(*moves), make(arm));
+        }
+    }
+    return moves;
+}
+
+Result<Skills> makeMoves(const ArmFaces& faces, const StreamedArm& streamed) {
+    const auto& [arm, model, clock, stopping] = streamed;
+    if (faces.planner == nullptr) {
+        auto moves = streamedMoves(streamed);
+        if (moves && faces.sensor != nullptr) {
+            moves = with(std::move(*moves),
+                         makeForceMoveSkill({arm, *faces.sensor, model, clock, stopping}));
+        }
+        return moves;
+    }
+    const PlanningArm planning{arm, *faces.planner, model, clock, faces.sensor, stopping};
+    auto moves = makePlannedMoveSkills(planning);
+    if (!moves) {
+        return moves;
+    }
+    return with(std::move(*moves), makePlannedForceMoveSkill(planning));
+}
+
+}  // namespace
+
+Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel& model,
+                                const Clock& clock, const PositionStreamOptions& stream) {
+    ArmSkills skills;
+    skills.resource = std::make_shared<skill::Resource>("arm " + faces.arm.info().name);
+    const StreamedArm streamed{faces.arm, model, clock};
+    auto moves = makeMoves(faces, streamed);
+    if (moves) {
+        moves = with(std::move(*moves), makeCartesianPathMoveSkill(streamed));
+    }
+    if (!moves) {
+        return fail(std::move(moves.error()));
+    }
+    skills.moves = std::move(*moves);
+    auto position_stream = makePositionStreamSkill(faces.arm, model, clock, stream);
+    if (!position_stream) {
+        return fail(std::move(position_stream.error()));
+    }
+    skills.position_stream = std::move(*position_stream);
+    skills.stream_report = stream.report;
+    skills.stopping_report = streamed.stopping;
+    return skills;
+}
+
+Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
+                                const Clock& clock, const PositionStreamOptions& stream) {
+    return makeArmSkills(ArmFaces{arm}, model, clock, stream);
+}
+
+}  // namespace metier::robot_skills

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "moves/arm_body.hpp"
+#include "moves/arm_skill.hpp"
+#include "conversions.hpp"
+#include "metier/skill/typed_skill.hpp"
+#include "moves/move_variant.hpp"
+#include "moves/timetable.hpp"
+
+namespace metier::robot_skills {
+
+/// Makes the execution of a planned motion; nothing moves.
+/// Errors: why this arm cannot do it.
+template <typename Parameters>
+using MakeBody = std::function<Result<std::unique_ptr<skill::Body>>(const motion::Trajectory&,
+                                                                    const Parameters&)>;
+
+/// How far the tool frame of `trajectory` is from one joint position to another.
+ToolDistance toolDistance(const motion::Trajectory& trajectory);
+
+/// What Check tells of a plan.
+skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan);
+
+/// A move: planned by metier at Start, which refuses what cannot be run to its end, then executed
+/// by whatever body is made for the plan.
+template <typename Parameters, typename Results = MoveResults>
+class MoveSkill final : public skill::TypedSkill<Parameters, Results> {
+public:
+    struct Setup {
+        device::Arm& arm;
+        const motion::RobotModel& model;
+        const Clock& clock;
+        MakeBody<Parameters> make_body;
+    };
+
+    MoveSkill(Setup setup, MoveVariant<Parameters> variant, skill::FieldList<Results> results)
+        : skill::TypedSkill<Parameters, Results>(std::move(variant.description),
+                                                 std::move(variant.fields), std::move(results)),
+          setup_(std::move(setup)),
+          plan_(std::move(variant.plan)) {}
+
+    Result<void> reset() override { return resetArm(setup_.arm); }
+
+protected:
+    Result<std::unique_ptr<skill::Body>> plan(const Parameters& parameters) override {
+        if (auto ready = checkCanStart(parameters); !ready) {
+            return fail(std::move(ready.error()));
+        }
+        auto trajectory = planFromHere(parameters);
+        if (!trajectory) {
+            return fail(std::move(trajectory.error().error));
+        }
+        return setup_.make_body(*trajectory, parameters);
+    }
+
+    Result<skill::CheckReport> assess(const Parameters& parameters) override {
+        if (auto ready = checkCanStart(parameters); !ready) {
+            return fail(std::move(ready.error()));
+        }
+        const auto trajectory = planFromHere(parameters);
+        if (trajectory) {
+            if (const auto body = setup_.make_body(*trajectory, parameters); !body) {
+                return fail(body.error());
+            }
+        }
+        return reportOf(trajectory);
+    }
+
+private:
+    Result<void> checkCanStart(const Parameters& parameters) const {
+        auto ready = checkReady(setup_.arm);
+        return ready ? checkStartTime(parameters.start_time, setup_.clock) : ready;
+    }
+
+    motion::Planned<motion::Trajectory> planFromHere(const Parameters& parameters) const {
+        const auto start = toVector(setup_.arm.state().commanded_position);
+        return plan_(setup_.model, start, parameters);
+    }
+
+    Setup setup_;
+    MovePlan<Parameters> plan_;
+};
+
+/// Errors: invalid_argument if arm and model differ in their number of axes.
+template <typename Parameters>
+Result<std::unique_ptr<skill::Skill>> makeMove(typename MoveSkill<Parameters>::Setup setup,
+                                               MoveVariant<Parameters> variant) {
+    if (auto checked = checkSameAxes(setup.arm, setup.model); !checked) {
+        return fail(std::move(checked.error()));
+    }
+    return std::make_unique<MoveSkill<Parameters>>(std::move(setup), std::move(variant),
+                                                   moveResultFields());
+}
+
+}  // namespace metier::robot_skills

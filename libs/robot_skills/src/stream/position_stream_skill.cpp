@@ -1,0 +1,255 @@
+#include "metier/robot_skills/position_stream_skill.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "moves/arm_skill.hpp"
+#include "conversions.hpp"
+#include "metier/robot_skills/move_parameters.hpp"
+#include "metier/skill/typed_skill.hpp"
+#include "moves/source_body.hpp"
+#include "stream/stream_input.hpp"
+#include "stream/stream_source.hpp"
+
+namespace metier::robot_skills {
+
+using motion::JointVector;
+using motion::RobotModel;
+using skill::Field;
+using skill::Value;
+
+namespace {
+
+constexpr std::string_view kTarget = "TargetJointPosition";
+constexpr std::string_view kEndOfStream = "EndOfStream";
+constexpr double kLongestPlayOutDelay = 0.5;  // [s]
+
+Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double>& position) {
+    for (std::size_t axis = 0; axis < position.size(); ++axis) {
+        const auto& limits = model.limits(axis);
+        if (position[axis] < limits.lower || position[axis] > limits.upper) {
+            return fail(Errc::out_of_range,
+                        fmt::format("axis {}: {:.4f} rad is outside {:.4f} to {:.4f} rad", axis + 1,
+                                    position[axis], limits.lower, limits.upper));
+        }
+    }
+    return {};
+}
+
+/// A stream as an execution of its skill.
+class StreamBody final : public SourceBody {
+public:
+    /// Whom the set-points come from and where they go.
+    struct Stream {
+        std::shared_ptr<StreamSource> source;  // shared with the arm while it moves
+        StreamTimes times;
+        std::optional<std::vector<double>> first;
+        std::shared_ptr<StreamReport> report;  // shared with whoever shows it
+    };
+
+    StreamBody(device::Arm& arm, Stream stream, ToolDistance tool_distance)
+        : SourceBody(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
+
+    void start(skill::Execution execution) override {
+        stream_.report->restart();
+        stream_.times.restart();
+        const auto begun = stream_.first ? push(*stream_.first, {}) : Result<void>{};
+        if (!begun) {
+            execution.fail(skill::Reason::error, begun.error().message);
+            return;
+        }
+        SourceBody::start(std::move(execution));
+    }
+
+    Result<void> resume() override {
+        stream_.times.restart();
+        return SourceBody::resume();
+    }
+
+    Result<void> input(std::string_view parameter, const skill::LiveValue& live) override {
+        if (const auto* ends = std::get_if<bool>(&live.value);
+            parameter == kEndOfStream && ends != nullptr) {
+            return *ends ? finish() : Result<void>();
+        }
+        const auto* values = std::get_if<std::vector<double>>(&live.value);
+        if (parameter != kTarget || values == nullptr) {
+            return Body::input(parameter, live);
+        }
+        return push(*values, live.meant_for);
+    }
+
+    void inputRefused(std::string_view /*parameter*/, const Error& why) override {
+        stream_.report->noteRefused(why.message);
+    }
+
+private:
+    Result<void> finish() {
+        stream_.source->finish();
+        return {};
+    }
+
+    Result<void> push(const std::vector<double>& values, std::optional<UtcTime> meant_for = {}) {
+        if (stream_.source->finishing()) {
+            return fail(Errc::invalid_state,
+                        fmt::format("{}: no set-point is taken after {}", kTarget, kEndOfStream));
+        }
+        auto position = JointVector::from(values);
+        if (!position) {
+            return fail(std::move(position.error()));
+        }
+        const auto time = stream_.times.next(meant_for);
+        stream_.report->noteClockStep(stream_.times.clockStep().count());
+        if (!stream_.source->queue().tryPush({*position, time})) {
+            return fail(Errc::resource_unavailable,
+                        fmt::format("{}: {} set-points wait already, more than the arm can take",
+                                    kTarget, StreamQueue::kCapacity));
+        }
+        return {};
+    }
+
+    Stream stream_;
+};
+
+class PositionStreamSkill final
+    : public skill::TypedSkill<PositionStreamParameters, PositionStreamResults> {
+public:
+    PositionStreamSkill(device::Arm& arm, const RobotModel& model, const Clock& clock,
+                        const PositionStreamOptions& options)
+        : TypedSkill({.name = "PositionStreamSkill",
+                      .type = "PositionStreamSkillType",
+                      .description = "Follows joint positions that are written while it runs",
+                      .on_owner_loss = skill::OwnerLossAction::halt},
+                     positionStreamFields(model), positionStreamResultFields()),
+          arm_(arm),
+          model_(model),
+          clock_(clock),
+          options_(options) {}
+
+    Result<void> reset() override { return resetArm(arm_); }
+
+protected:
+    Result<std::unique_ptr<skill::Body>> plan(const PositionStreamParameters& given) override {
+        if (auto ready = checkReady(arm_); !ready) {
+            return fail(std::move(ready.error()));
+        }
+        auto source = StreamSource::create(
+            model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position),
+                     options_.longest_silence, given.play_out_delay, options_.largest_lag,
+                     options_.report});
+        if (!source) {
+            return fail(std::move(source.error()));
+        }
+        if (auto begins = checkBegins(**source, given); !begins) {
+            return fail(std::move(begins.error()));
+        }
+        return std::make_unique<StreamBody>(
+            arm_,
+            StreamBody::Stream{std::move(*source),
+                               StreamTimes(clock_, arm_.info().cycle, arrivalsFor(given)),
+                               given.target_joint_position, options_.report},
+            toolDistance());
+    }
+
+private:
+    static StreamTimes::Arrivals arrivalsFor(const PositionStreamParameters& given) noexcept {
+        return given.play_out_delay == 0.0 ? StreamTimes::Arrivals::rhythm
+                                           : StreamTimes::Arrivals::each;
+    }
+
+    static Result<void> checkBegins(const StreamSource& source,
+                                    const PositionStreamParameters& given) {
+        if (!given.target_joint_position) {
+            return {};
+        }
+        return JointVector::from(*given.target_joint_position)
+            .and_then([&](const JointVector& position) { return source.checkFirst(position); });
+    }
+
+    ToolDistance toolDistance() const {
+        return [&model = model_](const device::JointArray& a, const device::JointArray& b) {
+            const auto& kinematics = model.kinematics();
+            return motion::distanceBetween(kinematics.forward(toVector(a)),
+                                             kinematics.forward(toVector(b)));
+        };
+    }
+
+    device::Arm& arm_;
+    const RobotModel& model_;
+    const Clock& clock_;
+    const PositionStreamOptions options_;
+};
+
+}  // namespace
+
+skill::FieldList<PositionStreamParameters> positionStreamFields(const RobotModel& model) {
+    const auto axes = model.axisCount();
+    skill::FieldList<PositionStreamParameters> fields;
+    fields.add(&PositionStreamParameters::target_joint_position,
+               Field{.name = std::string(kTarget),
+                     .description = "Joint position to follow, axis 1 first",
+                     .unit = skill::kRadian,
+                     .range = jointRangeOf(model),
+                     .length = skill::LengthLimit{axes, axes},
+                     .input = skill::Input::live,
+                     .extra_check = [&model](const Value& value) {
+                         return checkWithinLimits(model, std::get<std::vector<double>>(value));
+                     }});
+    fields.add(&PositionStreamParameters::play_out_delay,
+               Field{.name = "PlayOutDelay",
+                     .description = "From the time a set-point is meant for until the arm is sent "
+                                    "it; not set: 20 ms, at least three cycles; 0: at once",
+                     .unit = skill::kSecond,
+                     .range = skill::Range{0.0, kLongestPlayOutDelay},
+                     .place = skill::Place::options});
+    fields.add(&PositionStreamParameters::end_of_stream,
+               Field{.name = std::string(kEndOfStream),
+                     .description = "Write true after the last set-point: the stream ends when the "
+                                    "arm stands there; before Start it means nothing",
+                     .place = skill::Place::options,
+                     .input = skill::Input::live});
+    return fields;
+}
+
+const skill::FieldList<PositionStreamResults>& positionStreamResultFields() {
+    static const auto fields = [] {
+        skill::FieldList<PositionStreamResults> list;
+        list.add(&PositionStreamResults::set_points,
+                 Field{.name = "SetPoints", .description = "Number of set-points followed"});
+        list.add(&PositionStreamResults::missed_cycles,
+                 Field{.name = "MissedCycles",
+                       .description = "Control cycles without a set-point in time"});
+        list.add(&PositionStreamResults::duration, Field{.name = "Duration",
+                                                         .description = "Time from Running to rest",
+                                                         .unit = skill::kSecond});
+        list.add(&PositionStreamResults::largest_lag,
+                 Field{.name = "LargestStreamLag",
+                       .description = "Most that a set-point waited longer than PlayOutDelay",
+                       .unit = skill::kSecond});
+        list.add(&PositionStreamResults::clock_step,
+                 Field{.name = "StreamClockStep",
+                       .description = "Largest step of the client's clock between two set-points, "
+                                      "below 0: back",
+                       .unit = skill::kSecond});
+        list.add(&PositionStreamResults::refused_set_points,
+                 Field{.name = "RefusedSetPoints",
+                       .description = "Number of set-points refused when they were written"});
+        list.add(&PositionStreamResults::dropped_set_points,
+                 Field{.name = "DroppedSetPoints",
+                       .description = "Number of set-points dropped, since their time was not "
+                                      "after the one before"});
+        return list;
+    }();
+    return fields;
+}
+
+Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(
+    device::Arm& arm, const RobotModel& model, const Clock& clock,
+    const PositionStreamOptions& options) {
+    if (auto checked = checkSameAxes(arm, model); !checked) {
+        return fail(std::move(checked.error()));
+    }
+    return std::make_unique<PositionStreamSkill>(arm, model, clock, options);
+}
+
+}  // namespace metier::robot_skills

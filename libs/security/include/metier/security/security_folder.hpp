@@ -1,0 +1,78 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/error.hpp"
+#include "metier/security/certificate.hpp"
+#include "metier/security/identity.hpp"
+#include "metier/security/known_servers.hpp"
+#include "metier/security/trust_store.hpp"
+#include "metier/security/users.hpp"
+
+namespace metier::security {
+
+/// All that the applications of one user of a machine need for security, in a folder that nobody
+/// else may write:
+///   own/NAME/identity.pem  who each of them is
+///   trust/                 whom they trust, a TrustStore
+///   roles/THUMBPRINT       what an application may do that logs in without a user
+///   users                  who may log in, a UserTable
+///   closed/                addresses at which servers proved who they are, KnownServers
+/// What is made here trusts each other, and may act as Operator: whoever writes to this folder
+/// could decide that anyway.
+/// Threading: any thread, one at a time; several processes may use one folder.
+class SecurityFolder {
+public:
+    /// Makes what is missing, for its owner alone.
+    /// Errors: resource_unavailable; access_denied (others may write to the folder).
+    static Result<SecurityFolder> open(std::filesystem::path folder);
+
+    /// The identity of that name; a new one if there is none.
+    /// \param name letters, digits, `.`, `-` and `_`
+    /// Errors: invalid_argument (the name, an option), resource_unavailable, access_denied.
+    Result<Identity> identity(const std::string& name, const IdentityOptions& options, UtcTime now);
+    /// Gives an application a new key and certificate, which are trusted like the former, which
+    /// still are, too.
+    /// Errors: not_found; as identity().
+    Result<Identity> renew(const std::string& name, UtcTime now);
+
+    struct Own {
+        std::string name;
+        Certificate certificate;
+    };
+    /// Those that can be read, by name.
+    std::vector<Own> own() const;
+
+    /// Without one an application needs a user.
+    std::optional<Role> roleOf(std::string_view thumbprint) const;
+    /// Roles of all applications that have one, by thumbprint.
+    std::map<std::string, Role> roles() const;
+    /// None: it needs a user from now on. Errors: resource_unavailable.
+    Result<void> setRole(const Certificate& certificate, std::optional<Role> role);
+
+    const std::filesystem::path& path() const noexcept { return folder_; }
+    std::filesystem::path identityFolder(const std::string& name) const;
+    std::filesystem::path trustFolder() const { return folder_ / "trust"; }
+    std::filesystem::path usersFile() const { return folder_ / "users"; }
+    /// \param folder a security folder, which need not be there
+    static KnownServers knownServers(const std::filesystem::path& folder) {
+        return KnownServers(folder / "closed");
+    }
+
+private:
+    explicit SecurityFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    Result<Identity> makeKnown(Identity identity);
+
+    std::filesystem::path folder_;
+};
+
+/// A certificate that ends so soon is to be renewed.
+constexpr std::chrono::days kRenewalTime{30};
+
+}  // namespace metier::security

@@ -1,0 +1,111 @@
+#include "chain.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+namespace metier::security {
+namespace {
+
+constexpr std::string_view kChainKey = ",\"chain\":\"";
+constexpr std::string_view kEnd = "\"}";
+// Peers choose their names: a line stays far shorter than what is read of a log's end.
+constexpr std::size_t kLongestValue = 1'000;
+
+std::string sha256(std::string_view text) {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int size = 0;
+    EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr);
+    std::string hex;
+    for (unsigned int i = 0; i < size; ++i) {
+        hex += fmt::format("{:02x}", digest.at(i));
+    }
+    return hex;
+}
+
+std::string timeText(UtcTime time) {
+    using std::chrono::system_clock;
+    const auto milliseconds =
+        std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch()).count();
+    const auto rest = ((milliseconds % 1000) + 1000) % 1000;
+    return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(time)), rest);
+}
+
+/// Of the line without its chain, which begins behind a comma.
+std::string chainOf(std::string_view body, std::string_view chain_before) {
+    return sha256(fmt::format("{}\n{}", chain_before, body));
+}
+
+/// Nothing, if there is no such key or it holds no text.
+std::optional<std::string> textIn(const nlohmann::ordered_json& json, std::string_view key) {
+    const auto found = json.find(std::string(key));
+    return found != json.end() && found->is_string() ? std::optional(found->get<std::string>())
+                                                     : std::nullopt;
+}
+
+/// Where the chain value of a line begins behind its text: `,"chain":"`, 64 digits, `"}` and no
+/// more. Nothing, if the line ends otherwise.
+std::optional<std::size_t> endOfBody(std::string_view text) {
+    const auto tail = kChainKey.size() + kNoChain.size() + kEnd.size();
+    if (text.size() < tail || !text.ends_with(kEnd) ||
+        text.substr(text.size() - tail, kChainKey.size()) != kChainKey) {
+        return {};
+    }
+    const auto digits = text.substr(text.size() - kEnd.size() - kNoChain.size(), kNoChain.size());
+    const bool hexadecimal = digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    return hexadecimal ? std::optional(text.size() - tail) : std::nullopt;
+}
+
+}  // namespace
+
+ChainedLine chainLine(const Entry& entry, std::uint64_t number, std::string_view chain_before) {
+    nlohmann::ordered_json json;
+    json["n"] = number;
+    json["time"] = timeText(entry.time);
+    json["event"] = entry.event;
+    for (const auto& [name, value] : entry.fields) {
+        json[name] = value.size() > kLongestValue ? value.substr(0, kLongestValue) + "..." : value;
+    }
+    auto body = json.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
+    body.pop_back();  // the brace
+    auto chain = chainOf(body, chain_before);
+    return {fmt::format("{}{}{}{}", body, kChainKey, chain, kEnd), std::move(chain)};
+}
+
+std::optional<ReadLine> readLastLine(std::string_view text) {
+    const auto end = endOfBody(text);
+    if (!end) {
+        return {};
+    }
+    // Without the chain value: among members of one name the last would be taken.
+    const auto json =
+        nlohmann::ordered_json::parse(fmt::format("{}}}", text.substr(0, *end)), nullptr, false);
+    if (!json.is_object() || !json.contains("n") || !json["n"].is_number_unsigned() ||
+        json.contains("chain")) {
+        return {};
+    }
+    const auto time = textIn(json, "time");
+    if (!time) {
+        return {};
+    }
+    ReadLine line{json["n"].get<std::uint64_t>(),
+                  *time,
+                  std::string(text.substr(*end + kChainKey.size(), kNoChain.size())),
+                  {}};
+    if (textIn(json, "event") == kContinued) {
+        line.after = textIn(json, kAfter).value_or("");
+    }
+    return line;
+}
+
+std::optional<ReadLine> readLine(std::string_view text, std::string_view chain_before) {
+    auto line = readLastLine(text);
+    const bool right =
+        line && line->chain == chainOf(text.substr(0, *endOfBody(text)), chain_before);
+    return right ? line : std::nullopt;
+}
+
+}  // namespace metier::security

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chain.hpp"
+#include "metier/security/audit_log.hpp"
+
+namespace metier::security {
+
+/// An open file; closed at its end.
+class Descriptor {
+public:
+    explicit Descriptor(int value = -1) noexcept : value_(value) {}
+    ~Descriptor();
+    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(value_, other.value_);
+        return *this;
+    }
+    int get() const noexcept { return value_; }
+    explicit operator bool() const noexcept { return value_ >= 0; }
+
+private:
+    int value_;
+};
+
+/// The last part of a log, open to append; nobody else has the log open.
+///
+/// Threading: one thread.
+class AuditLog::File {
+public:
+    /// \param part_size [byte]
+    /// \param dropped how much of a last line that was not whole [byte]
+    static Result<std::unique_ptr<File>> open(const std::filesystem::path& path,
+                                              std::uintmax_t part_size, std::size_t& dropped);
+    ~File() = default;
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+
+    /// All of them, or none.
+    /// Errors: resource_unavailable, with the system's reason.
+    Result<void> write(const std::vector<Entry>& entries);
+    /// Chain value of the newest line.
+    const std::string& chain() const noexcept { return chain_; }
+
+private:
+    File(std::filesystem::path log, std::uintmax_t part_size) noexcept
+        : log_(std::move(log)), part_size_(part_size) {}
+    /// Lines to write, and what is true once they are.
+    struct Batch {
+        std::string text;
+        std::uint64_t number = 0;
+        std::string chain;
+    };
+    Batch chained(const std::vector<Entry>& entries, bool at_begin) const;
+    Result<void> lock();
+    Result<std::size_t> readEnds();
+    void goOnInNextPart(off_t size);
+
+    const std::filesystem::path log_;
+    const std::uintmax_t part_size_;
+    Descriptor first_part_;  // keeps the lock
+    Descriptor part_;
+    std::uint32_t part_number_ = 1;
+    std::uint64_t number_ = 0;
+    std::string chain_{kNoChain};
+};
+
+}  // namespace metier::security

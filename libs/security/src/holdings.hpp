@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <vector>
+
+#include "metier/security/trust_store.hpp"
+#include "openssl.hpp"
+
+namespace metier::security {
+
+// The folders of a TrustStore.
+constexpr const char* kTrusted = "trusted/certs";
+constexpr const char* kTrustedLists = "trusted/crl";
+constexpr const char* kIssuers = "issuers/certs";
+constexpr const char* kIssuersLists = "issuers/crl";
+constexpr const char* kRejected = "rejected";
+
+/// The first thousand, by name.
+std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder);
+/// Those of the files that are certificates; they are told apart by their content.
+std::vector<Certificate> certificatesIn(const std::filesystem::path& folder);
+
+/// What the folders hold when they are looked at.
+struct TrustStore::Holdings {
+    /// Nothing, of no folder: never current.
+    Holdings() = default;
+    explicit Holdings(const std::filesystem::path& folder);
+
+    /// Whether nothing was added, renamed or removed since.
+    bool isCurrent() const;
+    bool trusts(const Certificate& certificate) const;
+    bool trustsOneOf(const STACK_OF(X509) * chain) const;
+    template <typename Use>
+    void forEach(Use use) const {
+        std::for_each(trusted.begin(), trusted.end(), use);
+        std::for_each(issuers.begin(), issuers.end(), use);
+    }
+
+    std::filesystem::path folder;
+    std::array<std::filesystem::file_time_type, 4> changed{};
+    std::filesystem::file_time_type looked{};
+    std::vector<Certificate> trusted;
+    std::vector<Certificate> issuers;
+    std::vector<CrlPtr> lists;
+};
+
+}  // namespace metier::security

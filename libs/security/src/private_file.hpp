@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "metier/base/error.hpp"
+
+namespace metier::security {
+
+enum class Readers { owner, everybody };
+
+/// Writes a file whole or not at all: whoever reads sees what was there before or what is new, also
+/// after a loss of power. Missing folders are made, for their owner alone.
+/// Errors: resource_unavailable.
+Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
+                        Readers readers);
+
+/// The content of a file, up to 64 kB, that its owner alone may read.
+/// Errors: not_found; access_denied (others may read it).
+Result<std::string> readPrivate(const std::filesystem::path& file);
+
+}  // namespace metier::security

@@ -1,0 +1,191 @@
+#include "metier/security/trust_store.hpp"
+
+#include <fmt/format.h>
+#include <openssl/err.h>
+
+#include <algorithm>
+
+#include "certificate_check.hpp"
+#include "holdings.hpp"
+#include "openssl.hpp"
+#include "private_file.hpp"
+
+namespace metier::security {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostRejected = 100;
+
+fs::path fileOf(const fs::path& folder, const Certificate& certificate) {
+    return folder / (certificate.thumbprint() + ".der");
+}
+
+/// The one whose thumbprint begins so.
+Result<Certificate> find(std::string_view name, const std::vector<Certificate>& among,
+                         std::string_view what) {
+    const Certificate* found = nullptr;
+    for (const auto& certificate : among) {
+        if (name.empty() || !certificate.thumbprint().starts_with(name)) {
+            continue;
+        }
+        if (found != nullptr && !(*found == certificate)) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("several {} certificates begin with \"{}\"", what, name));
+        }
+        found = &certificate;
+    }
+    return found != nullptr
+               ? Result<Certificate>(*found)
+               : fail(Errc::not_found, fmt::format("no {} certificate \"{}\"", what, name));
+}
+
+/// Whatever the files are called.
+void removeFrom(const fs::path& folder, const Certificate& certificate) {
+    for (const auto& file : filesIn(folder)) {
+        const auto held = Certificate::fromFile(file);
+        if (held && *held == certificate) {
+            std::error_code error;
+            fs::remove(file, error);
+        }
+    }
+}
+
+}  // namespace
+
+std::string_view toString(RefusalKind kind) noexcept {
+    switch (kind) {
+        case RefusalKind::malformed:
+            return "malformed";
+        case RefusalKind::untrusted:
+            return "untrusted";
+        case RefusalKind::expired:
+            return "expired";
+        case RefusalKind::not_yet_valid:
+            return "not_yet_valid";
+        case RefusalKind::revoked:
+            return "revoked";
+        case RefusalKind::revocation_unknown:
+            return "revocation_unknown";
+        case RefusalKind::weak:
+            return "weak";
+        case RefusalKind::wrong_use:
+            return "wrong_use";
+    }
+    return "malformed";
+}
+
+TrustStore::TrustStore(fs::path folder) : folder_(std::move(folder)) {}
+TrustStore::~TrustStore() = default;
+TrustStore::TrustStore(TrustStore&& other) noexcept = default;
+TrustStore& TrustStore::operator=(TrustStore&& other) noexcept = default;
+
+Result<TrustStore> TrustStore::open(fs::path folder) {
+    for (const auto* part : {kTrusted, kTrustedLists, kIssuers, kIssuersLists, kRejected}) {
+        std::error_code error;
+        fs::create_directories(folder / part, error);
+        if (error) {
+            return fail(Errc::resource_unavailable,
+                        fmt::format("{}: {}", (folder / part).string(), error.message()));
+        }
+    }
+    return TrustStore(std::move(folder));
+}
+
+tl::expected<Certificate, CertificateRefusal> TrustStore::check(std::string_view der, UtcTime now) {
+    auto certificate = Certificate::fromDer(der);
+    if (!certificate) {
+        return tl::unexpected(
+            CertificateRefusal{RefusalKind::malformed, certificate.error().message});
+    }
+    METIER_TRY(checkCertificate(*certificate, *holdings(), now));
+    return std::move(*certificate);
+}
+
+std::shared_ptr<const TrustStore::Holdings> TrustStore::holdings() {
+    using Kept = std::shared_ptr<const Holdings>;
+    if (holdings_ == nullptr) {
+        holdings_ = std::make_unique<BackgroundRead<Holdings>>(
+            std::make_shared<Holdings>(), [folder = folder_](const Kept& last) -> Kept {
+                return last->isCurrent() ? last : std::make_shared<Holdings>(folder);
+            });
+    }
+    return holdings_->get();
+}
+
+void TrustStore::keepRejected(const Certificate& certificate) const {
+    const auto folder = folder_ / kRejected;
+    auto files = filesIn(folder);
+    const auto file = fileOf(folder, certificate);
+    if (std::find(files.begin(), files.end(), file) != files.end()) {
+        return;
+    }
+    const auto age = [](const fs::path& path) {
+        std::error_code error;
+        return fs::last_write_time(path, error);
+    };
+    std::sort(files.begin(), files.end(),
+              [&](const auto& a, const auto& b) { return age(a) < age(b); });
+    for (std::size_t i = 0; i + kMostRejected <= files.size(); ++i) {
+        std::error_code error;
+        fs::remove(files[i], error);
+    }
+    // A folder that cannot be written refuses all the same; the log tells of the refusal.
+    static_cast<void>(writeWhole(file, certificate.der(), Readers::everybody));
+}
+
+std::vector<Certificate> TrustStore::trusted() const {
+    return certificatesIn(folder_ / kTrusted);
+}
+
+std::vector<Certificate> TrustStore::rejected() const {
+    return certificatesIn(folder_ / kRejected);
+}
+
+Result<void> TrustStore::trust(const Certificate& certificate) {
+    auto written =
+        writeWhole(fileOf(folder_ / kTrusted, certificate), certificate.der(), Readers::everybody);
+    if (written) {
+        removeFrom(folder_ / kRejected, certificate);
+    }
+    return written;
+}
+
+Result<Certificate> TrustStore::distrust(std::string_view name) {
+    auto certificate = find(name, trusted(), "trusted");
+    if (certificate) {
+        keepRejected(*certificate);
+        removeFrom(folder_ / kTrusted, *certificate);
+    }
+    return certificate;
+}
+
+Result<Certificate> TrustStore::trustRejected(std::string_view name) {
+    METIER_ASSIGN(auto certificate, find(name, rejected(), "rejected"));
+    METIER_TRY(trust(certificate));
+    return certificate;
+}
+
+Result<void> TrustStore::addRevocationList(const fs::path& file) {
+    const auto text = readFile(file.string());
+    const auto list = parseCrlPemOrDer(text);
+    if (list == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} is no revocation list in DER or PEM", file.string()));
+    }
+    for (const auto* place : {kTrusted, kIssuers}) {
+        for (const auto& authority : certificatesIn(folder_ / place)) {
+            const auto parsed = parseDer(authority.der());
+            if (X509_CRL_verify(list.get(), X509_get0_pubkey(parsed.get())) == 1) {
+                const auto* lists = place == kTrusted ? kTrustedLists : kIssuersLists;
+                return writeWhole(folder_ / lists / (authority.thumbprint() + ".crl"), text,
+                                  Readers::everybody);
+            }
+        }
+    }
+    ERR_clear_error();
+    return fail(Errc::not_found,
+                fmt::format("{} is of no authority that is known here", file.string()));
+}
+
+}  // namespace metier::security

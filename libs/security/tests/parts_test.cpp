@@ -1,0 +1,105 @@
+// Logs that go on in another file.
+#include "parts.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "metier/security/audit_log.hpp"
+
+namespace metier::security {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class AuditParts : public ::testing::Test {
+protected:
+    AuditParts() { std::filesystem::remove_all(file_.parent_path()); }
+
+    std::unique_ptr<AuditLog> open() const {
+        return AuditLog::open({.file = file_, .on_health = {}, .part_size = 1}).value();
+    }
+    /// Each in a part of its own.
+    void append(const std::vector<std::string>& events) const {
+        const auto log = open();
+        for (const auto& event : events) {
+            log->append({std::chrono::system_clock::now(), event, {}});
+            ASSERT_TRUE(log->flush(std::chrono::steady_clock::now() + 10s));
+        }
+    }
+
+    const std::filesystem::path file_ =
+        std::filesystem::path(::testing::TempDir()) / "audit_parts" /
+        ::testing::UnitTest::GetInstance()->current_test_info()->name() / "arm.log";
+};
+
+TEST_F(AuditParts, FollowEachOtherInOneChain) {
+    append({"Start", "Halt"});
+    append({"Reset"});
+    EXPECT_THAT(partsOf(file_), ElementsAre(file_, partOf(file_, 2), partOf(file_, 3)));
+    EXPECT_EQ(partOf(file_, 2).filename(), "arm.2.log");
+    const auto all = verify(file_);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->entries, 5U) << "three, and two that tell where the chain goes on";
+    EXPECT_EQ(all->first_number, 1U);
+    const auto last = verify(partOf(file_, 3));
+    ASSERT_TRUE(last) << last.error().message;
+    EXPECT_EQ(last->entries, 2U);
+    EXPECT_EQ(last->first_number, 4U);
+    EXPECT_EQ(last->last_chain, all->last_chain);
+}
+
+TEST_F(AuditParts, AreMissedWhenOneIsGone) {
+    append({"Start", "Halt", "Reset"});
+    std::filesystem::rename(partOf(file_, 2), file_.parent_path() / "kept");
+    EXPECT_EQ(verify(file_).error().code, Errc::not_found);
+    EXPECT_THAT(verify(file_).error().message, HasSubstr("arm.2.log cannot be read"));
+    std::filesystem::rename(partOf(file_, 3), partOf(file_, 2));
+    EXPECT_THAT(verify(file_).error().message, HasSubstr("arm.2.log:1: is not as it was written"));
+}
+
+TEST_F(AuditParts, AreMissedWhenTheEndOfOneIsCutOff) {
+    append({"Start"});
+    append({"Halt"});
+    std::filesystem::resize_file(file_, 0);
+    EXPECT_THAT(verify(file_).error().message, HasSubstr("arm.2.log:1: "));
+}
+
+// As after a loss of power.
+TEST_F(AuditParts, GoOnAfterOneThatIsEmpty) {
+    append({"Start"});
+    std::ofstream(partOf(file_, 2)).flush();
+    append({"Halt"});
+    const auto all = verify(file_);
+    ASSERT_TRUE(all) << all.error().message;
+    EXPECT_EQ(all->entries, 3U);
+}
+
+TEST_F(AuditParts, AreNotOtherFilesOfTheFolder) {
+    append({"Start"});
+    for (const auto* name : {"arm.x.log", "arm.2x.log", "arm..log", "other.2.log", "arm.2.txt"}) {
+        std::ofstream(file_.parent_path() / name) << "notes\n";
+    }
+    EXPECT_THAT(partsOf(file_), ElementsAre(file_));
+}
+
+TEST_F(AuditParts, AreOneServersAlone) {
+    const auto log = open();
+    const auto second = AuditLog::open({.file = file_, .on_health = {}});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::resource_unavailable);
+    EXPECT_THAT(second.error().message, HasSubstr("arm.log is written by another server"));
+}
+
+TEST_F(AuditParts, AreInAFolderForTheirOwnerAlone) {
+    open();
+    struct stat found {};
+    ::stat(file_.parent_path().c_str(), &found);
+    EXPECT_EQ(found.st_mode & 0777U, 0700U);
+}
+
+}  // namespace
+}  // namespace metier::security
