@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "calibration.hpp"
-#include "http_answer.hpp"
+#include "http_get.hpp"
 
 namespace {
 

@@ -1,4 +1,5 @@
-#include "http_answer.hpp"
+// Boost.Asio and the standalone Asio of link cannot be included in one file.
+#include "http_get.hpp"
 
 #include <fmt/format.h>
 

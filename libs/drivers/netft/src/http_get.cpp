@@ -4,7 +4,6 @@
 
 #include <span>
 
-#include "http_answer.hpp"
 #include "metier/link/tcp_link.hpp"
 
 namespace metier::netft_driver {
