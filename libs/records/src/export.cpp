@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows that are read and written at once.
+/// Rows that are read at once.
 constexpr std::int64_t kAtOnce = 500;
 
 /// A table and the number that its rows are read by.
@@ -52,26 +52,35 @@ Result<void> copy(Database& from, Database& into, const Copied& copied) {
         if (!rows || rows->empty()) {
             return rows.map([](const Rows& /*none*/) {});
         }
-        auto done = inTransaction(into, [&] { return insert(into, copied.table, *rows); });
-        if (!done) {
-            return done;
+        if (auto inserted = insert(into, copied.table, *rows); !inserted) {
+            return inserted;
         }
         last = rows->back().integer(0);
     }
 }
 
-/// The version comes last: a file that was left half written is no store of records.
-Result<void> copyAll(Database& from, Database& into) {
-    auto done =
-        into.script("PRAGMA synchronous = OFF; DELETE FROM metier_records; DELETE FROM notes");
+Result<void> copyTables(Database& from, Database& into) {
+    Result<void> done;
     for (const auto& copied : kCopied) {
         done = done.and_then([&] { return copy(from, into, copied); });
     }
-    return done.and_then([&] { return from.query("SELECT name, value FROM metier_records"); })
-        .and_then([&](const Rows& rows) { return insert(into, "metier_records", rows); })
-        // All of it is on the disk, and in the file alone, not in one beside it.
+    return done;
+}
+
+/// The version comes last, with all before it on the disk: a file that was left half written is no
+/// store of records. No file beside it has a part of it.
+Result<void> copyAll(Database& from, Database& into) {
+    return into
+        .script(
+            "DELETE FROM metier_records; DELETE FROM notes; PRAGMA journal_mode = OFF;"
+            "PRAGMA synchronous = OFF; PRAGMA cache_size = -65536")
+        .and_then([&] { return inTransaction(into, [&] { return copyTables(from, into); }); })
         .and_then(
-            [&] { return into.script("PRAGMA synchronous = FULL; PRAGMA journal_mode = DELETE"); });
+            [&] { return into.script("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL"); })
+        .and_then([&] { return from.query("SELECT name, value FROM metier_records"); })
+        .and_then([&](const Rows& rows) {
+            return inTransaction(into, [&] { return insert(into, "metier_records", rows); });
+        });
 }
 
 Result<std::uint64_t> writeFile(Database& from, const std::string& file) {

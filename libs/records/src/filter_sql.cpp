@@ -88,7 +88,10 @@ std::string reasonContains(std::string_view text, Values& values) {
 std::string fits(const Filter& filter, Values& values) {
     Conjunction all;
     all.add(namesFit(filter, values));
-    all.addEqual("parent", filter.parent, values);
+    if (!filter.parent.empty()) {
+        // The index has those alone that have a parent.
+        all.add(fmt::format("parent = {} AND parent <> ''", values.add(storable(filter.parent))));
+    }
     if (filter.from) {
         all.add("started >= " + values.add(toMicroseconds(*filter.from)));
     }

@@ -2,6 +2,22 @@
 
 namespace metier::records {
 
+/// False: others had it for too long.
+bool KeptStore::take() {
+    std::unique_lock lock(mutex_);
+    const bool free = given_back_.wait_for(lock, kPatience, [this] { return !taken_; });
+    taken_ = taken_ || free;
+    return free;
+}
+
+void KeptStore::giveBack() {
+    {
+        const std::lock_guard lock(mutex_);
+        taken_ = false;
+    }
+    given_back_.notify_one();
+}
+
 Result<void> KeptStore::open() {
     store_.reset();
     auto opened = Store::open(url_);

@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "lost.hpp"
+#include "lost_executions.hpp"
 #include "messages.hpp"
 #include "retention.hpp"
 #include "writer.hpp"

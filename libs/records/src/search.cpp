@@ -168,8 +168,8 @@ Result<void> Search::takeNotes(const std::string& of_kinds) {
 Result<void> Search::takeChildren() {
     auto values = bounds();
     const auto parent = values.add(storable(filter_.parent));
-    return take(newest(fmt::format("parent = {0} AND parent <> '' AND number IN (SELECT number "
-                                   "FROM history WHERE parent = {0} AND {1})",
+    return take(newest(fmt::format("parent = {} AND parent <> '' AND number IN (SELECT number FROM "
+                                   "history WHERE {})",
                                    parent, fits(filter_, values))),
                 values);
 }

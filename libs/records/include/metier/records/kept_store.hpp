@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -29,16 +30,19 @@ public:
     /// Errors: those of Store::open() and of `work`; resource_unavailable (kPatience passed).
     template <typename Work>
     auto use(Work work) -> std::invoke_result_t<Work, Store&> {
-        const std::unique_lock lock(mutex_, kPatience);
-        if (!lock) {
+        if (!take()) {
             return fail(Errc::resource_unavailable, "records are being read for others");
         }
+        const std::unique_ptr<KeptStore, GiveBack> taken(this);
         const bool kept = store_ != nullptr && store_->isCurrent();
         auto result = kept ? work(*store_) : useNew(work);
         return kept && !result && isOfConnection(result.error().code) ? useNew(work) : result;
     }
 
 private:
+    struct GiveBack {
+        void operator()(KeptStore* store) const { store->giveBack(); }
+    };
     template <typename Work>
     auto useNew(Work work) -> std::invoke_result_t<Work, Store&> {
         if (auto opened = open(); !opened) {
@@ -46,12 +50,16 @@ private:
         }
         return work(*store_);
     }
+    bool take();
+    void giveBack();
     Result<void> open();
     static bool isOfConnection(Errc code);
 
     const std::string url_;
-    std::timed_mutex mutex_;
-    std::unique_ptr<Store> store_;
+    std::mutex mutex_;
+    std::condition_variable given_back_;
+    bool taken_ = false;
+    std::unique_ptr<Store> store_;  // used by who has taken it
 };
 
 }  // namespace metier::records

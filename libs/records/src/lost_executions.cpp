@@ -1,4 +1,4 @@
-#include "lost.hpp"
+#include "lost_executions.hpp"
 
 #include <algorithm>
 #include <utility>
