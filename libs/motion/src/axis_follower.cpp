@@ -62,8 +62,31 @@ double highestAcceleration(double velocity, const ScalarLimits& limits, double c
     return room / (cycle * (m + 1)) + fall * m / 2;
 }
 
-ScalarLimits shareOf(const JointLimits& limits, double share) noexcept {
-    return {share * limits.velocity, share * limits.acceleration, share * limits.jerk};
+/// Largest acceleration of the next cycle against `speed`: above the limit of the acceleration only
+/// as far as the axis still brakes when it has fallen to that limit by the jerk limit each cycle.
+double hardestBraking(double speed, const FollowerLimits& limits, double cycle) noexcept {
+    const double room = speed / cycle;
+    const double fall = limits.jerk * cycle;
+    const double least = limits.acceleration - fall / 2;
+    const double root = std::sqrt(least * least + 2 * fall * std::max(0.0, room));
+    const double m = std::floor((root - least) / fall);  // cycles above the limit
+    if (m < 1) {
+        return limits.acceleration;
+    }
+    return std::min(
+        {limits.deceleration, limits.acceleration + m * fall, room / m + fall * (m - 1) / 2});
+}
+
+FollowerLimits shareOf(FollowerLimits limits, double share) noexcept {
+    limits.velocity *= share;
+    limits.acceleration *= share;
+    limits.deceleration *= share;
+    limits.jerk *= share;
+    return limits;
+}
+
+ScalarLimits scalarOf(const JointLimits& limits) noexcept {
+    return {limits.velocity, limits.acceleration, limits.jerk};
 }
 
 /// The state at the end of the cycle from that in finite differences, which lag half a cycle.
@@ -94,11 +117,13 @@ struct JerkRange {
     double high;
 };
 
-JerkRange allowedJerk(const ScalarState& now, const ScalarLimits& limits, double cycle) noexcept {
-    const double up =
-        std::min(limits.acceleration, highestAcceleration(now.velocity, limits, cycle));
-    const double down =
-        -std::min(limits.acceleration, highestAcceleration(-now.velocity, limits, cycle));
+JerkRange allowedJerk(const ScalarState& now, const FollowerLimits& limits, double cycle) noexcept {
+    const auto most = [&](double velocity) {
+        return std::min(hardestBraking(-velocity, limits, cycle),
+                        highestAcceleration(velocity, scalarOf(limits), cycle));
+    };
+    const double up = most(now.velocity);
+    const double down = -most(-now.velocity);
     return {std::clamp((down - now.acceleration) / cycle, -limits.jerk, limits.jerk),
             std::clamp((up - now.acceleration) / cycle, -limits.jerk, limits.jerk)};
 }
@@ -119,9 +144,9 @@ double findJerk(const JerkRange& range, const Excess& excess) noexcept {
 }
 
 /// The range narrowed so that the axis can still stop before a position limit.
-JerkRange beforePositionLimits(const ScalarState& now, const JointLimits& limits, JerkRange range,
-                               double cycle) noexcept {
-    const ScalarLimits used = shareOf(limits, kShare);
+JerkRange beforePositionLimits(const ScalarState& now, const FollowerLimits& limits,
+                               JerkRange range, double cycle) noexcept {
+    const ScalarLimits used = scalarOf(shareOf(limits, kShare));
     range.high = findJerk(range, [&](double jerk) {
         return farthestStop(step(now, jerk, cycle), 1, used, cycle) - limits.upper;
     });
@@ -132,14 +157,14 @@ JerkRange beforePositionLimits(const ScalarState& now, const JointLimits& limits
 }
 
 /// What the limits allow, but for rounding.
-JerkRange exactRange(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
+JerkRange exactRange(const ScalarState& now, const FollowerLimits& limits, double cycle) noexcept {
     return beforePositionLimits(now, limits,
                                 allowedJerk(now, shareOf(limits, 1 + kRounding), cycle), cycle);
 }
 
 }  // namespace
 
-ScalarState stepTo(double position, const ScalarState& now, const JointLimits& limits,
+ScalarState stepTo(double position, const ScalarState& now, const FollowerLimits& limits,
                    double cycle) noexcept {
     const JerkRange range = exactRange(now, limits, cycle);
     const double jerk = jerkTo(position, now, cycle);
@@ -151,13 +176,15 @@ ScalarState stepTo(double position, const ScalarState& now, const JointLimits& l
 }
 
 Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept {
-    return Profile::brake(atInstant(now, cycle), shareOf(limits, kShare));
+    return Profile::brake(
+        atInstant(now, cycle),
+        {kShare * limits.velocity, kShare * limits.acceleration, kShare * limits.jerk});
 }
 
 ScalarState followTarget(const ScalarState& now, const TargetStates& targets,
-                         const JointLimits& limits, double cycle) noexcept {
+                         const FollowerLimits& limits, double cycle) noexcept {
     const ScalarState& target = targets.now;
-    const ScalarLimits used = shareOf(limits, kShare);
+    const FollowerLimits used = shareOf(limits, kShare);
     const JerkRange range = beforePositionLimits(now, limits, allowedJerk(now, used, cycle), cycle);
     const ScalarState error{now.position - targets.before.position,
                             now.velocity - targets.before.velocity,

@@ -5,7 +5,12 @@
 
 namespace metier::motion {
 
-/// The quickest stop of an axis whose state is in finite differences.
+/// Limits of an axis that follows.
+struct FollowerLimits : JointLimits {
+    double deceleration = 0;  ///< while it brakes [rad/s2], >= acceleration
+};
+
+/// The quickest stop of an axis whose state is in finite differences, with its acceleration limit.
 Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept;
 
 /// A moving target in finite differences: where it is at the axis' own time, and a cycle later.
@@ -27,10 +32,10 @@ struct TargetStates {
 /// \param targets of the last cycle and of this one
 /// \param cycle   [s]
 ScalarState followTarget(const ScalarState& now, const TargetStates& target,
-                         const JointLimits& limits, double cycle) noexcept;
+                         const FollowerLimits& limits, double cycle) noexcept;
 
 /// One cycle towards `position` [rad], as near as the limits allow; exactly there if they do.
-ScalarState stepTo(double position, const ScalarState& now, const JointLimits& limits,
+ScalarState stepTo(double position, const ScalarState& now, const FollowerLimits& limits,
                    double cycle) noexcept;
 
 }  // namespace metier::motion

@@ -5,7 +5,6 @@
 namespace metier::motion {
 
 namespace {
-constexpr double kHaltFactor = 2.0;
 // A stop along the path is planned anew where this part of its time is enough [1].
 constexpr double kWorthwhile = 0.97;
 }  // namespace

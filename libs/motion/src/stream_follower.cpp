@@ -71,6 +71,11 @@ Result<StreamFollower> StreamFollower::create(const RobotModel& model, const Str
                                 options.cycle.count(), options.stale_cycles, options.jump_factor,
                                 options.jerk_factor));
     }
+    if (!(options.braking_factor >= 1)) {
+        return fail(
+            Errc::invalid_argument,
+            fmt::format("stream options: braking factor {} is below 1", options.braking_factor));
+    }
     if (options.playout_delay_cycles < 0 || options.extrapolated_cycles < 0 ||
         !(options.standing_speed >= 0)) {
         return fail(Errc::invalid_argument,
@@ -89,6 +94,10 @@ StreamFollower::StreamFollower(const RobotModel& model, const StreamOptions& opt
         limits_[i] = model.limits(i);
         limits_[i].jerk *= options.jerk_factor;
     }
+}
+
+FollowerLimits StreamFollower::limitsOf(std::size_t axis) const noexcept {
+    return {limits_[axis], options_.braking_factor * limits_[axis].acceleration};
 }
 
 const StreamFollower::Knot& StreamFollower::knot(std::size_t age) const noexcept {
@@ -300,7 +309,7 @@ TargetStates StreamFollower::statesOf(const Targets& targets, std::size_t axis) 
 void StreamFollower::follow(const Targets& targets) noexcept {
     const double cycle = options_.cycle.count();
     for (std::size_t i = 0; i < now_.position.size(); ++i) {
-        take(i, followTarget(axisOf(now_, i), statesOf(targets, i), limits_[i], cycle));
+        take(i, followTarget(axisOf(now_, i), statesOf(targets, i), limitsOf(i), cycle));
     }
 }
 
@@ -324,7 +333,7 @@ void StreamFollower::brake() noexcept {
         auto& brake = brakes_[i];
         ++brake.cycles;
         const double position = brake.profile.at(brake.cycles * cycle).position;
-        const ScalarState next = stepTo(position, axisOf(now_, i), limits_[i], cycle);
+        const ScalarState next = stepTo(position, axisOf(now_, i), limitsOf(i), cycle);
         take(i, next);
         if (next.position != position) {  // the finite differences do not allow it
             brake = {brakeProfile(next, limits_[i], cycle), 0};

@@ -99,6 +99,32 @@ TEST_F(StreamFollowerTest, BreaksNoLimitForWhiteNoise) {
     EXPECT_GT(follower_.acceptedCount(), 19000U);
 }
 
+TEST_F(StreamFollowerTest, UsesMoreThanTheAccelerationLimitOnlyToBrake) {
+    const StreamOptions options{.cycle = Seconds(kCycle), .jerk_factor = 4, .braking_factor = 2};
+    follower_ = StreamFollower::create(model_, options, model_.home()).value();
+    std::mt19937_64 random(4);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    JointVector q = model_.home();
+    double hardest = 0;
+    for (int i = 0; i < 20000; ++i) {
+        JointVector wild = q;
+        for (std::size_t axis = 0; axis < q.size(); ++axis) {
+            wild[axis] += 1.9 * kCycle * model_.limits(axis).velocity * unit(random);
+        }
+        if (!follower_.accept(wild, time(i), time(i))) {
+            q = wild;
+        }
+        ASSERT_TRUE(model_.kinematics().withinLimits(step(i))) << i;
+        for (std::size_t axis = 0; axis < q.size(); ++axis) {
+            const double used = std::abs(acceleration_[axis]) / model_.limits(axis).acceleration;
+            ASSERT_LE(used, acceleration_[axis] * velocity_[axis] > 1e-6 ? 1 + 1e-5 : 2 + 1e-5)
+                << "cycle " << i << ", axis " << axis + 1;
+            hardest = std::max(hardest, used);
+        }
+    }
+    EXPECT_GT(hardest, 1.5);
+}
+
 using FullLimitStreamOf = EachRobot;
 INSTANTIATE_TEST_SUITE_P(Robots, FullLimitStreamOf, testing::ValuesIn(kRobots), robotName);
 
@@ -212,6 +238,8 @@ TEST_F(StreamFollowerTest, RefusesOptionsThatMakeNoSense) {
     EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0)}, model_.home()));
     EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01), -1}, model_.home()));
     EXPECT_FALSE(StreamFollower::create(model_, {Seconds(0.01)}, JointVector(7)));
+    EXPECT_FALSE(StreamFollower::create(model_, {.cycle = Seconds(0.01), .braking_factor = 0.9},
+                                        model_.home()));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "conversions.hpp"
+#include "metier/motion/execution.hpp"
 
 namespace metier::robot_skills {
 
@@ -58,6 +59,7 @@ motion::StreamOptions StreamSource::followerOptions(const Setup& setup) noexcept
     options.extrapolated_cycles = late;
     options.standing_speed = kStanding;
     options.jerk_factor = kJerkFactor;
+    options.braking_factor = motion::MotionExecution::kHaltFactor;
     options.stale_cycles = std::numeric_limits<int>::max();  // silence is judged here
     return options;
 }

@@ -29,6 +29,8 @@ class MotionExecution {
 public:
     /// Longest stop for which stop() keeps the plan's limits.
     static constexpr Seconds kGentleStop{0.5};
+    /// What halt() uses of the robot's own acceleration and jerk.
+    static constexpr double kHaltFactor = 2.0;
 
     /// Starts at rest at the beginning of the path, moving with the first next().
     explicit MotionExecution(Trajectory trajectory, const LateCyclePolicy& late = {}) noexcept;
@@ -47,7 +49,7 @@ public:
     /// As stop(), but in exactly that time, as PaceBrake does, whatever the limits are.
     /// \param length [s], > 0
     void stopIn(Seconds length) noexcept;
-    /// Brakes on the path with twice the robot's own acceleration and jerk: Halt.
+    /// Brakes on the path with kHaltFactor times the robot's own acceleration and jerk: Halt.
     void halt() noexcept;
     /// Goes on to the end of the path, from rest or while still braking.
     void resume() noexcept;

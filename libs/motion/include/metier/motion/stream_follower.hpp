@@ -12,6 +12,7 @@
 
 namespace metier::motion {
 
+struct FollowerLimits;
 struct TargetStates;
 
 /// How a stream of set-points is played out.
@@ -31,6 +32,9 @@ struct StreamOptions {
     /// Jerk that following may use, as a multiple of the axis' limit; > 0. A stream that uses its
     /// limit to the full is followed exactly only with room above it.
     double jerk_factor = 1.0;
+    /// Acceleration that following may use while an axis brakes, as a multiple of its limit; >= 1.
+    /// A motion that is halted is followed on its path with MotionExecution::kHaltFactor.
+    double braking_factor = 1.0;
 };
 
 /// A set-point that was not taken. No text, so that the cycle thread need not allocate.
@@ -101,6 +105,7 @@ private:
 
     StreamFollower(const RobotModel& model, const StreamOptions& options,
                    const JointVector& start) noexcept;
+    FollowerLimits limitsOf(std::size_t axis) const noexcept;
     std::optional<StreamRefusal> check(const JointVector& position, double time) const noexcept;
     void store(const JointVector& position, double time) noexcept;
     /// The `age`-th newest knot, 0 the newest.

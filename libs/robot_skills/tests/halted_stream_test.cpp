@@ -1,0 +1,115 @@
+// A move whose set-points are streamed, as those of a move component, and that is stopped on its
+// way: how soon the arm behind the stream stands, and whether it stays on the path.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "bench.hpp"
+#include "metier/motion/planner.hpp"
+#include "moves/stop_time.hpp"
+
+namespace metier::robot_skills {
+namespace {
+
+using motion::JointVector;
+using motion::MotionExecution;
+using motion::Seconds;
+using skill::State;
+
+constexpr double kOnThePath = 1e-5;  // [rad]
+// As long as no client is asked for another play-out delay: 20 ms, at least three cycles.
+constexpr double kPlayOut = 0.02;
+constexpr double kLeastPlayOut = 3;
+constexpr double kRounding = 1e-6;
+
+class StoppedMoveOverAStreamOf : public ::testing::TestWithParam<std::string> {
+protected:
+    StoppedMoveOverAStreamOf() : bench_(GetParam()) {}
+
+    /// All axes, the first one at its velocity limit for a while.
+    motion::Trajectory plan() const {
+        motion::PtpRequest request;
+        request.start = bench_.commanded();
+        auto target = request.start;
+        for (std::size_t axis = 0; axis < target.size(); ++axis) {
+            target[axis] += axis == 0 ? 1.5 : 0.3 / static_cast<double>(axis);
+        }
+        request.target = target;
+        return motion::Planner(bench_.model()).ptp(request).value();
+    }
+
+    /// Streams one set-point and lets the arm make one cycle.
+    void send(MotionExecution& execution) {
+        const auto next = execution.next(Seconds(cycle_)).position;
+        sent_.emplace_back(next.begin(), next.end());
+        ASSERT_TRUE(program_.write(bench_.caller(), "TargetJointPosition", sent_.back(), {}));
+        bench_.step();
+        ASSERT_EQ(program_.state(), State::running) << program_.reasonText();
+        const auto now = bench_.commanded();
+        played_.emplace_back(now.begin(), now.end());
+    }
+
+    /// Stops a move at a share of its duration, and checks that the arm makes just the same motion
+    /// a play-out delay later.
+    void expectTheSameMotionLater(double share, const std::function<void(MotionExecution&)>& stop) {
+        ASSERT_TRUE(bench_.start(kPositionStream, {}));
+        const auto trajectory = plan();
+        MotionExecution execution(trajectory);
+        for (double time = 0; time < share * trajectory.duration().count(); time += cycle_) {
+            ASSERT_NO_FATAL_FAILURE(send(execution));
+        }
+        stop(execution);
+        while (!execution.atRest()) {
+            ASSERT_NO_FATAL_FAILURE(send(execution));
+        }
+        const auto later = static_cast<std::size_t>(
+            std::max(kLeastPlayOut, std::ceil(kPlayOut / cycle_ - kRounding)));
+        for (std::size_t cycle = 0; cycle < later; ++cycle) {
+            ASSERT_NO_FATAL_FAILURE(send(execution));
+        }
+        for (std::size_t i = later; i < played_.size(); ++i) {
+            for (std::size_t axis = 0; axis < played_[i].size(); ++axis) {
+                ASSERT_NEAR(played_[i][axis], sent_[i - later][axis], kOnThePath)
+                    << "set-point " << i << " of " << played_.size() << ", axis " << axis + 1;
+            }
+        }
+    }
+
+    Bench bench_;
+    skill::Program& program_ = bench_.program(kPositionStream);
+    const double cycle_ = bench_.arm().info().cycleSeconds();
+    std::vector<std::vector<double>> sent_;
+    std::vector<std::vector<double>> played_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Robots, StoppedMoveOverAStreamOf, testing::Values("ur5", "iiwa7", "edo"),
+                         [](const auto& robot) { return robot.param; });
+
+TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsHaltedAtFullSpeed) {
+    expectTheSameMotionLater(0.5, [](MotionExecution& execution) { execution.halt(); });
+}
+
+TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsHaltedWhileItSpeedsUp) {
+    expectTheSameMotionLater(0.2, [](MotionExecution& execution) { execution.halt(); });
+}
+
+TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsHaltedWhileItSlowsDown) {
+    expectTheSameMotionLater(0.8, [](MotionExecution& execution) { execution.halt(); });
+}
+
+TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspended) {
+    expectTheSameMotionLater(0.5, [](MotionExecution& execution) { execution.stop(); });
+}
+
+TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspendedInItsStopTime) {
+    const double length = stopTimeFor(plan(), bench_.model(), 0.01);
+    ASSERT_GT(length, 0.01);
+    expectTheSameMotionLater(
+        0.5, [&](MotionExecution& execution) { execution.stopIn(Seconds(length)); });
+}
+
+}  // namespace
+}  // namespace metier::robot_skills
