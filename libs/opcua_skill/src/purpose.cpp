@@ -181,22 +181,27 @@ public:
         return std::nullopt;
     }
 
-    std::vector<std::string> missing() const {
-        std::vector<std::string> names;
+    struct Missing {
+        std::string path;
+        bool needed = true;  ///< a parameter that has to be given
+    };
+    std::vector<Missing> missing() const {
+        std::vector<Missing> fields;
         for (std::size_t i = 0; i < parameter_met_.size(); ++i) {
             const auto& field = description_.parameters[i];
             if (!parameter_met_[i]) {
-                names.push_back(
-                    (field.place == skill::Place::options ? "Options/" : "ParameterSet/") +
-                    field.name);
+                const auto* folder =
+                    field.place == skill::Place::options ? "Options/" : "ParameterSet/";
+                fields.push_back(
+                    {folder + field.name, !field.optional && skill::isNull(field.default_value)});
             }
         }
         for (std::size_t i = 0; i < result_met_.size(); ++i) {
             if (!result_met_[i]) {
-                names.push_back("FinalResultData/" + description_.results[i].name);
+                fields.push_back({"FinalResultData/" + description_.results[i].name, false});
             }
         }
-        return names;
+        return fields;
     }
 
 private:
@@ -226,10 +231,30 @@ private:
     std::vector<bool> result_met_;
 };
 
+const LayoutNode* findNode(const SkillLayout& layout, std::string_view path) {
+    const auto found = std::find_if(layout.begin(), layout.end(),
+                                    [&](const LayoutNode& node) { return node.path == path; });
+    return found == layout.end() ? nullptr : &*found;
+}
+
+/// Whether an instance may lack the node: it is declared as Optional, or hangs below such a one
+/// that the instance lacks, too.
+bool isOptional(const SkillLayout& declared, const SkillLayout& instance, std::string_view path) {
+    for (const auto* node = findNode(declared, path);
+         node != nullptr && findNode(instance, node->path) == nullptr;
+         node = node->parent == LayoutNode::kSkill ? nullptr : &declared[node->parent]) {
+        if (node->rule == LayoutNode::Rule::optional) {
+            return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 Result<std::vector<UsedNode>> assignPurposes(const SkillLayout& layout,
-                                             const skill::SkillDescription& description) {
+                                             const skill::SkillDescription& description,
+                                             const SkillLayout& declared) {
     Assignment assignment(description);
     std::vector<UsedNode> used;
     for (std::size_t i = 0; i < layout.size(); ++i) {
@@ -237,7 +262,12 @@ Result<std::vector<UsedNode>> assignPurposes(const SkillLayout& layout,
             used.push_back({i, *purpose});
         }
     }
-    const auto missing = assignment.missing();
+    std::vector<std::string> missing;
+    for (auto& field : assignment.missing()) {
+        if (field.needed || !isOptional(declared, layout, field.path)) {
+            missing.push_back(std::move(field.path));
+        }
+    }
     if (!missing.empty()) {
         return fail(Errc::not_found, fmt::format("{} has no node for {}", description.type,
                                                  fmt::join(missing, ", ")));

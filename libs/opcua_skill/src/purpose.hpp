@@ -74,8 +74,12 @@ struct UsedNode {
 };
 
 /// The nodes that a skill of that description uses, in the order of the layout.
-/// Errors: not_found, naming every field that the layout lacks.
+/// \param declared what the type of an instance declares. Fields that it declares as Optional may
+/// be
+///                 missing: results, and parameters that nobody need give. Empty: none may be
+/// Errors: not_found, naming every other field that the layout lacks.
 Result<std::vector<UsedNode>> assignPurposes(const SkillLayout& layout,
-                                             const skill::SkillDescription& description);
+                                             const skill::SkillDescription& description,
+                                             const SkillLayout& declared = {});
 
 }  // namespace metier::opcua_skill

@@ -46,6 +46,15 @@ bool isParameterPath(std::string_view path) {
     return path.substr(0, 13) == "ParameterSet/" || path.substr(0, 8) == "Options/";
 }
 
+/// What the type of an instance declares.
+Result<SkillLayout> declarationsOf(const AddressSpace& nodes, const NodeId& instance) {
+    const auto types = nodes.browse(instance, {opcua::ids::kHasTypeDefinition});
+    if (!types) {
+        return fail(types.error());
+    }
+    return types->empty() ? SkillLayout() : layoutOfType(nodes, types->front().target);
+}
+
 }  // namespace
 
 Result<void> checkTypes(const AddressSpace& nodes, const SkillInstance& instance,
@@ -74,7 +83,8 @@ Result<void> checkTypes(const AddressSpace& nodes, const SkillInstance& instance
 Result<SkillInstance> wireExisting(AddressSpace& nodes, const NodeId& skill_object,
                                    const skill::SkillDescription& description) {
     METIER_ASSIGN(auto layout, layoutOfInstance(nodes, skill_object));
-    METIER_ASSIGN(auto used, assignPurposes(layout, description));
+    METIER_ASSIGN(const auto declared, declarationsOf(nodes, skill_object));
+    METIER_ASSIGN(auto used, assignPurposes(layout, description, declared));
     SkillInstance instance{skill_object, {}};
     auto next_used = used.begin();
     for (std::size_t i = 0; i < layout.size(); ++i) {

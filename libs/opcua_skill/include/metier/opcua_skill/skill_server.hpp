@@ -53,9 +53,10 @@ public:
     std::shared_ptr<skill::Executor> executor() const;
 
     /// Serves a skill at an object that exists, for example from a NodeSet. Its parameters that the
-    /// skill does not have become read-only.
+    /// skill does not have become read-only. Results and parameters for which the object has no
+    /// node are left out where its type declares them as Optional and nobody need give them.
     /// \return the Program, which lives as long as this
-    /// Errors: not_found, naming every field of the skill that the object has no node for;
+    /// Errors: not_found, naming every other field of the skill that the object has no node for;
     ///         type_mismatch, naming every field whose node has another data type;
     ///         already_exists (bound before).
     Result<skill::Program*> bind(const opcua::NodeId& skill_object,
