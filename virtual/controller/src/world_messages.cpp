@@ -62,7 +62,8 @@ Json toJson(const motion::Pose& pose) {
 }  // namespace
 
 std::string toLine(const NamedReport& report) {
-    Json object{{"name", report.name}, {"gripping", report.report.gripping}};
+    Json object{
+        {"name", report.name}, {"time", report.report.time}, {"gripping", report.report.gripping}};
     if (report.report.base_from_flange) {
         object["flange"] = toJson(*report.report.base_from_flange);
     }
@@ -89,6 +90,7 @@ std::optional<NamedReport> reportOf(std::string_view line) {
     }
     NamedReport report;
     report.name = object->at("name").get<std::string>();
+    report.report.time = number(*object, "time").value_or(0.0);
     report.report.base_from_flange = poseOf(*object, "flange");
     report.report.jaw_width = number(*object, "jaws");
     const auto gripping = object->find("gripping");

@@ -6,11 +6,13 @@ namespace metier::virtual_controller {
 namespace {
 
 TEST(WorldMessages, KeepAReport) {
-    NamedReport sent{"iiwa", {motion::Pose{{0.1, 0.2, 0.3}, {0.6, 0.8, 0.0, 0.0}}, 0.05, true}};
+    NamedReport sent{"iiwa",
+                     {1.5, motion::Pose{{0.1, 0.2, 0.3}, {0.6, 0.8, 0.0, 0.0}}, 0.05, true}};
     const auto line = toLine(sent);
     EXPECT_EQ(line.back(), '\n');
     const auto got = reportOf(line).value();
     EXPECT_EQ(got.name, "iiwa");
+    EXPECT_EQ(got.report.time, 1.5);
     EXPECT_EQ(got.report.base_from_flange->translation, sent.report.base_from_flange->translation);
     EXPECT_DOUBLE_EQ(got.report.base_from_flange->rotation.x(), 0.8);
     EXPECT_EQ(got.report.jaw_width, 0.05);

@@ -106,7 +106,9 @@ private:
     void step() {
         now_ += kCycle;
         bridge_->setTime(now_);
-        world_.report(robot_->step(world_.effect()));
+        auto report = robot_->step(world_.effect());
+        report.time = std::chrono::duration<double>(now_.time_since_epoch()).count();
+        world_.report(report);
         standing_.take(robot_->jointPosition().span(), std::chrono::steady_clock::now());
     }
 

@@ -265,6 +265,7 @@ TEST(Controller, ReportsFlangeAndJawsToTheWorld) {
     client.subscribe("/machine_state");
     EXPECT_TRUE(client.awaitState(2));
     const auto report = edo.inTurn([&](Controller&) { return edo.world.newest; });
+    EXPECT_GT(report.time, 0.0);
     ASSERT_TRUE(report.base_from_flange);
     EXPECT_NEAR(report.jaw_width.value(), 0.0, 1e-9);
 }

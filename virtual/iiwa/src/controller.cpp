@@ -189,6 +189,8 @@ void IiwaController::stepArm() {
         application_->step(end);
     }
     virtual_controller::WorldReport report;
+    time_ += kCycleSeconds;
+    report.time = time_;
     report.base_from_flange = cabinet_.arm.model().kinematics().forward(cabinet_.arm.position());
     world_.report(report);
     standing_.take(cabinet_.arm.position().span(), std::chrono::steady_clock::now());

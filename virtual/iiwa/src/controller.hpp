@@ -60,6 +60,7 @@ private:
     const Options options_;
     virtual_controller::WorldLink& world_;
     Cabinet cabinet_;
+    double time_ = 0.0;  ///< the cabinet's own, by its cycles [s]
     std::optional<RobotApplication> application_;
     virtual_controller::TcpPeer* pc_ = nullptr;
     std::vector<std::byte> received_;  // not yet read by the application

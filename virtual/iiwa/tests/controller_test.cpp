@@ -139,6 +139,7 @@ TEST_F(IiwaTest, StopsWhenTheArmMeetsTheWorld) {
     EXPECT_EQ(pc_.state[30], -20.0F);
     EXPECT_LT(pc_.state[1], 0.9F);
     EXPECT_TRUE(controller.report().base_from_flange.has_value());
+    EXPECT_GT(controller.report().time, 0.0);
 }
 
 TEST_F(IiwaTest, TakesItsTimeToAnswer) {

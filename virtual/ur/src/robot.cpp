@@ -90,7 +90,8 @@ void Robot::cycle() {
     watchSafety();
     publish();
     around_.world.report(
-        {.base_from_flange = arm_.model().kinematics().forward(toJointVector(state_.actual_q))});
+        {.time = state_.timestamp,
+         .base_from_flange = arm_.model().kinematics().forward(toJointVector(state_.actual_q))});
 }
 
 void Robot::doAsked() {

@@ -366,6 +366,7 @@ TEST(Robot, TheWorldsWrenchIsTheForceOnTheTool) {
         std::hypot(state.actual_tcp_force[3], state.actual_tcp_force[4], state.actual_tcp_force[5]),
         0.3, 1e-9);
     ASSERT_TRUE(table.world.reported.base_from_flange);
+    EXPECT_GT(table.world.reported.time, 0.0);
     EXPECT_NEAR(table.world.reported.base_from_flange->translation.z(), 1.0794, 1e-9);
     table.robot.takeScript("sec z():\n  zero_ftsensor()\nend\n");
     table.cycles(2);

@@ -36,7 +36,6 @@ void check(bool holds) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     std::string_view text(reinterpret_cast<const char*>(data), size);
     World world(cell());
-    SteadyTime now;
     while (!text.empty()) {
         const auto line = text.substr(0, text.find('\n'));
         text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -45,8 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 check(pose->translation.allFinite());
                 check(std::abs(pose->rotation.norm() - 1.0) < 1e-9);
             }
-            now += std::chrono::milliseconds(2);
-            static_cast<void>(world.report(message->name, message->report, now));
+            static_cast<void>(world.report(message->name, message->report));
         }
         if (const auto effect = virtual_controller::effectOf(line)) {
             check(effect->wrench.force.allFinite() && effect->wrench.torque.allFinite());

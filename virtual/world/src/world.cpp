@@ -8,7 +8,7 @@ namespace metier::virtual_world {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s2]
-// Reports that come closer together than this give no new velocity [s].
+// Reports of times closer together than this give no new velocity [s].
 constexpr double kShortestStep = 5e-4;
 // Jaws that are open so much wider than a part let it go [m].
 constexpr double kSlack = 1e-3;
@@ -34,10 +34,9 @@ const Mount& World::mountOf(const std::string& controller) const {
     return found == options_.mounts.end() ? kNone : found->second;
 }
 
-WorldEffect World::report(const std::string& controller, const WorldReport& report,
-                          SteadyTime now) {
+WorldEffect World::report(const std::string& controller, const WorldReport& report) {
     if (report.base_from_flange) {
-        moveArm(controller, *report.base_from_flange, now);
+        moveArm(controller, *report.base_from_flange, report.time);
     }
     WorldEffect effect;
     if (report.jaw_width) {
@@ -49,18 +48,20 @@ WorldEffect World::report(const std::string& controller, const WorldReport& repo
 }
 
 void World::moveArm(const std::string& controller, const motion::Pose& base_from_flange,
-                    SteadyTime now) {
+                    double time) {
     const auto& mount = mountOf(controller);
     const auto world_from_flange = mount.world_from_base * base_from_flange;
     const Eigen::Vector3d contact = world_from_flange * mount.contact_point;
     auto [entry, first] = arms_.try_emplace(
-        controller, Arm{world_from_flange, contact, Eigen::Vector3d::Zero(), now});
+        controller, Arm{world_from_flange, contact, Eigen::Vector3d::Zero(), time});
     auto& arm = entry->second;
-    const double elapsed = std::chrono::duration<double>(now - arm.stamp).count();
-    if (!first && elapsed >= kShortestStep) {
+    const double elapsed = time - arm.time;
+    if (elapsed < 0.0) {  // its controller was started again
+        arm = {world_from_flange, contact, Eigen::Vector3d::Zero(), time};
+    } else if (!first && elapsed >= kShortestStep) {
         arm.contact_velocity = (contact - arm.contact) / elapsed;
         arm.contact = contact;
-        arm.stamp = now;
+        arm.time = time;
     }
     arm.world_from_flange = world_from_flange;
     for (auto& [name, part] : options_.parts) {
@@ -122,7 +123,7 @@ motion::Wrench World::wrenchOn(const std::string& arm) const {
     if (found == arms_.end()) {
         return {};
     }
-    const auto& [world_from_flange, contact, velocity, stamp] = found->second;
+    const auto& [world_from_flange, contact, velocity, time] = found->second;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (const auto& wall : options_.walls) {
         const double depth = -wall.normal.dot(contact - wall.point);

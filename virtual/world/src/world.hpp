@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/motion/pose.hpp"
 #include "metier/virtual_controller/world_link.hpp"
@@ -59,7 +58,7 @@ public:
     explicit World(WorldOptions options);
 
     /// Takes what a controller shows, and says what the world does to its device.
-    WorldEffect report(const std::string& controller, const WorldReport& report, SteadyTime now);
+    WorldEffect report(const std::string& controller, const WorldReport& report);
 
     /// Every part that a gripper holds falls; `gripper` empty: of all grippers.
     void drop(const std::string& gripper);
@@ -77,11 +76,11 @@ private:
         motion::Pose world_from_flange;
         Eigen::Vector3d contact;                                     ///< in the world [m]
         Eigen::Vector3d contact_velocity = Eigen::Vector3d::Zero();  ///< [m/s]
-        SteadyTime stamp{};
+        double time = 0.0;  ///< its controller's own, of `contact` [s]
     };
     const Mount& mountOf(const std::string& controller) const;
     void moveArm(const std::string& controller, const motion::Pose& base_from_flange,
-                 SteadyTime now);
+                 double time);
     std::optional<double> grip(const std::string& controller, const WorldReport& report);
     bool isBetween(const motion::Pose& world_from_jaws, double jaw_width, const Part& part) const;
     void release(Part& part) const;

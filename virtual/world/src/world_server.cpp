@@ -1,7 +1,6 @@
 // The world as a process of its own: every virtual controller of a cell talks to it.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -82,8 +81,7 @@ public:
 private:
     void answer(TcpPeer& peer, std::string_view line) {
         if (const auto report = virtual_controller::reportOf(line)) {
-            peer.send(virtual_controller::toLine(
-                world_.report(report->name, report->report, std::chrono::steady_clock::now())));
+            peer.send(virtual_controller::toLine(world_.report(report->name, report->report)));
         } else {
             peer.reset();
         }

@@ -44,6 +44,30 @@ TEST(WorldServer, AnswersAReportWithItsEffect) {
     EXPECT_NEAR(gripper.effect().part_width.value_or(0), 0.03, 1e-12);
 }
 
+// A busy machine makes a controller late; it catches up with many cycles at once.
+TEST(WorldServer, TakesAnArmsSpeedFromItsOwnTimeHoweverQuicklyItsReportsCome) {
+    auto options = worldOptions();
+    options.settings.set("wall.front", std::vector<double>{0.6, 0, 0, -1, 0, 0, 5'000, 50});
+    const auto host = Host::start(options, {worldController()}).value();
+    const auto port = host->controller().state().at("port").get<std::uint16_t>();
+    RemoteWorld arm(host->context(), "arm", "127.0.0.1", port);
+    const double speed = 0.05;
+    const double depth = 0.01;
+    double most = 0.0;
+    const auto deadline = std::chrono::steady_clock::now() + 10s;
+    for (double time = 0.0; most < 5'000 * 0.9 * depth; time += 0.001) {
+        ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+        const double x = std::min(speed * time, depth);
+        arm.report({.time = time,
+                    .base_from_flange =
+                        motion::Pose{{0.6 + x, 0, 0.5}, Eigen::Quaterniond::Identity()}});
+        host->context().run_one_for(100ms);
+        const double force = arm.effect().wrench.force.norm();
+        EXPECT_LE(force, 5'000 * x + 50 * speed + 1e-6) << x << " m behind the wall";
+        most = std::max(most, force);
+    }
+}
+
 TEST(WorldServer, TellsWhatIsWrongWithItsSettings) {
     auto options = worldOptions();
     options.settings.set("part.flat", std::vector<double>{0, 0, 0, 0.1, 0.1, 0.0, 0.1});

@@ -17,6 +17,8 @@ struct WorldEffect {
 
 /// What one controller's device shows the world. What it does not have stays empty.
 struct WorldReport {
+    /// The device's own time [s]: its cycles, however late they are calculated.
+    double time = 0.0;
     std::optional<motion::Pose> base_from_flange{};
     std::optional<double> jaw_width{};  ///< [m]
     /// The jaws press on a part. It is held from then on until they are wider than it.
