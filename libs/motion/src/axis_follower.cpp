@@ -181,6 +181,23 @@ Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double c
         {kShare * limits.velocity, kShare * limits.acceleration, kShare * limits.jerk});
 }
 
+Profile brakeWithin(double duration, const ScalarState& now, const JointLimits& limits,
+                    double cycle) noexcept {
+    constexpr int bisections = 20;
+    JointLimits used = limits;
+    double low = 0.0;
+    double high = 1.0;
+    for (int i = 0; i < bisections; ++i) {
+        const double middle = (low + high) / 2;
+        used.acceleration = middle * limits.acceleration;
+        used.jerk = middle * limits.jerk;
+        (brakeProfile(now, used, cycle).duration() > duration ? low : high) = middle;
+    }
+    used.acceleration = high * limits.acceleration;
+    used.jerk = high * limits.jerk;
+    return brakeProfile(now, used, cycle);
+}
+
 ScalarState followTarget(const ScalarState& now, const TargetStates& targets,
                          const FollowerLimits& limits, double cycle) noexcept {
     const ScalarState& target = targets.now;

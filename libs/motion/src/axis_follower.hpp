@@ -13,6 +13,11 @@ struct FollowerLimits : JointLimits {
 /// The quickest stop of an axis whose state is in finite differences, with its acceleration limit.
 Profile brakeProfile(const ScalarState& now, const JointLimits& limits, double cycle) noexcept;
 
+/// The softest stop that takes no longer than `duration` [s], which the quickest one must not. Axes
+/// that brake in one time so stay on the straight line on which they move.
+Profile brakeWithin(double duration, const ScalarState& now, const JointLimits& limits,
+                    double cycle) noexcept;
+
 /// A moving target in finite differences: where it is at the axis' own time, and a cycle later.
 struct TargetStates {
     ScalarState before;

@@ -320,10 +320,15 @@ void StreamFollower::take(std::size_t axis, const ScalarState& next) noexcept {
     now_.acceleration[axis] = next.acceleration;
 }
 
+/// All axes come to rest at one time: they stay on their line.
 void StreamFollower::startBraking() noexcept {
     const double cycle = options_.cycle.count();
+    double longest = 0;
     for (std::size_t i = 0; i < now_.position.size(); ++i) {
-        brakes_[i] = {brakeProfile(axisOf(now_, i), limits_[i], cycle), 0};
+        longest = std::max(longest, brakeProfile(axisOf(now_, i), limits_[i], cycle).duration());
+    }
+    for (std::size_t i = 0; i < now_.position.size(); ++i) {
+        brakes_[i] = {brakeWithin(longest, axisOf(now_, i), limits_[i], cycle), 0};
     }
 }
 

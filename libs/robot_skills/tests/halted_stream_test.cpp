@@ -111,5 +111,64 @@ TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspendedInItsSto
         0.5, [&](MotionExecution& execution) { execution.stopIn(Seconds(length)); });
 }
 
+/// How far a joint position is from the straight line of a PTP, in the axis that is farthest off.
+double offLine(const motion::Trajectory& line, const JointVector& q) {
+    const auto from = line.start();
+    const auto to = line.end();
+    const double done = (q[0] - from[0]) / (to[0] - from[0]);
+    double farthest = 0.0;
+    for (std::size_t axis = 0; axis < q.size(); ++axis) {
+        const double planned = from[axis] + done * (to[axis] - from[axis]);
+        farthest = std::max(farthest, std::abs(q[axis] - planned));
+    }
+    return farthest;
+}
+
+class BrakingStreamOf : public StoppedMoveOverAStreamOf {
+protected:
+    /// Streams half of a move, which is at full speed then.
+    void streamHalf() {
+        ASSERT_TRUE(bench_.start(kPositionStream, {}));
+        MotionExecution execution(trajectory_);
+        while (execution.remaining() > trajectory_.duration() / 2) {
+            ASSERT_NO_FATAL_FAILURE(send(execution));
+        }
+    }
+    /// Lets it come to rest, and checks that it does so on its line and as soon as its limits
+    /// allow. \param most it may take before it begins to brake [s]
+    void expectRestOnItsLine(double most) {
+        const auto& limits = bench_.model().limits(0);
+        const double speed = std::abs(played_.back()[0] - played_[played_.size() - 2][0]) / cycle_;
+        const double needed = speed / limits.acceleration + limits.acceleration / limits.jerk;
+        auto before = bench_.commanded();
+        double moved = 0.0;  // until it moved last [s]
+        for (double time = cycle_; program_.state() == State::running; time += cycle_) {
+            bench_.step();
+            const auto now = bench_.commanded();
+            ASSERT_LE(offLine(trajectory_, now), 1e-3) << "after " << time << " s";
+            moved = motion::maxDifference(now, before) > 1e-9 ? time : moved;
+            before = now;
+        }
+        EXPECT_LE(moved, most + needed + 2 * cycle_);
+        EXPECT_EQ(program_.state(), State::halted);
+    }
+
+    const motion::Trajectory trajectory_ = plan();
+};
+
+INSTANTIATE_TEST_SUITE_P(Robots, BrakingStreamOf, testing::Values("ur5", "iiwa7", "edo"),
+                         [](const auto& robot) { return robot.param; });
+
+TEST_P(BrakingStreamOf, StaysOnItsLineIfAnotherClientHaltsIt) {
+    ASSERT_NO_FATAL_FAILURE(streamHalf());
+    ASSERT_TRUE(program_.halt(bench_.caller()));
+    expectRestOnItsLine(0.0);
+}
+
+TEST_P(BrakingStreamOf, StaysOnItsLineIfItsClientDies) {
+    ASSERT_NO_FATAL_FAILURE(streamHalf());
+    expectRestOnItsLine(std::max(kPlayOut, kLeastPlayOut * cycle_));
+}
+
 }  // namespace
 }  // namespace metier::robot_skills
