@@ -50,7 +50,7 @@ using MakeFaces =
 class Bench {
 public:
     explicit Bench(const std::string& robot = "ur5", const Change& change = {},
-                   const MakeFaces& faces = {})
+                   const MakeFaces& faces = {}, const PositionStreamOptions& stream = {})
         : model_(modelOf(robot)), executor_(std::make_shared<skill::testing::ManualExecutor>()) {
         auto options = joint_simulator::optionsFor(model_);
         if (change) {
@@ -58,7 +58,7 @@ public:
         }
         arm_ = joint_simulator::JointSimulator::create(std::move(options)).value();
         auto skills = makeArmSkills(faces ? faces(*arm_, model_) : ArmFaces{*arm_}, model_,
-                                    executor_->clock())
+                                    executor_->clock(), stream)
                           .value();
         resource_ = skills.resource;
         stream_report_ = skills.stream_report;

@@ -154,6 +154,22 @@ TEST_F(Stream, IsHaltedWhenItFallsSilentMoving) {
     EXPECT_TRUE(bench.start(kPositionStream, {}));
 }
 
+TEST(PositionStream, IsHaltedWhenItFallsSilentMovingAlsoIfLongSilenceIsAllowed) {
+    Bench bench("ur5", {}, {}, {.longest_silence = 1.0});
+    auto& program = bench.program(kPositionStream);
+    auto joints = jointsOf(bench);
+    ASSERT_TRUE(bench.start(kPositionStream, {}));
+    for (int i = 0; i < 50; ++i) {
+        joints[0] += 0.005;
+        ASSERT_TRUE(program.write(bench.caller(), kTarget, joints, {}));
+        bench.step();
+    }
+    ASSERT_TRUE(bench.stepUntil([&] { return program.state() != State::running; }));
+    EXPECT_EQ(program.state(), State::halted);
+    EXPECT_EQ(program.reason(), Reason::error);
+    EXPECT_THAT(program.reasonText(), HasSubstr("fell silent while it moved"));
+}
+
 TEST_F(Stream, IsFinishedWhenItNeverBegins) {
     ASSERT_TRUE(bench.stepUntil(kPositionStream, State::ready));
     EXPECT_GE(bench.arm().state().cycle, 1250U) << "10 s";

@@ -213,7 +213,10 @@ bool StreamSource::isFinished() const noexcept {
     if (!last_) {
         return finishing_ || silence_ > kLongestWait;
     }
-    const bool at_last = finishing_ && speed_ <= kStanding && follower_.atRest() &&
+    if (speed_ > kStanding) {
+        return false;
+    }
+    const bool at_last = finishing_ && follower_.atRest() &&
                          motion::maxDifference(toVector(commanded_), last_->position) < kAtLast;
     return at_last || silence_ > kFinishedAfter;
 }
