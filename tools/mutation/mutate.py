@@ -8,8 +8,9 @@
   tools/mutation/mutate.py --resume FILE --report prints the outcome in FILE
   tools/mutation/mutate.py --own-tests            leaves out the tests of libraries that are built on it: quicker
 
-It works in a git worktree of its own, at the commit that is checked out here, and runs at the lowest
-priority. Each mutant is one change of one source file. README.md says which changes there are.
+It works in a git worktree of its own, at the commit that is checked out here, or with `--tree .` in the builds that
+are here, and at the lowest priority. Each mutant is one change of one source file. README.md says which changes
+there are.
 """
 
 import argparse
@@ -105,38 +106,26 @@ def listed_reason(mutant: Mutant) -> str | None:
 
 
 def judge(bench: Workbench, mutant: Mutant, own_tests: bool) -> Outcome:
-    """Makes the change, builds, tests, and takes it back."""
+    """Compiles the source file with the change, links and tests."""
     if reason := listed_reason(mutant):
         return Outcome(EQUIVALENT, reason)
-    path = bench.tree / mutant.source
-    text = path.read_text()
+    text = (bench.tree / mutant.source).read_text()
     start = place_of(mutant, text)
     if start is None:
         return Outcome(EQUIVALENT, "the line is not there any more")
     library = LIBRARIES[mutant.library]
     # A test notices a lock that is missing only with luck; the thread sanitizer does for certain.
     preset = TSAN if mutant.kind == "lock" else DEV
-    programs = library.tests if own_tests else library.tests + library.dependants
-    bench.prepare(preset, list(library.tests))
-    as_it_is = bench.code_as_it_is(preset, library, mutant.source)
-    try:
-        path.write_text(text[:start] + mutant.new + text[start + len(mutant.old) :])
-        code = bench.code_of(preset, library, mutant.source)
-        if code is None:
-            return Outcome(REFUSED)
-        if code == as_it_is:
-            return Outcome(EQUIVALENT, "the same machine code")
-        return _tested(bench, preset, programs)
-    finally:
-        path.write_text(text)
-
-
-def _tested(bench: Workbench, preset: str, programs: tuple[str, ...]) -> Outcome:
-    """Links and runs one program after the other until a test fails."""
-    for program in programs:
-        if (said := bench.build(preset, [program])) is not None:
-            raise SystemExit(f"mutate: {program} does not build:\n{said[-3000:]}")
-        if failed := bench.run_tests(preset, program):
+    bench.prepare(preset, library.tests[0])
+    changed = text[:start] + mutant.new + text[start + len(mutant.old) :]
+    made = bench.compile(preset, mutant.source, changed)
+    if made is None:
+        return Outcome(REFUSED)
+    if bench.is_as_before(preset, library, mutant.source, made):
+        return Outcome(EQUIVALENT, "the same machine code")
+    for program in library.tests if own_tests else library.tests + library.dependants:
+        bench.prepare(preset, program)
+        if failed := bench.run_tests(preset, bench.link(preset, library, program, made)):
             return Outcome(CAUGHT, failed)
     return Outcome(SURVIVED)
 
@@ -145,7 +134,7 @@ def _tested(bench: Workbench, preset: str, programs: tuple[str, ...]) -> Outcome
 
 
 def run(bench: Workbench, mutants: list[Mutant], options: argparse.Namespace) -> None:
-    """Judges each, grouped by file so that little is compiled again, and notes it at once."""
+    """Judges each, those of one library after the other, and notes it at once."""
     until = time.time() + 60 * options.minutes
     order = sorted(mutants, key=lambda m: (list(LIBRARIES).index(m.library), m.kind == "lock", m.source))
     for number, mutant in enumerate(order, 1):
@@ -207,6 +196,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--library", action="append", choices=list(LIBRARIES), help="this one alone; may be repeated")
+    parser.add_argument("--without", action="append", choices=list(OPERATORS), default=[], help="no mutant of this kind")
     parser.add_argument("--resume", type=Path, default=ROOT / "build/mutation/outcome.jsonl", metavar="FILE")
     parser.add_argument("--again", action="store_true", help="tries what survived once more")
     parser.add_argument("--own-tests", action="store_true", help="without those of libraries that are built on it")
@@ -214,7 +204,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--minutes", type=float, default=1e6, help="begins no mutant after that time")
     parser.add_argument("--least", type=float, default=95.0, help="percent to be caught; below it the status is 1")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--tree", type=Path, default=ROOT / "build/mutation/tree")
+    parser.add_argument("--tree", type=Path, default=ROOT / "build/mutation/tree", help=". uses the builds here")
     return parser.parse_args()
 
 
@@ -230,7 +220,7 @@ def main() -> int:
         else:
             libraries = [LIBRARIES[name] for name in options.library or LIBRARIES]
             chosen = choose(options.count, options.seed, libraries, bench.tree)
-            todo = [mutant for mutant in chosen if mutant not in found]
+            todo = [mutant for mutant in chosen if mutant not in found and mutant.kind not in options.without]
         options.resume.parent.mkdir(parents=True, exist_ok=True)
         run(bench, todo, options)
         found = read(options.resume)

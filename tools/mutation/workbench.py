@@ -1,10 +1,13 @@
-"""A copy of the source tree with builds of its own, in which mutants are compiled and tested."""
+"""Builds in which mutants are compiled and tested: the object of a mutant is linked before its library."""
 
 import hashlib
+import json
 import os
 import re
+import shlex
 import signal
 import subprocess
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +17,7 @@ from libraries import Library
 CAUGHT, SURVIVED, REFUSED, EQUIVALENT = "caught", "survived", "does not compile", "equivalent"
 BUILD_TIMEOUT_S = 1800
 FLAKY_REPEATS = 2
+SLOW_TEST_MS = 500
 
 
 @dataclass
@@ -23,17 +27,20 @@ class Outcome:
 
 
 class Workbench:
-    """Works in `tree`, a git worktree at the commit that `root` has checked out."""
+    """Works in the builds of `tree`: of `root` itself, or of a git worktree at the commit that `root` has checked out."""
 
     def __init__(self, root: Path, tree: Path, jobs: int):
-        self.root, self.tree, self.jobs = root, tree, jobs
+        self.root, self.tree, self.jobs = root, tree.resolve(), jobs
         self._times: dict[tuple[str, str], float] = {}
-        self._configured: set[str] = set()
-        self._codes: dict[tuple[str, str], str | None] = {}
+        self._slow: dict[tuple[str, str], list[str]] = {}
+        self._compilations: dict[str, dict[str, str]] = {}
+        self._scratch = tempfile.TemporaryDirectory(prefix="mutant")
 
     def check_out(self) -> str:
-        """Brings the tree to the commit of `root`, which is returned."""
+        """Brings the tree, unless it is `root`, to the commit of `root`, which is returned."""
         commit = self._git(self.root, "rev-parse", "HEAD")
+        if self.tree == self.root:
+            return commit
         if not (self.tree / ".git").exists():
             self.tree.parent.mkdir(parents=True, exist_ok=True)
             self._git(self.root, "worktree", "add", "--force", "--detach", str(self.tree), commit)
@@ -53,80 +60,108 @@ class Workbench:
             if not link.exists():
                 link.symlink_to(packages.resolve())
 
+    def _folder(self, preset: str) -> Path:
+        return self.tree / "build" / preset
+
     # ---- builds ----
 
-    def build(self, preset: str, targets: list[str], environment: dict[str, str] | None = None) -> str | None:
-        """Builds the targets; None if that went well, else what the compiler says."""
-        folder = self.tree / "build" / preset
-        if preset not in self._configured:
+    def prepare(self, preset: str, program: str) -> None:
+        """Builds a program of the sources as they are, and measures how long it takes; once."""
+        if (preset, program) in self._times:
+            return
+        if not (self._folder(preset) / "build.ninja").exists():
             subprocess.run(["cmake", "--preset", preset], cwd=self.tree, check=True, stdout=subprocess.DEVNULL)
-            self._configured.add(preset)
-        ran = _run(
-            ["ninja", "-C", str(folder), f"-j{self.jobs}", *targets],
-            BUILD_TIMEOUT_S,
-            environment or {},
-        )
-        return None if ran.status == 0 else ran.output
-
-    def prepare(self, preset: str, programs: list[str]) -> None:
-        """Builds programs of the sources as they are, and measures how long they take; once each."""
-        programs = [program for program in programs if (preset, program) not in self._times]
-        said = self.build(preset, programs) if programs else None
-        if said is not None:
-            raise SystemExit(f"mutate: {preset}: the sources as they are do not compile:\n{said[-3000:]}")
-        for program in programs:
-            self._time(preset, program)
+        ran = _run(["ninja", "-C", str(self._folder(preset)), f"-j{self.jobs}", program], BUILD_TIMEOUT_S)
+        if ran.status != 0:
+            raise SystemExit(f"mutate: {preset}: {program} does not build:\n{ran.output[-3000:]}")
+        self._time(preset, program)
 
     def _time(self, preset: str, program: str) -> None:
-        begin = time.monotonic()
-        failed = self.run_tests(preset, program)
-        if failed:
-            raise SystemExit(f"mutate: {preset}: {program} fails without any change: {failed}")
+        """Runs it once or, if a test fails by chance, twice."""
+        for _ in range(2):
+            begin = time.monotonic()
+            ran = self._run_program(preset, self._program(preset, program), "*")
+            if ran.status == 0:
+                break
+        else:
+            raise SystemExit(f"mutate: {preset}: {program} fails without any change: {_failed_test(ran.output)}")
         self._times[preset, program] = time.monotonic() - begin
+        self._slow[preset, program] = slow_tests(ran.output)
 
-    def code_as_it_is(self, preset: str, library: Library, source: str) -> str | None:
-        """code_of() of a source file that is not changed; compiled once."""
-        if (preset, source) not in self._codes:
-            self._codes[preset, source] = self.code_of(preset, library, source)
-        return self._codes[preset, source]
+    def compile(self, preset: str, source: str, text: str) -> Path | None:
+        """The object that this text of a source file becomes; None if the compiler refuses it."""
+        place, scratch = self.tree / source, Path(self._scratch.name)
+        code, made = scratch / place.name, scratch / (place.name + ".o")
+        code.write_text(text)
+        command = shlex.split(self._compilation(preset, source))
+        command[command.index("-o") + 1] = str(made)
+        command[command.index("-c") + 1] = str(code)
+        command += ["-iquote", str(place.parent), f"-fmacro-prefix-map={scratch}={place.parent}"]
+        ran = _run(command, BUILD_TIMEOUT_S, {"CCACHE_DISABLE": "1"}, self._folder(preset))
+        return made if ran.status == 0 else None
 
-    def code_of(self, preset: str, library: Library, source: str) -> str | None:
-        """A digest of the machine code that the source file becomes; None if it does not compile."""
-        target = library.object_of(source)
-        if self.build(preset, [target], {"CCACHE_READONLY": "1"}) is not None:  # the object of a mutant is of no use
-            return None
-        path = self.tree / "build" / preset / target
-        bare = path.with_suffix(".bare")
-        subprocess.run(["objcopy", "--strip-debug", str(path), str(bare)], check=True)
-        digest = hashlib.sha256(bare.read_bytes()).hexdigest()
-        bare.unlink()
-        return digest
+    def _compilation(self, preset: str, source: str) -> str:
+        if preset not in self._compilations:
+            entries = json.loads((self._folder(preset) / "compile_commands.json").read_text())
+            self._compilations[preset] = {entry["file"]: entry["command"] for entry in entries}
+        return self._compilations[preset][str(self.tree / source)]
+
+    def is_as_before(self, preset: str, library: Library, source: str, made: Path) -> bool:
+        """Whether the machine code of the object is that of the source file as it is."""
+        before = self._folder(preset) / library.object_of(source)
+        return self._digest(made) == self._digest(before)
+
+    def _digest(self, made: Path) -> str:
+        """Digest of an object without what only names lines."""
+        bare = Path(self._scratch.name) / "bare.o"
+        subprocess.run(["objcopy", "--strip-debug", str(made), str(bare)], check=True)
+        return hashlib.sha256(bare.read_bytes()).hexdigest()
+
+    def link(self, preset: str, library: Library, program: str, made: Path) -> Path:
+        """The program with the object in place of that in the library, from which it is not taken any more."""
+        target = self._program(preset, program).relative_to(self._folder(preset))
+        ran = _run(["ninja", "-C", str(self._folder(preset)), "-t", "commands", "-s", str(target)], BUILD_TIMEOUT_S)
+        linked = Path(self._scratch.name) / program
+        command = link_command(ran.output, str(target), f"lib{library.target}.a", str(made), str(linked))
+        ran = _run(command, BUILD_TIMEOUT_S, {}, self._folder(preset))
+        if ran.status != 0:
+            raise SystemExit(f"mutate: {program} does not link:\n{ran.output[-3000:]}")
+        return linked
+
+    def _program(self, preset: str, name: str) -> Path:
+        """Where the program of the sources as they are is."""
+        folders = [self._folder(preset) / folder for folder in ("libs", "virtual")]
+        [path] = [path for folder in folders for path in folder.rglob(name) if path.is_file()]
+        return path
 
     # ---- tests ----
 
-    def run_tests(self, preset: str, program: str) -> str | None:
-        """Runs a test program up to its first failure that shows again; that, or None."""
-        leave_out: list[str] = []
+    def run_tests(self, preset: str, linked: Path) -> str | None:
+        """Runs a test program up to its first failure that shows again; that, or None. Slow tests come last."""
+        slow = self._slow.get((preset, linked.name), [])
+        if failed := self._first_failure(preset, linked, ["*"], slow):
+            return failed
+        return self._first_failure(preset, linked, slow, []) if slow else None
+
+    def _first_failure(self, preset: str, linked: Path, tests: list[str], left_out: list[str]) -> str | None:
+        leave_out = list(left_out)
         for _ in range(4):
-            ran = self._run_program(preset, program, "-" + ":".join(leave_out) if leave_out else "*")
+            ran = self._run_program(preset, linked, gtest_filter(tests, leave_out))
             if ran.status == 0:
                 return None
             test = _failed_test(ran.output)
             if ran.status is None:
-                return f"{program}: {test or 'no test'} does not end"
-            if test is None or self._fails_again(preset, program, test):
-                return f"{program}: {test or 'status ' + str(ran.status)}"
+                return f"{linked.name}: {test or 'no test'} does not end"
+            if test is None or self._fails_again(preset, linked, test):
+                return f"{linked.name}: {test or 'status ' + str(ran.status)}"
             leave_out.append(test)
         return None
 
-    def _fails_again(self, preset: str, program: str, test: str) -> bool:
-        return all(self._run_program(preset, program, test).status != 0 for _ in range(FLAKY_REPEATS))
+    def _fails_again(self, preset: str, linked: Path, test: str) -> bool:
+        return all(self._run_program(preset, linked, test).status != 0 for _ in range(FLAKY_REPEATS))
 
-    def _run_program(self, preset: str, program: str, tests: str) -> "Ran":
-        [path] = [p for p in (self.tree / "build" / preset / "libs").rglob(program) if p.is_file()] or [
-            p for p in (self.tree / "build" / preset / "virtual").rglob(program) if p.is_file()
-        ]
-        timeout = 60 + 4 * self._times.get((preset, program), 300)
+    def _run_program(self, preset: str, path: Path, tests: str) -> "Ran":
+        timeout = 60 + 4 * self._times.get((preset, path.name), 300)
         environment = {"GTEST_FAIL_FAST": "1", "TSAN_OPTIONS": "halt_on_error=1 exitcode=66"}
         return _run([str(path), f"--gtest_filter={tests}"], timeout, environment, path.parent)
 
@@ -137,12 +172,14 @@ class Ran:
     output: str
 
 
-def _run(command: list[str], timeout: float, environment: dict[str, str], folder: Path | None = None) -> Ran:
+def _run(
+    command: list[str], timeout: float, environment: dict[str, str] | None = None, folder: Path | None = None
+) -> Ran:
     """Runs a command in a process group of its own, which ends with it."""
     process = subprocess.Popen(
         command,
         cwd=folder,
-        env={**os.environ, **environment},
+        env={**os.environ, **(environment or {})},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -155,6 +192,24 @@ def _run(command: list[str], timeout: float, environment: dict[str, str], folder
         os.killpg(process.pid, signal.SIGKILL)
         output, _ = process.communicate()
         return Ran(None, output.decode(errors="replace"))
+
+
+def link_command(command: str, target: str, archive: str, made: str, linked: str) -> list[str]:
+    """Ninja's command that links `target`, to link `linked` instead with the object before the archive."""
+    words = shlex.split(command.split("&&")[1])
+    words[words.index(target)] = linked
+    [at] = [i for i, word in enumerate(words) if Path(word).name == archive][:1]
+    return words[:at] + [made] + words[at:]
+
+
+def gtest_filter(tests: list[str], leave_out: list[str]) -> str:
+    return ":".join(tests) + ("-" + ":".join(leave_out) if leave_out else "")
+
+
+def slow_tests(output: str) -> list[str]:
+    """The tests that took longer than SLOW_TEST_MS."""
+    ended = re.findall(r"^\[       OK \] ([\w./]+).*\((\d+) ms\)$", output, re.MULTILINE)
+    return [test for test, ms in ended if int(ms) > SLOW_TEST_MS]
 
 
 def _failed_test(output: str) -> str | None:

@@ -10,7 +10,7 @@ import mutate
 from libraries import LIBRARIES
 from operators import changes
 from source_text import blanked
-from workbench import Outcome, _failed_test
+from workbench import Outcome, _failed_test, gtest_filter, link_command, slow_tests
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -139,6 +139,21 @@ class TestPrograms(unittest.TestCase):
 
     def test_a_crash_is_that_of_the_test_under_way(self):
         self.assertEqual(_failed_test("[ RUN      ] A.b\n[       OK ] A.b\n[ RUN      ] C.d\n"), "C.d")
+
+    def test_slow_ones_are_run_last(self):
+        output = "[       OK ] A.b (9 ms)\n[       OK ] A/B.c/2, where GetParam() = 3 (900 ms)\n[       OK ] C.d (501 ms)\n"
+        self.assertEqual(slow_tests(output), ["A/B.c/2", "C.d"])
+        self.assertEqual(gtest_filter(["*"], []), "*")
+        self.assertEqual(gtest_filter(["*"], ["A/B.c/2", "C.d"]), "*-A/B.c/2:C.d")
+        self.assertEqual(gtest_filter(["C.d"], ["A.b"]), "C.d-A.b")
+
+    def test_the_object_of_a_mutant_is_linked_before_its_library(self):
+        command = ": && /usr/bin/c++ -O1 a.o -o libs/x/x_tests  libs/x/libmetier_x.a  libs/y/libmetier_y.a && :\n"
+        self.assertEqual(
+            link_command(command, "libs/x/x_tests", "libmetier_x.a", "/m/mutant.o", "/m/x_tests"),
+            ["/usr/bin/c++", "-O1", "a.o", "-o", "/m/x_tests"]
+            + ["/m/mutant.o", "libs/x/libmetier_x.a", "libs/y/libmetier_y.a"],
+        )
 
 
 if __name__ == "__main__":
