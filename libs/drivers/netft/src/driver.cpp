@@ -29,12 +29,12 @@ std::uint16_t portOr(const cell::Settings& settings, std::string_view name,
 std::optional<Calibration> givenCalibration(const cell::Settings& settings) {
     const bool force = settings.has("counts_per_force");
     const bool torque = settings.has("counts_per_torque");
+    if (!force && !torque) {
+        return std::nullopt;
+    }
     if (force != torque) {
         settings.reject(force ? "counts_per_torque" : "counts_per_force",
                         "missing; counts are given for both or for none");
-    }
-    if (!force || !torque) {
-        return std::nullopt;
     }
     return calibrationFrom(settings.numberOr("counts_per_force", 1.0, 1e-3, 1e12),
                            settings.numberOr("counts_per_torque", 1.0, 1e-3, 1e12));

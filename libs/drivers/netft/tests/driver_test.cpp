@@ -50,6 +50,13 @@ TEST(NetftDriver, TakesCountsInsteadOfTheSensorsPage) {
                 HasSubstr("counts_per_torque: missing"));
 }
 
+TEST(NetftDriver, TellsThatCountsAreMissingAndThatTheOthersAreWrong) {
+    const auto torque_only = readOptions(request({{"counts_per_torque", 0.0}}));
+    ASSERT_FALSE(torque_only);
+    EXPECT_THAT(torque_only.error().message, HasSubstr("counts_per_force: missing"));
+    EXPECT_THAT(torque_only.error().message, HasSubstr("counts_per_torque: 0 is not within"));
+}
+
 TEST(NetftDriver, TellsEverySettingThatIsWrong) {
     const auto device = device::netftDriver().open(
         request({{"rate", 9000.0}, {"force_unit", std::string("stone")}, {"prt", 1.0}}));
