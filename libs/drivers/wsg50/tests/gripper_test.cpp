@@ -168,6 +168,16 @@ TEST_F(Gripper, StopsAMotion) {
     EXPECT_EQ(ended().error().code, Errc::cancelled);
 }
 
+TEST_F(Gripper, StopsAMotionThatWasAskedForAMomentAgo) {
+    fake.answer(0x22, reply(0x22, kSuccess) + reply(0x21, kAborted));
+    connectReady();
+    ASSERT_TRUE(ask(kMoveIt, {.width = 0.01}));
+    gripper->stop();
+    EXPECT_EQ(ended().error().code, Errc::cancelled);
+    EXPECT_TRUE(ask(kMoveIt, {.width = 0.02})) << "the stop was not meant for the next motion";
+    EXPECT_TRUE(fake.got(0x21));
+}
+
 TEST_F(Gripper, CanBeAskedAgainFromTheEndOfAMotion) {
     connectReady();
     std::promise<Result<void>> again;
@@ -277,6 +287,22 @@ TEST_F(Gripper, IsResetFromAFastStop) {
     const auto asked = reset.get();
     EXPECT_TRUE(asked || asked.error().code == Errc::timeout) << asked.error().message;
     EXPECT_TRUE(gripper->resetFault()) << "of a healthy one does nothing";
+}
+
+TEST_F(Gripper, TellsWhyAResetFailedWhenItIsAskedAgain) {
+    fake.answer(0x24, reply(0x24, kAccessDenied));
+    connect({kReferenced | kFastStop, kIdle, 50, 0});
+    ASSERT_TRUE(watch->reaches(SafetyState::fault));
+    EXPECT_EQ(gripper->resetFault().error().code, Errc::timeout) << "under way";
+    const auto deadline = std::chrono::steady_clock::now() + 10s;
+    auto reset = gripper->resetFault();
+    while (!reset && reset.error().code == Errc::timeout &&
+           std::chrono::steady_clock::now() < deadline) {
+        reset = gripper->resetFault();
+    }
+    ASSERT_FALSE(reset);
+    EXPECT_EQ(reset.error().code, Errc::device_fault);
+    EXPECT_THAT(reset.error().message, HasSubstr("tool: the gripper refused to acknowledge"));
 }
 
 TEST_F(Gripper, TellsThatItHomesAndHoldsUpNobodyWhoAsksForAReset) {
