@@ -71,6 +71,47 @@ TEST_F(ArmTest, ResetTellsHowLongAProtectiveStopIsLocked) {
     EXPECT_THAT(resetUntilDone(), HasSubstr("ur5: the protective stop can be unlocked in "));
 }
 
+class ArmWithoutDashboard : public ArmTest {
+protected:
+    void SetUp() override {
+        openReady({{"dashboard_port", static_cast<double>(freePort())}, {"power_on", true}});
+    }
+    static std::uint16_t freePort() {
+        return link::TcpListener::listen("127.0.0.1", 0).value().port();
+    }
+    /// Resets until the dashboard was asked for; what it says then.
+    std::string resetWithoutDashboard() {
+        Result<void> reset;
+        fake_.await([&] {
+            reset = arm().resetFault();
+            return !reset && reset.error().code == Errc::connection_lost;
+        });
+        return reset ? "" : reset.error().message;
+    }
+};
+
+TEST_F(ArmWithoutDashboard, ResetTellsThatAProtectiveStopCannotBeUnlocked) {
+    fake_.set([](auto& k) { k.safety_mode = 3; });
+    ASSERT_TRUE(becomes(SafetyState::protective_stop));
+    EXPECT_THAT(resetWithoutDashboard(), HasSubstr("ur5: 127.0.0.1:"));
+    EXPECT_EQ(arm().safety().state, SafetyState::protective_stop);
+}
+
+TEST_F(ArmWithoutDashboard, ResetTellsThatTheArmCannotBePoweredOn) {
+    fake_.set([](auto& k) { k.robot_mode = 3; });
+    ASSERT_TRUE(becomes(SafetyState::fault));
+    EXPECT_THAT(resetWithoutDashboard(), HasSubstr("ur5: 127.0.0.1:"));
+    EXPECT_EQ(arm().safety().state, SafetyState::fault);
+}
+
+TEST_F(ArmWithoutDashboard, ResetTellsThatAPausedProgramCannotBeStopped) {
+    auto source = moving();
+    fake_.set([](auto& k) { k.runtime = 4; });
+    EXPECT_EQ(source->outcome(), EndCause::safety);
+    EXPECT_THAT(resetWithoutDashboard(), HasSubstr("ur5: 127.0.0.1:"));
+    EXPECT_EQ(arm().safety().state, SafetyState::protective_stop);
+}
+
 TEST_F(ArmTest, ResetTellsThatTheControllerDoesNotUnlock) {
     fake_.set([](auto& k) {
         k.safety_mode = 3;

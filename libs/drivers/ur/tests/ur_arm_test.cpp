@@ -143,16 +143,6 @@ TEST_F(ArmTest, UsesTheKinematicsAndLimitsThatTheControllerTells) {
     EXPECT_EQ(arm().safety().text, "");
 }
 
-TEST_F(ArmTest, TakesTheFrequencyFromTheMajorVersion) {
-    fake_.set([](auto& k) { k.major = 5; });
-    auto values = fake_.settings();
-    values.erase("frequency");
-    auto opened = device::urDriver().open(
-        {"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
-    ASSERT_TRUE(opened);
-    EXPECT_EQ(opened->arm->info().cycle, std::chrono::milliseconds(2));
-}
-
 TEST_F(ArmTest, FindsItsWayWithOlderSoftware) {
     fake_.set([](auto& k) {
         k.unknown = {"safety_status", "target_speed_fraction", "actual_TCP_force"};
