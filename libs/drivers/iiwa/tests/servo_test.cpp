@@ -93,9 +93,10 @@ TEST_F(Servo, StopCancelsAndTellsAtStandstill) {
 
 TEST_F(Servo, ASetPointThatTheCabinetWouldReplaceInSilenceIsNeverSent) {
     const std::vector<std::pair<double, std::string>> bad{
-        {std::numeric_limits<double>::quiet_NaN(), "not finite"},
-        {3.0, "beyond limit"},
-        {0.5, "from the one before"}};
+        {std::numeric_limits<double>::quiet_NaN(), "iiwa: axis 1: set-point is not finite"},
+        {3.0, "iiwa: axis 1: set-point 3.0000 rad beyond limit 2.9671 rad"},
+        {-3.0, "iiwa: axis 1: set-point -3.0000 rad beyond limit -2.9671 rad"},
+        {0.5, "iiwa: axis 1: set-point 0.5000 rad from the one before"}};
     for (const auto& [value, text] : bad) {
         const auto stream =
             std::make_shared<Stream>([value = value](int cycle, device::JointArray& set_point) {
@@ -116,13 +117,19 @@ TEST_F(Servo, ASetPointThatTheCabinetWouldReplaceInSilenceIsNeverSent) {
     }
 }
 
-TEST_F(Servo, AnArmThatDoesNotFollowIsNoticed) {
+TEST_F(Servo, AnArmThatDoesNotFollowIsNoticedOnTheAxisThatIsFarthestBehind) {
     bench.cabinet->change([](auto& behaviour) { behaviour.ignores_moves = true; });
-    const auto stream = turning(2e-3, 1'000'000);
+    const auto stream = std::make_shared<Stream>([](int, device::JointArray& set_point) {
+        set_point[0] += 1e-3;
+        set_point[2] += 2e-3;
+        set_point[6] -= 1e-3;
+        return Next::set_point;
+    });
     run(stream);
     EXPECT_EQ(stream->cause(), EndCause::safety);
     EXPECT_FALSE(stream->safety().limit_violated);
-    EXPECT_THAT(stream->safety().text, HasSubstr("from its set-point"));
+    EXPECT_THAT(stream->safety().text, HasSubstr("iiwa: axis 3 is 0."));
+    EXPECT_THAT(stream->safety().text, HasSubstr("from its set-point, limit 0.2000 rad"));
 }
 
 TEST_F(Servo, ARefusedServoInterfaceEndsTheStream) {
