@@ -23,7 +23,8 @@ constexpr std::chrono::milliseconds kCycle{8};
 /// A client that streams a sine of axis 1, one set-point per cycle, by a clock of its own.
 class ClientClock : public ::testing::Test {
 protected:
-    ClientClock() {
+    explicit ClientClock(const PositionStreamOptions& options = {})
+        : bench_("ur5", {}, {}, options) {
         const auto joints = bench_.commanded();
         home_.assign(joints.begin(), joints.end());
         EXPECT_TRUE(bench_.start(kPositionStream, {}));
@@ -136,6 +137,48 @@ TEST_F(ClientClock, ThatStepsBackEndsAStandingStreamWithAnError) {
     stand(250);
     EXPECT_EQ(program_.state(), State::halted) << "it is not finished: its client still sends";
     EXPECT_THAT(program_.reasonText(), HasSubstr("the client's clock went back by 3599.992 s"));
+}
+
+class PatientStream : public ClientClock {
+protected:
+    PatientStream() : ClientClock({.longest_silence = 0.4, .largest_lag = 0.25}) {}
+};
+
+TEST_F(PatientStream, WaitsAsLongAsItsOptionSays) {
+    stream(62);
+    bench_.steps(49);
+    EXPECT_EQ(program_.state(), State::running) << program_.reasonText();
+    ASSERT_TRUE(bench_.stepUntil(kPositionStream, State::halted));
+    EXPECT_THAT(program_.reasonText(), HasSubstr("no set-point for 400 ms after 62"));
+}
+
+TEST_F(PatientStream, MayBeAsFarBehindItsClientAsASilenceMakesIt) {
+    stream(32);
+    step_ = 390ms;
+    stream(30);
+    EXPECT_EQ(program_.state(), State::running) << program_.reasonText();
+    EXPECT_NEAR(figures().largest_lag, 0.39, 1e-6);
+    step_ = 410ms;
+    stream(30);
+    ASSERT_TRUE(bench_.stepUntil(kPositionStream, State::halted));
+    EXPECT_THAT(program_.reasonText(), HasSubstr("0.410 s behind its client, limit 0.400 s"));
+}
+
+TEST(ImpatientStream, IsSilentAfterSixCyclesAtLeast) {
+    Bench bench("ur5", {}, {}, {.longest_silence = 0.0});
+    const auto joints = bench.commanded();
+    std::vector<double> target(joints.begin(), joints.end());
+    ASSERT_TRUE(bench.start(kPositionStream, {}));
+    for (int cycle = 0; cycle < 30; ++cycle) {
+        target[0] += 4e-5 * cycle;  // up to 0.15 rad/s
+        ASSERT_TRUE(bench.program(kPositionStream)
+                        .write(bench.caller(), "TargetJointPosition", target, std::nullopt));
+        bench.step();
+    }
+    bench.steps(5);
+    EXPECT_EQ(bench.program(kPositionStream).state(), State::running);
+    ASSERT_TRUE(bench.stepUntil(kPositionStream, State::halted));
+    EXPECT_THAT(bench.program(kPositionStream).reasonText(), HasSubstr("no set-point for 48 ms"));
 }
 
 TEST_F(ClientClock, LagIsOverOnceTheArmRests) {
