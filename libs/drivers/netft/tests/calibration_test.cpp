@@ -79,6 +79,20 @@ TEST(Calibration, RefusesCountsThatAreNone) {
     }
 }
 
+TEST(Calibration, NeedsCountsOfForceAndOfTorque) {
+    const auto read = parseCalibration("<a><cfgcpf>1</cfgcpf></a>", {"N", "Nm"});
+    ASSERT_FALSE(read);
+    EXPECT_THAT(read.error().message, HasSubstr("cfgcpt is '', expected counts per unit"));
+}
+
+TEST(Calibration, TakesCountsUpToALimit) {
+    const auto page = [](const std::string& counts) {
+        return "<a><cfgcpf>" + counts + "</cfgcpf><cfgcpt>1</cfgcpt></a>";
+    };
+    EXPECT_TRUE(parseCalibration(page("1e12"), {"N", "Nm"}));
+    EXPECT_FALSE(parseCalibration(page("1.1e12"), {"N", "Nm"}));
+}
+
 TEST(Calibration, RefusesWhatIsNoXml) {
     EXPECT_THAT(parseCalibration("<a><b>", kNoUnits).error().message, HasSubstr("not XML"));
     EXPECT_FALSE(parseCalibration("", kNoUnits));
@@ -108,6 +122,12 @@ TEST(Rate, IsRefusedIfItIsNone) {
         EXPECT_THAT(read.error().message, HasSubstr("comrdtrate is '" + rate + "'"));
     }
     EXPECT_THAT(parseRate("<a><b>").error().message, HasSubstr("not XML"));
+}
+
+TEST(Rate, IsWithinOneAndAHundredThousandRecordsPerSecond) {
+    EXPECT_EQ(*parseRate(ratePage("<comrdtrate>1</comrdtrate>")), 1.0);
+    EXPECT_EQ(*parseRate(ratePage("<comrdtrate>100000</comrdtrate>")), 1e5);
+    EXPECT_FALSE(parseRate(ratePage("<comrdtrate>100001</comrdtrate>")));
 }
 
 TEST(Rate, IsRefusedIfRdtIsNotEnabled) {

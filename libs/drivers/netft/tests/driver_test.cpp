@@ -41,6 +41,20 @@ TEST(NetftDriver, TakesRateAndSilence) {
                 HasSubstr("silence: 6 is not within 0.001 to 5"));
 }
 
+TEST(NetftDriver, TakesUnitsAndPorts) {
+    const auto options = readOptions(request({{"force_unit", std::string("lbf")},
+                                              {"torque_unit", std::string("lbf-in")},
+                                              {"port", 49153.0},
+                                              {"http_port", 8080.0}}));
+    ASSERT_TRUE(options) << options.error().message;
+    EXPECT_EQ(options->units.force, "lbf");
+    EXPECT_EQ(options->units.torque, "lbf-in");
+    EXPECT_EQ(options->port, 49153);
+    EXPECT_EQ(options->http_port, 8080);
+    EXPECT_EQ(options->host, "127.0.0.1");
+    EXPECT_EQ(options->name, "wrist");
+}
+
 TEST(NetftDriver, TakesCountsInsteadOfTheSensorsPage) {
     const auto options =
         readOptions(request({{"counts_per_force", 1e6}, {"counts_per_torque", 1e9}}));

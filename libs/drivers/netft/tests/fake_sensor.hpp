@@ -63,6 +63,10 @@ public:
         return changed_.wait_for(lock, std::chrono::seconds(10),
                                  [&] { return counts_[command] >= count; });
     }
+    int count(int command) {
+        const std::lock_guard lock(mutex_);
+        return counts_[command];
+    }
 
 private:
     void serve(const std::stop_token& stop) {

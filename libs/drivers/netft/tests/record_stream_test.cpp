@@ -96,6 +96,14 @@ struct Tare : ::testing::Test {
     std::optional<Result<void>> give(double force, int count) {
         device::WrenchSample sample;
         sample.force[2] = force;
+        return give(sample, count);
+    }
+    std::optional<Result<void>> giveTorque(double torque, int count) {
+        device::WrenchSample sample;
+        sample.torque[0] = torque;
+        return give(sample, count);
+    }
+    std::optional<Result<void>> give(const device::WrenchSample& sample, int count) {
         for (int i = 0; i < count; ++i) {
             now += 1ms;
             sent += task.toSend(now) ? 1 : 0;
@@ -117,6 +125,32 @@ TEST_F(Tare, EndsWhenTheLoadIsZero) {
     const auto outcome = give(0.02, 20);
     ASSERT_TRUE(outcome);
     EXPECT_TRUE(*outcome);
+}
+
+TEST_F(Tare, TakesHalfANewtonForZeroInEitherDirection) {
+    EXPECT_FALSE(give(0.51, 20));
+    EXPECT_FALSE(give(-0.51, 20));
+    EXPECT_TRUE(give(-0.49, 10));
+}
+
+TEST_F(Tare, TakesFiveHundredthsOfANewtonMetreForZeroInEitherDirection) {
+    EXPECT_FALSE(giveTorque(0.051, 20));
+    EXPECT_FALSE(giveTorque(-0.051, 20));
+    EXPECT_TRUE(giveTorque(-0.049, 10));
+}
+
+TEST_F(Tare, JudgesTheMeanOfTenRecordsSinceTheRequest) {
+    EXPECT_FALSE(give(12.0, 5));
+    EXPECT_FALSE(give(0.0, 5)) << "6 N in the mean";
+    EXPECT_FALSE(give(0.0, 9));
+    EXPECT_TRUE(give(0.0, 1));
+}
+
+TEST_F(Tare, FailsWithTheTorqueThatIsLeft) {
+    const auto outcome = giveTorque(-0.2, 1000);
+    ASSERT_TRUE(outcome);
+    EXPECT_THAT(outcome->error().message, HasSubstr("still 0.00 N and 0.200 Nm, expected at most "
+                                                    "0.5 N and 0.05 Nm"));
 }
 
 TEST_F(Tare, AsksAgainIfNothingChanges) {

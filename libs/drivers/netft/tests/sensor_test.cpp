@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <atomic>
+#include <asio/io_context.hpp>
+#include <asio/ip/udp.hpp>
+#include <future>
 
 #include "fake_sensor.hpp"
 #include "netft_sensor.hpp"
@@ -150,6 +152,86 @@ TEST_F(Sensor, TellsThatATareHadNoEffect) {
     EXPECT_TRUE(fake.got(0x42, 3));
 }
 
+TEST_F(Sensor, IsTaredOnlyWhenSomebodyAsks) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    const auto passes = [&](std::uint64_t records) {
+        const auto begin = sensor->sample().sequence;
+        return eventually([&] { return sensor->sample().sequence > begin + records; });
+    };
+    EXPECT_TRUE(passes(20));
+    EXPECT_EQ(fake.count(0x42), 0);
+    EXPECT_TRUE(sensor->tare());
+    EXPECT_TRUE(passes(20));
+    EXPECT_EQ(fake.count(0x42), 1);
+}
+
+TEST_F(Sensor, TaresForAllWhoAskMeanwhile) {
+    fake.setForce(12'000);
+    fake.setDeaf(true);
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    auto first = std::async(std::launch::async, [&] { return sensor->tare(); });
+    ASSERT_TRUE(fake.got(0x42));
+    auto second = std::async(std::launch::async, [&] { return sensor->tare(); });
+    fake.setDeaf(false);
+    EXPECT_TRUE(first.get());
+    EXPECT_TRUE(second.get());
+    EXPECT_NEAR(sensor->sample().force[2], 0.0, 1e-9);
+}
+
+TEST_F(Sensor, TellsATareThatDoesNotEndWithinASecond) {
+    options.silence = 1500ms;
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    fake.silence(true);
+    const auto tared = sensor->tare();
+    ASSERT_FALSE(tared);
+    EXPECT_EQ(tared.error().code, Errc::timeout);
+    EXPECT_EQ(tared.error().message, "wrist: no end of tare within 1 s");
+}
+
+TEST_F(Sensor, TellsATareWhoseRecordsNoLongerCome) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    fake.setForce(12'000);
+    fake.setDeaf(true);
+    auto tare = std::async(std::launch::async, [&] { return sensor->tare(); });
+    ASSERT_TRUE(fake.got(0x42));
+    fake.silence(true);
+    EXPECT_EQ(tare.get().error().code, Errc::connection_lost);
+}
+
+TEST_F(Sensor, TellsThatNobodyReceivesItsRequests) {
+    options.port = [] {
+        asio::io_context context;
+        const asio::ip::udp::endpoint any(asio::ip::make_address("127.0.0.1"), 0);
+        return asio::ip::udp::socket(context, any).local_endpoint().port();
+    }();
+    open();
+    EXPECT_TRUE(eventually([&] {
+        return sensor->safety().text.find("Connection refused") != std::string::npos;
+    })) << sensor->safety().text;
+}
+
+TEST_F(Sensor, TellsAHostThatHasNoAddress) {
+    options.host = "no host";
+    open();
+    EXPECT_TRUE(eventually([&] {
+        return sensor->safety().text.find("wrist: no host") != std::string::npos;
+    })) << sensor->safety().text;
+    EXPECT_EQ(sensor->safety().state, SafetyState::disconnected);
+}
+
+TEST_F(Sensor, AsksNoMoreOnceItIsShutDown) {
+    fake.ignoreStarts(1000);
+    open();
+    ASSERT_TRUE(fake.got(2));
+    sensor.reset();
+    ASSERT_TRUE(fake.got(0)) << "the last that it sends";
+    EXPECT_LT(fake.count(2), 10);
+}
+
 TEST_F(Sensor, EndsItsStream) {
     open();
     ASSERT_TRUE(reaches(SafetyState::normal));
@@ -182,6 +264,16 @@ TEST_F(Sensor, ReadsTheOlderPageIfThereIsNoNewer) {
     open();
     ASSERT_TRUE(reaches(SafetyState::normal)) << sensor->safety().text;
     EXPECT_NEAR(sensor->sample().force[2], 100.0, 1e-9);
+}
+
+TEST_F(Sensor, AsksForTheOlderPageOnlyIfTheNewerOneIsNotThere) {
+    WebPage web({{"/netftapi2.xml", std::string("SSH-2.0-x\r\n\r\n")}});
+    options.calibration.reset();
+    options.http_port = web.port();
+    open();
+    ASSERT_TRUE(eventually([&] {
+        return sensor->safety().text.find("/netftapi2.xml: no HTTP answer") != std::string::npos;
+    })) << sensor->safety().text;
 }
 
 TEST_F(Sensor, DoesNotGuessItsCalibration) {
