@@ -60,7 +60,7 @@ bool Observation::renewedSince(const Mark& mark) const noexcept {
 std::optional<std::string_view> Observation::silentValue(SteadyTime now,
                                                          SteadyTime::duration age) const {
     for (std::size_t i = 0; i < kNames.size(); ++i) {
-        if (counts_[i] == 0 || now - stamps_[i] > age) {
+        if (now - stamps_[i] > age) {
             return kNames[i];
         }
     }

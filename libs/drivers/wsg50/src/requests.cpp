@@ -30,9 +30,8 @@ double ownWidth(MotionKind kind, const Wsg50Options& options, const Limits& limi
 }
 
 double ownForce(const Wsg50Options& options, const Known& known) {
-    const double found = known.force_limit > 0.0 ? known.force_limit : known.limits.max_force;
     return options.force.value_or(
-        std::clamp(found, known.limits.min_force, known.limits.max_force));
+        std::clamp(known.force_limit, known.limits.min_force, known.limits.max_force));
 }
 
 }  // namespace

@@ -41,6 +41,24 @@ TEST(ConversationBegin, DoesWithoutTheForceLimitOfTheGripper) {
     EXPECT_EQ(talk.force_limit, 80.0);
 }
 
+TEST(ConversationBegin, DoesWithoutAForceLimitThatIsNone) {
+    for (const auto& data : {f32(0), f32(-1), bytes({1, 2})}) {
+        Talk talk;
+        talk.hear(limits());
+        talk.hear(reply(0x33, kSuccess, data));
+        talk.hear(systemState(kReferenced) + graspingState(kIdle) + width(50) + force(0));
+        EXPECT_TRUE(talk.ready());
+        EXPECT_EQ(talk.force_limit, 80.0);
+    }
+}
+
+TEST(ConversationBegin, EndsWhenAReplyHasNoStatus) {
+    Talk talk;
+    talk.hear(frame(0x53, {}));
+    ASSERT_TRUE(talk.error);
+    EXPECT_THAT(talk.error->message, HasSubstr("reply 53: no status"));
+}
+
 TEST(ConversationBegin, EndsIfTheGripperRefusesALimitOrAnUpdate) {
     Talk no_limits;
     no_limits.hear(reply(0x53, 14));
@@ -82,6 +100,23 @@ TEST(ConversationBegin, AcknowledgesAFaultIfItIsToldTo) {
     talk.hear(reply(0x24, kSuccess));
     talk.update(kReferenced, kIdle, 50);
     EXPECT_TRUE(talk.ready());
+}
+
+TEST(ConversationBegin, AcknowledgesNothingWithoutAFault) {
+    Talk talk({.acknowledge = true});
+    talk.start();
+    EXPECT_TRUE(talk.ready());
+    EXPECT_EQ(talk.sentIds().back(), 0x45);
+    EXPECT_THAT(talk.resets, IsEmpty());
+}
+
+TEST(ConversationBegin, AcknowledgesAndThenHomesIfItIsToldTo) {
+    Talk talk({.acknowledge = true, .home = true});
+    talk.start(kFastStop);
+    EXPECT_EQ(talk.sentIds().back(), 0x24);
+    talk.hear(reply(0x24, kSuccess));
+    talk.update(0, kIdle, 50);
+    EXPECT_EQ(talk.sentIds().back(), 0x20);
 }
 
 TEST(ConversationBegin, DoesNotMoveAGripperThatIsNotReferenced) {
@@ -175,6 +210,30 @@ TEST_F(Reset, TellsThatHomingFailed) {
     ASSERT_EQ(talk.resets.size(), 1U);
     EXPECT_THAT(talk.resets[0].error().message, HasSubstr("homing blocked at 48.0 mm"));
     EXPECT_THAT(talk.safeties.back().text, HasSubstr("not referenced"));
+}
+
+TEST_F(Reset, WaitsForTheEndOfAMotionAndTellsTheFaultThatItEndedWith) {
+    talk.begin(kMove);
+    talk.hear(reply(0x32, kSuccess) + reply(0x21, kPending));
+    talk.reset();
+    talk.pass(2s, kReferenced | kMoving, 6, 55);
+    EXPECT_THAT(talk.resets, IsEmpty());
+    talk.update(kReferenced | kFastStop, kIdle, 55);
+    ASSERT_EQ(talk.resets.size(), 1U);
+    EXPECT_EQ(talk.resets[0].error().message, "fast stop");
+    EXPECT_EQ(talk.motionError(), "move ended by the gripper: fast stop");
+    EXPECT_THAT(talk.sentIds(), ElementsAre(0x32, 0x21)) << "nobody asked since the fault";
+}
+
+TEST_F(Reset, IsNotEndedByTheReplyToSomethingElse) {
+    talk.update(kReferenced | kFastStop, kIdle, 50);
+    talk.reset();
+    talk.hear(reply(0x22, kAccessDenied));
+    EXPECT_THAT(talk.resets, IsEmpty());
+    talk.hear(reply(0x24, kSuccess));
+    talk.update(kReferenced, kIdle, 50);
+    ASSERT_EQ(talk.resets.size(), 1U);
+    EXPECT_TRUE(talk.resets[0]);
 }
 
 TEST_F(Reset, OfAHealthyGripperSaysSoAtOnce) {

@@ -66,6 +66,11 @@ public:
     bool connections(int count) {
         return waitFor([&] { return connections_ >= count; });
     }
+    /// The last command of that id.
+    Bytes command(int id) {
+        const std::lock_guard lock(mutex_);
+        return commands_[id];
+    }
     std::vector<int> ids() {
         const std::lock_guard lock(mutex_);
         return ids_;
@@ -135,7 +140,9 @@ private:
             return false;
         }
         const int id = std::to_integer<int>(pending[3]);
-        pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(size));
+        const auto end = pending.begin() + static_cast<std::ptrdiff_t>(size);
+        commands_[id] = {pending.begin(), end};
+        pending.erase(pending.begin(), end);
         ids_.push_back(id);
         ++counts_[id];
         const auto scripted = answers_.find(id);
@@ -180,6 +187,7 @@ private:
     State state_;
     Bytes outgoing_;
     std::map<int, Bytes> answers_;
+    std::map<int, Bytes> commands_;
     std::map<int, int> counts_;
     std::vector<int> ids_;
     std::vector<int> updates_;

@@ -12,6 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using device::SafetyState;
+using ::testing::AllOf;
 using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
@@ -23,7 +24,11 @@ public:
     explicit SafetyWatch(Wsg50Gripper& gripper)
         : gripper_(gripper),
           registration_(gripper.onSafetyChange(
-              [bell = bell_](const device::Safety&) { bell->changed.notify_all(); })) {}
+              [bell = bell_](const device::Safety& safety) {
+                  const std::lock_guard lock(bell->mutex);
+                  bell->texts.push_back(safety.text);
+                  bell->changed.notify_all();
+              })) {}
 
     bool reaches(SafetyState state) {
         std::unique_lock lock(bell_->mutex);
@@ -37,10 +42,26 @@ public:
         return true;
     }
 
+    /// The texts of all changes so far.
+    std::vector<std::string> texts() const {
+        const std::lock_guard lock(bell_->mutex);
+        return bell_->texts;
+    }
+    bool tells(const std::string& text) {
+        std::unique_lock lock(bell_->mutex);
+        const auto told = [&] { return gripper_.safety().text.find(text) != std::string::npos; };
+        const auto deadline = std::chrono::steady_clock::now() + 10s;
+        while (!told() && std::chrono::steady_clock::now() < deadline) {
+            bell_->changed.wait_for(lock, 20ms);
+        }
+        return told();
+    }
+
 private:
     struct Bell {
         std::mutex mutex;
         std::condition_variable changed;
+        std::vector<std::string> texts;
     };
 
     Wsg50Gripper& gripper_;
@@ -150,6 +171,52 @@ TEST_F(Gripper, GraspsAPartOfAnyWidthUnlessItIsTold) {
     EXPECT_THAT(ended().error().message, HasSubstr("blocked at 50.0 mm"));
 }
 
+TEST_F(Gripper, TakesItsSettingsForWhatARequestLeavesOpen) {
+    options.speed = 0.2;
+    options.grasp_speed = 0.03;
+    options.part_width = 0.04;
+    options.force = 30;
+    options.open_width = 0.09;
+    connectReady();
+    ASSERT_TRUE(ask(kGraspIt));
+    ASSERT_TRUE(fake.got(0x25));
+    EXPECT_EQ(fake.command(0x32), frame(0x32, f32(30)));
+    EXPECT_EQ(fake.command(0x25), frame(0x25, f32(40) + f32(30)));
+    fake.send(reply(0x25, kBlocked));
+    EXPECT_THAT(ended().error().message, HasSubstr("blocked at 50.0 mm"))
+        << "the part's width is known: it is not grasped at another one";
+    ASSERT_TRUE(ask(kReleaseIt));
+    ASSERT_TRUE(fake.got(0x26));
+    EXPECT_EQ(fake.command(0x26), frame(0x26, f32(90) + f32(200)));
+    fake.send(reply(0x26, kAborted));
+    EXPECT_FALSE(ended());
+    ASSERT_TRUE(ask(kReleaseIt, {.width = 0.05, .force = 12, .speed = 0.1}));
+    ASSERT_TRUE(fake.got(0x26, 2));
+    EXPECT_EQ(fake.command(0x32), frame(0x32, f32(12)));
+    EXPECT_EQ(fake.command(0x26), frame(0x26, f32(50) + f32(100)));
+}
+
+TEST_F(Gripper, OpensAsFarAsItCanUnlessItIsTold) {
+    connectReady();
+    ASSERT_TRUE(ask(kReleaseIt));
+    ASSERT_TRUE(fake.got(0x26));
+    EXPECT_EQ(fake.command(0x26), frame(0x26, f32(110) + f32(100)));
+}
+
+TEST_F(Gripper, TakesTheForceLimitThatItFoundWithinItsLimits) {
+    for (const auto& [found, taken] : {std::pair{40.0F, 40.0F}, {200.0F, 80.0F}, {2.0F, 5.0F}}) {
+        watch.reset();
+        gripper.reset();
+        fake.answer(0x33, reply(0x33, kSuccess, f32(found)));
+        connectReady();
+        const auto before = fake.ids();
+        const auto motions = std::count(before.begin(), before.end(), 0x21);
+        ASSERT_TRUE(ask(kMoveIt, {.width = 0.02}));
+        ASSERT_TRUE(fake.got(0x21, static_cast<int>(motions) + 1));
+        EXPECT_EQ(fake.command(0x32), frame(0x32, f32(taken)));
+    }
+}
+
 TEST_F(Gripper, TellsThatThereWasNoPart) {
     connectReady();
     ASSERT_TRUE(ask(kGraspIt));
@@ -213,6 +280,16 @@ TEST_F(Gripper, IsDisconnectedWithoutOneAndTellsWhere) {
     EXPECT_EQ(ask(kGraspIt).error().code, Errc::connection_lost);
     EXPECT_EQ(gripper->resetFault().error().code, Errc::connection_lost);
     EXPECT_EQ(gripper->state().safety, SafetyState::disconnected);
+    EXPECT_TRUE(watch->tells("tool: 127.0.0.1:" + std::to_string(options.port) + ": Connection refused"));
+}
+
+TEST_F(Gripper, WhoseUpdateMakesNoSenseIsLostAndFoundAgain) {
+    connectReady();
+    fake.send(reply(0x43, kSuccess, bytes({1, 2})));
+    ASSERT_TRUE(fake.connections(2));
+    EXPECT_TRUE(watch->reaches(SafetyState::normal));
+    EXPECT_THAT(watch->texts(), Contains(AllOf(HasSubstr("tool: 127.0.0.1:"),
+                                      HasSubstr(": width: 2 bytes, expected 4"))));
 }
 
 TEST_F(Gripper, ThatIsLostWhileIdleIsFoundAgainInAFault) {

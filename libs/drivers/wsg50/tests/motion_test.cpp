@@ -134,6 +134,37 @@ TEST_F(MotionOf, GraspOfAnyWidthIsNotRepeatedAfterAStop) {
     EXPECT_EQ(talk.motionCode(), Errc::cancelled);
 }
 
+TEST_F(MotionOf, GraspOfAnyWidthThatHoldsThePartIsNotRepeated) {
+    underWay({MotionKind::grasp, 0.0, 0.05, 20.0, true}, 0x25);
+    talk.hear(reply(0x25, kBlocked));
+    talk.update(kReferenced, kHolding, 41, 20);
+    ASSERT_EQ(talk.ends.size(), 1U);
+    EXPECT_TRUE(talk.ends[0]);
+    EXPECT_THAT(talk.sentIds(), ElementsAre(0x32, 0x25));
+}
+
+TEST_F(MotionOf, GraspOfAnyWidthThatFailedIsNotRepeated) {
+    underWay({MotionKind::grasp, 0.0, 0.05, 20.0, true}, 0x25);
+    talk.hear(reply(0x25, kFailed));
+    talk.update(kReferenced, kNoPart, 0);
+    EXPECT_THAT(talk.motionError(), HasSubstr("no part found"));
+    EXPECT_THAT(talk.sentIds(), ElementsAre(0x32, 0x25));
+}
+
+TEST_F(MotionOf, GraspThatSaysSuccessButLostThePartFails) {
+    underWay(kGrasp, 0x25);
+    talk.hear(reply(0x25, kSuccess));
+    talk.pass(300ms, kReferenced, kPartLost, 12);
+    EXPECT_EQ(talk.motionError(), "the part was lost at 12.0 mm");
+}
+
+TEST_F(MotionOf, ReleaseThatFailsTellsWhere) {
+    underWay(kRelease, 0x26);
+    talk.hear(reply(0x26, kFailed));
+    talk.update(kReferenced, kIdle, 42);
+    EXPECT_EQ(talk.motionError(), "release failed at 42.0 mm");
+}
+
 TEST_F(MotionOf, ReleaseEndsWhenThePartIsFree) {
     underWay(kRelease, 0x26);
     EXPECT_EQ(talk.sent.back(), frame(0x26, f32(80) + f32(100)));
@@ -278,6 +309,41 @@ TEST_F(MotionOf, StopBeforeTheMotionBeganSendsNone) {
     talk.update(kReferenced, kIdle, 50);
     EXPECT_EQ(talk.motionCode(), Errc::cancelled);
     EXPECT_THAT(talk.sentIds(), ElementsAre(0x32));
+}
+
+TEST_F(MotionOf, StopEndsItSoonAlsoIfTheMotionIsToldToBeginOnlyThen) {
+    talk.begin(kMove);
+    talk.hear(reply(0x32, kSuccess));
+    talk.stop();
+    talk.hear(reply(0x21, kPending));
+    talk.pass(1s, kReferenced, kIdle, 50);
+    ASSERT_EQ(talk.ends.size(), 1U) << "not only after the time that a motion may take";
+    EXPECT_EQ(talk.motionCode(), Errc::cancelled);
+}
+
+TEST_F(MotionOf, StopAfterItsLastReplySendsNone) {
+    underWay(kMove, 0x21);
+    talk.hear(reply(0x21, kSuccess));
+    talk.stop();
+    EXPECT_THAT(talk.sentIds(), ElementsAre(0x32, 0x21));
+    talk.update(kReferenced, kIdle, 60);
+    ASSERT_EQ(talk.ends.size(), 1U);
+    EXPECT_TRUE(talk.ends[0]);
+}
+
+TEST_F(MotionOf, StopWithoutAMotionSendsNothing) {
+    talk.stop();
+    EXPECT_THAT(talk.sent, IsEmpty());
+}
+
+TEST_F(MotionOf, MoveEndsWithinAMillimetreOfItsWidth) {
+    underWay(kMove, 0x21);
+    talk.hear(reply(0x21, kSuccess));
+    talk.update(kReferenced, kIdle, 61.01F);
+    EXPECT_THAT(talk.ends, IsEmpty());
+    talk.update(kReferenced, kIdle, 59.01F);
+    ASSERT_EQ(talk.ends.size(), 1U);
+    EXPECT_TRUE(talk.ends[0]);
 }
 
 TEST_F(MotionOf, StopThatComesTooLateLeavesTheSuccess) {
