@@ -142,12 +142,83 @@ TEST(Decoder, RefusesWhatIsNotRight) {
     EXPECT_THAT(refused(machine("null")), HasSubstr("not an object"));
 }
 
+TEST(Decoder, NamesTheFirstOfSeveralProblems) {
+    EXPECT_THAT(refused(R"({"op":"publish","topic":"/machine_state",)"
+                        R"("msg":{"current_state":256,"opcode":-1}})"),
+                HasSubstr("MachineState.current_state is not within 0 and 255"));
+}
+
+TEST(Decoder, RefusesAResultOfTheControlSwitchThatIsNone) {
+    EXPECT_THAT(refused(R"({"op":"service_response","id":"s","values":{"result":256}})"),
+                HasSubstr("ControlSwitch.result is not within 0 and 255"));
+    EXPECT_THAT(refused(R"({"op":"service_response","id":5})"), HasSubstr("id is not a text"));
+}
+
+TEST(Decoder, TakesACallForDoneUnlessItsResultSaysOtherwise) {
+    const auto response = [](std::string_view fields) {
+        return decoded<ServiceResponse>(
+            fmt::format(R"({{"op":"service_response","id":"s"{}}})", fields));
+    };
+    EXPECT_TRUE(response("").ok);
+    EXPECT_TRUE(response(R"(,"result":true)").ok);
+    EXPECT_FALSE(response(R"(,"result":false)").ok);
+    EXPECT_FALSE(response(R"(,"result":1)").ok);
+    EXPECT_EQ(response(R"(,"values":5)").text, "");
+}
+
+TEST(Decoder, FindsNoVersionWhereThereIsNone) {
+    for (const std::string_view values :
+         {R"({"tool_id":1})", R"({"version":5})", R"({"version":{}})", R"({"version":{"nodes":5}})",
+          R"({"version":{"nodes":[]}})", R"({"version":{"nodes":[{"id":1,"version":"x"}]}})",
+          R"({"version":{"nodes":[{"id":255,"version":5}]}})", R"({"version":{"nodes":[7]}})"}) {
+        const auto response = decoded<ServiceResponse>(
+            fmt::format(R"({{"op":"service_response","id":"v","values":{}}})", values));
+        EXPECT_FALSE(response.software) << values;
+    }
+    const auto behind = decoded<ServiceResponse>(
+        R"({"op":"service_response","id":"v","values":{"version":{"nodes":[7,)"
+        R"({"id":255,"version":5},{"id":255,"version":"edo_3.2.0"}]}}})");
+    EXPECT_EQ(behind.software, "edo_3.2.0");
+}
+
+TEST(Decoder, ReadsValuesUpToTheirLimits) {
+    const auto message = [](std::string_view topic, std::string_view fields) {
+        return fmt::format(R"({{"op":"publish","topic":"/{}","msg":{{{}}}}})", topic, fields);
+    };
+    EXPECT_EQ(decoded<AlgorithmState>(message("algorithm_state", R"("data":127)")).value, 127);
+    EXPECT_EQ(decoded<AlgorithmState>(message("algorithm_state", R"("data":-128)")).value, -128);
+    refused(message("algorithm_state", R"("data":128)"));
+    refused(message("algorithm_state", R"("data":-129)"));
+    refused(message("machine_movement_ack", R"("type":128)"));
+    refused(message("machine_movement_ack", R"("data":-129)"));
+    const auto machine = decoded<MachineState>(
+        message("machine_state", R"("opcode":4294967295,"current_state":255)"));
+    EXPECT_EQ(machine.opcode, 0xffff'ffffU);
+    EXPECT_EQ(machine.state, 255);
+    refused(message("machine_state", R"("opcode":4294967296)"));
+    EXPECT_EQ(decoded<JointStates>(message("usb_jnt_state", R"("joints":[{"commandFlag":65535}])"))
+                  .joints[0]
+                  .flags,
+              0xffffU);
+}
+
+TEST(Decoder, ReadsWhatIsNestedDeeply) {
+    for (const std::size_t levels : {14U, 15U, 16U, 17U, 40U}) {
+        const auto text = fmt::format(
+            R"({{"op":"publish","topic":"/algorithm_state","msg":{{"data":5,"x":{}{}}}}})",
+            std::string(levels, '['), std::string(levels, ']'));
+        EXPECT_EQ(decoded<AlgorithmState>(text).value, 5) << levels;
+    }
+}
+
 TEST(Decoder, RefusesJointStatesThatAreNotRight) {
     const auto joints = [](std::string_view list) {
         return fmt::format(R"({{"op":"publish","topic":"/usb_jnt_state","msg":{{"joints":{}}}}})",
                            list);
     };
     EXPECT_THAT(refused(joints("5")), HasSubstr("joints is not a list"));
+    EXPECT_THAT(refused(R"({"op":"publish","topic":"/usb_jnt_state","msg":{}})"),
+                HasSubstr("joints is not a list"));
     EXPECT_THAT(refused(joints("[{},{},{},{},{},{},{},{}]")), HasSubstr("8 entries"));
     EXPECT_THAT(refused(joints(R"([{"position":"1"}])")), HasSubstr("position is not a number"));
     EXPECT_THAT(refused(joints("[7]")), HasSubstr("not an object"));

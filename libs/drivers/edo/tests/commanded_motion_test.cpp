@@ -50,6 +50,47 @@ TEST(CommandedMotion, RefusesWhatIsBeyondALimitAndStaysWhereItIs) {
     EXPECT_TRUE(motion.standing());
 }
 
+TEST(CommandedMotion, RefusesWhatIsBeyondALowerLimit) {
+    CommandedMotion motion(kAxes);
+    motion.reset(both(0, -0.999));
+    EXPECT_THAT(toText(*motion.accept(both(0, -1.0045))),
+                HasSubstr("axis 2: set-point -1.0045 rad beyond its limit -1.0000 rad"));
+}
+
+TEST(CommandedMotion, LeavesToTheRobotWhatItClampsByItself) {
+    CommandedMotion motion(kAxes);
+    motion.reset(both(1, -1));
+    EXPECT_FALSE(motion.accept(both(1.0034, -1.0034)));
+    EXPECT_TRUE(motion.accept(both(1.0036, -1.0034)));
+    EXPECT_TRUE(motion.accept(both(1.0034, -1.0036)));
+}
+
+TEST(CommandedMotion, RefusesAStepOfMoreThanOneAndAHalfOfTheVelocity) {
+    CommandedMotion motion(kAxes);
+    EXPECT_FALSE(motion.accept(both(0.0059, -0.0059)));
+    motion.reset(both(0, 0));
+    EXPECT_THAT(toText(*motion.accept(both(0.0061, 0))),
+                HasSubstr("axis 1: set-point at 0.6100 rad/s over its limit 0.4000 rad/s"));
+    EXPECT_THAT(toText(*motion.accept(both(0, -0.0061))),
+                HasSubstr("axis 2: set-point at -0.6100 rad/s over its limit 0.4000 rad/s"));
+    EXPECT_EQ(motion.position(), both(0, 0));
+}
+
+TEST(CommandedMotion, TakesNoMeasurementForItsPlaceWhileItBrakes) {
+    CommandedMotion motion(kAxes);
+    ASSERT_FALSE(motion.accept(both(0.004, 0)));
+    EXPECT_FALSE(motion.standing());
+    motion.settle(both(0.0041, 0));
+    EXPECT_EQ(motion.position(), both(0.0041, 0)) << "who settles does not move";
+    EXPECT_TRUE(motion.standing());
+}
+
+TEST(CommandedMotion, LetsAnAxisStayBeyondItsLimit) {
+    CommandedMotion motion(kAxes);
+    motion.reset(both(1.1, -1.1));
+    EXPECT_FALSE(motion.accept(both(1.1, -1.1)));
+}
+
 TEST(CommandedMotion, LetsAnAxisBackFromBeyondItsLimit) {
     CommandedMotion motion(kAxes);
     motion.reset(both(1.1, 0));

@@ -120,6 +120,18 @@ protected:
         std::unique_lock lock(mutex_);
         return changed_.wait_for(lock, 20s, [&] { return arm.safety().state == state; });
     }
+    /// Waits until the arm's safety says so; what it says then. It need not change its state.
+    std::string tellsSoon(const device::Arm& arm, const std::string& part) {
+        std::unique_lock lock(mutex_);
+        const auto deadline = std::chrono::steady_clock::now() + 20s;
+        auto text = arm.safety().text;
+        while (text.find(part) == std::string::npos &&
+               std::chrono::steady_clock::now() < deadline) {
+            changed_.wait_for(lock, 5ms);
+            text = arm.safety().text;
+        }
+        return text;
+    }
     static std::shared_ptr<Source> attach(device::Arm& arm, int cycles) {
         auto source = std::make_shared<Source>(cycles);
         const auto attached = arm.attach(source);
@@ -214,6 +226,62 @@ TEST(EdoDriver, IsDisconnectedWhileNobodyAnswers) {
     EXPECT_EQ(device.gripper->release({}, [](auto) {}).error().code, Errc::connection_lost);
     EXPECT_DOUBLE_EQ(device.gripper->info().stroke, 0.08);
     EXPECT_DOUBLE_EQ(device.gripper->info().max_force, 0.0);
+}
+
+TEST_P(EdoConnectionTest, TellsWhyAResetFailed) {
+    robot_.with([](auto& edo) {
+        edo.restart();
+        edo.uncalibrated = true;
+    });
+    const auto& device = open();
+    ASSERT_TRUE(waitFor(*device.arm, SafetyState::protective_stop)) << device.arm->safety().text;
+    auto reset = device.arm->resetFault();
+    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    while (!reset && reset.error().code == Errc::timeout &&
+           std::chrono::steady_clock::now() < deadline) {
+        std::this_thread::yield();
+        reset = device.arm->resetFault();
+    }
+    ASSERT_FALSE(reset);
+    EXPECT_EQ(reset.error().code, Errc::device_fault);
+    EXPECT_THAT(reset.error().message, HasSubstr("edo: NOT_CALIBRATED"));
+}
+
+TEST_P(EdoConnectionTest, TellsWhereNoVersionIsAnsweredAndTriesAgain) {
+    robot_.with([](auto& edo) { edo.faults.mute_services = true; });
+    const auto& device = open();
+    const auto text = tellsSoon(*device.arm, "machine_bridge_sw_version_srv");
+    EXPECT_THAT(text, HasSubstr("edo: 127.0.0.1:"));
+    EXPECT_THAT(text, HasSubstr("no answer of /machine_bridge_sw_version_srv within 3 s"));
+    robot_.with([](auto& edo) { edo.faults.mute_services = false; });
+    EXPECT_TRUE(waitFor(*device.arm, SafetyState::normal)) << device.arm->safety().text;
+    EXPECT_EQ(robot_.server().connections(), 2);
+}
+
+TEST(EdoDriver, TellsASettingThatIsWrong) {
+    auto request = requestFor(1);
+    request.settings.set("stroke", 8.0);
+    const auto device = device::edoDriver().open(request);
+    ASSERT_FALSE(device);
+    EXPECT_THAT(device.error().message, HasSubstr("stroke"));
+}
+
+TEST(EdoDriver, TellsWhatItsJawsCannotDoWithTheNameOfTheGripper) {
+    const auto device = device::edoDriver().open(requestFor(1)).value();
+    EXPECT_EQ(device.gripper->move({.width = 0.2}, [](auto) {}).error().message,
+              "edo gripper: width 0.2 m is not within 0 and 0.08 m");
+}
+
+TEST(EdoDriver, TellsAHostThatHasNoAddress) {
+    auto request = requestFor(1);
+    request.address = "no host";
+    const auto device = device::edoDriver().open(request).value();
+    const auto deadline = std::chrono::steady_clock::now() + 20s;
+    while (device.arm->safety().text.find("no host:1: ") == std::string::npos) {
+        ASSERT_LT(std::chrono::steady_clock::now(), deadline) << device.arm->safety().text;
+        std::this_thread::yield();
+    }
+    EXPECT_EQ(device.arm->safety().state, SafetyState::disconnected);
 }
 
 TEST(EdoDriver, HasNoGripperIfTheSettingsSaySo) {

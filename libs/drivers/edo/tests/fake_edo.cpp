@@ -66,6 +66,9 @@ void FakeEdo::onPublish(const std::string& topic, const void* message) {
     } else if (topic == "/external_control" && !classic()) {
         onSetPoint(msg.at("position").get<std::vector<double>>());
     } else if (topic == "/bridge_move" && msg.at("move_command") == 'C') {
+        if (faults.drop_cancels) {
+            return;
+        }
         moving_ = false;
         publish("/machine_movement_ack", R"({"type":2,"data":60})");
     } else if (topic == "/bridge_move" && state == 2 && !faults.drop_moves) {
@@ -154,7 +157,8 @@ void FakeEdo::moveJaws() {
     if (part >= 0.0 && joints[6] < part) {
         joints[6] = part;
     }
-    const bool stopped = std::abs(way) < 1e-9 || (part >= 0.0 && joints[6] == part);
+    const bool blocked = std::abs(way) < 1e-9 || (part >= 0.0 && joints[6] == part);
+    const bool stopped = blocked && !faults.believes_in_jaws;
     if (stopped) {
         moving_ = false;
         publish("/machine_movement_ack", R"({"type":2,"data":1})");
@@ -186,11 +190,11 @@ void FakeEdo::tick() {
 void FakeEdo::publishJoints() {
     std::string list;
     for (std::size_t i = 0; i < joint_count; ++i) {
-        list += fmt::format(R"({}{{"position":{},"velocity":{:.6f},"current":{:.3f},)"
-                            R"("commandFlag":0,"R_jnt":0.0}})",
-                            i > 0 ? "," : "",
-                            faults.null_positions ? "null" : fmt::format("{:.6f}", joints[i]),
-                            (joints[i] - last_[i]) / kTickSeconds, currents[i]);
+        list += fmt::format(
+            R"({}{{"position":{},"velocity":{:.6f},"current":{:.3f},)"
+            R"("commandFlag":0,"R_jnt":0.0}})",
+            i > 0 ? "," : "", faults.null_positions ? "null" : fmt::format("{:.6f}", joints[i]),
+            faults.restless ? 5.0 : (joints[i] - last_[i]) / kTickSeconds, currents[i]);
     }
     last_ = joints;
     publish("/usb_jnt_state",

@@ -24,7 +24,10 @@ struct FakeFaults {
     bool mute_algorithm = false;
     bool null_positions = false;
     bool brakes_stay_closed = false;  ///< a reset ends in BRAKED again
-    int move_feedback = 0;            ///< instead of received: a negative type
+    bool restless = false;            ///< tells velocities of joints that stand
+    bool believes_in_jaws = false;    ///< jaws that are blocked move on, as it thinks
+    bool drop_cancels = false;
+    int move_feedback = 0;  ///< instead of received: a negative type
 };
 
 /// What a rosbridge server in front of an e.DO says and does, as far as the tests need it: a state

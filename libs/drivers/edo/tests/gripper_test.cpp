@@ -103,6 +103,20 @@ TEST_F(GripperTest, RefusesWhatItCannotDo) {
               Errc::out_of_range);
     EXPECT_EQ(taskFor(Kind::release, {.speed = 1.0}, options).error().code, Errc::out_of_range);
     EXPECT_EQ(taskFor(Kind::release, {.speed = 0.0}, options).error().code, Errc::out_of_range);
+    EXPECT_EQ(taskFor(Kind::release, {.width = -0.001}, options).error().code, Errc::out_of_range);
+}
+
+TEST_F(GripperTest, MakesATaskOfWhatIsAsked) {
+    const auto& options = bench_.options.gripper;
+    EXPECT_DOUBLE_EQ(taskFor(Kind::move, {.width = 0.08}, options)->target, 0.08);
+    EXPECT_DOUBLE_EQ(taskFor(Kind::move, {.width = 0.0}, options)->target, 0.0);
+    EXPECT_DOUBLE_EQ(taskFor(Kind::release, {}, options)->target, 0.08);
+    EXPECT_DOUBLE_EQ(taskFor(Kind::grasp, {}, options)->target, 0.0);
+    EXPECT_DOUBLE_EQ(taskFor(Kind::grasp, {.width = 0.03}, options)->target, 0.026);
+    EXPECT_DOUBLE_EQ(taskFor(Kind::grasp, {.width = 0.001}, options)->target, 0.0);
+    EXPECT_EQ(taskFor(Kind::release, {}, options)->override_percent, 100);
+    EXPECT_EQ(taskFor(Kind::release, {.speed = 0.04}, options)->override_percent, 100);
+    EXPECT_EQ(taskFor(Kind::release, {.speed = 1e-5}, options)->override_percent, 1);
 }
 
 TEST_F(GripperTest, NoticesADroppedMotion) {
@@ -124,6 +138,118 @@ TEST_F(GripperTest, TellsARejection) {
     const auto moved = run(Kind::move, {.width = 0.02});
     ASSERT_FALSE(moved);
     EXPECT_THAT(moved.error().message, HasSubstr("refused the motion: rejected, code -103"));
+}
+
+TEST_F(GripperTest, NamesTheKindOfARejection) {
+    for (const auto& [type, kind] : {std::pair(-1, "error"), std::pair(-3, "buffer full")}) {
+        bench_.robot.faults.move_feedback = type;
+        const auto moved = run(Kind::move, {.width = 0.02});
+        ASSERT_FALSE(moved);
+        EXPECT_THAT(moved.error().message, HasSubstr(std::string("motion: ") + kind));
+    }
+}
+
+TEST_F(GripperTest, TellsThatTheRobotGivesAMotionUpOnItsWay) {
+    bench_.robot.jaw_speed = 4.0;
+    ask(Kind::release);
+    bench_.run(300);
+    bench_.session.onText(
+        R"({"op":"publish","topic":"/machine_movement_ack","msg":{"type":-1,"data":7}})",
+        bench_.now, bench_);
+    const auto outcome = ended();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().message, "edo gripper: the robot gave the motion up: error, code 7");
+}
+
+TEST_F(GripperTest, IsNotTroubledByWhatTheRobotSaysOfOtherMotions) {
+    bench_.session.onText(
+        R"({"op":"publish","topic":"/machine_movement_ack","msg":{"type":-1,"data":7}})",
+        bench_.now, bench_);
+    EXPECT_TRUE(run(Kind::release));
+}
+
+TEST_F(GripperTest, GraspsAPartAlthoughTheRobotBelievesThatTheJawsMoveOn) {
+    bench_.robot.part = 25.0;
+    bench_.robot.faults.believes_in_jaws = true;
+    const auto grasped = run(Kind::grasp);
+    ASSERT_TRUE(grasped) << grasped.error().message;
+    EXPECT_TRUE(grasped->part_held);
+    EXPECT_EQ(bench_.robot.count("\"move_command\":67"), 1) << "it must not wait for them";
+    bench_.robot.part = -1.0;
+    bench_.robot.faults.believes_in_jaws = false;
+    EXPECT_TRUE(run(Kind::release));
+}
+
+TEST_F(GripperTest, StopBeforeTheArmGaveControlBackMovesNothing) {
+    const auto source = bench_.attach(0.001, 20);
+    ASSERT_TRUE(bench_.runUntil([&] { return !source->ends.empty(); }));
+    ask(Kind::release);
+    bench_.session.gripperDesk().askToStop();
+    const auto outcome = ended();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().code, Errc::cancelled);
+    EXPECT_EQ(outcome.error().message, "edo gripper: stopped");
+    EXPECT_EQ(bench_.robot.count("/bridge_move"), 1) << "advertised";
+}
+
+TEST_F(GripperTest, StopCancelsOnce) {
+    bench_.robot.jaw_speed = 4.0;
+    ask(Kind::release);
+    bench_.run(300);
+    bench_.session.gripperDesk().askToStop();
+    bench_.run(50);
+    bench_.session.gripperDesk().askToStop();
+    EXPECT_EQ(ended().error().code, Errc::cancelled);
+    EXPECT_EQ(bench_.robot.count("\"move_command\":67"), 1);
+}
+
+TEST_F(GripperTest, TellsThatTheJawsDoNotStop) {
+    bench_.robot.jaw_speed = 4.0;
+    bench_.robot.faults.drop_cancels = true;
+    ask(Kind::release);
+    bench_.run(300);
+    bench_.session.gripperDesk().askToStop();
+    bench_.run(1900);
+    EXPECT_FALSE(outcome_);
+    const auto outcome = ended();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().code, Errc::device_fault);
+    EXPECT_THAT(outcome.error().message, HasSubstr("edo gripper: does not stop: MOVE, jaws at "));
+}
+
+TEST_F(GripperTest, TakesAPartOnlyForWhatIsWiderThanTheShortfall) {
+    bench_.robot.part = 27.9;  // asked for 30 mm, the jaws would go on to 26 mm
+    EXPECT_FALSE(run(Kind::grasp, {.width = 0.03}));
+    ASSERT_TRUE(run(Kind::release));
+    bench_.robot.part = 28.1;
+    EXPECT_TRUE(run(Kind::grasp, {.width = 0.03}));
+}
+
+TEST_F(GripperTest, JudgesACurrentByItsSizeAndNoneIfTheRobotTellsNone) {
+    auto options = testing::benchOptions();
+    options.gripper.grasp_current = 0.2;
+    GripperDrive drive(options);
+    drive.onJoint({.position = 0.025, .current = std::nan("")}, bench_.now);
+    drive.start({Kind::grasp, 0.0, 100}, {}, bench_.now, bench_);
+    const auto outcome = [&] {
+        bench_.now += std::chrono::seconds(1);
+        static_cast<void>(drive.tick({MachineState::move, 0}, bench_.now, bench_));
+        bench_.now += std::chrono::seconds(1);
+        return drive.tick({MachineState::calibrated, 0}, bench_.now, bench_);
+    }();
+    ASSERT_TRUE(outcome);
+    EXPECT_FALSE(*outcome);
+}
+
+TEST_F(GripperTest, SilentJointsEndTheMotionAsALoss) {
+    bench_.robot.jaw_speed = 4.0;
+    ask(Kind::release);
+    bench_.run(300);
+    bench_.robot.faults.mute_joints = true;
+    const auto outcome = ended();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().code, Errc::connection_lost);
+    EXPECT_THAT(outcome.error().message, HasSubstr("no joint states"));
 }
 
 TEST_F(GripperTest, StopsAMotion) {

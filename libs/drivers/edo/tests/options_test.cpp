@@ -48,6 +48,79 @@ TEST(Options, AreRead) {
     EXPECT_DOUBLE_EQ(options.gripper.grasp_shortfall, 0.005);
 }
 
+TEST(Options, TakeAGenerationInsteadOfTheSoftwareVersion) {
+    auto asked = request();
+    asked.settings.set("generation", std::string("external"));
+    EXPECT_EQ(readOptions(asked)->generation->kind, Generation::Kind::external);
+    asked.settings.set("generation", std::string("auto"));
+    EXPECT_FALSE(readOptions(asked)->generation);
+}
+
+TEST(Options, HaveTheLimitsOfTheRobotsOwnConfiguration) {
+    const auto options = readOptions(request()).value();
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        const bool wrist = axis >= 3;
+        EXPECT_EQ(options.axis_names[axis], "J" + std::to_string(axis + 1));
+        EXPECT_DOUBLE_EQ(options.axes.lower[axis], -options.axes.upper[axis]);
+        EXPECT_NEAR(options.axes.velocity[axis], (wrist ? 33.59 : 22.79) * kDegree, 1e-12);
+        EXPECT_NEAR(options.axes.deceleration[axis], 2 * (wrist ? 67.2 : 45.6) * kDegree, 1e-12);
+    }
+    EXPECT_NEAR(options.axes.upper[1], 99 * kDegree, 1e-12);
+}
+
+TEST(Options, HaveTheNamesAndLimitsOfTheModelIfThereIsOne) {
+    const auto model = motion::RobotModel::load(METIER_MODELS_DIR "/edo.toml").value();
+    auto asked = request();
+    asked.model = &model;
+    const auto options = readOptions(asked).value();
+    ASSERT_EQ(options.axis_names.size(), model.axisCount());
+    for (std::size_t axis = 0; axis < model.axisCount(); ++axis) {
+        const auto& limits = model.limits(axis);
+        EXPECT_EQ(options.axis_names[axis], model.chain().joints[axis].name);
+        EXPECT_EQ(options.axes.lower[axis], limits.lower);
+        EXPECT_EQ(options.axes.upper[axis], limits.upper);
+        EXPECT_EQ(options.axes.velocity[axis], limits.velocity);
+        EXPECT_EQ(options.axes.deceleration[axis], 2 * limits.acceleration);
+    }
+}
+
+TEST(Options, RefuseAModelOfTooManyAxes) {
+    const auto model = motion::RobotModel::load(METIER_MODELS_DIR "/iiwa7.toml").value();
+    auto asked = request();
+    asked.model = &model;
+    const auto options = readOptions(asked);
+    ASSERT_FALSE(options);
+    EXPECT_EQ(options.error().message, "edo: the model has 7 axes, an e.DO at most 6");
+}
+
+TEST(Options, AreReadInTheirUnits) {
+    auto asked = request();
+    asked.settings.set("machine_timeout", 2.0);
+    asked.settings.set("hold_control", 0.5);
+    asked.settings.set("following_time", 0.25);
+    asked.settings.set("following_distance", 0.2);
+    asked.settings.set("gripper_timeout", 3.0);
+    asked.settings.set("gripper_speed", 0.02);
+    asked.settings.set("grasp_current", 0.5);
+    asked.settings.set("stroke", 0.06);
+    asked.settings.set("reset_steps", 1500.0);
+    asked.settings.set("reset_offset_deg", 2.0);
+    asked.settings.set("start_on_connect", true);
+    const auto options = readOptions(asked).value();
+    EXPECT_EQ(options.machine_timeout, 2s);
+    EXPECT_EQ(options.hold_control, 500ms);
+    EXPECT_EQ(options.following.time, 250ms);
+    EXPECT_EQ(options.following.distance, 0.2);
+    EXPECT_EQ(options.gripper.timeout, 3s);
+    EXPECT_EQ(options.gripper.speed, 0.02);
+    EXPECT_EQ(options.gripper.grasp_current, 0.5);
+    EXPECT_EQ(options.gripper.stroke, 0.06);
+    EXPECT_EQ(options.reset.steps, 1500U);
+    EXPECT_NEAR(options.reset.offset, 2.0 * std::numbers::pi / 180.0, 1e-12);
+    EXPECT_TRUE(options.start_on_connect);
+}
+
 TEST(Options, TellEverythingThatIsWrong) {
     auto asked = request();
     asked.settings.set("generation", std::string("newest"));

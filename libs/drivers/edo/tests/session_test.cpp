@@ -225,6 +225,43 @@ TEST(Session, UnderstandsTheHoldStateOfVersion210) {
     EXPECT_EQ(source->ends.front().first, EndCause::done) << bench.text();
 }
 
+TEST_P(BothGenerations, AStopBeforeControlIsTakenEndsItAtOnce) {
+    Bench bench(GetParam());
+    bench.start();
+    const auto source = bench.attach(kStep, 100);
+    bench.core.stop();
+    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }, 200));
+    EXPECT_EQ(source->ends.front().first, EndCause::stopped);
+    EXPECT_EQ(source->asked, 0);
+    EXPECT_EQ(bench.robot.count("/algo_control_switch_srv"), 0) << "control is not asked for";
+}
+
+TEST_P(BothGenerations, WorksWithoutAGripper) {
+    auto options = testing::benchOptions();
+    options.layout.gripper = false;
+    Bench bench(GetParam(), options);
+    bench.robot.joint_count = 6;
+    bench.start();
+    EXPECT_EQ(bench.safety(), SafetyState::normal) << bench.text();
+    const auto source = bench.attach(kStep, 10);
+    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }));
+    EXPECT_EQ(source->ends.front().first, EndCause::done) << bench.text();
+    EXPECT_NEAR(bench.core.state().position[0], 10 * kStep, 1e-6);
+}
+
+TEST_P(BothGenerations, WhatWasLeftTakenIsGivenBackAlsoAfterAConnectionThatWasUsedForNothing) {
+    Bench bench(GetParam());
+    bench.start();
+    const auto source = bench.attach(kStep, 1000);
+    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
+    bench.session.linkDown("gone");
+    bench.connect();
+    bench.session.linkDown("gone again");
+    bench.start();
+    EXPECT_TRUE(bench.runUntil([&] { return !bench.robot.control_taken; }, 2000));
+    EXPECT_EQ(bench.safety(), SafetyState::normal) << bench.text();
+}
+
 // ---- set-points ----
 
 TEST(Session, SendsOneSetPointPerCycleAlthoughJointStatesComeInBunches) {
@@ -298,6 +335,21 @@ TEST_P(BothGenerations, ABrakeThatTakesControlBackIsNoFault) {
     EXPECT_EQ(bench.safety(), SafetyState::normal) << bench.text();
 }
 
+TEST(Session, ARobotWhoseVelocitiesAreNoiseStandsTwoSecondsAfterItsBrake) {
+    Bench bench;
+    bench.start();
+    const auto source = bench.attach(kStep, 1000);
+    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
+    bench.robot.faults.restless = true;
+    bench.robot.brake(1U << 9U);
+    ASSERT_TRUE(bench.runUntil([&] { return bench.safety() != SafetyState::normal; }, 500));
+    bench.run(1900);
+    EXPECT_TRUE(source->ends.empty());
+    bench.run(200);
+    ASSERT_EQ(source->ends.size(), 1U);
+    EXPECT_EQ(source->ends.front().first, EndCause::safety);
+}
+
 TEST(Session, NamesAnEmergencyStop) {
     Bench bench;
     bench.start();
@@ -368,100 +420,6 @@ TEST(Session, AnErrorOfTheRobotNeedsARestart) {
                 HasSubstr("ERROR (overcurrent): the robot must be restarted"));
 }
 
-// ---- silence ----
-
-TEST(Session, SilentJointsAreADisconnection) {
-    Bench bench;
-    bench.start();
-    const auto source = bench.attach(kStep, 1000);
-    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
-    bench.robot.faults.mute_joints = true;
-    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }, 150));
-    EXPECT_EQ(source->ends.front().first, EndCause::disconnected);
-    EXPECT_THAT(bench.text(), HasSubstr("edo: no joint states for 100 ms"));
-    bench.robot.faults.mute_joints = false;
-    bench.run(100);
-    EXPECT_EQ(bench.safety(), SafetyState::normal);
-    EXPECT_TRUE(bench.runUntil([&] { return !bench.robot.control_taken; }, 2000));
-}
-
-TEST(Session, ASilentMachineStateIsADisconnection) {
-    Bench bench;
-    bench.start();
-    bench.robot.faults.mute_machine = true;
-    ASSERT_TRUE(bench.runUntil([&] { return bench.safety() != SafetyState::normal; }, 1500));
-    EXPECT_EQ(bench.safety(), SafetyState::disconnected);
-    EXPECT_THAT(bench.text(), HasSubstr("no machine state for 1000 ms"));
-}
-
-TEST(Session, PositionsThatAreNullAreNoJointStates) {
-    Bench bench;
-    bench.start();
-    bench.robot.faults.null_positions = true;
-    bench.run(200);
-    EXPECT_EQ(bench.safety(), SafetyState::disconnected);
-}
-
-TEST(Session, PositionsThatNoJointCanHaveAreNoJointStates) {
-    Bench bench;
-    bench.start();
-    const auto before = bench.core.state().position[1];
-    bench.robot.joints[1] = 1.2e3;  // [deg], of which a changed byte makes 1.203
-    bench.run(5);
-    EXPECT_EQ(bench.core.state().position[1], before);
-    bench.run(200);
-    EXPECT_EQ(bench.safety(), SafetyState::disconnected);
-}
-
-TEST(Session, ARobotThatSaysNothingIsLeft) {
-    Bench bench;
-    bench.connect();
-    bench.robot.faults = {.mute_joints = true, .mute_machine = true, .mute_algorithm = true};
-    ASSERT_TRUE(bench.runUntil([&] { return !bench.ticked; }, 5000));
-    EXPECT_EQ(bench.ticked.error().code, Errc::connection_lost);
-}
-
-TEST(Session, AVersionThatNeverComesIsTold) {
-    Bench bench;
-    bench.robot.faults.mute_services = true;
-    bench.connect();
-    ASSERT_TRUE(bench.runUntil([&] { return !bench.ticked; }, 5000));
-    EXPECT_THAT(bench.ticked.error().message, HasSubstr("machine_bridge_sw_version_srv"));
-}
-
-TEST(Session, AnUnknownVersionNeedsASetting) {
-    Bench bench("edo_9.0.0");
-    bench.start();
-    EXPECT_EQ(bench.safety(), SafetyState::fault);
-    EXPECT_THAT(bench.text(), HasSubstr("software version 'edo_9.0.0' is not known"));
-
-    auto options = testing::benchOptions();
-    options.generation = externalGeneration();
-    Bench told("edo_9.0.0", options);
-    told.start();
-    EXPECT_EQ(told.safety(), SafetyState::normal) << told.text();
-}
-
-TEST(Session, AnotherNumberOfJointsIsAFault) {
-    Bench bench;
-    bench.robot.joint_count = 6;
-    bench.start();
-    EXPECT_EQ(bench.safety(), SafetyState::fault);
-    EXPECT_THAT(bench.text(), HasSubstr("the robot has 6 joints"));
-}
-
-TEST(Session, JointsThatVanishEndAMotion) {
-    Bench bench;
-    bench.start();
-    const auto source = bench.attach(kStep, 1000);
-    ASSERT_TRUE(bench.runUntil([&] { return source->asked >= 10; }));
-    bench.robot.joint_count = 6;
-    ASSERT_TRUE(bench.runUntil([&] { return !source->ends.empty(); }, 500));
-    EXPECT_EQ(source->ends.front().first, EndCause::disconnected);
-    bench.run(100);
-    EXPECT_THAT(bench.text(), HasSubstr("the robot has 6 joints"));
-}
-
 TEST(Session, CanStartTheRobotOnceByItself) {
     auto options = testing::benchOptions();
     options.start_on_connect = true;
@@ -474,6 +432,19 @@ TEST(Session, CanStartTheRobotOnceByItself) {
     bench.start();
     bench.run(3000);
     EXPECT_EQ(bench.safety(), SafetyState::protective_stop) << "once only";
+}
+
+TEST(Session, DoesNotStartByItselfARobotThatIsReady) {
+    auto options = testing::benchOptions();
+    options.start_on_connect = true;
+    Bench bench(kExternal, options);
+    bench.start();
+    bench.run(1000);
+    EXPECT_EQ(bench.safety(), SafetyState::normal) << bench.text();
+    bench.robot.brake(1U << 9U);
+    bench.run(3000);
+    EXPECT_EQ(bench.safety(), SafetyState::protective_stop) << "only what it found on connecting";
+    EXPECT_EQ(bench.robot.count("/bridge_jnt_reset\",\"msg"), 0);
 }
 
 TEST(Session, ClosesByBrakingAndGivingControlBack) {

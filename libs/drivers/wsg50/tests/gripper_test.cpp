@@ -23,12 +23,11 @@ class SafetyWatch {
 public:
     explicit SafetyWatch(Wsg50Gripper& gripper)
         : gripper_(gripper),
-          registration_(gripper.onSafetyChange(
-              [bell = bell_](const device::Safety& safety) {
-                  const std::lock_guard lock(bell->mutex);
-                  bell->texts.push_back(safety.text);
-                  bell->changed.notify_all();
-              })) {}
+          registration_(gripper.onSafetyChange([bell = bell_](const device::Safety& safety) {
+              const std::lock_guard lock(bell->mutex);
+              bell->texts.push_back(safety.text);
+              bell->changed.notify_all();
+          })) {}
 
     bool reaches(SafetyState state) {
         std::unique_lock lock(bell_->mutex);
@@ -280,7 +279,8 @@ TEST_F(Gripper, IsDisconnectedWithoutOneAndTellsWhere) {
     EXPECT_EQ(ask(kGraspIt).error().code, Errc::connection_lost);
     EXPECT_EQ(gripper->resetFault().error().code, Errc::connection_lost);
     EXPECT_EQ(gripper->state().safety, SafetyState::disconnected);
-    EXPECT_TRUE(watch->tells("tool: 127.0.0.1:" + std::to_string(options.port) + ": Connection refused"));
+    EXPECT_TRUE(
+        watch->tells("tool: 127.0.0.1:" + std::to_string(options.port) + ": Connection refused"));
 }
 
 TEST_F(Gripper, WhoseUpdateMakesNoSenseIsLostAndFoundAgain) {
@@ -289,7 +289,7 @@ TEST_F(Gripper, WhoseUpdateMakesNoSenseIsLostAndFoundAgain) {
     ASSERT_TRUE(fake.connections(2));
     EXPECT_TRUE(watch->reaches(SafetyState::normal));
     EXPECT_THAT(watch->texts(), Contains(AllOf(HasSubstr("tool: 127.0.0.1:"),
-                                      HasSubstr(": width: 2 bytes, expected 4"))));
+                                               HasSubstr(": width: 2 bytes, expected 4"))));
 }
 
 TEST_F(Gripper, ThatIsLostWhileIdleIsFoundAgainInAFault) {
