@@ -10,7 +10,7 @@ import mutate
 from libraries import LIBRARIES
 from operators import changes
 from source_text import blanked
-from workbench import Outcome, _failed_test, gtest_filter, link_command, slow_tests
+from workbench import Outcome, _failed_test, failed_tests, gtest_filter, link_command, slow_tests
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -139,6 +139,11 @@ class TestPrograms(unittest.TestCase):
 
     def test_a_crash_is_that_of_the_test_under_way(self):
         self.assertEqual(_failed_test("[ RUN      ] A.b\n[       OK ] A.b\n[ RUN      ] C.d\n"), "C.d")
+
+    def test_each_failure_is_named_once(self):
+        output = "[  FAILED  ] A.b (1 ms)\n[  FAILED  ] A/B.c/2, where GetParam() = 3 (9 ms)\n"
+        listed = "[  FAILED  ] 2 tests, listed below:\n[  FAILED  ] A.b\n"
+        self.assertEqual(failed_tests(output + listed), ["A.b", "A/B.c/2"])
 
     def test_slow_ones_are_run_last(self):
         output = "[       OK ] A.b (9 ms)\n[       OK ] A/B.c/2, where GetParam() = 3 (900 ms)\n[       OK ] C.d (501 ms)\n"
