@@ -44,6 +44,11 @@ TEST(DashboardLine, ThatNeverEndsIsRefused) {
     EXPECT_FALSE(takeLine(buffer));
 }
 
+TEST(DashboardLine, MayHaveAThousandCharactersAndSome) {
+    auto buffer = bufferOf(std::string(1024, 'x') + "\n");
+    EXPECT_TRUE(takeLine(buffer).value());
+}
+
 TEST(DashboardFlag, IsTrueOrFalse) {
     EXPECT_EQ(parseFlag("true"), true);
     EXPECT_EQ(parseFlag("false"), false);
@@ -95,6 +100,23 @@ TEST_F(DashboardTest, TellsAnotherReply) {
     EXPECT_EQ(done.error().code, Errc::device_fault);
     EXPECT_THAT(done.error().message,
                 HasSubstr("\"brake release\" was answered with \"Failed to execute"));
+}
+
+TEST_F(DashboardTest, TellsThatTheReplyDoesNotCome) {
+    serve(kGreeting, "");
+    auto client = connect();
+    ASSERT_TRUE(client);
+    const auto done = client->command("stop", "Stopped", std::chrono::steady_clock::now() + 50ms);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, Errc::timeout);
+}
+
+TEST_F(DashboardTest, RefusesALineWithoutEnd) {
+    serve(std::string(2000, 'x'), "");
+    const auto client = connect();
+    ASSERT_FALSE(client);
+    EXPECT_THAT(client.error().message, HasSubstr("127.0.0.1:"));
+    EXPECT_THAT(client.error().message, HasSubstr("a line of more than 1024 characters"));
 }
 
 TEST_F(DashboardTest, RefusesSomeoneElse) {

@@ -42,6 +42,20 @@ TEST_F(UrDriverTest, NeedsTheModelOfAnArmWithSixAxes) {
     EXPECT_EQ(opened().error().code, Errc::invalid_argument);
 }
 
+TEST_F(UrDriverTest, UsesTheModelsOwnKinematicsIfTheControllerHasAnotherArm) {
+    fake_.set([](auto& k) { k.a[1] = -0.612; });
+    auto device = opened();
+    ASSERT_TRUE(device) << device.error().message;
+    const auto home = model_.home();
+    EXPECT_LT((device->model->kinematics().forward(home).translation -
+               model_.kinematics().forward(home).translation)
+                  .norm(),
+              1e-9);
+    EXPECT_TRUE(fake_.await([&] {
+        return device->arm->safety().text.find("it has another arm") != std::string::npos;
+    })) << device->arm->safety().text;
+}
+
 TEST_F(UrDriverTest, TakesTheFrequencyFromTheMajorVersion) {
     fake_.set([](auto& k) { k.major = 3; });
     EXPECT_EQ(opened()->arm->info().cycle, milliseconds(8));

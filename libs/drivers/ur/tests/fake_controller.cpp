@@ -300,7 +300,8 @@ std::vector<std::byte> FakeController::answer(std::uint8_t type,
             return rtdePackage('I', setUp(text, 0, false));
         case 'S':
             streaming_ = knobs_.accepts_start;
-            return rtdePackage('S', WireBytes().u8(knobs_.accepts_start ? 1 : 0).bytes());
+            return rtdePackage(knobs_.answers_start_as,
+                               WireBytes().u8(knobs_.accepts_start ? 1 : 0).bytes());
         case 'P':
             streaming_ = false;
             return rtdePackage('P', WireBytes().u8(1).bytes());
@@ -377,6 +378,9 @@ std::vector<std::byte> FakeController::dataPackage() {
     if (knobs_.skip_cycles > 0) {
         --knobs_.skip_cycles;
         return {};
+    }
+    if (!knobs_.instead_of_data.empty()) {
+        return knobs_.instead_of_data;
     }
     if (!knobs_.garbage.empty()) {
         return std::exchange(knobs_.garbage, {});
@@ -475,7 +479,8 @@ void FakeController::serveDashboard(link::TcpLink& link, const std::stop_token& 
         received.append(reinterpret_cast<const char*>(chunk.data()), count.value_or(0));
         const std::lock_guard lock(mutex_);
         for (auto end = received.find('\n'); end != std::string::npos; end = received.find('\n')) {
-            out += obey(received.substr(0, end)) + "\n";
+            const auto reply = obey(received.substr(0, end)) + "\n";
+            out += knobs_.mute ? "" : reply;
             received.erase(0, end + 1);
         }
     }
@@ -487,23 +492,23 @@ std::string FakeController::obey(const std::string& command) {
         return knobs_.remote_control;
     }
     if (command == "unlock protective stop") {
-        if (knobs_.unlock_reply == "Protective stop releasing") {
+        if (knobs_.unlocks && knobs_.unlock_reply == "Protective stop releasing") {
             knobs_.safety_mode = 1;
         }
         return knobs_.unlock_reply;
     }
     if (command == "power on") {
         knobs_.robot_mode = knobs_.powers_on ? 5 : knobs_.robot_mode;
-        return "Powering on";
+        return knobs_.power_reply;
     }
     if (command == "brake release") {
-        knobs_.robot_mode = 7;
-        return "Brake releasing";
+        knobs_.robot_mode = knobs_.brake_reply == "Brake releasing" ? 7 : knobs_.robot_mode;
+        return knobs_.brake_reply;
     }
     if (command == "stop") {
-        knobs_.runtime = 1;
-        script_token_ = 0;
-        return "Stopped";
+        knobs_.runtime = knobs_.stops ? 1 : knobs_.runtime;
+        script_token_ = knobs_.stops ? 0 : script_token_;
+        return knobs_.stop_reply;
     }
     if (command == "close safety popup") {
         return "closing safety popup";

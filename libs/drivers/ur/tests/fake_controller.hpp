@@ -45,12 +45,20 @@ public:
         std::uint32_t major = 3;
         std::set<std::string> unknown;
         std::set<std::string> in_use;
-        std::vector<std::byte> garbage;  ///< sent once instead of a data package
-        int skip_cycles = 0;             ///< so many data packages are left out
+        std::vector<std::byte> garbage;          ///< sent once instead of a data package
+        int skip_cycles = 0;                     ///< so many data packages are left out
+        std::vector<std::byte> instead_of_data;  ///< sent in each cycle, if it is not empty
+        std::uint8_t answers_start_as = 'S';     ///< type of the answer to a start
         // dashboard
         std::string remote_control = "true";
         std::string unlock_reply = "Protective stop releasing";
+        bool unlocks = true;  ///< does what it answered
         bool powers_on = true;
+        bool stops = true;
+        std::string power_reply = "Powering on";
+        std::string brake_reply = "Brake releasing";
+        std::string stop_reply = "Stopped";
+        bool mute = false;  ///< greets, but answers nothing
         // primary
         std::array<double, 6> a{0, -0.425, -0.39225, 0, 0, 0};
         double max_velocity = 3.3416;

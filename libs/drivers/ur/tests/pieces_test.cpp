@@ -169,6 +169,22 @@ TEST(DescribedModel, TakesTheStricterLimit) {
     EXPECT_THAT(differenceText(ur5(), {{}, {}, configuration}), HasSubstr("axis 1"));
 }
 
+TEST(DescribedModel, DiffersWhereALimitOfTheControllerIsStricter) {
+    const auto file = ur5();
+    const auto difference = [&](auto change) {
+        auto configuration = preset();
+        change(configuration);
+        return differenceText(file, {{}, {}, configuration});
+    };
+    EXPECT_EQ(difference([](auto& c) { c.max_velocity[3] = 9.0; }), "") << "less strict";
+    EXPECT_THAT(difference([](auto& c) { c.max_velocity[3] = 3.0; }), HasSubstr("axis 4: the"));
+    EXPECT_THAT(difference([](auto& c) { c.max_acceleration[5] = 4.0; }), HasSubstr("axis 6: the"));
+    EXPECT_THAT(difference([](auto& c) { c.lower[2] = -2.0; }), HasSubstr("axis 3: the"));
+    EXPECT_THAT(difference([](auto& c) { c.upper[2] = 2.0; }), HasSubstr("axis 3: the"));
+    EXPECT_THAT(difference([](auto& c) { c.max_velocity[0] = 0.0; }), HasSubstr("velocity"))
+        << "no limits of an arm";
+}
+
 TEST(DescribedModel, RefusesAnotherArmAndNonsense) {
     auto dh = nominal();
     dh.a[1] = -0.612;
@@ -258,6 +274,65 @@ TEST_F(ReporterTest, AddsWhatTheControllerSaysShortlyBeforeOrAfter) {
     EXPECT_THAT(core_.safety().text, HasSubstr("C154A0"));
 }
 
+TEST_F(ReporterTest, AddsWhatIsSaidASecondBeforeToThreeSecondsAfterTheStop) {
+    const auto stoppedAfter = [this](std::chrono::milliseconds time) {
+        observe(SafetyMode::normal);
+        error(153, primary::Report::Level::warning);
+        now_ += time;
+        observe(SafetyMode::protective_stop);
+        const bool added = core_.safety().text.find("C153A0") != std::string::npos;
+        now_ += 10s;
+        return added;
+    };
+    EXPECT_TRUE(stoppedAfter(999ms));
+    EXPECT_FALSE(stoppedAfter(1000ms));
+    observe(SafetyMode::normal);
+    observe(SafetyMode::protective_stop);
+    now_ += 2999ms;
+    error(1, primary::Report::Level::fault);
+    EXPECT_THAT(core_.safety().text, HasSubstr("C1A0"));
+    now_ += 1ms;
+    error(2, primary::Report::Level::fault);
+    EXPECT_THAT(core_.safety().text, HasSubstr("C1A0"));
+}
+
+TEST_F(ReporterTest, AddsASafetyMessageWithACodeButNoText) {
+    using Kind = primary::Report::Kind;
+    using Level = primary::Report::Level;
+    observe(SafetyMode::normal);
+    reporter_.report({Kind::safety, Level::violation, 4, 7, "protective stop"}, now_);
+    reporter_.report({Kind::text, Level::fault, 0, 0, "hello"}, now_);
+    EXPECT_EQ(told_, 1) << "nothing changed";
+    observe(SafetyMode::protective_stop);
+    EXPECT_THAT(core_.safety().text, HasSubstr("(the controller says: C4A7: protective stop)"));
+    reporter_.disconnected("gone", now_);
+    EXPECT_EQ(core_.safety().text, "arm: gone") << "nobody says anything any more";
+}
+
+TEST_F(ReporterTest, RemembersWhenTheStateChanged) {
+    observe(SafetyMode::normal);
+    now_ += 1s;
+    observe(SafetyMode::protective_stop);
+    const auto stopped = now_;
+    now_ += 1s;
+    error(154, primary::Report::Level::fault);
+    reporter_.note("a note");
+    reporter_.latch("a latch", now_);
+    EXPECT_EQ(reporter_.since(), stopped);
+    observe(SafetyMode::robot_emergency_stop);
+    EXPECT_EQ(reporter_.since(), now_);
+}
+
+TEST_F(ReporterTest, TellsALatchAndANoteOnce) {
+    observe(SafetyMode::normal);
+    reporter_.latch("first", now_);
+    const int told = told_;
+    reporter_.latch("second", now_);
+    reporter_.note("calibration");
+    reporter_.note("calibration");
+    EXPECT_EQ(told_, told + 1);
+}
+
 TEST_F(ReporterTest, DoesNotAddWhatWasSaidLongBeforeOrDoesNotMatter) {
     observe(SafetyMode::normal);
     error(153, primary::Report::Level::fault);
@@ -310,6 +385,8 @@ TEST_F(ReporterTest, TellsThatALimitWasBroken) {
     EXPECT_TRUE(core_.safety().limit_violated);
     observe(SafetyMode::normal, true);
     EXPECT_FALSE(core_.safety().limit_violated);
+    observe(SafetyMode::robot_emergency_stop, true);
+    EXPECT_FALSE(core_.safety().limit_violated) << "somebody pressed it";
 }
 
 }  // namespace

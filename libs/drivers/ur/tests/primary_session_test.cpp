@@ -32,11 +32,12 @@ std::vector<std::byte> version(int major) {
 
 class PrimarySessionTest : public testing::Test {
 protected:
-    link::TcpLink accept() { return listener_.accept(in(5000ms)).value(); }
+    link::TcpLink accept() { return listener_.accept(in(accept_within_)).value(); }
     Result<PrimarySession> connect() {
         return PrimarySession::connect("127.0.0.1", listener_.port(), in(5000ms));
     }
 
+    std::chrono::milliseconds accept_within_ = 5s;
     link::TcpListener listener_ = link::TcpListener::listen("127.0.0.1", 0).value();
 };
 
@@ -60,6 +61,11 @@ TEST_F(PrimarySessionTest, TellsGarbageAndTheEndWithThePeersName) {
     EXPECT_EQ(garbage.error().code, Errc::invalid_argument);
     EXPECT_THAT(garbage.error().message, testing::StartsWith("127.0.0.1:"));
 
+    auto third = connect().value();
+    auto third_peer = accept();
+    ASSERT_TRUE(third_peer.send(fromHex("00 00 00 06 10 05"), in(1000ms)));
+    EXPECT_THAT(third.next(in(5000ms)).error().message, testing::StartsWith("127.0.0.1:"));
+
     auto second = connect().value();
     accept().shutdown();
     EXPECT_EQ(second.next(in(5000ms)).error().code, Errc::connection_lost);
@@ -77,6 +83,19 @@ TEST_F(PrimarySessionTest, ADescriptionMayBeIncomplete) {
     EXPECT_FALSE(description->complete());
 }
 
+TEST_F(PrimarySessionTest, ADescriptionMayEndWithTheLink) {
+    auto told = std::async(std::launch::async, [this] {
+        return readDescription("127.0.0.1", listener_.port(), in(5000ms));
+    });
+    {
+        auto peer = accept();
+        ASSERT_TRUE(peer.send(version(3), in(1000ms)));
+    }
+    const auto description = told.get();
+    ASSERT_TRUE(description);
+    EXPECT_EQ(description->version->major, 3);
+}
+
 TEST_F(PrimarySessionTest, NoDescriptionIsAnError) {
     auto told = std::async(std::launch::async, [this] {
         return readDescription("127.0.0.1", listener_.port(), in(50ms));
@@ -85,7 +104,8 @@ TEST_F(PrimarySessionTest, NoDescriptionIsAnError) {
     EXPECT_EQ(told.get().error().code, Errc::timeout);
 }
 
-TEST_F(PrimarySessionTest, TheMonitorConnectsAgainAfterTheEndAndAfterGarbage) {
+TEST_F(PrimarySessionTest, TheMonitorConnectsAgainAfterTheEndSilenceAndGarbage) {
+    accept_within_ = 20s;
     std::atomic<int> last{0};
     std::promise<void> five;
     const PrimaryMonitor monitor(
@@ -97,7 +117,8 @@ TEST_F(PrimarySessionTest, TheMonitorConnectsAgainAfterTheEndAndAfterGarbage) {
             }
         });
     accept().shutdown();
-    auto garbler = accept();
+    auto silent = accept();
+    auto garbler = accept();  // silence ends a connection after 2 s
     ASSERT_TRUE(garbler.send(fromHex("FF FF FF FF FF FF"), in(1000ms)));
     auto peer = accept();
     ASSERT_TRUE(peer.send(version(5), in(1000ms)));

@@ -144,6 +144,44 @@ TEST(Primary, RefusesKinematicsThatAreNoNumbers) {
     EXPECT_FALSE(parse(stateOf({kinematics(std::numeric_limits<double>::infinity())})));
 }
 
+/// A sub-package with another number at some byte.
+std::vector<std::byte> with(std::vector<std::byte> package, std::size_t at, double number) {
+    const auto bytes = WireBytes().f64(number).bytes();
+    std::copy(bytes.begin(), bytes.end(), package.begin() + static_cast<std::ptrdiff_t>(at));
+    return package;
+}
+
+TEST(Primary, RefusesEveryNumberOfTheArmThatIsNotFinite) {
+    constexpr std::size_t kHeader = 5;
+    for (std::size_t i = 0; i < 24; ++i) {  // behind six checksums
+        const auto broken = with(kinematics(0.0), kHeader + 24 + 8 * i, std::nan(""));
+        EXPECT_FALSE(parse(stateOf({broken}))) << i;
+    }
+    for (std::size_t i = 0; i < 24; ++i) {
+        const auto broken = with(configuration(), kHeader + 8 * i, std::nan(""));
+        EXPECT_FALSE(parse(stateOf({broken}))) << i;
+    }
+}
+
+TEST(Primary, TextsOfReportsNeedNoTextOfTheController) {
+    EXPECT_EQ((Report{Report::Kind::error, Report::Level::fault, 210, 1, ""}).toText(), "C210A1");
+    EXPECT_EQ((Report{Report::Kind::safety, Report::Level::fault, 4, 2, "x"}).toText(), "C4A2: x");
+    EXPECT_EQ((Report{Report::Kind::runtime_exception, Report::Level::fault, 3, 14, ""}).toText(),
+              "runtime exception in line 3, column 14");
+    EXPECT_EQ((Report{Report::Kind::text, Report::Level::info, 0, 0, "hello"}).toText(), "hello");
+}
+
+TEST(Primary, ALevelThatIsNoneIsTheNearest) {
+    const auto level = [](std::int32_t number) {
+        const auto package = parse(
+            message(6, WireBytes().i32(1).i32(0).i32(number).u32(0).u32(0).text("x").bytes()));
+        return static_cast<int>(package->report->level);
+    };
+    EXPECT_EQ(level(-1), 0);
+    EXPECT_EQ(level(2), 2);
+    EXPECT_EQ(level(9), 5);
+}
+
 TEST(Primary, CutsAndCleansTexts) {
     const auto package =
         parse(message(0, WireBytes().text(std::string(1000, 'x') + "\x1b[31m").bytes()));

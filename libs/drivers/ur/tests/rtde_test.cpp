@@ -190,9 +190,53 @@ TEST(OutputRecipe, RefusesDataOfAnotherRecipeOrSizeOrThatIsNoNumber) {
     EXPECT_THAT(recipe.decode(dataOf(std::nan(""))).error().message, HasSubstr("not finite"));
 }
 
+/// dataOf() with another number at some byte.
+std::vector<std::byte> dataWith(std::size_t at, double number) {
+    auto data = dataOf();
+    const auto bytes = WireBytes().f64(number).bytes();
+    std::copy(bytes.begin(), bytes.end(), data.begin() + static_cast<std::ptrdiff_t>(at));
+    return data;
+}
+
+// Where dataOf() has its numbers: behind the id of the recipe.
+constexpr std::size_t kTarget = 1 + 8;
+constexpr std::size_t kActual = kTarget + 48;
+constexpr std::size_t kVelocity = kActual + 48;
+constexpr std::size_t kScaling = kVelocity + 48 + 20;
+constexpr std::size_t kForce = kScaling + 16;
+
+TEST(OutputRecipe, RefusesEveryNumberThatIsNotFinite) {
+    std::vector<std::size_t> places{1, kScaling, kScaling + 8};
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        for (const auto part : {kTarget, kActual, kVelocity, kForce}) {
+            places.push_back(part + 8 * axis);
+        }
+    }
+    for (const auto at : places) {
+        for (const double number : {std::nan(""), -std::numeric_limits<double>::infinity()}) {
+            const auto state = agreed().decode(dataWith(at, number));
+            ASSERT_FALSE(state) << at;
+            EXPECT_THAT(state.error().message, HasSubstr("not finite")) << at;
+        }
+        EXPECT_TRUE(agreed().decode(dataWith(at, 0.0))) << at;
+    }
+}
+
 TEST(OutputRecipe, RefusesJointsThatNoArmCanHave) {
-    EXPECT_THAT(agreed().decode(dataOf(1e50)).error().message, HasSubstr("no arm has"));
-    EXPECT_TRUE(agreed().decode(dataOf(-20.0)));
+    const auto judge = [](std::size_t at, double most) {
+        for (const double number : {1.001 * most, -1.001 * most}) {
+            const auto state = agreed().decode(dataWith(at, number));
+            ASSERT_FALSE(state) << at;
+            EXPECT_THAT(state.error().message, HasSubstr("no arm has")) << at;
+        }
+        EXPECT_TRUE(agreed().decode(dataWith(at, most))) << at;
+        EXPECT_TRUE(agreed().decode(dataWith(at, -most))) << at;
+    };
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+        judge(kTarget + 8 * axis, 1000.0);
+        judge(kActual + 8 * axis, 1000.0);
+        judge(kVelocity + 8 * axis, 100.0);
+    }
 }
 
 TEST(OutputRecipe, AsksForSafetyModeWhereSafetyStatusIsUnknown) {

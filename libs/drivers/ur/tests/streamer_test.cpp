@@ -29,7 +29,8 @@ StreamOptions options() {
 /// A streamer and a controller of three lines: runs the script two cycles after its upload.
 class StreamerTest : public testing::Test {
 protected:
-    StreamerTest() {
+    explicit StreamerTest(const StreamOptions& with = options(), std::int32_t first_token = 41)
+        : streamer_(core_, with, first_token) {
         now_.robot_mode = RobotMode::running;
         now_.safety_mode = SafetyMode::normal;
         now_.target_q = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
@@ -85,7 +86,7 @@ protected:
     }
 
     device::ArmCore core_{{"arm", {"1", "2", "3", "4", "5", "6"}, 8ms}};
-    Streamer streamer_{core_, options(), 41};
+    Streamer streamer_;
     ControllerState now_;
     SteadyTime stamp_{1s};
     Streamer::Output out_;
@@ -251,6 +252,41 @@ TEST_F(StreamerTest, TakesNoScriptOfAnotherUploadForItsOwn) {
     EXPECT_THAT(source->safety().text, HasSubstr("did not start within 0.4 s"));
 }
 
+TEST_F(StreamerTest, TakesNoOlderOrNewerScriptForItsOwn) {
+    starts_ = false;
+    auto source = attach(0.1, 10);
+    const auto first = cycle().setpoint.counter;
+    cycles(3);
+    now_.script_token = out_.setpoint.token;
+    now_.runtime_state = RuntimeState::playing;
+    takes_ = false;
+    for (const auto counter : {first - 2, out_.setpoint.counter + 100}) {
+        now_.script_counter = counter;
+        cycles(2);
+        EXPECT_EQ(source->asked(), 0) << counter;
+    }
+    now_.script_counter = first;
+    now_.runtime_state = RuntimeState::paused;
+    cycles(2);
+    EXPECT_EQ(source->asked(), 0) << "it does not run";
+    now_.runtime_state = RuntimeState::playing;
+    cycle();
+    EXPECT_EQ(source->asked(), 1);
+}
+
+TEST_F(StreamerTest, ARefusedUploadTakesItsTokenAway) {
+    starts_ = false;
+    auto source = attach(0.1, 10);
+    cycles(5);
+    streamer_.refuseStart(streamer_.token() - 1);
+    cycles(2);
+    EXPECT_NE(out_.setpoint.token, 0) << "it was another one";
+    streamer_.refuseStart(streamer_.token());
+    cycles(2);
+    EXPECT_EQ(out_.setpoint.token, 0);
+    EXPECT_EQ(source->asked(), 0);
+}
+
 TEST_F(StreamerTest, ARefusedUploadEnds) {
     starts_ = false;
     auto source = attach(0.1, 10);
@@ -272,6 +308,108 @@ TEST_F(StreamerTest, NoticesASpeedThatIsReducedForLongerThanADip) {
     cycles(10);
     EXPECT_EQ(source->outcome(), EndCause::safety);
     EXPECT_THAT(source->safety().text, HasSubstr("at 50 % of the speed"));
+}
+
+TEST_F(StreamerTest, MayBeSlowedWhileItOnlyHolds) {
+    auto source = attach(0.01, 10);
+    cycles(30);
+    EXPECT_EQ(source->outcome(), EndCause::done);
+    now_.speed_scaling = 0.5;
+    cycles(20);
+    EXPECT_EQ(core_.safetyState(), SafetyState::normal);
+    EXPECT_TRUE(out_.write) << "the script is kept alive";
+    auto next = attach(0.01, 10);
+    cycles(10);
+    EXPECT_EQ(next->outcome(), EndCause::safety);
+}
+
+TEST_F(StreamerTest, NoticesACounterThatItNeverWrote) {
+    auto source = moving();
+    takes_ = false;
+    now_.script_counter = out_.setpoint.counter + 10;
+    cycle();
+    EXPECT_THAT(core_.safety().text, HasSubstr("took no set-point for 0.000 s"));
+}
+
+TEST_F(StreamerTest, NoticesASetPointOfTooFewAxes) {
+    class FiveAxes final : public device::SetPointSource {
+    public:
+        Next next(const device::ArmState&, device::JointArray& set_point) noexcept override {
+            set_point = device::JointArray(5);
+            return Next::set_point;
+        }
+        void ended(EndCause, const device::Safety&) override {}
+    };
+    ASSERT_TRUE(core_.attach(std::make_shared<FiveAxes>()));
+    cycles(10);
+    EXPECT_THAT(core_.safety().text, HasSubstr("axis 1: the set-point is not a number"));
+}
+
+TEST_F(StreamerTest, StopsNoProgramThatIsNotItsOwn) {
+    auto source = moving();
+    obeys_ = false;
+    core_.stop();
+    cycle();
+    now_.script_token = 17;
+    int stops = 0;
+    for (int i = 0; i < 120; ++i) {
+        EXPECT_EQ(source->ends(), 0) << "cycle " << i;
+        stops += cycle().stop_program ? 1 : 0;
+    }
+    cycles(10);
+    EXPECT_EQ(stops, 0);
+    EXPECT_EQ(source->outcome(), EndCause::stopped) << "1 s after the stop";
+}
+
+TEST_F(StreamerTest, WaitsForAProgramThatIsStopping) {
+    auto source = moving();
+    obeys_ = false;
+    core_.stop();
+    cycle();
+    now_.runtime_state = RuntimeState::stopping;
+    cycles(50);
+    EXPECT_EQ(source->ends(), 0);
+    now_.runtime_state = RuntimeState::stopped;
+    cycles(2);
+    EXPECT_EQ(source->outcome(), EndCause::stopped);
+}
+
+class PatientStreamer : public StreamerTest {
+protected:
+    PatientStreamer()
+        : StreamerTest([] {
+              auto patient = options();
+              patient.start_timeout = 2s;
+              return patient;
+          }()) {}
+};
+
+TEST_F(PatientStreamer, MayBeSlowedForHalfASecondAtTheStart) {
+    now_.speed_scaling = 0.7;
+    auto source = attach(0.5, 1000);
+    cycles(55);
+    now_.speed_scaling = 1.0;
+    cycles(5);
+    EXPECT_GT(source->asked(), 0);
+}
+
+TEST_F(PatientStreamer, NoticesASpeedThatStaysReducedAtTheStart) {
+    now_.speed_scaling = 0.7;
+    auto source = attach(0.5, 1000);
+    cycles(80);
+    EXPECT_EQ(source->asked(), 0);
+    EXPECT_EQ(source->outcome(), EndCause::safety);
+    EXPECT_THAT(source->safety().text, HasSubstr("at 70 % of the speed"));
+}
+
+class OverflowingStreamer : public StreamerTest {
+protected:
+    OverflowingStreamer() : StreamerTest(options(), -1) {}
+};
+
+TEST_F(OverflowingStreamer, HasNoTokenZero) {
+    auto source = moving();
+    EXPECT_EQ(out_.setpoint.token, 1) << "0 ends a script";
 }
 
 TEST_F(StreamerTest, NoticesASilentScriptAfterItsPatience) {
@@ -350,9 +488,18 @@ TEST_F(StreamerTest, CountsMissedCyclesByTheControllersTime) {
     cycle();
     EXPECT_EQ(core_.state().missed_cycles, 2U);
     EXPECT_EQ(core_.state().cycle, 8U);
+    now_.timestamp += 0.0035;
+    cycle();
+    EXPECT_EQ(core_.state().missed_cycles, 2U) << "late, but none is missing";
+    now_.timestamp += 0.0045;
+    cycle();
+    EXPECT_EQ(core_.state().missed_cycles, 3U);
+    now_.timestamp += 8100.0;
+    cycle();
+    EXPECT_EQ(core_.state().missed_cycles, 3U) << "another clock";
     now_.timestamp = 0.0;  // the controller was started again
     cycle();
-    EXPECT_EQ(core_.state().missed_cycles, 2U);
+    EXPECT_EQ(core_.state().missed_cycles, 3U);
 }
 
 TEST(StreamFaultText, IsEmptyWithoutAFault) {

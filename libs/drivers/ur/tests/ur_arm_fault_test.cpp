@@ -158,6 +158,79 @@ TEST_F(ArmTest, ResetPowersOnIfThatWasAllowed) {
     EXPECT_THAT(fake_.commands(), testing::ElementsAre("power on", "brake release"));
 }
 
+TEST_F(ArmTest, ResetReleasesOnlyTheBrakesOfAnArmThatHasPower) {
+    fake_.set([](auto& k) { k.robot_mode = 5; });
+    open({{"power_on", true}});
+    ASSERT_TRUE(becomes(SafetyState::fault));
+    EXPECT_EQ(resetUntilDone(), "");
+    EXPECT_THAT(fake_.commands(), testing::ElementsAre("brake release"));
+}
+
+TEST_F(ArmTest, ResetTellsThatTheControllerDoesNotPowerOn) {
+    fake_.set([](auto& k) {
+        k.robot_mode = 3;
+        k.power_reply = "Failed to execute: power on";
+    });
+    open({{"power_on", true}});
+    ASSERT_TRUE(becomes(SafetyState::fault));
+    EXPECT_THAT(resetUntilDone(), HasSubstr("ur5: \"power on\" was answered with \"Failed"));
+    EXPECT_THAT(fake_.commands(), testing::Not(testing::Contains("brake release")));
+}
+
+TEST_F(ArmTest, ResetTellsThatTheControllerDoesNotReleaseTheBrakes) {
+    fake_.set([](auto& k) {
+        k.robot_mode = 5;
+        k.brake_reply = "Failed to execute: brake release";
+    });
+    open({{"power_on", true}});
+    ASSERT_TRUE(becomes(SafetyState::fault));
+    EXPECT_THAT(resetUntilDone(), HasSubstr("\"brake release\" was answered with \"Failed"));
+}
+
+TEST_F(ArmTest, ResetPowersNoArmOnThatSomeoneMovesByHand) {
+    fake_.set([](auto& k) { k.robot_mode = 6; });
+    open({{"power_on", true}});
+    ASSERT_TRUE(becomes(SafetyState::fault));
+    EXPECT_THAT(resetUntilDone(), HasSubstr("ur5: robot mode BACKDRIVE: someone moves the arm"));
+    EXPECT_THAT(fake_.commands(), testing::IsEmpty());
+}
+
+TEST_F(ArmTest, ResetTellsThatAProtectiveStopWasNotReleased) {
+    openReady();
+    fake_.set([](auto& k) {
+        k.safety_mode = 3;
+        k.unlocks = false;
+    });
+    ASSERT_TRUE(becomes(SafetyState::protective_stop));
+    std::string told;
+    EXPECT_TRUE(fake_.await([&] {
+        const auto reset = arm().resetFault();
+        told = reset ? "" : reset.error().message;
+        return told.find("was not released") != std::string::npos;
+    })) << told;
+    EXPECT_EQ(told, "ur5: the protective stop was not released within 3 s");
+}
+
+TEST_F(ArmTest, ResetTellsThatThePausedProgramIsNotStopped) {
+    openReady();
+    auto source = moving();
+    fake_.set([](auto& k) {
+        k.runtime = 4;
+        k.stops = false;
+        k.stop_reply = "Failed to execute: stop";
+    });
+    EXPECT_EQ(source->outcome(), EndCause::safety);
+    EXPECT_THAT(resetUntilDone(), HasSubstr("ur5: \"stop\" was answered with \"Failed"));
+    fake_.set([](auto& k) { k.stop_reply = "Stopped"; });
+    std::string told;
+    EXPECT_TRUE(fake_.await([&] {
+        const auto reset = arm().resetFault();
+        told = reset ? "" : reset.error().message;
+        return told.find("within") != std::string::npos;
+    })) << told;
+    EXPECT_EQ(told, "ur5: the paused program was not stopped within 2 s");
+}
+
 TEST_F(ArmTest, AResetThatTakesLongTellsSoAndGoesOn) {
     fake_.set([](auto& k) {
         k.robot_mode = 3;
@@ -310,6 +383,21 @@ TEST_F(ArmTest, ADashboardThatDoesNotKnowRemoteControlIsNoObstacle) {
     fake_.set([](auto& k) { k.remote_control = "could not understand: is in remote control"; });
     openReady();
     EXPECT_EQ(attach(0.1, 20)->outcome(), EndCause::done);
+}
+
+TEST_F(ArmTest, ADashboardThatDoesNotAnswerIsNoObstacle) {
+    fake_.set([](auto& k) { k.mute = true; });
+    openReady();
+    EXPECT_EQ(attach(0.1, 20)->outcome(), EndCause::done);
+}
+
+TEST_F(ArmTest, AScriptThatCannotBeUploadedIsTold) {
+    const auto nobody = link::TcpListener::listen("127.0.0.1", 0).value().port();
+    openReady({{"secondary_port", static_cast<double>(nobody)}});
+    auto source = attach(0.1, 20);
+    EXPECT_EQ(source->outcome(), EndCause::safety);
+    EXPECT_THAT(source->safety().text,
+                HasSubstr("ur5: the script could not be uploaded: 127.0.0.1:"));
 }
 
 TEST_F(ArmTest, ASetPointThatIsNoNumberIsNotSent) {

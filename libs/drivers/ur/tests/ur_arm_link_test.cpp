@@ -96,6 +96,18 @@ TEST_F(ArmTest, TellsALaterCalibrationThatItDoesNotUse) {
     EXPECT_EQ(attach(0.1, 20)->outcome(), EndCause::done);
 }
 
+TEST_F(ArmTest, ForgetsACalibrationOnceTheControllerTellsThatOfTheModel) {
+    fake_.set([](auto& k) { k.max_velocity = 3.0; });
+    fake_.switchOff();
+    open({{"open_wait", 0.1}});
+    fake_.listen();
+    EXPECT_TRUE(fake_.await([&] {
+        return arm().safety().text.find("limits are stricter") != std::string::npos;
+    })) << arm().safety().text;
+    fake_.set([](auto& k) { k.max_velocity = 3.3416; });
+    EXPECT_TRUE(fake_.await([&] { return arm().safety().text.empty(); })) << arm().safety().text;
+}
+
 class RefusedSession : public ArmTest {
 protected:
     /// Opens and waits until the text of the safety state has it.
@@ -142,6 +154,16 @@ TEST_F(RefusedSession, AFrequencyThatIsTooHigh) {
     expectText("gives at most 125 Hz, asked for are 500 Hz", {{"frequency", 500.0}});
 }
 
+TEST_F(RefusedSession, AnAnswerToSomethingElse) {
+    fake_.set([](auto& k) { k.answers_start_as = 'P'; });
+    expectText("RTDE answered 'S' with package 80");
+}
+
+TEST_F(RefusedSession, NobodyAtThePort) {
+    const auto nobody = link::TcpListener::listen("127.0.0.1", 0).value().port();
+    expectText("Connection refused", {{"rtde_port", static_cast<double>(nobody)}});
+}
+
 TEST_F(RefusedSession, SilenceInTheMiddle) {
     fake_.set([](auto& k) { k.answers_recipes = false; });
     expectText("no answer in time");
@@ -168,6 +190,21 @@ INSTANTIATE_TEST_SUITE_P(Kinds, GarbageOn,
                          testing::Values(fromHex("00 00 55 00"),       // a size that is none
                                          fromHex("00 05 55 01 00"),    // data that is too short
                                          fromHex("00 05 55 09 00")));  // data of another recipe
+
+class ChatterOn : public ArmTest, public testing::WithParamInterface<std::vector<std::byte>> {};
+
+TEST_P(ChatterOn, RtdeIsNoData) {
+    openReady({{"link_timeout", 0.2}});
+    auto source = moving();
+    fake_.set([](auto& k) { k.instead_of_data = GetParam(); });
+    EXPECT_EQ(source->outcome(), EndCause::disconnected);
+    EXPECT_THAT(source->safety().text, HasSubstr("no RTDE data for 200 ms"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ChatterOn,
+                         testing::Values(rtdePackage('M',
+                                                     fromHex("02 48 69 02 4D 65 03")),  // a text
+                                         rtdePackage('Z', fromHex("01 02"))));  // what nobody knows
 
 TEST_F(ArmTest, UnknownPackagesAndTextsAreSkipped) {
     openReady();
