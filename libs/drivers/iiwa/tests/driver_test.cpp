@@ -59,6 +59,29 @@ TEST_F(IiwaDriver, NeedsAModelOfSevenAxesAndAnAddressOfThisComputer) {
     EXPECT_EQ(device::iiwaDriver().open(request).error().code, Errc::invalid_argument);
 }
 
+TEST_F(IiwaDriver, TalksInThePrecisionOfItsSettings) {
+    for (const bool twice : {false, true}) {
+        const std::string precision = twice ? "double" : "single";
+        const auto device = open({{"port", 0.0}, {"precision", precision}});
+        ASSERT_TRUE(device) << device.error().message;
+        const auto& arm = static_cast<const IiwaArm&>(*device->arm);
+        const ScriptedCabinet cabinet(arm.port(), {.double_precision = twice});
+        EXPECT_TRUE(until([&] { return arm.state().safety == device::SafetyState::normal; }, 10s))
+            << precision;
+    }
+}
+
+TEST_F(IiwaDriver, NeedsTimesOverZero) {
+    for (auto IiwaOptions::*time : {&IiwaOptions::cycle, &IiwaOptions::answer_timeout}) {
+        auto options = ArmBench::quick();
+        options.*time = 0ms;
+        const auto arm = IiwaArm::create(options, model);
+        ASSERT_FALSE(arm);
+        EXPECT_EQ(arm.error().code, Errc::invalid_argument);
+        EXPECT_EQ(arm.error().message, "iiwa: cycle and answer time-out must be over 0");
+    }
+}
+
 TEST_F(IiwaDriver, ThePortCanBeTakenOnlyOnce) {
     const auto arm = IiwaArm::create(ArmBench::quick(), model).value();
     const auto second = open({{"port", static_cast<double>(arm->port())}});
