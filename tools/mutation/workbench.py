@@ -149,19 +149,23 @@ class Workbench:
     def _first_failure(self, preset: str, linked: Path, tests: list[str], left_out: list[str]) -> str | None:
         leave_out = list(left_out)
         for _ in range(4):
-            ran = self._run_program(preset, linked, gtest_filter(tests, leave_out))
+            all_but_these = gtest_filter(tests, leave_out)
+            ran = self._run_program(preset, linked, all_but_these)
             if ran.status == 0:
                 return None
             test = _failed_test(ran.output)
             if ran.status is None:
                 return f"{linked.name}: {test or 'no test'} does not end"
-            if test is None or self._fails_again(preset, linked, test):
+            again = test is not None and self._fails_again(preset, linked, test)
+            if test is None or (not again and ran.status < 0):  # a test before it may have caused the crash
+                again = self._fails_again(preset, linked, all_but_these)
+            if again:
                 return f"{linked.name}: {test or 'status ' + str(ran.status)}"
-            leave_out.append(test)
+            leave_out += [test] if test else []
         return None
 
-    def _fails_again(self, preset: str, linked: Path, test: str) -> bool:
-        return all(self._run_program(preset, linked, test).status != 0 for _ in range(FLAKY_REPEATS))
+    def _fails_again(self, preset: str, linked: Path, tests: str) -> bool:
+        return all(self._run_program(preset, linked, tests).status != 0 for _ in range(FLAKY_REPEATS))
 
     def _run_program(self, preset: str, path: Path, tests: str, environment: dict[str, str] = FAIL_FAST) -> "Ran":
         timeout = 60 + 4 * self._times.get((preset, path.name), 600)
