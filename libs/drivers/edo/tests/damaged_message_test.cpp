@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "metier/edo_driver/decoder.hpp"
+#include "decoder.hpp"
 
 namespace metier::edo_driver {
 namespace {

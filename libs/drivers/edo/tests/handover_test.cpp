@@ -1,4 +1,4 @@
-#include "metier/edo_driver/handover.hpp"
+#include "handover.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "metier/edo_driver/recovery.hpp"
+#include "recovery.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "metier/edo_driver/safety_keeper.hpp"
+#include "safety_keeper.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
