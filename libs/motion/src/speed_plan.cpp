@@ -266,23 +266,35 @@ private:
     }
 
     /// Differences of positions from one time to another [s], and as far beyond as four of them
-    /// reach.
+    /// reach; between these again where they come near the jerk limit, since a peak between two
+    /// steps is higher than both show.
     void includeExact(double from, double to) {
         const double step = std::max((to - from) / kMostSteps,
                                      std::clamp((to - from) / 4, kShortestStep, kLongestStep));
+        if (includeSteps(from, to, step) > 1 / kBetween) {
+            includeSteps(from - step / 2, to + step / 2, step);
+        }
+    }
+
+    /// \return the largest share of a jerk limit
+    double includeSteps(double from, double to, double step) {
         std::array<JointVector, 4> q;
         int taken = 0;
+        double largest = 0;
         for (double time = from - 1.5 * step; time < to + 1.5 * step; time += step) {
             std::rotate(q.begin(), q.begin() + 1, q.end());
             q.back() = position_(plan_.map.at(plan_.profile.at(time).position).position);
             if (++taken >= 4) {
-                includeDifferences(q, step);
+                largest = std::max(largest, includeDifferences(q, step));
             }
         }
+        return largest;
     }
 
     /// \param q four positions, `step` [s] apart
-    void includeDifferences(const std::array<JointVector, 4>& q, double step) noexcept {
+    /// \return the largest share of a jerk limit
+    double includeDifferences(const std::array<JointVector, 4>& q, double step) noexcept {
+        double largest = 0;
         for (std::size_t i = 0; i < q[0].size(); ++i) {
             const SpeedBound& bound = bounds_.front().values[i];
             const double a = (q[2][i] - 2 * q[1][i] + q[0][i]) / (step * step);
@@ -291,7 +303,9 @@ private:
             const double jerk = shown > 1 + kTolerance ? kBetween * shown : shown;
             factor_ =
                 std::max({factor_, std::sqrt(std::abs(a) / bound.acceleration), std::cbrt(jerk)});
+            largest = std::max(largest, shown);
         }
+        return largest;
     }
 
     const std::vector<double>& places_;
