@@ -215,7 +215,6 @@ TEST_F(Controlled, NamesItsHolderAndWhatTheLeaseAsksFor) {
     EXPECT_TRUE(control.leasedBy("bob"));
     EXPECT_FALSE(control.leasedBy("alice"));
     EXPECT_EQ(control.epoch(), *epoch);
-    EXPECT_EQ(control.onLoss(), OwnerLossAction::suspend);
     EXPECT_EQ(control.leaseRemaining(), Control::kDefaultLease);
     ASSERT_TRUE(control.release(kBob, *epoch));
     EXPECT_TRUE(control.holder().session_id.empty());

@@ -60,7 +60,6 @@ public:
     /// Nothing while the bus is silent.
     std::optional<BusReport> report() const;
 
-    std::size_t configuredAxes() const { return joints_.size(); }
     /// Whether the last step() made a pose the zero of some axis.
     bool justCalibrated() const { return just_calibrated_; }
     /// Where the axes really are, whatever the calibration says.

@@ -54,7 +54,6 @@ public:
     /// Whether a program may begin or go on.
     bool mayRun() const { return robot_ == RobotMode::running && safety_ == SafetyMode::normal; }
     bool emergencyStopped() const { return safety_ == SafetyMode::robot_emergency_stop; }
-    bool poweringOff() const { return powering_off_; }
 
 private:
     Result<void> refuseUnlessSafe() const;

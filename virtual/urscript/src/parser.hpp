@@ -44,7 +44,6 @@ private:
     Result<void> giveBack();
     Result<void> leaveLoop(bool again);
     Result<void> critical();
-    Result<void> endOfBlock();
 
     // expression_parser.cpp
     Result<void> expression();

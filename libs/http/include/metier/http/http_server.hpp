@@ -30,7 +30,6 @@ public:
     Result<std::uint16_t> serve(const std::string& address, std::uint16_t port);
     /// Ends all connections, whatever they wait for, and waits for their threads. Once.
     void end();
-    bool isEnding() const noexcept { return ending_; }
 
 private:
     bool process_and_close_socket(int socket) override;

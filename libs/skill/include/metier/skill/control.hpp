@@ -92,8 +92,6 @@ public:
     const Caller& holder() const noexcept;
     /// Of the lease, or of the last one; 0 before the first.
     std::uint64_t epoch() const noexcept { return epoch_; }
-    /// What the lease asks for if its holder is lost.
-    OwnerLossAction onLoss() const noexcept { return on_loss_; }
     /// Whether `session_id` holds the lease.
     bool leasedBy(std::string_view session_id) const noexcept;
     /// Until the lease ends without a heartbeat; 0 if there is none.

@@ -220,7 +220,6 @@ private:
     void finished(ValueMap result);
     Result<void> takeResult(ValueMap& result);
     void brake(Cause cause);
-    void requestRest();
     void announceRest(State to, const Cause& cause);
     void armRestDeadline();
     void restDeadlinePassed();
