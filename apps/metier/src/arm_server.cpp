@@ -49,53 +49,54 @@ Result<motion::RobotModel> withTools(const motion::RobotModel& model,
 }
 
 /// \return nothing if the cell file names none
-Result<std::optional<device::OpenDevice>> openSensor(const cell::ServerConfig& config) {
-    if (!config.arm.force_torque_sensor) {
+Result<std::optional<device::OpenDevice>> openSensor(const std::string& server,
+                                                     const cell::ArmServer& config) {
+    if (!config.force_torque_sensor) {
         return std::optional<device::OpenDevice>();
     }
-    auto sensor = openDevice(*config.arm.force_torque_sensor, config.name, nullptr);
+    auto sensor = openDevice(*config.force_torque_sensor, server, nullptr);
     if (!sensor) {
         return fail(sensor.error());
     }
     if (sensor->force_torque_sensor == nullptr) {
         return fail(Errc::invalid_argument,
-                    fmt::format("{}: the driver \"{}\" is not one of a force-torque sensor",
-                                config.name, config.arm.force_torque_sensor->type));
+                    fmt::format("{}: the driver \"{}\" is not one of a force-torque sensor", server,
+                                config.force_torque_sensor->type));
     }
     return std::optional(std::move(*sensor));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& config) {
-    auto loaded = motion::RobotModel::load(config.arm.model).and_then([&](const auto& model) {
-        return withTools(model, config.arm.tools);
-    });
+Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& config,
+                                                    const cell::ArmServer& arm) {
+    auto loaded = motion::RobotModel::load(arm.model).and_then(
+        [&](const auto& model) { return withTools(model, arm.tools); });
     if (!loaded) {
         return fail(loaded.error());
     }
     auto model = std::make_unique<const motion::RobotModel>(std::move(*loaded));
-    auto device = openDevice(config.arm.driver, config.name, model.get());
+    auto device = openDevice(arm.driver, config.name, model.get());
     if (!device) {
         return fail(device.error());
     }
     if (device->arm == nullptr) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
-                                config.arm.driver.type));
+                                arm.driver.type));
     }
-    auto host = SkillHost::create(config, nodesetsOf(config.arm));
+    auto host = SkillHost::create(config, nodesetsOf(arm));
     if (!host) {
         return fail(host.error());
     }
-    auto sensor = openSensor(config);
+    auto sensor = openSensor(config.name, arm);
     if (!sensor) {
         return fail(sensor.error());
     }
     awaitConnection(*device);
     std::unique_ptr<ArmServer> server(
         new ArmServer(std::move(model), std::move(*device), std::move(*sensor), std::move(*host)));
-    if (auto offered = server->offer(config); !offered) {
+    if (auto offered = server->offer(config, arm); !offered) {
         return fail(offered.error());
     }
     if (auto started = server->host_->start(); !started) {
@@ -113,18 +114,20 @@ ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
       model_(device_.model ? *device_.model : *file_model_),
       host_(std::move(host)) {}
 
-Result<void> ArmServer::offer(const cell::ServerConfig& config) {
-    const auto system =
-        config.arm.nodeset.empty()
-            ? opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(config, model_))
-            : opcua_skill::findMotionDeviceSystem(host_->nodes());
+Result<void> ArmServer::offer(const cell::ServerConfig& config,
+                              const cell::ArmServer& arm) {
+    const auto system = arm.nodeset.empty() ? opcua_skill::publishMotionDeviceSystem(
+                                                  host_->nodes(), specOf(config, model_))
+                                            : opcua_skill::findMotionDeviceSystem(host_->nodes());
     if (!system) {
         return fail(system.error());
     }
-    if (auto offered = offerSkills(*system, config.arm); !offered) {
+    if (auto offered = offerSkills(*system, arm); !offered) {
         return offered;
     }
-    if (auto offered = offerOwnCompositions(*host_, system->skills, config); !offered) {
+    if (auto offered = offerOwnCompositions(*host_, system->skills,
+                                            {.server = config.name, .files = arm.compositions});
+        !offered) {
         return offered;
     }
     if (auto offered = host_->offerControl(system->controller); !offered) {
@@ -139,7 +142,7 @@ Result<void> ArmServer::offer(const cell::ServerConfig& config) {
     }
     // A controller that measures the wrench itself needs no sensor in the cell file.
     return host_->publishArm(*system,
-                             {*device_.arm, model_, config.arm.payload,
+                             {*device_.arm, model_, arm.payload,
                               sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor,
                               stream_report_, stopping_report_});
 }

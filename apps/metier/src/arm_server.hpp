@@ -19,14 +19,17 @@ namespace metier::app {
 class ArmServer {
 public:
     /// Errors: what is wrong with the model, the driver, the NodeSet, the skills or the port.
-    static Result<std::unique_ptr<ArmServer>> start(const cell::ServerConfig& config);
+    /// \param arm of `config`
+    static Result<std::unique_ptr<ArmServer>> start(const cell::ServerConfig& config,
+                                                    const cell::ArmServer& arm);
 
     std::string url() const { return host_->url(); }
 
 private:
     ArmServer(std::unique_ptr<const motion::RobotModel> file_model, device::OpenDevice device,
               std::optional<device::OpenDevice> sensor, std::unique_ptr<SkillHost> host);
-    Result<void> offer(const cell::ServerConfig& config);
+    Result<void> offer(const cell::ServerConfig& config,
+                       const cell::ArmServer& arm);
     Result<void> offerSkills(const opcua_skill::MotionDeviceSystem& system,
                              const cell::ArmServer& config);
 

@@ -4,31 +4,15 @@
 
 #include <filesystem>
 
+#include "metier/base/overloaded.hpp"
 #include "metier/base/random.hpp"
 #include "security.hpp"
 
 namespace metier::app {
 namespace {
 
-using cell::ServerKind;
-
 std::string self() {
     return std::filesystem::read_symlink("/proc/self/exe").string();
-}
-
-/// The driver of a server's device; nullptr for one without.
-const cell::DriverChoice* driverOf(const cell::ServerConfig& server) {
-    switch (server.kind) {
-        case ServerKind::arm:
-            return &server.arm.driver;
-        case ServerKind::gripper:
-            return &server.gripper.driver;
-        case ServerKind::move:
-        case ServerKind::composition:
-        case ServerKind::synchronized:
-            break;
-    }
-    return nullptr;
 }
 
 /// Some address of this machine that nobody else is likely to use.
@@ -42,9 +26,11 @@ std::string freeAddress() {
 /// Options of `metier serve` for the servers that a server uses.
 void addUsed(const cell::ServerConfig& server, const CellAddresses& known,
              std::vector<std::string>& command) {
-    const auto robot = known.servers.find(server.move.robot);
-    if (server.kind == ServerKind::move && robot != known.servers.end()) {
-        command.insert(command.end(), {"--robot", robot->second});
+    if (const auto* move = server.as<cell::MoveComponent>()) {
+        const auto robot = known.servers.find(move->robot);
+        if (robot != known.servers.end()) {
+            command.insert(command.end(), {"--robot", robot->second});
+        }
     }
     for (const auto& used : server.usedServers()) {
         const auto found = known.servers.find(used.name);
@@ -63,29 +49,25 @@ void addControllers(const cell::ServerConfig& server, const CellAddresses& known
             command.insert(command.end(), {option, found->second});
         }
     };
-    if (const auto* driver = driverOf(server)) {
+    if (const auto* driver = server.driver()) {
         give(*driver, "--controller");
     }
-    if (server.arm.force_torque_sensor) {
-        give(*server.arm.force_torque_sensor, "--sensor");
+    const auto* arm = server.as<cell::ArmServer>();
+    if (arm != nullptr && arm->force_torque_sensor) {
+        give(*arm->force_torque_sensor, "--sensor");
     }
 }
 
 }  // namespace
 
 CellRank rankOf(const cell::ServerConfig& server) {
-    switch (server.kind) {
-        case ServerKind::arm:
-        case ServerKind::gripper:
-            return CellRank::device;
-        case ServerKind::move:
-            return CellRank::move;
-        case ServerKind::synchronized:
-            return CellRank::synchronized;
-        case ServerKind::composition:
-            break;
-    }
-    return CellRank::composition;
+    return std::visit(
+        overloaded{[](const cell::ArmServer&) { return CellRank::device; },
+                   [](const cell::GripperServer&) { return CellRank::device; },
+                   [](const cell::MoveComponent&) { return CellRank::move; },
+                   [](const cell::SynchronizedServer&) { return CellRank::synchronized; },
+                   [](const cell::CompositionServer&) { return CellRank::composition; }},
+        server.kind);
 }
 
 CellMember::Plan planOf(const cell::CellConfig& cell,

@@ -9,12 +9,12 @@
 #include <chrono>
 #include <csignal>
 #include <limits>
+#include <utility>
 
 namespace metier::app {
 namespace {
 
 using namespace std::chrono_literals;
-using cell::ServerKind;
 
 // Longest time for a process to let go of those that it uses before these get their signal, too.
 constexpr auto kLetGo = 500ms;
@@ -22,10 +22,22 @@ constexpr auto kLetGo = 500ms;
 constexpr auto kServersEnd = 4s;
 constexpr auto kAllEnd = 6s;
 
-constexpr std::array kStartOrder{ServerKind::arm, ServerKind::gripper, ServerKind::move,
-                                 ServerKind::synchronized, ServerKind::composition};
 constexpr std::array kEndOrder{CellRank::composition, CellRank::synchronized, CellRank::move,
                                CellRank::device,      CellRank::controller,   CellRank::world};
+
+/// Those that others use first; arms before grippers.
+std::vector<const cell::ServerConfig*> inStartOrder(
+    const std::vector<cell::ServerConfig>& servers) {
+    std::vector<const cell::ServerConfig*> order;
+    for (const auto& server : servers) {
+        order.push_back(&server);
+    }
+    std::stable_sort(order.begin(), order.end(), [](const auto* one, const auto* other) {
+        return std::pair(rankOf(*one), one->kind.index()) <
+               std::pair(rankOf(*other), other->kind.index());
+    });
+    return order;
+}
 
 SteadyTime now() {
     return std::chrono::steady_clock::now();
@@ -65,20 +77,15 @@ Result<void> CellRunner::startAll(const cell::CellConfig& cell, Ports ports,
             known_.controllers[controller.name] = members_.back().address();
         }
     }
-    for (const auto kind : kStartOrder) {
-        for (const auto& server : cell.servers) {
-            if (server.kind != kind) {
-                continue;
-            }
-            if (auto started = startMember(planOf(cell, server, ports, known_), stop_descriptor);
-                !started) {
-                return started;
-            }
-            const auto& url = members_.back().address();
-            known_.servers[server.name] = url;
-            running_.push_back({server.name, url});
-            on_ready(running_.back());
+    for (const auto* server : inStartOrder(cell.servers)) {
+        if (auto started = startMember(planOf(cell, *server, ports, known_), stop_descriptor);
+            !started) {
+            return started;
         }
+        const auto& url = members_.back().address();
+        known_.servers[server->name] = url;
+        running_.push_back({server->name, url});
+        on_ready(running_.back());
     }
     return {};
 }

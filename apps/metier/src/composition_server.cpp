@@ -129,8 +129,7 @@ private:
 
     Result<void> findRemote(const composition::Use& use) {
         auto offered = choose(use, server_.offered_);
-        if (!offered && offered.error().code == Errc::not_found &&
-            server_.config_.composition.discover) {
+        if (!offered && offered.error().code == Errc::not_found && server_.config_.discover) {
             sought_.push_back(use);
             return {};
         }
@@ -160,7 +159,7 @@ private:
         }
         const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
         while (!sought_.empty()) {
-            const auto servers = discoverServers(server_.config_.discovery, {});
+            const auto servers = discoverServers(server_.discovery_, {});
             const auto assigned = assign(sought_, servers);
             if (assigned) {
                 return useAll(*assigned);
@@ -209,8 +208,9 @@ private:
 };
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
-    const cell::ServerConfig& config, const StopSignal& stop) {
-    auto definitions = loadDefinitions(config.composition.files);
+    const cell::ServerConfig& config, const cell::CompositionServer& composition,
+    const StopSignal& stop) {
+    auto definitions = loadDefinitions(composition.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
     }
@@ -218,8 +218,9 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     if (!host) {
         return fail(host.error());
     }
-    std::unique_ptr<CompositionServer> server(new CompositionServer(config, std::move(*host)));
-    if (auto connected = server->connect(config.composition.servers); !connected) {
+    std::unique_ptr<CompositionServer> server(
+        new CompositionServer(config, composition, std::move(*host)));
+    if (auto connected = server->connect(composition.servers); !connected) {
         return fail(std::move(connected.error()));
     }
     if (auto offered = server->offer(std::move(*definitions), stop); !offered) {
@@ -233,8 +234,13 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
 }
 
 CompositionServer::CompositionServer(const cell::ServerConfig& config,
+                                     cell::CompositionServer composition,
                                      std::unique_ptr<SkillHost> host)
-    : config_(config), name_(config.name), life_(newLife()), host_(std::move(host)) {}
+    : config_(std::move(composition)),
+      discovery_(config.discovery),
+      name_(config.name),
+      life_(newLife()),
+      host_(std::move(host)) {}
 
 CompositionServer::~CompositionServer() {
     if (rebinder_) {
@@ -247,14 +253,13 @@ void CompositionServer::keepBound() {
         return;
     }
     rebinder_ = std::make_unique<Rebinder>(
-        Rebinder::Setup{
-            .discovery = config_.discovery,
-            .own_url = host_->announcedUrl(),
-            .application_name = "metier " + name_,
-            .own_server = host_->applicationUri(),
-            .rebind_after = std::chrono::duration<double>(config_.composition.rebind_after),
-            .executor = host_->skills().executor(),
-            .nodes = host_->nodes()},
+        Rebinder::Setup{.discovery = discovery_,
+                        .own_url = host_->announcedUrl(),
+                        .application_name = "metier " + name_,
+                        .own_server = host_->applicationUri(),
+                        .rebind_after = std::chrono::duration<double>(config_.rebind_after),
+                        .executor = host_->skills().executor(),
+                        .nodes = host_->nodes()},
         std::move(bonds_));
 }
 

@@ -21,12 +21,14 @@ namespace metier::app {
 /// Threading: one thread starts and ends it.
 class CompositionServer {
 public:
+    /// \param composition of `config`
     /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
     /// Errors: what is wrong with the files; a used server that cannot be reached; a used skill
     ///         that nobody or, unless discovered, more than one server offers; the port; cancelled
     ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
-        const cell::ServerConfig& config, const StopSignal& stop);
+        const cell::ServerConfig& config,
+        const cell::CompositionServer& composition, const StopSignal& stop);
 
     ~CompositionServer();
     CompositionServer(const CompositionServer&) = delete;
@@ -36,7 +38,9 @@ public:
 
 private:
     class Cast;
-    CompositionServer(const cell::ServerConfig& config, std::unique_ptr<SkillHost> host);
+    CompositionServer(const cell::ServerConfig& config,
+                      cell::CompositionServer composition,
+                      std::unique_ptr<SkillHost> host);
     Result<void> connect(const std::vector<cell::UsedServer>& servers);
     Result<void> offer(std::vector<composition::Definition> definitions, const StopSignal& stop);
     Result<void> offerOne(const opcua_skill::SkillController& place,
@@ -45,8 +49,9 @@ private:
     Result<std::shared_ptr<client::RemoteServer>> connectFound(const DiscoveredServer& found);
     void keepBound();
 
-    const cell::ServerConfig config_;
-    std::string name_;
+    const cell::CompositionServer config_;
+    const cell::Discovery discovery_;
+    const std::string name_;
     std::string life_;  // part of the ids of executions
     std::vector<std::unique_ptr<client::RemoteServer>> servers_;
     std::vector<OfferedSkill> offered_;  // of all of them

@@ -11,23 +11,23 @@
 namespace metier::app {
 
 Result<std::unique_ptr<GripperServer>> GripperServer::start(
-    const cell::ServerConfig& config) {
-    auto device = openDevice(config.gripper.driver, config.name, nullptr);
+    const cell::ServerConfig& config, const cell::GripperServer& gripper) {
+    auto device = openDevice(gripper.driver, config.name, nullptr);
     if (!device) {
         return fail(device.error());
     }
     if (device->gripper == nullptr) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: the driver \"{}\" is not one of a gripper", config.name,
-                                config.gripper.driver.type));
+                                gripper.driver.type));
     }
-    auto host = SkillHost::create(config, {config.gripper.nodeset});
+    auto host = SkillHost::create(config, {gripper.nodeset});
     if (!host) {
         return fail(host.error());
     }
     awaitConnection(*device);
     std::unique_ptr<GripperServer> server(new GripperServer(std::move(*device), std::move(*host)));
-    if (auto offered = server->offer(config.gripper); !offered) {
+    if (auto offered = server->offer(gripper); !offered) {
         return fail(offered.error());
     }
     if (auto started = server->host_->start(); !started) {

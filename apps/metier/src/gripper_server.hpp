@@ -16,7 +16,9 @@ namespace metier::app {
 class GripperServer {
 public:
     /// Errors: what is wrong with the driver, the NodeSet, the skills or the port.
-    static Result<std::unique_ptr<GripperServer>> start(const cell::ServerConfig& config);
+    /// \param gripper of `config`
+    static Result<std::unique_ptr<GripperServer>> start(
+        const cell::ServerConfig& config, const cell::GripperServer& gripper);
 
     std::string url() const { return host_->url(); }
 

@@ -28,20 +28,21 @@ bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {
 }
 
 /// Addresses of servers with a position stream, and reach and payload enough.
-std::vector<std::string> findRobots(const cell::ServerConfig& config,
+std::vector<std::string> findRobots(const cell::Discovery& discovery,
+                                    const cell::MoveComponent& move,
                                     const std::vector<std::string>& but) {
     std::vector<std::string> urls;
-    for (const auto& server : survey(announcedServers(config.discovery, but))) {
-        if (hasStreamFor(server, {config.move.reach, config.move.payload})) {
+    for (const auto& server : survey(announcedServers(discovery, but))) {
+        if (hasStreamFor(server, {move.reach, move.payload})) {
             urls.push_back(server.server.url);
         }
     }
     return urls;
 }
 
-Error noneFound(const cell::ServerConfig& config) {
+Error noneFound(const cell::MoveComponent& move) {
     return {Errc::not_found, fmt::format("no server with a PositionStreamSkill{} is found",
-                                         textOf({config.move.reach, config.move.payload}))};
+                                         textOf({move.reach, move.payload}))};
 }
 
 Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Error& if_none) {
@@ -56,14 +57,15 @@ Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Er
 }
 
 Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
+                                  const cell::MoveComponent& move,
                                   const StopSignal& stop) {
-    if (!config.move.discover) {
-        return connectRobot(config.move.robot);
+    if (!move.discover) {
+        return connectRobot(move.robot);
     }
     spdlog::info("{} seeks a robot", config.name);
     const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
     while (true) {
-        auto robot = connectAny(findRobots(config, {}), noneFound(config));
+        auto robot = connectAny(findRobots(config.discovery, move, {}), noneFound(move));
         if (robot || std::chrono::steady_clock::now() > deadline) {
             return robot;
         }
@@ -76,8 +78,9 @@ Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
 }  // namespace
 
 Result<std::unique_ptr<MoveServer>> MoveServer::start(const cell::ServerConfig& config,
+                                                      const cell::MoveComponent& move,
                                                       const StopSignal& stop) {
-    auto robot = firstRobot(config, stop);
+    auto robot = firstRobot(config, move, stop);
     if (!robot) {
         return fail(std::move(robot.error()));
     }
@@ -86,11 +89,13 @@ Result<std::unique_ptr<MoveServer>> MoveServer::start(const cell::ServerConfig& 
     if (!moves) {
         return fail(std::move(moves.error()));
     }
-    return std::unique_ptr<MoveServer>(new MoveServer(config, std::move(*moves)));
+    return std::unique_ptr<MoveServer>(new MoveServer(config, move, std::move(*moves)));
 }
 
-MoveServer::MoveServer(cell::ServerConfig config, std::unique_ptr<RobotMoves> moves)
+MoveServer::MoveServer(cell::ServerConfig config, cell::MoveComponent move,
+                       std::unique_ptr<RobotMoves> moves)
     : config_(std::move(config)),
+      move_(std::move(move)),
       url_(moves->url()),
       announced_url_(moves->announcedUrl()),
       moves_(std::move(moves)),
@@ -129,8 +134,8 @@ bool MoveServer::awaitNext(const std::stop_token& stop) {
 
 std::vector<std::string> MoveServer::candidates() const {
     if (moves_ == nullptr) {
-        return config_.move.discover ? findRobots(config_, {announced_url_})
-                                     : std::vector{robot_url_};
+        return move_.discover ? findRobots(config_.discovery, move_, {announced_url_})
+                              : std::vector{robot_url_};
     }
     const auto absence = moves_->robot().arm->absence();
     if (!absence) {
@@ -140,8 +145,8 @@ std::vector<std::string> MoveServer::candidates() const {
         return {robot_url_};
     }
     const std::chrono::duration<double> away = std::chrono::steady_clock::now() - absence->since;
-    return config_.move.discover && away.count() > config_.move.rebind_after
-               ? findRobots(config_, {announced_url_, robot_url_})
+    return move_.discover && away.count() > move_.rebind_after
+               ? findRobots(config_.discovery, move_, {announced_url_, robot_url_})
                : std::vector<std::string>();
 }
 

@@ -27,7 +27,9 @@ public:
     /// Waits until a robot is found, 20 s at most, if one is to be found.
     /// Errors: the robot's server cannot be reached or does not tell enough, or the port is taken;
     ///         cancelled (a stop was asked for).
+    /// \param move of `config`
     static Result<std::unique_ptr<MoveServer>> start(const cell::ServerConfig& config,
+                                                     const cell::MoveComponent& move,
                                                      const StopSignal& stop);
     ~MoveServer();
     MoveServer(const MoveServer&) = delete;
@@ -37,7 +39,8 @@ public:
     const std::string& url() const noexcept { return url_; }
 
 private:
-    MoveServer(cell::ServerConfig config, std::unique_ptr<RobotMoves> moves);
+    MoveServer(cell::ServerConfig config, cell::MoveComponent move,
+               std::unique_ptr<RobotMoves> moves);
 
     void run(const std::stop_token& stop);
     bool awaitNext(const std::stop_token& stop);
@@ -47,6 +50,7 @@ private:
     void tell(const Error& error);
 
     cell::ServerConfig config_;  // with the port that the server has
+    const cell::MoveComponent move_;
     const std::string url_;
     const std::string announced_url_;
     // Of the thread, once it runs.

@@ -130,13 +130,13 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
 }  // namespace
 
 Result<void> offerOwnCompositions(SkillHost& host, const opcua::NodeId& skills,
-                                  const cell::ServerConfig& config) {
-    auto definitions = loadDefinitions(config.own_compositions);
+                                  const OwnCompositions& own) {
+    auto definitions = loadDefinitions(own.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
     }
     for (auto& definition : *definitions) {
-        if (auto offered = offerOne(host, skills, std::move(definition), config.name); !offered) {
+        if (auto offered = offerOne(host, skills, std::move(definition), own.server); !offered) {
             return offered;
         }
     }

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <variant>
 
 #include "announcement.hpp"
 #include "arm_server.hpp"
@@ -14,6 +16,7 @@
 #include "folders.hpp"
 #include "gripper_server.hpp"
 #include "lab_warning.hpp"
+#include "metier/base/overloaded.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
@@ -84,14 +87,41 @@ Result<void> chooseMetrics(const ServeOptions& options, cell::ServerConfig& conf
     return {};
 }
 
-/// A virtual controller of the same file is reached at its configured address.
-void resolveController(const cell::CellConfig& cell, const std::string& other_address,
-                       cell::DriverChoice& driver) {
-    if (!other_address.empty()) {
-        driver.controller = other_address;
-    } else if (const auto* controller = cell.findVirtual(driver.controller)) {
-        driver.controller = controller->address;
+void chooseControllers(const ServeOptions& options, cell::ServerConfig& config) {
+    const auto choose = [](const std::string& other_address, cell::DriverChoice& driver) {
+        driver.controller = other_address.empty() ? driver.controller : other_address;
+    };
+    if (auto* gripper = config.as<cell::GripperServer>()) {
+        choose(options.controller, gripper->driver);
     }
+    if (auto* arm = config.as<cell::ArmServer>()) {
+        choose(options.controller, arm->driver);
+        if (arm->force_torque_sensor) {
+            choose(options.sensor, *arm->force_torque_sensor);
+        }
+    }
+}
+
+/// Addresses of used servers that the command line says instead of the file.
+Result<void> chooseUsed(const std::vector<std::string>& given,
+                        cell::ServerConfig& config) {
+    if (config.driver() != nullptr) {
+        return {};  // it has a device and uses nobody
+    }
+    const auto used = config.usedServers();
+    for (const auto& option : given) {
+        const auto equals = option.find('=');
+        const auto found = std::find_if(used.begin(), used.end(), [&](const auto& server) {
+            return server.name == option.substr(0, equals);
+        });
+        if (equals == std::string::npos || found == used.end()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("--use {}: is not NAME=opc.tcp://... with a name of `servers`",
+                                    option));
+        }
+        found->url = option.substr(equals + 1);
+    }
+    return {};
 }
 
 Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
@@ -115,9 +145,10 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
     if (auto chosen = chooseMetrics(options, config); !chosen) {
         return fail(chosen.error());
     }
-    if (!options.robot.empty()) {
-        config.move.robot = options.robot;
-        config.move.discover = false;
+    if (auto* move = config.as<cell::MoveComponent>();
+        move != nullptr && !options.robot.empty()) {
+        move->robot = options.robot;
+        move->discover = false;
     }
     if (!options.discovery.empty()) {
         config.discovery.servers = options.discovery;
@@ -125,45 +156,11 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
     if (!options.announce_as.empty()) {
         config.discovery.announce_as = options.announce_as;
     }
-    for (auto* driver : {&config.arm.driver, &config.gripper.driver}) {
-        resolveController(cell, options.controller, *driver);
+    chooseControllers(options, config);
+    if (const auto chosen = chooseUsed(options.used, config); !chosen) {
+        return fail(chosen.error());
     }
-    if (config.arm.force_torque_sensor) {
-        resolveController(cell, options.sensor, *config.arm.force_torque_sensor);
-    }
-    return config;
-}
-
-/// A component of the same file is reached at its configured port.
-void resolveRobot(const cell::CellConfig& cell, cell::ServerConfig& config) {
-    if (const auto* robot = cell.find(config.move.robot)) {
-        config.move.robot = fmt::format("opc.tcp://{}:{}", robot->address, robot->port);
-    }
-}
-
-/// The addresses of the servers that composed skills use: as the command line says, or the file.
-Result<void> resolveUsed(const cell::CellConfig& cell,
-                         const std::vector<std::string>& given,
-                         std::vector<cell::UsedServer>& used) {
-    for (const auto& option : given) {
-        const auto equals = option.find('=');
-        const auto found = std::find_if(used.begin(), used.end(), [&](const auto& server) {
-            return server.name == option.substr(0, equals);
-        });
-        if (equals == std::string::npos || found == used.end()) {
-            return fail(Errc::invalid_argument,
-                        fmt::format("--use {}: is not NAME=opc.tcp://... with a name of `servers`",
-                                    option));
-        }
-        found->url = option.substr(equals + 1);
-    }
-    for (auto& server : used) {
-        const auto* known = cell.find(server.name);
-        if (server.url.empty() && known != nullptr) {
-            server.url = fmt::format("opc.tcp://{}:{}", known->address, known->port);
-        }
-    }
-    return {};
+    return cell.resolved(std::move(config));
 }
 
 /// A server at another port is another application.
@@ -219,23 +216,29 @@ Exit runServe(const ServeOptions& options) {
     if (config->port == 0) {
         config->port = options.again_at;
     }
-    if (config->kind == cell::ServerKind::arm) {
-        return serveUntil(stop, options, [&] { return ArmServer::start(*config); });
-    }
-    if (config->kind == cell::ServerKind::gripper) {
-        return serveUntil(stop, options, [&] { return GripperServer::start(*config); });
-    }
-    if (const auto right = resolveUsed(*cell, options.used, config->usedServers()); !right) {
-        return reportUsage(right.error());
-    }
-    if (config->kind == cell::ServerKind::composition) {
-        return serveUntil(stop, options, [&] { return CompositionServer::start(*config, stop); });
-    }
-    if (config->kind == cell::ServerKind::synchronized) {
-        return serveUntil(stop, options, [&] { return SynchronizedServer::start(*config); });
-    }
-    resolveRobot(*cell, *config);
-    return serveUntil(stop, options, [&] { return MoveServer::start(*config, stop); });
+    return std::visit(
+        overloaded{[&](const cell::ArmServer& arm) {
+                       return serveUntil(stop, options,
+                                         [&] { return ArmServer::start(*config, arm); });
+                   },
+                   [&](const cell::GripperServer& gripper) {
+                       return serveUntil(stop, options,
+                                         [&] { return GripperServer::start(*config, gripper); });
+                   },
+                   [&](const cell::MoveComponent& move) {
+                       return serveUntil(stop, options,
+                                         [&] { return MoveServer::start(*config, move, stop); });
+                   },
+                   [&](const cell::CompositionServer& composition) {
+                       return serveUntil(stop, options, [&] {
+                           return CompositionServer::start(*config, composition, stop);
+                       });
+                   },
+                   [&](const cell::SynchronizedServer& both) {
+                       return serveUntil(stop, options,
+                                         [&] { return SynchronizedServer::start(*config, both); });
+                   }},
+        config->kind);
 }
 
 }  // namespace

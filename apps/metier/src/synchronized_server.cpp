@@ -26,13 +26,13 @@ std::string originOf(const std::string& component) {
 }  // namespace
 
 Result<std::unique_ptr<SynchronizedServer>> SynchronizedServer::start(
-    const cell::ServerConfig& config) {
+    const cell::ServerConfig& config, const cell::SynchronizedServer& arms) {
     auto host = SkillHost::create(config, {});
     if (!host) {
         return fail(host.error());
     }
     std::unique_ptr<SynchronizedServer> server(new SynchronizedServer(std::move(*host)));
-    if (auto offered = server->offer(config); !offered) {
+    if (auto offered = server->offer(config.name, arms); !offered) {
         return fail(std::move(offered.error()));
     }
     if (auto started = server->host_->start(); !started) {
@@ -92,23 +92,24 @@ Result<Arm> SynchronizedServer::connect(const cell::UsedServer& used,
     return Arm{used.name, std::move(*pose_move), std::move(*joint_move)};
 }
 
-Result<void> SynchronizedServer::offer(const cell::ServerConfig& config) {
-    const auto place = opcua_skill::publishSkillController(host_->nodes(), config.name,
-                                                           "Moves several arms together.");
+Result<void> SynchronizedServer::offer(const std::string& name,
+                                       const cell::SynchronizedServer& config) {
+    const auto place =
+        opcua_skill::publishSkillController(host_->nodes(), name, "Moves several arms together.");
     if (!place) {
         return fail(place.error());
     }
     std::vector<Arm> arms;
-    for (const auto& used : config.synchronized.servers) {
-        auto arm = connect(used, config.name);
+    for (const auto& used : config.servers) {
+        auto arm = connect(used, name);
         if (!arm) {
             return fail(std::move(arm.error()));
         }
         arms.push_back(std::move(*arm));
     }
-    composition::Options options{
-        host_->skills().executor(), host_->clock(), originOf(config.name) + "~" + newLife(),
-        std::chrono::duration<double>(config.synchronized.start_delay)};
+    composition::Options options{host_->skills().executor(), host_->clock(),
+                                       originOf(name) + "~" + newLife(),
+                                       std::chrono::duration<double>(config.start_delay)};
     const auto published =
         host_->skills().publish(place->skills,
                                 std::make_unique<composition::SynchronizedMoveSkill>(

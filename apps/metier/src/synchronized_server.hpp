@@ -18,16 +18,17 @@ namespace metier::app {
 /// Threading: one thread starts and ends it.
 class SynchronizedServer {
 public:
+    /// \param arms of `config`
     /// Errors: a used server that cannot be reached, or has no arm, or several, whose moves take a
     ///         start time; the port.
     static Result<std::unique_ptr<SynchronizedServer>> start(
-        const cell::ServerConfig& config);
+        const cell::ServerConfig& config, const cell::SynchronizedServer& arms);
 
     std::string url() const { return host_->url(); }
 
 private:
     explicit SynchronizedServer(std::unique_ptr<SkillHost> host) : host_(std::move(host)) {}
-    Result<void> offer(const cell::ServerConfig& config);
+    Result<void> offer(const std::string& name, const cell::SynchronizedServer& config);
     Result<composition::Arm> connect(const cell::UsedServer& used,
                                            const std::string& component);
     Result<std::unique_ptr<composition::Child>> use(client::RemoteServer& server,

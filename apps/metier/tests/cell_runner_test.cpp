@@ -16,7 +16,6 @@ namespace metier::app {
 namespace {
 
 using namespace std::chrono_literals;
-using cell::ServerKind;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -36,10 +35,11 @@ protected:
         std::filesystem::remove(diaryFile());
     }
 
-    void add(const std::string& name, ServerKind kind = ServerKind::arm) {
+    template <typename Kind = cell::ArmServer>
+    void add(const std::string& name) {
         cell::ServerConfig server;
         server.name = name;
-        server.kind = kind;
+        server.kind = Kind();
         cell_.servers.push_back(server);
     }
     void addVirtual(const std::string& name, const std::string& type) {
@@ -102,9 +102,9 @@ protected:
 };
 
 TEST_F(CellOfFakes, StartsWhatOthersUseBeforeThemAndEndsItAfterThem) {
-    add("composed", ServerKind::composition);
-    add("both", ServerKind::synchronized);
-    add("arm-move", ServerKind::move);
+    add<cell::CompositionServer>("composed");
+    add<cell::SynchronizedServer>("both");
+    add<cell::MoveComponent>("arm-move");
     add("arm");
     addVirtual("controller", "ur");
     addVirtual("world", "world");

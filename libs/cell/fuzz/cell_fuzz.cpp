@@ -38,8 +38,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     for (const auto& server : cell->servers) {
-        ask(server.arm.driver.settings);
-        ask(server.gripper.driver.settings);
+        if (const auto* driver = server.driver()) {
+            ask(driver->settings);
+        }
     }
     for (const auto& controller : cell->virtual_controllers) {
         ask(controller.settings);

@@ -8,6 +8,7 @@
 #include "cell_reading.hpp"
 #include "component_reading.hpp"
 #include "limits_reading.hpp"
+#include "metier/base/overloaded.hpp"
 #include "metier/cell/toml_file.hpp"
 
 namespace metier::cell {
@@ -62,6 +63,9 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     }
     arm.stream_silence = secondsWithin(table, "stream_silence", arm.stream_silence,
                                        {kShortestSilence, kLongestSilence});
+    if (table.has("compositions")) {
+        arm.compositions = readFiles(table, "compositions", folder);
+    }
     return arm;
 }
 
@@ -94,6 +98,31 @@ void checkDiscovers(bool wanted, const char* key, const Discovery& discovery,
     }
 }
 
+/// After what all kinds have: some keys need discovery.
+void readKind(const TomlTable& table, const std::filesystem::path& folder, ServerConfig& server) {
+    const auto kind = table.text("kind");
+    if (kind == "arm") {
+        server.kind = readArm(table, folder);
+    } else if (kind == "gripper") {
+        server.kind = readGripper(table);
+    } else if (kind == "move") {
+        const auto move = readMove(table);
+        checkDiscovers(move.discover, "robot", server.discovery, table);
+        server.kind = move;
+    } else if (kind == "composition") {
+        const auto composition = readComposition(table, folder);
+        checkDiscovers(composition.discover, "servers", server.discovery, table);
+        server.kind = composition;
+    } else if (kind == "synchronized") {
+        server.kind = readSynchronized(table);
+    } else if (!kind.empty()) {
+        table.reject(
+            "kind",
+            fmt::format("\"{}\" is not one of: arm, gripper, move, composition, synchronized",
+                        kind));
+    }
+}
+
 /// What a cell says for all its servers.
 struct Shared {
     Discovery discovery;
@@ -115,42 +144,16 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     server.discovery = readDiscovery(table, of_cell.discovery);
     server.records = of_cell.records;
     server.metrics = readMetrics(table);
-    const auto kind = table.text("kind");
-    if (kind == "arm") {
-        server.kind = ServerKind::arm;
-        server.arm = readArm(table, folder);
-        if (table.has("compositions")) {
-            server.own_compositions = readFiles(table, "compositions", folder);
-        }
-    } else if (kind == "gripper") {
-        server.kind = ServerKind::gripper;
-        server.gripper = readGripper(table);
-    } else if (kind == "move") {
-        server.kind = ServerKind::move;
-        server.move = readMove(table);
-        checkDiscovers(server.move.discover, "robot", server.discovery, table);
-    } else if (kind == "composition") {
-        server.kind = ServerKind::composition;
-        server.composition = readComposition(table, folder);
-        checkDiscovers(server.composition.discover, "servers", server.discovery, table);
-    } else if (kind == "synchronized") {
-        server.kind = ServerKind::synchronized;
-        server.synchronized = readSynchronized(table);
-    } else if (!kind.empty()) {
-        table.reject(
-            "kind",
-            fmt::format("\"{}\" is not one of: arm, gripper, move, composition, synchronized",
-                        kind));
-    }
+    readKind(table, folder, server);
     return server;
 }
 
 /// Arms that are moved together are behind servers with move skills.
-void checkSynchronized(const CellConfig& cell, const ServerConfig& config, const TomlTable& table) {
-    for (const auto& used : config.synchronized.servers) {
+void checkKind(const CellConfig& cell, const SynchronizedServer& config, const TomlTable& table) {
+    for (const auto& used : config.servers) {
         const auto* server = cell.find(used.name);
-        const bool moves = server != nullptr &&
-                           (server->kind == ServerKind::arm || server->kind == ServerKind::move);
+        const bool moves =
+            server != nullptr && (server->as<ArmServer>() || server->as<MoveComponent>());
         if (used.url.empty() && !moves) {
             table.reject("servers", fmt::format("\"{}\" is neither a server of kind arm or move in "
                                                 "this file nor an opc.tcp:// address",
@@ -159,15 +162,28 @@ void checkSynchronized(const CellConfig& cell, const ServerConfig& config, const
     }
 }
 
-/// Whoever uses others comes after them, so that they can be started in the order of the file.
-void checkUsedServers(const CellConfig& cell, std::size_t index, const TomlTable& table) {
+void checkKind(const CellConfig& cell, const MoveComponent& config, const TomlTable& table) {
+    if (config.discover || isAddress(config.robot)) {
+        return;
+    }
+    const auto* robot = cell.find(config.robot);
+    if (!config.robot.empty() && (robot == nullptr || !robot->as<ArmServer>())) {
+        table.reject("robot", fmt::format("\"{}\" is neither a server of kind arm in this file nor "
+                                          "an opc.tcp:// address",
+                                          config.robot));
+    }
+}
+
+/// Compositions that use each other are in the order of their start.
+/// \param index of the server that uses others
+void checkOrder(const CellConfig& cell, std::size_t index, const TomlTable& table) {
     for (const auto& used : cell.servers[index].usedServers()) {
         const auto end = cell.servers.begin() + static_cast<std::ptrdiff_t>(index);
         const bool above = std::any_of(cell.servers.begin(), end, [&](const auto& server) {
             return server.name == used.name;
         });
         const auto* server = cell.find(used.name);
-        const bool other_kind = server != nullptr && server->kind != ServerKind::composition;
+        const bool other_kind = server != nullptr && !server->as<CompositionServer>();
         if (used.url.empty() && !above && !other_kind) {
             table.reject("servers", fmt::format("\"{}\" is neither a server of this file (one of "
                                                 "kind composition only above this one) nor an "
@@ -182,30 +198,21 @@ void checkReferences(const CellConfig& cell, const std::vector<TomlTable>& table
     std::set<std::uint16_t> ports;
     for (std::size_t i = 0; i < cell.servers.size(); ++i) {
         const auto& server = cell.servers[i];
+        const auto& table = tables[i];
         if (!server.name.empty() && !names.insert(server.name).second) {
-            tables[i].reject("name", fmt::format("\"{}\" is taken by a server above", server.name));
+            table.reject("name", fmt::format("\"{}\" is taken by a server above", server.name));
         }
         if (server.name == kDiscover) {
-            tables[i].reject("name", "\"discover\" means any server that is found");
+            table.reject("name", "\"discover\" means any server that is found");
         }
         if (server.port != 0 && !ports.insert(server.port).second) {
-            tables[i].reject("port", fmt::format("{} is taken by a server above", server.port));
+            table.reject("port", fmt::format("{} is taken by a server above", server.port));
         }
-        if (server.kind == ServerKind::synchronized) {
-            checkSynchronized(cell, server, tables[i]);
-        } else {
-            checkUsedServers(cell, i, tables[i]);
-        }
-        if (server.kind != ServerKind::move || server.move.discover ||
-            isAddress(server.move.robot)) {
-            continue;
-        }
-        const auto* robot = cell.find(server.move.robot);
-        if (!server.move.robot.empty() && (robot == nullptr || robot->kind != ServerKind::arm)) {
-            tables[i].reject("robot", fmt::format("\"{}\" is neither a server of kind arm in this "
-                                                  "file nor an opc.tcp:// address",
-                                                  server.move.robot));
-        }
+        std::visit(overloaded{[](const auto& /*device*/) {},
+                              [&](const MoveComponent& move) { checkKind(cell, move, table); },
+                              [&](const SynchronizedServer& both) { checkKind(cell, both, table); },
+                              [&](const CompositionServer&) { checkOrder(cell, i, table); }},
+                   server.kind);
     }
 }
 
@@ -226,52 +233,6 @@ void checkVirtual(const CellConfig& cell, const std::vector<TomlTable>& tables) 
         }
     }
 }
-
-}  // namespace
-
-const ServerConfig* CellConfig::find(const std::string& server) const {
-    const auto found = std::find_if(servers.begin(), servers.end(),
-                                    [&](const auto& s) { return s.name == server; });
-    return found == servers.end() ? nullptr : &*found;
-}
-
-const VirtualController* CellConfig::findVirtual(const std::string& controller) const {
-    const auto found = std::find_if(virtual_controllers.begin(), virtual_controllers.end(),
-                                    [&](const auto& known) { return known.name == controller; });
-    return found == virtual_controllers.end() ? nullptr : &*found;
-}
-
-const VirtualController* CellConfig::world() const {
-    const auto found = std::find_if(virtual_controllers.begin(), virtual_controllers.end(),
-                                    [](const auto& known) { return known.type == "world"; });
-    return found == virtual_controllers.end() ? nullptr : &*found;
-}
-
-bool CellConfig::isVirtual() const {
-    const auto virtual_device = [&](const DriverChoice& driver) {
-        return driver.type == "simulator" || findVirtual(driver.controller) != nullptr;
-    };
-    return std::all_of(servers.begin(), servers.end(), [&](const ServerConfig& server) {
-        switch (server.kind) {
-            case ServerKind::arm:
-                return virtual_device(server.arm.driver) &&
-                       (!server.arm.force_torque_sensor ||
-                        virtual_device(*server.arm.force_torque_sensor));
-            case ServerKind::gripper:
-                return virtual_device(server.gripper.driver);
-            case ServerKind::move:
-                return !server.move.discover && find(server.move.robot) != nullptr;
-            case ServerKind::composition:
-            case ServerKind::synchronized:
-                return !server.composition.discover &&
-                       std::all_of(server.usedServers().begin(), server.usedServers().end(),
-                                   [&](const auto& used) { return find(used.name) != nullptr; });
-        }
-        return false;
-    });
-}
-
-namespace {
 
 Result<CellConfig> readCell(const TomlFile& toml, const std::filesystem::path& file) {
     const auto root = toml.root();

@@ -51,9 +51,9 @@ robot = "ur5"
     ASSERT_NE(arm, nullptr);
     EXPECT_EQ(arm->port, 4841);
     EXPECT_EQ(arm->address, "127.0.0.1");
-    EXPECT_EQ(arm->arm.model, folder_ / "ur5.toml");
-    EXPECT_THAT(arm->arm.skills, ElementsAre("PositionStreamSkill"));
-    EXPECT_EQ(cell->find("ur5-move")->move.robot, "ur5");
+    EXPECT_EQ(arm->as<ArmServer>()->model, folder_ / "ur5.toml");
+    EXPECT_THAT(arm->as<ArmServer>()->skills, ElementsAre("PositionStreamSkill"));
+    EXPECT_EQ(cell->find("ur5-move")->as<MoveComponent>()->robot, "ur5");
     EXPECT_EQ(cell->find("other"), nullptr);
 }
 
@@ -127,11 +127,13 @@ compositions = ["pick.toml"]
 )");
     ASSERT_TRUE(cell) << cell.error().message;
     const auto& server = cell->servers.front();
-    ASSERT_EQ(server.arm.tools.size(), 1U);
-    EXPECT_EQ(server.arm.tools[0].name, "jaws");
-    EXPECT_THAT(server.arm.tools[0].frame, ElementsAre(0, 0, 0.2, 0, 0, 0.5));
-    EXPECT_EQ(server.arm.tools[0].mass, 1.2);
-    EXPECT_THAT(server.own_compositions, ElementsAre(folder_ / "pick.toml"));
+    const auto* arm = server.as<ArmServer>();
+    ASSERT_NE(arm, nullptr);
+    ASSERT_EQ(arm->tools.size(), 1U);
+    EXPECT_EQ(arm->tools[0].name, "jaws");
+    EXPECT_THAT(arm->tools[0].frame, ElementsAre(0, 0, 0.2, 0, 0, 0.5));
+    EXPECT_EQ(arm->tools[0].mass, 1.2);
+    EXPECT_THAT(arm->compositions, ElementsAre(folder_ / "pick.toml"));
 }
 
 TEST_F(CellFile, NamesWhatIsWrongWithAToolAndACompositionOfAnArm) {
@@ -251,7 +253,7 @@ skills = ["GraspGripperSkill"]
     EXPECT_FALSE(robot->settings.flagOr("powered", true));
     ASSERT_NE(cell->world(), nullptr);
     EXPECT_THAT(cell->world()->settings.namesUnder("part"), ElementsAre("cube"));
-    const auto& driver = cell->find("gripper")->gripper.driver;
+    const auto& driver = *cell->find("gripper")->driver();
     EXPECT_EQ(driver.type, "wsg50");
     EXPECT_EQ(driver.controller, "10.0.0.7");
     EXPECT_EQ(driver.settings.numberOr("port", 1000, 1, 65535), 41000);
@@ -311,9 +313,10 @@ servers = ["inner", "opc.tcp://127.0.0.1:4840"]
     };
     const auto cell = load("");
     ASSERT_TRUE(cell) << cell.error().message;
-    EXPECT_EQ(cell->servers[1].kind, ServerKind::composition);
-    EXPECT_EQ(cell->servers[1].composition.files.front(), folder / "skill.toml");
-    EXPECT_EQ(cell->servers[1].composition.servers.size(), 2U);
+    const auto* outer = cell->servers[1].as<CompositionServer>();
+    ASSERT_NE(outer, nullptr);
+    EXPECT_EQ(outer->files.front(), folder / "skill.toml");
+    EXPECT_EQ(outer->servers.size(), 2U);
     const auto around = load("\"outer\"");
     ASSERT_FALSE(around);
     EXPECT_NE(around.error().message.find("server[0].servers: \"outer\" is neither"),
@@ -344,10 +347,10 @@ TEST(SynchronizedCellFile, DescribesTheArmsThatAreMovedTogether) {
     const auto cell = cellOfTwo("servers = [\"left\", \"opc.tcp://10.0.0.2:4840\"]\n");
     ASSERT_TRUE(cell) << cell.error().message;
     const auto& both = cell->servers[2];
-    EXPECT_EQ(both.kind, ServerKind::synchronized);
+    ASSERT_NE(both.as<SynchronizedServer>(), nullptr);
     EXPECT_EQ(both.usedServers()[0].name, "left");
     EXPECT_EQ(both.usedServers()[1].url, "opc.tcp://10.0.0.2:4840");
-    EXPECT_EQ(both.synchronized.start_delay, 0.5);
+    EXPECT_EQ(both.as<SynchronizedServer>()->start_delay, 0.5);
 }
 
 TEST(SynchronizedCellFile, NeedsTwoArmsWithMovesAndATimeToTellThem) {
@@ -437,11 +440,13 @@ compositions = ["skill.toml"]
 servers = ["found", "discover"]
 )");
     ASSERT_TRUE(cell) << cell.error().message;
-    EXPECT_TRUE(cell->servers[0].composition.discover);
-    EXPECT_TRUE(cell->servers[0].composition.servers.empty());
-    EXPECT_EQ(cell->servers[0].composition.rebind_after, 3.0);
-    EXPECT_TRUE(cell->servers[1].composition.discover);
-    EXPECT_EQ(cell->servers[1].composition.servers.size(), 1U);
+    const auto& found = std::get<CompositionServer>(cell->servers[0].kind);
+    EXPECT_TRUE(found.discover);
+    EXPECT_TRUE(found.servers.empty());
+    EXPECT_EQ(found.rebind_after, 3.0);
+    const auto& both = std::get<CompositionServer>(cell->servers[1].kind);
+    EXPECT_TRUE(both.discover);
+    EXPECT_EQ(both.servers.size(), 1U);
 }
 
 TEST_F(CellFile, LetsAMoveComponentMoveWhateverRobotItFinds) {
@@ -457,7 +462,7 @@ payload = 1.0
 rebind_after = 3
 )");
     ASSERT_TRUE(cell) << cell.error().message;
-    const auto& move = cell->servers[0].move;
+    const auto& move = std::get<MoveComponent>(cell->servers[0].kind);
     EXPECT_TRUE(move.discover);
     EXPECT_EQ(move.robot, "");
     EXPECT_EQ(move.reach, 0.6);

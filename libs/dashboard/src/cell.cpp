@@ -12,7 +12,6 @@ namespace {
 
 using cell::CellConfig;
 using cell::ServerConfig;
-using cell::ServerKind;
 using cell::Settings;
 using nlohmann::json;
 
@@ -23,22 +22,16 @@ std::optional<Frame> frameIn(const std::vector<double>& numbers) {
 }
 
 std::string controllerOf(const ServerConfig& server) {
-    switch (server.kind) {
-        case ServerKind::arm:
-            return server.arm.driver.controller;
-        case ServerKind::gripper:
-            return server.gripper.driver.controller;
-        default:
-            return {};
-    }
+    const auto* driver = server.driver();
+    return driver == nullptr ? "" : driver->controller;
 }
 
 /// The server of the arm behind that controller.
 std::string armServerAt(const CellConfig& config, const std::string& controller) {
     const auto found =
         std::find_if(config.servers.begin(), config.servers.end(), [&](const ServerConfig& one) {
-            return one.kind == ServerKind::arm && !controller.empty() &&
-                   one.arm.driver.controller == controller;
+            const auto* arm = one.as<cell::ArmServer>();
+            return arm != nullptr && !controller.empty() && arm->driver.controller == controller;
         });
     return found == config.servers.end() ? "" : found->name;
 }
@@ -50,7 +43,7 @@ void placeInWorld(const CellConfig& config, const ServerConfig& server, CellServ
         return;
     }
     const auto& settings = world->settings;
-    if (server.kind == ServerKind::arm) {
+    if (server.as<cell::ArmServer>() != nullptr) {
         // The world puts an arm without a base at its origin.
         shown.world_from_base =
             frameIn(settings.numbersOr("base." + controller, {0, 0, 0, 0, 0, 0}, 6));
@@ -75,8 +68,8 @@ std::vector<std::string> usedBy(const CellConfig& config, const ServerConfig& se
             names.push_back(name);
         }
     };
-    if (server.kind == ServerKind::move) {
-        add(server.move.robot);
+    if (const auto* move = server.as<cell::MoveComponent>()) {
+        add(move->robot);
     }
     for (const auto& used : server.usedServers()) {
         add(used.name);
@@ -138,8 +131,9 @@ Cell cellFrom(const CellConfig& config, const Endpoints& endpoints) {
         CellServer shown{server.name,
                          addressOf(endpoints.servers, server.name,
                                    fmt::format("opc.tcp://{}:{}", server.address, server.port))};
-        if (server.kind == ServerKind::move && config.find(server.move.robot) != nullptr) {
-            shown.arm_of = server.move.robot;
+        const auto* move = server.as<cell::MoveComponent>();
+        if (move != nullptr && config.find(move->robot) != nullptr) {
+            shown.arm_of = move->robot;
         }
         shown.uses = usedBy(config, server);
         placeInWorld(config, server, shown);

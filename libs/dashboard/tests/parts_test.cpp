@@ -223,16 +223,14 @@ TEST(Fields, OfAToolFrameHaveItsNamesToChooseFrom) {
 }
 
 TEST(CellFrom, TellsWhichServersOthersUse) {
-    using cell::ServerKind;
     cell::CellConfig config;
     config.servers.resize(3);
     config.servers[0].name = "ur5";
     config.servers[1].name = "ur5-move";
-    config.servers[1].kind = ServerKind::move;
-    config.servers[1].move.robot = "ur5";
+    config.servers[1].kind = cell::MoveComponent{.robot = "ur5"};
     config.servers[2].name = "both";
-    config.servers[2].kind = ServerKind::composition;
-    config.servers[2].composition.servers = {{"ur5-move", ""}, {"opc.tcp://elsewhere:4840", ""}};
+    config.servers[2].kind = cell::CompositionServer{
+        .files = {}, .servers = {{"ur5-move", ""}, {"opc.tcp://elsewhere:4840", ""}}};
     const auto cell = cellFrom(config);
     EXPECT_THAT(cell.servers.at(0).uses, IsEmpty());
     EXPECT_THAT(cell.servers.at(1).uses, ElementsAre("ur5"));

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "metier/base/error.hpp"
@@ -45,6 +47,8 @@ struct ArmServer {
     /// Silence of a moving stream that ends it [s].
     double stream_silence = 0.15;
     double payload = 0.0;  ///< what it may carry at its flange [kg]; 0: nobody says
+    /// Files with skills made of the server's own; absolute.
+    std::vector<std::filesystem::path> compositions;
 };
 
 /// A gripper behind its own OPC UA server.
@@ -117,12 +121,9 @@ struct HttpAddress {
     std::uint16_t port = 0;  ///< 0: a free one
 };
 
-enum class ServerKind { arm, gripper, move, composition, synchronized };
-
 /// One process of a cell: one OPC UA server.
 struct ServerConfig {
     std::string name;
-    ServerKind kind = ServerKind::arm;
     /// TCP port; 0 takes a free one.
     std::uint16_t port = 0;
     /// Address to listen on. Without security only loopback addresses are accepted.
@@ -139,21 +140,24 @@ struct ServerConfig {
     Discovery discovery;
     Records records;                     ///< of the cell
     std::optional<HttpAddress> metrics;  ///< none: it does not
-    ArmServer arm;                       ///< for ServerKind::arm
-    GripperServer gripper;               ///< for ServerKind::gripper
-    MoveComponent move;                  ///< for ServerKind::move
-    CompositionServer composition;       ///< for ServerKind::composition
-    SynchronizedServer synchronized;     ///< for ServerKind::synchronized
-    /// Files with skills made of the server's own; absolute. For ServerKind::arm.
-    std::vector<std::filesystem::path> own_compositions;
+    /// What it serves, with the keys that only servers of this kind have.
+    std::variant<ArmServer, GripperServer, MoveComponent, CompositionServer, SynchronizedServer>
+        kind;
 
-    /// Those whose skills this one uses; empty for the kinds that use none.
-    const std::vector<UsedServer>& usedServers() const {
-        return kind == ServerKind::synchronized ? synchronized.servers : composition.servers;
+    /// The part of one kind; nullptr if the server is of another one.
+    template <typename Kind>
+    const Kind* as() const noexcept {
+        return std::get_if<Kind>(&kind);
     }
-    std::vector<UsedServer>& usedServers() {
-        return kind == ServerKind::synchronized ? synchronized.servers : composition.servers;
+    template <typename Kind>
+    Kind* as() noexcept {
+        return std::get_if<Kind>(&kind);
     }
+    /// Driver of its device; nullptr for the kinds that have none.
+    const DriverChoice* driver() const noexcept;
+    /// Servers whose skills this one runs; empty for the kinds that run none.
+    std::span<const UsedServer> usedServers() const;
+    std::span<UsedServer> usedServers();
 };
 
 /// A controller without its device, in a process of its own.
@@ -179,6 +183,9 @@ struct CellConfig {
     const VirtualController* findVirtual(const std::string& controller) const;
     /// The world of the virtual controllers, or nullptr.
     const VirtualController* world() const;
+    /// A server of the cell with the addresses of what it names: virtual controllers of this file
+    /// by their own, servers by their port. Whatever is no name in this file stays as it is.
+    ServerConfig resolved(ServerConfig server) const;
     /// Whether nothing real can move: each device is simulated or behind a virtual controller of
     /// this file, and no skill of a server outside of the file is used.
     bool isVirtual() const;
