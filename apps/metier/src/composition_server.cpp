@@ -48,7 +48,7 @@ public:
 
     /// Errors: a line "file:line: uses.ALIAS: why" for each use that nothing serves; cancelled (a
     ///         stop was asked for).
-    Result<void> find(const StopSignal& stop) {
+    Result<void> find(const link::StopSignal& stop) {
         std::string problems;
         for (const auto& use : definition_.uses) {
             if (const auto found = findOne(use); !found) {
@@ -153,7 +153,7 @@ private:
     }
 
     /// Others may be starting at this moment.
-    Result<void> discover(const StopSignal& stop) {
+    Result<void> discover(const link::StopSignal& stop) {
         if (!sought_.empty()) {
             spdlog::info("{} seeks {}", definition_.name, namesOf(sought_));
         }
@@ -209,7 +209,7 @@ private:
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     const cell::ServerConfig& config, const cell::CompositionServer& composition,
-    const StopSignal& stop) {
+    const link::StopSignal& stop) {
     auto definitions = loadDefinitions(composition.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
@@ -307,7 +307,8 @@ Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& ser
     return {};
 }
 
-Result<void> CompositionServer::offer(std::vector<Definition> definitions, const StopSignal& stop) {
+Result<void> CompositionServer::offer(std::vector<Definition> definitions,
+                                      const link::StopSignal& stop) {
     const auto place = opcua_skill::publishSkillController(host_->nodes(), name_,
                                                            "Skills that are made of other skills.");
     if (!place) {
@@ -322,7 +323,7 @@ Result<void> CompositionServer::offer(std::vector<Definition> definitions, const
 }
 
 Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
-                                         Definition definition, const StopSignal& stop) {
+                                         Definition definition, const link::StopSignal& stop) {
     const auto name = definition.name;
     Cast cast(*this, definition);
     if (auto found = cast.find(stop); !found) {

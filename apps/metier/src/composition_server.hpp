@@ -8,11 +8,11 @@
 #include "metier/composition/definition.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "metier/client/remote_server.hpp"
 #include "rebinder.hpp"
 #include "skill_host.hpp"
 #include "skill_matching.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 
@@ -28,7 +28,7 @@ public:
     ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
         const cell::ServerConfig& config,
-        const cell::CompositionServer& composition, const StopSignal& stop);
+        const cell::CompositionServer& composition, const link::StopSignal& stop);
 
     ~CompositionServer();
     CompositionServer(const CompositionServer&) = delete;
@@ -42,9 +42,10 @@ private:
                       cell::CompositionServer composition,
                       std::unique_ptr<SkillHost> host);
     Result<void> connect(const std::vector<cell::UsedServer>& servers);
-    Result<void> offer(std::vector<composition::Definition> definitions, const StopSignal& stop);
+    Result<void> offer(std::vector<composition::Definition> definitions,
+                       const link::StopSignal& stop);
     Result<void> offerOne(const opcua_skill::SkillController& place,
-                          composition::Definition definition, const StopSignal& stop);
+                          composition::Definition definition, const link::StopSignal& stop);
 
     Result<std::shared_ptr<client::RemoteServer>> connectFound(const DiscoveredServer& found);
     void keepBound();

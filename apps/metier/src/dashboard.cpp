@@ -14,13 +14,13 @@
 #include "commands.hpp"
 #include "discovered_servers.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/link/start_watch.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
 #include "robot_argument.hpp"
 #include "security.hpp"
 #include "servers.hpp"
-#include "start_watch.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 namespace {
@@ -110,7 +110,8 @@ std::string urlOf(const std::string& address, std::uint16_t port) {
 }
 
 /// Servers that discovery tells of are added as they come, until the signal.
-void watchDiscovery(Dashboard& page, const DashboardOptions& options, const StopSignal& stop) {
+void watchDiscovery(Dashboard& page, const DashboardOptions& options,
+                    const link::StopSignal& stop) {
     constexpr std::chrono::seconds kBetween{10};
     cell::Discovery discovery;
     discovery.servers = options.discovery;
@@ -125,8 +126,8 @@ void watchDiscovery(Dashboard& page, const DashboardOptions& options, const Stop
     }
 }
 
-Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
-    auto starting = std::make_unique<StartWatch>(stop);
+Result<Exit> serve(const DashboardOptions& options, const link::StopSignal& stop) {
+    auto starting = std::make_unique<link::StartWatch>(stop);
     auto cell = cellOf(options);
     if (!cell) {
         return reportUsage(cell.error());
@@ -169,13 +170,13 @@ Result<Exit> serve(const DashboardOptions& options, const StopSignal& stop) {
     } else {
         watchDiscovery(**page, options, stop);
     }
-    StopSignal::endWithin(kLongestEnd);
+    link::StopSignal::endWithin(kLongestEnd);
     return Exit::success;
 }
 
 Exit runDashboard(const DashboardOptions& options) {
-    const StopSignal stop;
-    StopSignal::outliveOutput();
+    const link::StopSignal stop;
+    link::StopSignal::outliveOutput();
     if (isInsecureLab()) {
         fmt::print(stderr, "{}\n", kInsecureLab);
     }

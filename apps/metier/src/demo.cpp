@@ -9,10 +9,10 @@
 #include "cell_runner.hpp"
 #include "commands.hpp"
 #include "metier/base/wake_up_delay.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "pick_place_command.hpp"
 #include "security.hpp"
 #include "square_command.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 namespace {
@@ -113,7 +113,7 @@ Exit runPickAndPlace(const DemoOptions& options, std::optional<DemoCell>& cell,
 
 /// Squares in the first cell, then parts in the second; both stay up for whoever wants to look.
 Exit runDemo(const DemoOptions& options) {
-    StopSignal::outliveOutput();
+    link::StopSignal::outliveOutput();
     if (isInsecureLab()) {
         fmt::print(stderr, "{}\n", kInsecureLab);
     }

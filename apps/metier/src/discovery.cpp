@@ -10,10 +10,10 @@
 #include "folders.hpp"
 #include "lab_warning.hpp"
 #include "metier/opcua/server.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "ready_line.hpp"
 #include "security.hpp"
 #include "server_access.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 namespace {
@@ -27,7 +27,7 @@ struct DiscoveryOptions {
 };
 
 Exit runDiscovery(const DiscoveryOptions& options) {
-    const StopSignal stop;
+    const link::StopSignal stop;
     opcua::ServerOptions server_options;
     server_options.application_name = "metier discovery";
     server_options.port = options.port;

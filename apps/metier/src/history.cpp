@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "metier/records/json.hpp"
 #include "metier/records/kept_store.hpp"
 #include "metier/records/trace.hpp"
 #include "printable.hpp"
 #include "recorded.hpp"
-#include "stop_signal.hpp"
 #include "time_text.hpp"
 
 namespace metier::app {
@@ -174,7 +174,7 @@ bool isOutputClosed() {
 }
 
 Exit runFollow(const HistoryOptions& options) {
-    const StopSignal signal;
+    const link::StopSignal signal;
     const auto filter = filterOf(options);
     if (!filter) {
         return reportUsage(filter.error());

@@ -58,7 +58,7 @@ Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Er
 
 Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
                                   const cell::MoveComponent& move,
-                                  const StopSignal& stop) {
+                                  const link::StopSignal& stop) {
     if (!move.discover) {
         return connectRobot(move.robot);
     }
@@ -79,7 +79,7 @@ Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
 
 Result<std::unique_ptr<MoveServer>> MoveServer::start(const cell::ServerConfig& config,
                                                       const cell::MoveComponent& move,
-                                                      const StopSignal& stop) {
+                                                      const link::StopSignal& stop) {
     auto robot = firstRobot(config, move, stop);
     if (!robot) {
         return fail(std::move(robot.error()));

@@ -11,8 +11,8 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "robot_moves.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 
@@ -30,7 +30,7 @@ public:
     /// \param move of `config`
     static Result<std::unique_ptr<MoveServer>> start(const cell::ServerConfig& config,
                                                      const cell::MoveComponent& move,
-                                                     const StopSignal& stop);
+                                                     const link::StopSignal& stop);
     ~MoveServer();
     MoveServer(const MoveServer&) = delete;
     MoveServer& operator=(const MoveServer&) = delete;

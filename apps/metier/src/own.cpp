@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "metier/link/stop_signal.hpp"
 #include "metier/client/control_handle.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "owner_options.hpp"
 #include "servers.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 namespace {
@@ -47,7 +47,7 @@ Result<std::vector<client::SkillAddress::Above>> controllersOf(opcua::Client& cl
 }
 
 Exit runOwn(const OwnOptions& options) {
-    const StopSignal signal;
+    const link::StopSignal signal;
     auto client = connectTo(options.url);
     if (!client) {
         return report(client.error());

@@ -73,7 +73,7 @@ Result<skill::ValueMap> parametersOf(const records::Execution& execution,
 }
 
 Exit runAgain(const ReplayOptions& options) {
-    const StopSignal signal;
+    const link::StopSignal signal;
     const auto store = openRecords(options.drawing.records);
     const auto execution = store ? (*store)->find(options.drawing.id)
                                  : Result<records::Execution>(fail(store.error()));

@@ -96,7 +96,8 @@ void printResult(const skill::ValueMap& result, bool as_json) {
 /// Ctrl-C halts the skill; the run then ends with the Halted that follows.
 class HaltOnSignal {
 public:
-    HaltOnSignal(const StopSignal& signal, opcua::Client& client, client::SkillAddress skill)
+    HaltOnSignal(const link::StopSignal& signal, opcua::Client& client,
+                 client::SkillAddress skill)
         : thread_([&signal, &client, skill = std::move(skill)](const std::stop_token& stop) {
               while (!stop.stop_requested()) {
                   if (signal.waitUntil(std::chrono::steady_clock::now() + kLook)) {
@@ -174,7 +175,7 @@ void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
 }
 
 Exit runRun(const RunOptions& options) {
-    const StopSignal signal;
+    const link::StopSignal signal;
     auto open = openSkill(options.choice, OnLoss::reconnect);
     if (!open) {
         return report(open.error());
@@ -198,7 +199,7 @@ Exit runRun(const RunOptions& options) {
 
 }  // namespace
 
-Exit runSkill(const StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
+Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
               const SkillRun& run) {
     auto& skill = open.skill;
     showTransitions(skill);

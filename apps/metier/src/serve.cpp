@@ -17,12 +17,12 @@
 #include "gripper_server.hpp"
 #include "lab_warning.hpp"
 #include "metier/base/overloaded.hpp"
+#include "metier/link/start_watch.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "move_server.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
 #include "security.hpp"
-#include "start_watch.hpp"
-#include "stop_signal.hpp"
 #include "synchronized_server.hpp"
 
 namespace metier::app {
@@ -182,8 +182,8 @@ Result<void> becomeServer(const cell::ServerConfig& config) {
 /// Starts a server and serves until the signal; then it brakes what moves and ends.
 /// \param start makes the server
 template <typename Start>
-Exit serveUntil(const StopSignal& stop, const ServeOptions& options, Start start) {
-    auto starting = std::make_unique<StartWatch>(stop);
+Exit serveUntil(const link::StopSignal& stop, const ServeOptions& options, Start start) {
+    auto starting = std::make_unique<link::StartWatch>(stop);
     auto server = start();
     starting.reset();
     if (!server) {
@@ -195,13 +195,13 @@ Exit serveUntil(const StopSignal& stop, const ServeOptions& options, Start start
     fmt::print("{}\n", readyLine((*server)->url()));
     std::fflush(stdout);
     stop.wait();
-    StopSignal::endWithin(kLongestEnd);
+    link::StopSignal::endWithin(kLongestEnd);
     return Exit::success;
 }
 
 Exit runServe(const ServeOptions& options) {
-    const StopSignal stop;
-    StopSignal::outliveOutput();
+    const link::StopSignal stop;
+    link::StopSignal::outliveOutput();
     const auto cell = cell::loadCell(options.cell);
     if (!cell) {
         return reportUsage(cell.error());

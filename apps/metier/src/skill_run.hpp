@@ -1,10 +1,10 @@
 #pragma once
 
 #include "commands.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "metier/skill/value.hpp"
 #include "owner_options.hpp"
 #include "servers.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 
@@ -17,7 +17,7 @@ struct SkillRun {
 
 /// Starts the skill, shows its transitions on standard error, waits for its end and prints its
 /// result. Ctrl-C halts it. \param signal made before all threads
-Exit runSkill(const StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
+Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
               const SkillRun& run);
 
 }  // namespace metier::app

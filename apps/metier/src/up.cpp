@@ -7,9 +7,9 @@
 
 #include "cell_runner.hpp"
 #include "commands.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "printable.hpp"
 #include "security.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 namespace {
@@ -43,7 +43,7 @@ void say(const std::string& text) {
     std::fputs(fmt::format("metier: {}\n", printable(text)).c_str(), stderr);
 }
 
-Exit lookAfter(CellRunner& cell, const StopSignal& stop, OnFailure on_failure) {
+Exit lookAfter(CellRunner& cell, const link::StopSignal& stop, OnFailure on_failure) {
     fmt::print("the cell is up; Ctrl-C ends it\n");
     std::fflush(stdout);
     if (const auto ended = cell.lookAfter(stop.descriptor(), on_failure, say)) {
@@ -54,8 +54,8 @@ Exit lookAfter(CellRunner& cell, const StopSignal& stop, OnFailure on_failure) {
 }
 
 Exit runUp(const UpOptions& options) {
-    const StopSignal stop;
-    StopSignal::outliveOutput();
+    const link::StopSignal stop;
+    link::StopSignal::outliveOutput();
     const auto config = cell::loadCell(options.cell);
     if (!config) {
         return reportUsage(config.error());

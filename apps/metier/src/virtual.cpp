@@ -13,9 +13,9 @@
 #include "metier/cell/cell.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "metier/virtual_controller/host.hpp"
 #include "ready_line.hpp"
-#include "stop_signal.hpp"
 
 namespace metier::app {
 namespace {
@@ -35,7 +35,7 @@ struct VirtualRunOptions {
     std::string world;
 };
 
-Result<Exit> runController(const VirtualRunOptions& options, const StopSignal& stop) {
+Result<Exit> runController(const VirtualRunOptions& options, const link::StopSignal& stop) {
     const auto cell = cell::loadCell(options.cell);
     if (!cell) {
         return fail(cell.error());
@@ -73,7 +73,7 @@ Result<Exit> runController(const VirtualRunOptions& options, const StopSignal& s
     std::fflush(stdout);
     std::jthread running([&] { (*host)->run(); });
     stop.wait();
-    StopSignal::endWithin(kLongestEnd);
+    link::StopSignal::endWithin(kLongestEnd);
     (*host)->stopOnceAlone(kLongestCompany);
     return Exit::success;
 }
@@ -200,8 +200,8 @@ void addVirtual(CLI::App& app, Exit& exit) {
     run_command->add_option("--address", run->address, "Another address than the file's");
     run_command->add_option("--world", run->world, "Address of the world, if not the file's");
     run_command->callback([run, &exit] {
-        const StopSignal stop;
-        StopSignal::outliveOutput();
+        const link::StopSignal stop;
+        link::StopSignal::outliveOutput();
         const auto ended = runController(*run, stop);
         exit = ended ? *ended : report(ended.error());
     });

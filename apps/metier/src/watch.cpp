@@ -5,10 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "metier/link/stop_signal.hpp"
+#include "metier/link/wake_event.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "servers.hpp"
-#include "stop_signal.hpp"
-#include "wake_event.hpp"
 
 namespace metier::app {
 namespace {
@@ -87,7 +87,7 @@ public:
 
     /// Until enough was printed, a signal came, or the connection was given up, which is a failure.
     /// `look_again` is called after each restart of the server.
-    Exit wait(const StopSignal& signal, const std::function<void()>& look_again) {
+    Exit wait(const link::StopSignal& signal, const std::function<void()>& look_again) {
         while (!done_ && !given_up_ && !signal.came()) {
             news_.wait(signal);
             if (restarted_.exchange(false)) {
@@ -108,7 +108,7 @@ private:
     std::atomic<bool> done_ = false;
     std::atomic<bool> given_up_ = false;
     std::atomic<bool> restarted_ = false;
-    WakeEvent news_;
+    link::WakeEvent news_;
 };
 
 /// Opens what is to be watched. Errors: those of the server; not_found.
@@ -147,7 +147,7 @@ void lookAgain(std::vector<SkillHandle>& handles) {
 }
 
 Exit runWatch(const WatchOptions& options) {
-    const StopSignal signal;
+    const link::StopSignal signal;
     Printer printer(options);
     auto client = connectTo(options.url, OnLoss::reconnect);
     if (!client) {

@@ -1,4 +1,4 @@
-#include "stop_signal.hpp"
+#include "metier/link/stop_signal.hpp"
 
 #include <poll.h>
 #include <sys/signalfd.h>
@@ -11,7 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace metier::app {
+namespace metier::link {
 
 StopSignal::StopSignal() {
     sigset_t signals;
@@ -58,4 +58,4 @@ bool StopSignal::waitUntil(SteadyTime deadline) const {
     }
 }
 
-}  // namespace metier::app
+}  // namespace metier::link

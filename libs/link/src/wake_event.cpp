@@ -1,4 +1,4 @@
-#include "wake_event.hpp"
+#include "metier/link/wake_event.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -12,7 +12,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace metier::app {
+namespace metier::link {
 
 WakeEvent::WakeEvent() : descriptor_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     if (descriptor_ < 0) {
@@ -53,4 +53,4 @@ bool WakeEvent::take() noexcept {
     return eventfd_read(descriptor_, &rung) == 0;
 }
 
-}  // namespace metier::app
+}  // namespace metier::link

@@ -1,4 +1,4 @@
-#include "stop_signal.hpp"
+#include "metier/link/stop_signal.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): kill() is POSIX, not in <csignal>
@@ -8,9 +8,9 @@
 #include <chrono>
 #include <optional>
 
-#include "start_watch.hpp"
+#include "metier/link/start_watch.hpp"
 
-namespace metier::app {
+namespace metier::link {
 namespace {
 
 using namespace std::chrono_literals;
@@ -99,4 +99,4 @@ TEST_F(ProgramsEndDeathTest, IsNotThatOfItsOutput) {
 }
 
 }  // namespace
-}  // namespace metier::app
+}  // namespace metier::link

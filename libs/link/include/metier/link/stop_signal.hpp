@@ -2,7 +2,7 @@
 
 #include "metier/base/clock.hpp"
 
-namespace metier::app {
+namespace metier::link {
 
 /// Ctrl-C, SIGTERM and the end of the terminal (SIGHUP) as something to wait for: blocked in every
 /// thread that starts after it. A SIGHUP that is ignored, as below nohup, stays so.
@@ -34,4 +34,4 @@ private:
     int descriptor_;
 };
 
-}  // namespace metier::app
+}  // namespace metier::link

@@ -1,12 +1,10 @@
-#include "start_watch.hpp"
+#include "metier/link/start_watch.hpp"
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
-#include "commands.hpp"
-
-namespace metier::app {
+namespace metier::link {
 
 namespace {
 
@@ -25,7 +23,7 @@ void StartWatch::watch(const StopSignal& signal) {
         return;
     }
     std::fputs("metier: stopped before it was ready\n", stderr);  // which may be gone
-    std::_Exit(static_cast<int>(Exit::failed));
+    std::_Exit(EXIT_FAILURE);
 }
 
-}  // namespace metier::app
+}  // namespace metier::link

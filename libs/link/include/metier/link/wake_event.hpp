@@ -1,8 +1,8 @@
 #pragma once
 
-#include "stop_signal.hpp"
+#include "metier/link/stop_signal.hpp"
 
-namespace metier::app {
+namespace metier::link {
 
 /// Ends the wait of one thread from another.
 ///
@@ -28,4 +28,4 @@ private:
     int descriptor_;
 };
 
-}  // namespace metier::app
+}  // namespace metier::link

@@ -2,10 +2,10 @@
 
 #include <thread>
 
-#include "stop_signal.hpp"
-#include "wake_event.hpp"
+#include "metier/link/stop_signal.hpp"
+#include "metier/link/wake_event.hpp"
 
-namespace metier::app {
+namespace metier::link {
 
 /// Ends the program when it is told to stop while it starts, whatever the start waits for: nothing
 /// moves yet, so nothing is lost. A start that looks at the signal itself has half a second to end
@@ -28,4 +28,4 @@ private:
     std::jthread thread_;
 };
 
-}  // namespace metier::app
+}  // namespace metier::link
