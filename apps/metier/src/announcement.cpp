@@ -6,7 +6,6 @@
 
 #include "folders.hpp"
 #include "metier/base/random.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -34,7 +33,7 @@ std::string applicationUriOf(const cell::ServerConfig& config) {
     return fmt::format("urn:{}:metier:{}:{}", host, config.name, randomHex(kDigits));
 }
 
-Announcement::Announcement(const cell::ServerConfig& config,
+Announcement::Announcement(const cell::ServerConfig& config, const Identity& identity,
                            const std::string& application_uri, const std::string& url) {
     const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(config.discovery.period));
@@ -42,7 +41,7 @@ Announcement::Announcement(const cell::ServerConfig& config,
     options.server = {.application_uri = application_uri,
                       .name = config.name,
                       .discovery_urls = {announcedUrl(config.discovery, url)}};
-    options.security = ownCredentials();
+    options.security = identity.credentials();
     options.period = period;
     options.pause = std::min(period, options.pause);
     for (const auto& server : config.discovery.servers) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "identity.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/opcua/mdns.hpp"
 #include "metier/opcua/registrar.hpp"
@@ -24,8 +25,8 @@ std::string announcedUrl(const cell::Discovery& discovery, const std::string& ur
 class Announcement {
 public:
     /// \param url where the server listens: "opc.tcp://127.0.0.1:48411"
-    Announcement(const cell::ServerConfig& config, const std::string& application_uri,
-                 const std::string& url);
+    Announcement(const cell::ServerConfig& config, const Identity& identity,
+                 const std::string& application_uri, const std::string& url);
 
 private:
     std::vector<std::unique_ptr<opcua::Registrar>> registrars_;

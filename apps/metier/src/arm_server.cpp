@@ -50,11 +50,12 @@ Result<motion::RobotModel> withTools(const motion::RobotModel& model,
 
 /// \return nothing if the cell file names none
 Result<std::optional<device::OpenDevice>> openSensor(const std::string& server,
-                                                     const cell::ArmServer& config) {
+                                                     const cell::ArmServer& config,
+                                                     std::span<const device::Driver> drivers) {
     if (!config.force_torque_sensor) {
         return std::optional<device::OpenDevice>();
     }
-    auto sensor = openDevice(*config.force_torque_sensor, server, nullptr);
+    auto sensor = openDevice(*config.force_torque_sensor, {server, drivers});
     if (!sensor) {
         return fail(sensor.error());
     }
@@ -69,14 +70,15 @@ Result<std::optional<device::OpenDevice>> openSensor(const std::string& server,
 }  // namespace
 
 Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& config,
-                                                    const cell::ArmServer& arm) {
+                                                    const cell::ArmServer& arm,
+                                                    const Context& context) {
     auto loaded = motion::RobotModel::load(arm.model).and_then(
         [&](const auto& model) { return withTools(model, arm.tools); });
     if (!loaded) {
         return fail(loaded.error());
     }
     auto model = std::make_unique<const motion::RobotModel>(std::move(*loaded));
-    auto device = openDevice(arm.driver, config.name, model.get());
+    auto device = openDevice(arm.driver, {config.name, context.drivers, model.get()});
     if (!device) {
         return fail(device.error());
     }
@@ -85,11 +87,11 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& co
                     fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
                                 arm.driver.type));
     }
-    auto host = SkillHost::create(config, nodesetsOf(arm));
+    auto host = SkillHost::create(config, context.identity, nodesetsOf(arm));
     if (!host) {
         return fail(host.error());
     }
-    auto sensor = openSensor(config.name, arm);
+    auto sensor = openSensor(config.name, arm, context.drivers);
     if (!sensor) {
         return fail(sensor.error());
     }

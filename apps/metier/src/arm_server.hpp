@@ -8,6 +8,7 @@
 #include "metier/cell/cell.hpp"
 #include "metier/device/driver.hpp"
 #include "metier/motion/robot_model.hpp"
+#include "server.hpp"
 #include "skill_host.hpp"
 
 namespace metier::app {
@@ -16,14 +17,15 @@ namespace metier::app {
 /// made at run time for those that the NodeSet does not have.
 ///
 /// Threading: one thread starts and ends it.
-class ArmServer {
+class ArmServer final : public Server {
 public:
     /// Errors: what is wrong with the model, the driver, the NodeSet, the skills or the port.
     /// \param arm of `config`
     static Result<std::unique_ptr<ArmServer>> start(const cell::ServerConfig& config,
-                                                    const cell::ArmServer& arm);
+                                                    const cell::ArmServer& arm,
+                                                    const Context& context);
 
-    std::string url() const { return host_->url(); }
+    std::string url() const override { return host_->url(); }
 
 private:
     ArmServer(std::unique_ptr<const motion::RobotModel> file_model, device::OpenDevice device,

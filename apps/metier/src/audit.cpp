@@ -135,8 +135,8 @@ bool isAddress(const std::string& text) {
 }
 
 /// As the server publishes it.
-Result<std::string> anchorOfServer(const std::string& url) {
-    const auto client = connectTo(url);
+Result<std::string> anchorOfServer(const CommandIdentity& identity, const std::string& url) {
+    const auto client = connectTo(identity, url);
     if (!client) {
         return fail(client.error());
     }
@@ -160,7 +160,7 @@ Result<std::string> anchorOfFile(const fs::path& log) {
     return verified ? Result<std::string>(verified->last_chain) : fail(verified.error());
 }
 
-Exit runAnchor(const AuditOptions& options) {
+Exit runAnchor(const AuditOptions& options, const CommandIdentity& identity) {
     std::vector<std::string> asked = options.files;
     if (asked.empty()) {
         const auto logs = chosenLogs(options);
@@ -171,7 +171,7 @@ Exit runAnchor(const AuditOptions& options) {
     }
     auto exit = Exit::success;
     for (const auto& one : asked) {
-        const auto anchor = isAddress(one) ? anchorOfServer(one) : anchorOfFile(one);
+        const auto anchor = isAddress(one) ? anchorOfServer(identity, one) : anchorOfFile(one);
         if (!anchor) {
             exit = report(anchor.error());
             continue;
@@ -245,7 +245,7 @@ void addFiles(CLI::App& command, AuditOptions& options) {
 
 }  // namespace
 
-void addAudit(CLI::App& app, Exit& exit) {
+void addAudit(CLI::App& app, CommandContext& context) {
     auto* command = app.add_subcommand("audit", "What was done at servers, and what was refused");
     command->require_subcommand(1);
     // Shared by CLI11, which fills it, and the callbacks, which read it.
@@ -257,7 +257,7 @@ void addAudit(CLI::App& app, Exit& exit) {
     addFiles(*verify, *options);
     verify->add_option("--anchor", options->anchors,
                        "A chain value that was newest once: fails unless a line still has it");
-    verify->callback([options, &exit] { exit = runVerify(*options); });
+    verify->callback([options, &context] { context.exit = runVerify(*options); });
     auto* anchor = command->add_subcommand(
         "anchor",
         "Print the newest chain value of audit logs, to be kept elsewhere: as files have it, or as "
@@ -265,13 +265,13 @@ void addAudit(CLI::App& app, Exit& exit) {
     anchor->add_option("FILE", options->files, "Audit logs, or servers: opc.tcp://host:port");
     anchor->add_option("--state", options->state,
                        "The state folder of servers, for all logs that are there");
-    anchor->callback([options, &exit] { exit = runAnchor(*options); });
+    anchor->callback([options, &context] { context.exit = runAnchor(*options, context.identity); });
     auto* show = command->add_subcommand("show", "Show the entries of audit logs");
     addFiles(*show, *options);
     show->add_option("--since", options->since, "From this time on (UTC), as 2026-11-22T09:30");
     show->add_option("--event", options->event, "Of this name only, as Start or Denied");
     show->add_flag("--json", options->json, "The lines as they are in the file");
-    show->callback([options, &exit] { exit = runShow(*options); });
+    show->callback([options, &context] { context.exit = runShow(*options); });
 }
 
 }  // namespace metier::app

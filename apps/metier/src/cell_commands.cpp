@@ -6,7 +6,7 @@
 
 #include "metier/base/overloaded.hpp"
 #include "metier/base/random.hpp"
-#include "security.hpp"
+#include "security_options.hpp"
 
 namespace metier::app {
 namespace {
@@ -60,50 +60,40 @@ void addControllers(const cell::ServerConfig& server, const CellAddresses& known
 
 }  // namespace
 
-CellRank rankOf(const cell::ServerConfig& server) {
-    return std::visit(
-        overloaded{[](const cell::ArmServer&) { return CellRank::device; },
-                   [](const cell::GripperServer&) { return CellRank::device; },
-                   [](const cell::MoveComponent&) { return CellRank::move; },
-                   [](const cell::SynchronizedServer&) { return CellRank::synchronized; },
-                   [](const cell::CompositionServer&) { return CellRank::composition; }},
-        server.kind);
+MetierCommands::MetierCommands(const cell::CellConfig& cell, Ports ports,
+                               const Security& security)
+    : cell_(cell), ports_(ports), security_(securityArguments(security)) {}
+
+CellCommand MetierCommands::of(const cell::VirtualController& controller,
+                               const CellAddresses& known) const {
+    const auto* world = cell_.world();
+    CellCommand command{{self(), "virtual", "run", cell_.file.string(), controller.name}};
+    auto& words = command.words;
+    if (ports_ == Ports::free) {
+        words.insert(words.end(), {"--address", freeAddress()});
+    }
+    if (world != nullptr && world->name != controller.name) {
+        words.insert(words.end(), {"--world", known.controllers.at(world->name)});
+    }
+    return command;
 }
 
-CellMember::Plan planOf(const cell::CellConfig& cell,
-                        const cell::VirtualController& controller, Ports ports,
-                        const CellAddresses& known) {
-    const auto* world = cell.world();
-    CellMember::Plan plan{controller.name,
-                          world == &controller ? CellRank::world : CellRank::controller,
-                          {self(), "virtual", "run", cell.file.string(), controller.name},
-                          {}};
-    if (ports == Ports::free) {
-        plan.command.insert(plan.command.end(), {"--address", freeAddress()});
+CellCommand MetierCommands::of(const cell::ServerConfig& server,
+                               const CellAddresses& known) const {
+    CellCommand command{{self()}};
+    auto& words = command.words;
+    words.insert(words.end(), security_.begin(), security_.end());
+    words.insert(words.end(),
+                 {"serve", cell_.file.string(), "--server", server.name, "--lab-is-known"});
+    if (ports_ == Ports::free) {
+        words.insert(words.end(), {"--port", "0", "--metrics", "off"});
     }
-    if (world != nullptr && world != &controller) {
-        plan.command.insert(plan.command.end(), {"--world", known.controllers.at(world->name)});
+    if (ports_ == Ports::free || server.port == 0) {
+        command.option_for_port = "--again-at";
     }
-    return plan;
-}
-
-CellMember::Plan planOf(const cell::CellConfig& cell,
-                        const cell::ServerConfig& server, Ports ports,
-                        const CellAddresses& known) {
-    CellMember::Plan plan{server.name, rankOf(server), {self()}, {}};
-    const auto security = securityArguments();
-    plan.command.insert(plan.command.end(), security.begin(), security.end());
-    plan.command.insert(plan.command.end(),
-                        {"serve", cell.file.string(), "--server", server.name, "--lab-is-known"});
-    if (ports == Ports::free) {
-        plan.command.insert(plan.command.end(), {"--port", "0", "--metrics", "off"});
-    }
-    if (ports == Ports::free || server.port == 0) {
-        plan.option_for_port = "--again-at";
-    }
-    addUsed(server, known, plan.command);
-    addControllers(server, known, plan.command);
-    return plan;
+    addUsed(server, known, words);
+    addControllers(server, known, words);
+    return command;
 }
 
 }  // namespace metier::app

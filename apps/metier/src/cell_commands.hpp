@@ -1,10 +1,10 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
-#include "cell_member.hpp"
+#include "cell_runner.hpp"
+#include "identity.hpp"
 #include "metier/cell/cell.hpp"
 
 namespace metier::app {
@@ -16,21 +16,21 @@ enum class Ports {
            ///< machine
 };
 
-/// Addresses of the processes of a cell that are ready, by name.
-struct CellAddresses {
-    std::map<std::string, std::string> servers;  ///< opc.tcp://...
-    std::map<std::string, std::string> controllers;
+/// The processes of a cell as commands of this program: `metier serve` and `metier virtual run`.
+class MetierCommands final : public CellCommands {
+public:
+    /// \param cell must outlive this
+    MetierCommands(const cell::CellConfig& cell, Ports ports, const Security& security);
+
+    CellCommand of(const cell::VirtualController& controller,
+                   const CellAddresses& known) const override;
+    CellCommand of(const cell::ServerConfig& server,
+                   const CellAddresses& known) const override;
+
+private:
+    const cell::CellConfig& cell_;
+    const Ports ports_;
+    const std::vector<std::string> security_;
 };
-
-/// \param known those that the controller uses are in it
-CellMember::Plan planOf(const cell::CellConfig& cell,
-                        const cell::VirtualController& controller, Ports ports,
-                        const CellAddresses& known);
-CellMember::Plan planOf(const cell::CellConfig& cell,
-                        const cell::ServerConfig& server, Ports ports,
-                        const CellAddresses& known);
-
-/// Rank of a server.
-CellRank rankOf(const cell::ServerConfig& server);
 
 }  // namespace metier::app

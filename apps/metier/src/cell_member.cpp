@@ -34,9 +34,9 @@ Result<void> CellMember::begin(SteadyTime now) {
     begin_at_.reset();
     ready_ = false;
     begun_ = now;
-    auto command = plan_.command;
-    if (!plan_.option_for_port.empty() && !address_.empty()) {
-        command.push_back(plan_.option_for_port);
+    auto command = plan_.command.words;
+    if (!plan_.command.option_for_port.empty() && !address_.empty()) {
+        command.push_back(plan_.command.option_for_port);
         command.push_back(address_.substr(address_.rfind(':') + 1));
     }
     auto process = link::ChildProcess::start(

@@ -16,6 +16,14 @@ namespace metier::app {
 /// opposite order.
 enum class CellRank { world, controller, device, move, synchronized, composition };
 
+/// How a process is started.
+struct CellCommand {
+    std::vector<std::string> words;  ///< the program and its arguments
+    /// With a free port: option by which the same command takes the port that it had before; empty:
+    /// it needs none.
+    std::string option_for_port{};
+};
+
 /// One process of a cell: a server or a virtual controller.
 ///
 /// It has a process group of its own, so that a terminal reaches it only through its owner. When
@@ -26,9 +34,7 @@ public:
     struct Plan {
         std::string name;
         CellRank rank = CellRank::device;
-        std::vector<std::string> command;
-        /// With a free port: what makes the same command take the port that it had before.
-        std::string option_for_port;
+        CellCommand command;
     };
     enum class Event { none, ready, ended };
 

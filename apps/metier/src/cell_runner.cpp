@@ -10,6 +10,9 @@
 #include <csignal>
 #include <limits>
 #include <utility>
+#include <variant>
+
+#include "metier/base/overloaded.hpp"
 
 namespace metier::app {
 namespace {
@@ -53,33 +56,45 @@ int millisecondsUntil(SteadyTime time) {
 
 }  // namespace
 
-Result<CellRunner> CellRunner::start(const cell::CellConfig& cell, Ports ports,
-                                     int stop_descriptor, const OnReady& on_ready) {
+CellRank rankOf(const cell::ServerConfig& server) {
+    return std::visit(
+        overloaded{[](const cell::ArmServer&) { return CellRank::device; },
+                   [](const cell::GripperServer&) { return CellRank::device; },
+                   [](const cell::MoveComponent&) { return CellRank::move; },
+                   [](const cell::SynchronizedServer&) { return CellRank::synchronized; },
+                   [](const cell::CompositionServer&) { return CellRank::composition; }},
+        server.kind);
+}
+
+Result<CellRunner> CellRunner::start(const cell::CellConfig& cell,
+                                     const CellCommands& commands, int stop_descriptor,
+                                     const OnReady& on_ready) {
     CellRunner runner;
-    if (auto started = runner.startAll(cell, ports, stop_descriptor, on_ready); !started) {
+    if (auto started = runner.startAll(cell, commands, stop_descriptor, on_ready); !started) {
         return fail(started.error());
     }
     return runner;
 }
 
-Result<void> CellRunner::startAll(const cell::CellConfig& cell, Ports ports,
-                                  int stop_descriptor, const OnReady& on_ready) {
+Result<void> CellRunner::startAll(const cell::CellConfig& cell,
+                                  const CellCommands& commands, int stop_descriptor,
+                                  const OnReady& on_ready) {
     for (const bool world : {true, false}) {
         for (const auto& controller : cell.virtual_controllers) {
             if ((&controller == cell.world()) != world) {
                 continue;
             }
-            if (auto started =
-                    startMember(planOf(cell, controller, ports, known_), stop_descriptor);
-                !started) {
+            CellMember::Plan plan{controller.name, world ? CellRank::world : CellRank::controller,
+                                  commands.of(controller, known_)};
+            if (auto started = startMember(std::move(plan), stop_descriptor); !started) {
                 return started;
             }
             known_.controllers[controller.name] = members_.back().address();
         }
     }
     for (const auto* server : inStartOrder(cell.servers)) {
-        if (auto started = startMember(planOf(cell, *server, ports, known_), stop_descriptor);
-            !started) {
+        CellMember::Plan plan{server->name, rankOf(*server), commands.of(*server, known_)};
+        if (auto started = startMember(std::move(plan), stop_descriptor); !started) {
             return started;
         }
         const auto& url = members_.back().address();

@@ -7,13 +7,35 @@
 #include <string>
 #include <vector>
 
-#include "cell_commands.hpp"
 #include "cell_member.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
 
 namespace metier::app {
+
+/// Addresses of the processes of a cell that are ready, by name.
+struct CellAddresses {
+    std::map<std::string, std::string> servers;  ///< opc.tcp://...
+    std::map<std::string, std::string> controllers;
+};
+
+/// Commands that start the processes of a cell. Each prints a ready line once it serves
+/// (ready_line.hpp), and ends at SIGTERM.
+class CellCommands {
+public:
+    virtual ~CellCommands() = default;
+
+    /// \param known the world, if the cell has one
+    virtual CellCommand of(const cell::VirtualController& controller,
+                           const CellAddresses& known) const = 0;
+    /// \param known all virtual controllers, and the servers that this one uses
+    virtual CellCommand of(const cell::ServerConfig& server,
+                           const CellAddresses& known) const = 0;
+};
+
+/// Rank of a server.
+CellRank rankOf(const cell::ServerConfig& server);
 
 /// Consequence for a cell when one of its processes ends by itself.
 enum class OnFailure {
@@ -37,10 +59,12 @@ public:
 
     /// Starts the virtual controllers, the devices' servers, then what builds on them, and waits
     /// until each is ready.
+    /// \param commands read only while this runs
     /// \param stop_descriptor ends the start when it becomes readable; -1: none
     /// Errors: what the first server that was not ready in 30 s had to say; cancelled.
-    static Result<CellRunner> start(const cell::CellConfig& cell, Ports ports,
-                                    int stop_descriptor, const OnReady& on_ready);
+    static Result<CellRunner> start(const cell::CellConfig& cell,
+                                    const CellCommands& commands, int stop_descriptor,
+                                    const OnReady& on_ready);
     CellRunner(CellRunner&&) noexcept = default;
     CellRunner& operator=(CellRunner&&) = delete;
     /// Ends every process, those first that use others; a virtual controller once the servers are
@@ -67,8 +91,8 @@ public:
 private:
     CellRunner() = default;
     Result<void> startMember(CellMember::Plan plan, int stop_descriptor);
-    Result<void> startAll(const cell::CellConfig& cell, Ports ports, int stop_descriptor,
-                          const OnReady& on_ready);
+    Result<void> startAll(const cell::CellConfig& cell, const CellCommands& commands,
+                          int stop_descriptor, const OnReady& on_ready);
     std::optional<Ended> lookAtAll(OnFailure on_failure, const OnChange& on_change);
     /// Waits for something to look at, or for the descriptor.
     /// \return whether it was the descriptor

@@ -87,9 +87,10 @@ Result<void> awaitSuspended(client::SkillHandle& skill, const CommandOptions& op
     return {};
 }
 
-Exit runCommand(const Command& command, const CommandOptions& options) {
+Exit runCommand(const Command& command, const CommandOptions& options,
+                const CommandIdentity& identity) {
     const bool stays = command.method == Method::resume;
-    auto open = openSkill(options.choice, stays ? OnLoss::reconnect : OnLoss::fail);
+    auto open = openSkill(identity, options.choice, stays ? OnLoss::reconnect : OnLoss::fail);
     if (!open) {
         return report(open.error());
     }
@@ -108,7 +109,7 @@ Exit runCommand(const Command& command, const CommandOptions& options) {
 
 }  // namespace
 
-void addSkillCommands(CLI::App& app, Exit& exit) {
+void addSkillCommands(CLI::App& app, CommandContext& context) {
     for (const auto& each : kCommands) {
         // Shared by CLI11, which fills it, and the callback, which reads it.
         auto options = std::make_shared<CommandOptions>();
@@ -121,7 +122,9 @@ void addSkillCommands(CLI::App& app, Exit& exit) {
                 ->check(CLI::Range(0.1, 3'600.0))
                 ->capture_default_str();
         }
-        command->callback([each, options, &exit] { exit = runCommand(each, *options); });
+        command->callback([each, options, &context] {
+            context.exit = runCommand(each, *options, context.identity);
+        });
     }
 }
 

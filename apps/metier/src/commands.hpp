@@ -22,33 +22,35 @@ Exit report(const Error& error);
 /// The same for what is wrong with the command line or with a file it names.
 Exit reportUsage(const Error& error);
 
-// Each adds one subcommand, which stores in `exit` how it ended.
+struct CommandContext;
+
+// Each adds one subcommand, which stores in `exit`, or in the context, how it ended.
 void addVirtual(CLI::App& app, Exit& exit);
-void addUp(CLI::App& app, Exit& exit);
-void addServe(CLI::App& app, Exit& exit);
-void addList(CLI::App& app, Exit& exit);
-void addRun(CLI::App& app, Exit& exit);
-void addWatch(CLI::App& app, Exit& exit);
-void addHalt(CLI::App& app, Exit& exit);
-void addPickPlace(CLI::App& app, Exit& exit);
-void addFind(CLI::App& app, Exit& exit);
-void addDiscovery(CLI::App& app, Exit& exit);
-void addSquare(CLI::App& app, Exit& exit);
-void addDemo(CLI::App& app, Exit& exit);
+void addUp(CLI::App& app, CommandContext& context);
+void addServe(CLI::App& app, CommandContext& context);
+void addList(CLI::App& app, CommandContext& context);
+void addRun(CLI::App& app, CommandContext& context);
+void addWatch(CLI::App& app, CommandContext& context);
+void addHalt(CLI::App& app, CommandContext& context);
+void addPickPlace(CLI::App& app, CommandContext& context);
+void addFind(CLI::App& app, CommandContext& context);
+void addDiscovery(CLI::App& app, CommandContext& context);
+void addSquare(CLI::App& app, CommandContext& context);
+void addDemo(CLI::App& app, CommandContext& context);
 void addFk(CLI::App& app, Exit& exit);
 void addIk(CLI::App& app, Exit& exit);
 void addCheck(CLI::App& app, Exit& exit);
 void addPlot(CLI::App& app, Exit& exit);
 void addGraph(CLI::App& app, Exit& exit);
-void addSkillCommands(CLI::App& app, Exit& exit);
-void addOwn(CLI::App& app, Exit& exit);
-void addAudit(CLI::App& app, Exit& exit);
-void addDashboard(CLI::App& app, Exit& exit);
+void addSkillCommands(CLI::App& app, CommandContext& context);
+void addOwn(CLI::App& app, CommandContext& context);
+void addAudit(CLI::App& app, CommandContext& context);
+void addDashboard(CLI::App& app, CommandContext& context);
 void addHistory(CLI::App& app, Exit& exit);
-void addReplay(CLI::App& app, Exit& exit);
+void addReplay(CLI::App& app, CommandContext& context);
 void addTrace(CLI::App& app, Exit& exit);
-void addTrust(CLI::App& app, Exit& exit);
-void addUser(CLI::App& app, Exit& exit);
+void addTrust(CLI::App& app, CommandContext& context);
+void addUser(CLI::App& app, CommandContext& context);
 void addCompletion(CLI::App& app, Exit& exit);
 
 }  // namespace metier::app

@@ -13,7 +13,6 @@
 #include "metier/composition/local_child.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
-#include "security.hpp"
 #include "skill_matching.hpp"
 
 namespace metier::app {
@@ -159,7 +158,7 @@ private:
         }
         const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
         while (!sought_.empty()) {
-            const auto servers = discoverServers(server_.discovery_, {});
+            const auto servers = discoverServers(server_.discovery_, server_.identity_, {});
             const auto assigned = assign(sought_, servers);
             if (assigned) {
                 return useAll(*assigned);
@@ -209,21 +208,21 @@ private:
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     const cell::ServerConfig& config, const cell::CompositionServer& composition,
-    const link::StopSignal& stop) {
+    const Context& context) {
     auto definitions = loadDefinitions(composition.files);
     if (!definitions) {
         return fail(std::move(definitions.error()));
     }
-    auto host = SkillHost::create(config, {});
+    auto host = SkillHost::create(config, context.identity, {});
     if (!host) {
         return fail(host.error());
     }
     std::unique_ptr<CompositionServer> server(
-        new CompositionServer(config, composition, std::move(*host)));
+        new CompositionServer(config, composition, context.identity, std::move(*host)));
     if (auto connected = server->connect(composition.servers); !connected) {
         return fail(std::move(connected.error()));
     }
-    if (auto offered = server->offer(std::move(*definitions), stop); !offered) {
+    if (auto offered = server->offer(std::move(*definitions), context.stop); !offered) {
         return fail(std::move(offered.error()));
     }
     if (auto started = server->host_->start(); !started) {
@@ -235,10 +234,11 @@ Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
 
 CompositionServer::CompositionServer(const cell::ServerConfig& config,
                                      cell::CompositionServer composition,
-                                     std::unique_ptr<SkillHost> host)
+                                     const Identity& identity, std::unique_ptr<SkillHost> host)
     : config_(std::move(composition)),
       discovery_(config.discovery),
       name_(config.name),
+      identity_(identity),
       life_(newLife()),
       host_(std::move(host)) {}
 
@@ -254,6 +254,7 @@ void CompositionServer::keepBound() {
     }
     rebinder_ = std::make_unique<Rebinder>(
         Rebinder::Setup{.discovery = discovery_,
+                        .identity = identity_,
                         .own_url = host_->announcedUrl(),
                         .application_name = "metier " + name_,
                         .own_server = host_->applicationUri(),
@@ -273,7 +274,7 @@ Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
     auto server = client::RemoteServer::connect({.url = found.found.url,
                                                        .name = found.found.name,
                                                        .application_name = "metier " + name_,
-                                                       .security = ownCredentials(),
+                                                       .security = identity_.credentials(),
                                                        .own_server = host_->applicationUri()},
                                                       host_->skills().executor());
     if (!server) {
@@ -288,7 +289,7 @@ Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& ser
         auto server = client::RemoteServer::connect({.url = used.url,
                                                            .name = used.name,
                                                            .application_name = "metier " + name_,
-                                                           .security = ownCredentials(),
+                                                           .security = identity_.credentials(),
                                                            .own_server = host_->applicationUri()},
                                                           host_->skills().executor());
         if (!server) {

@@ -8,9 +8,9 @@
 #include "metier/composition/definition.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
-#include "metier/link/stop_signal.hpp"
 #include "metier/client/remote_server.hpp"
 #include "rebinder.hpp"
+#include "server.hpp"
 #include "skill_host.hpp"
 #include "skill_matching.hpp"
 
@@ -19,7 +19,7 @@ namespace metier::app {
 /// Skills that files declare, made of skills of other servers and of each other.
 ///
 /// Threading: one thread starts and ends it.
-class CompositionServer {
+class CompositionServer final : public Server {
 public:
     /// \param composition of `config`
     /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
@@ -28,18 +28,16 @@ public:
     ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
         const cell::ServerConfig& config,
-        const cell::CompositionServer& composition, const link::StopSignal& stop);
+        const cell::CompositionServer& composition, const Context& context);
 
-    ~CompositionServer();
-    CompositionServer(const CompositionServer&) = delete;
-    CompositionServer& operator=(const CompositionServer&) = delete;
+    ~CompositionServer() override;
 
-    std::string url() const { return host_->url(); }
+    std::string url() const override { return host_->url(); }
 
 private:
     class Cast;
     CompositionServer(const cell::ServerConfig& config,
-                      cell::CompositionServer composition,
+                      cell::CompositionServer composition, const Identity& identity,
                       std::unique_ptr<SkillHost> host);
     Result<void> connect(const std::vector<cell::UsedServer>& servers);
     Result<void> offer(std::vector<composition::Definition> definitions,
@@ -53,6 +51,7 @@ private:
     const cell::CompositionServer config_;
     const cell::Discovery discovery_;
     const std::string name_;
+    const Identity& identity_;
     std::string life_;  // part of the ids of executions
     std::vector<std::unique_ptr<client::RemoteServer>> servers_;
     std::vector<OfferedSkill> offered_;  // of all of them

@@ -2,6 +2,7 @@
 #include "metier/dashboard/dashboard.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,15 +12,14 @@
 #include <system_error>
 #include <vector>
 
-#include "commands.hpp"
-#include "discovered_servers.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/opcua/search.hpp"
 #include "metier/link/start_watch.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
 #include "robot_argument.hpp"
-#include "security.hpp"
+#include "security_options.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
@@ -113,11 +113,13 @@ std::string urlOf(const std::string& address, std::uint16_t port) {
 void watchDiscovery(Dashboard& page, const DashboardOptions& options,
                     const link::StopSignal& stop) {
     constexpr std::chrono::seconds kBetween{10};
-    cell::Discovery discovery;
-    discovery.servers = options.discovery;
-    discovery.mdns = options.mdns;
+    const auto mdns = options.mdns ? opcua::Mdns::asked : opcua::Mdns::left_out;
     while (!stop.came()) {
-        for (const auto& found : announcedServers(discovery, {})) {
+        const auto sighting = opcua::searchServers(options.discovery, mdns);
+        for (const auto& problem : sighting.problems) {
+            spdlog::debug("{}", problem.message);
+        }
+        for (const auto& found : sighting.servers) {
             page.addServer(serverOf(found));
         }
         if (stop.waitUntil(std::chrono::steady_clock::now() + kBetween)) {
@@ -126,7 +128,23 @@ void watchDiscovery(Dashboard& page, const DashboardOptions& options,
     }
 }
 
-Result<Exit> serve(const DashboardOptions& options, const link::StopSignal& stop) {
+/// How the page connects to servers: as a command does.
+dashboard::Connector connectorOf(const CommandIdentity& identity) {
+    return {
+        .options = [&identity](const std::string& url) -> Result<opcua::ClientOptions> {
+            opcua::ClientOptions client;
+            client.application_name = "metier dashboard";
+            auto secured = identity.secure(client, url);
+            return secured ? Result<opcua::ClientOptions>(std::move(client))
+                           : fail(secured.error());
+        },
+        .advice = [&identity](const opcua::Failure& why) { return identity.adviceOn(why); },
+        .connected = [&identity](const opcua::ClientOptions& client,
+                                 const std::string& url) { identity.noteConnected(client, url); }};
+}
+
+Result<Exit> serve(const DashboardOptions& options, const CommandContext& context,
+                   const link::StopSignal& stop) {
     auto starting = std::make_unique<link::StartWatch>(stop);
     auto cell = cellOf(options);
     if (!cell) {
@@ -138,26 +156,17 @@ Result<Exit> serve(const DashboardOptions& options, const link::StopSignal& stop
         return fail(models.error());
     }
     const SystemClock clock;
-    auto page = Dashboard::start(
-        {.cell = std::move(*cell),
-         .connector = {.options = [](const std::string& url) -> Result<opcua::ClientOptions> {
-                           opcua::ClientOptions client;
-                           client.application_name = "metier dashboard";
-                           auto secured = secure(client, url);
-                           return secured ? Result<opcua::ClientOptions>(std::move(client))
-                                          : fail(secured.error());
-                       },
-                       .advice = &adviceOn,
-                       .connected = &noteConnected},
-         .lab = isInsecureLab(),
-         .address = options.address,
-         .port = options.port,
-         .host_name = options.host_name,
-         .web = webFolder(options.web),
-         .meshes = options.meshes,
-         .records = std::move(records),
-         .models = std::move(*models)},
-        clock);
+    auto page = Dashboard::start({.cell = std::move(*cell),
+                                  .connector = connectorOf(context.identity),
+                                  .lab = context.security.insecure_lab,
+                                  .address = options.address,
+                                  .port = options.port,
+                                  .host_name = options.host_name,
+                                  .web = webFolder(options.web),
+                                  .meshes = options.meshes,
+                                  .records = std::move(records),
+                                  .models = std::move(*models)},
+                                 clock);
     starting.reset();
     if (!page) {
         return page.error().code == Errc::invalid_argument ? Result<Exit>(reportUsage(page.error()))
@@ -174,13 +183,11 @@ Result<Exit> serve(const DashboardOptions& options, const link::StopSignal& stop
     return Exit::success;
 }
 
-Exit runDashboard(const DashboardOptions& options) {
+Exit runDashboard(const DashboardOptions& options, const CommandContext& context) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
-    if (isInsecureLab()) {
-        fmt::print(stderr, "{}\n", kInsecureLab);
-    }
-    const auto served = serve(options, stop);
+    printLabNotice(context.security);
+    const auto served = serve(options, context, stop);
     return served ? *served : report(served.error());
 }
 
@@ -202,7 +209,7 @@ void addHttpOptions(CLI::App& command, DashboardOptions& options) {
 
 }  // namespace
 
-void addDashboard(CLI::App& app, Exit& exit) {
+void addDashboard(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<DashboardOptions>();
     auto* command = app.add_subcommand(
@@ -220,7 +227,7 @@ void addDashboard(CLI::App& app, Exit& exit) {
                      "~/.local/state/metier]")
         ->check(withoutPassword());
     addHttpOptions(*command, *options);
-    command->callback([options, &exit] { exit = runDashboard(*options); });
+    command->callback([options, &context] { context.exit = runDashboard(*options, context); });
 }
 
 }  // namespace metier::app

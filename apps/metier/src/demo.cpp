@@ -6,12 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "cell_runner.hpp"
-#include "commands.hpp"
+#include "cell_commands.hpp"
 #include "metier/base/wake_up_delay.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "pick_place_command.hpp"
-#include "security.hpp"
+#include "security_options.hpp"
 #include "square_command.hpp"
 
 namespace metier::app {
@@ -36,12 +35,12 @@ struct DemoOptions {
 };
 
 /// Until Enter; Ctrl-C ends the program, and the cell with it.
-void waitForEnter(CellRunner& cell) {
+void waitForEnter(CellRunner& cell, const Security& security) {
     fmt::print(
         "\nThe cell stays up: connect UaExpert to an address above, or try `metier{0} list URL` "
         "and\n"
         "`metier{0} run URL SKILL --fields` in another terminal. Enter or Ctrl-C ends it.\n",
-        isInsecureLab() ? " --insecure-lab" : "");
+        security.insecure_lab ? " --insecure-lab" : "");
     std::fflush(stdout);
     cell.lookAfter(STDIN_FILENO, OnFailure::restart,
                    [](const std::string& text) { fmt::print(stderr, "metier: {}\n", text); });
@@ -54,7 +53,8 @@ struct DemoCell {
 };
 
 /// Says what is wrong unless it runs.
-tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOptions& options) {
+tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOptions& options,
+                                       const Security& security) {
     const auto cell = cell::loadCell(file);
     if (!cell) {
         return tl::unexpected(cell.error().code == Errc::invalid_argument
@@ -62,9 +62,10 @@ tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOption
                                   : report(cell.error()));
     }
     fmt::print(stderr, "the servers of the cell '{}':\n", cell->name);
-    const auto ports = options.free_ports ? Ports::free : Ports::configured;
+    const MetierCommands commands(*cell, options.free_ports ? Ports::free : Ports::configured,
+                                  security);
     auto started =
-        CellRunner::start(*cell, ports, kNoDescriptor, [](const CellRunner::Running& server) {
+        CellRunner::start(*cell, commands, kNoDescriptor, [](const CellRunner::Running& server) {
             fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
         });
     if (!started) {
@@ -97,27 +98,25 @@ bool tellTooSlow(Exit exit, WakeUpDelay& delay) {
 }
 
 /// Parts in a second cell.
-Exit runPickAndPlace(const DemoOptions& options, std::optional<DemoCell>& cell,
-                     WakeUpDelay& delay) {
-    auto started = startCell(options.pick_and_place, options);
+Exit runPickAndPlace(const DemoOptions& options, const CommandContext& context,
+                     std::optional<DemoCell>& cell, WakeUpDelay& delay) {
+    auto started = startCell(options.pick_and_place, options, context.security);
     if (!started) {
         return started.error();
     }
     cell.emplace(std::move(*started));
     PickPlaceSettings settings;
     settings.second_tries = cell->second_tries;
-    const auto exit = pickAndPlace(addressesOf(cell->servers), settings);
+    const auto exit = pickAndPlace(context.identity, addressesOf(cell->servers), settings);
     tellTooSlow(exit, delay);
     return exit;
 }
 
 /// Squares in the first cell, then parts in the second; both stay up for whoever wants to look.
-Exit runDemo(const DemoOptions& options) {
+Exit runDemo(const DemoOptions& options, const CommandContext& context) {
     link::StopSignal::outliveOutput();
-    if (isInsecureLab()) {
-        fmt::print(stderr, "{}\n", kInsecureLab);
-    }
-    auto started = startCell(options.cell, options);
+    printLabNotice(context.security);
+    auto started = startCell(options.cell, options, context.security);
     if (!started) {
         return started.error();
     }
@@ -125,25 +124,26 @@ Exit runDemo(const DemoOptions& options) {
     WakeUpDelay delay;
     auto settings = options.settings;
     settings.second_tries = cell->second_tries;
-    auto exit = moveAlongSquares(addressesOf(cell->servers), settings, options.output);
+    auto exit =
+        moveAlongSquares(context.identity, addressesOf(cell->servers), settings, options.output);
     const bool go_on = tellTooSlow(exit, delay) || exit == Exit::success;
     std::optional<DemoCell> second;
     if (go_on && !options.pick_and_place.empty()) {
         if (options.headless) {
             cell.reset();
         }
-        const auto parts = runPickAndPlace(options, second, delay);
+        const auto parts = runPickAndPlace(options, context, second, delay);
         exit = exit == Exit::success ? parts : exit;
     }
     if (!options.headless) {
-        waitForEnter(cell->servers);
+        waitForEnter(cell->servers, context.security);
     }
     return exit;
 }
 
 }  // namespace
 
-void addDemo(CLI::App& app, Exit& exit) {
+void addDemo(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<DemoOptions>();
     auto* command = app.add_subcommand(
@@ -161,7 +161,7 @@ void addDemo(CLI::App& app, Exit& exit) {
         "on.\n"
         "Exit status 1 if anything failed.");
     addSquareOptions(*command, options->settings, options->output);
-    command->callback([options, &exit] { exit = runDemo(*options); });
+    command->callback([options, &context] { context.exit = runDemo(*options, context); });
 }
 
 }  // namespace metier::app

@@ -96,8 +96,8 @@ Result<std::optional<link::NameLock>> lockDevice(const device::Driver& driver,
 }  // namespace
 
 Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
-                                      const std::string& name, const motion::RobotModel* model) {
-    const auto& all = device::drivers();
+                                      const DeviceUser& user) {
+    const auto& all = user.drivers;
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const auto& known) { return known.name == choice.type; });
     if (found == all.end()) {
@@ -106,14 +106,14 @@ Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
             names.push_back(known.name);
         }
         return fail(Errc::invalid_argument,
-                    fmt::format("{}: no driver of type \"{}\"; there are: {}", name, choice.type,
-                                fmt::join(names, ", ")));
+                    fmt::format("{}: no driver of type \"{}\"; there are: {}", user.name,
+                                choice.type, fmt::join(names, ", ")));
     }
-    auto lock = lockDevice(*found, choice, name);
+    auto lock = lockDevice(*found, choice, user.name);
     if (!lock) {
         return fail(lock.error());
     }
-    auto device = found->open({name, choice.controller, choice.settings, model});
+    auto device = found->open({user.name, choice.controller, choice.settings, user.model});
     if (device && *lock) {
         // Shared, as OpenDevice asks for; the connection ends before its lock.
         device->owner = std::make_shared<LockedDevice>(std::move(**lock), std::move(device->owner));

@@ -33,10 +33,11 @@ std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discover
 }
 
 std::vector<DiscoveredServer> discoverServers(const cell::Discovery& discovery,
+                                              const ConnectionSecurity& security,
                                               const std::vector<std::string>& but) {
     const auto announced = announcedServers(discovery, but);
     std::vector<DiscoveredServer> servers;
-    for (auto& surveyed : survey(announced)) {
+    for (auto& surveyed : survey(announced, security)) {
         if (!surveyed.skills) {
             spdlog::debug("{}: {}", surveyed.server.url, surveyed.skills.error().message);
             continue;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "identity.hpp"
 #include "metier/base/error.hpp"
 #include "metier/composition/definition.hpp"
 #include "metier/cell/cell.hpp"
@@ -28,6 +29,7 @@ std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discover
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
 std::vector<DiscoveredServer> discoverServers(const cell::Discovery& discovery,
+                                              const ConnectionSecurity& security,
                                               const std::vector<std::string>& but);
 
 /// Which skill of a server serves each of these uses, by alias.

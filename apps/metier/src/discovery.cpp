@@ -6,13 +6,11 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
 #include "folders.hpp"
-#include "lab_warning.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "ready_line.hpp"
-#include "security.hpp"
+#include "security_options.hpp"
 #include "server_access.hpp"
 
 namespace metier::app {
@@ -26,7 +24,7 @@ struct DiscoveryOptions {
     std::uint32_t forget_after = 75;  // s
 };
 
-Exit runDiscovery(const DiscoveryOptions& options) {
+Exit runDiscovery(const DiscoveryOptions& options, const Security& security) {
     const link::StopSignal stop;
     opcua::ServerOptions server_options;
     server_options.application_name = "metier discovery";
@@ -34,16 +32,17 @@ Exit runDiscovery(const DiscoveryOptions& options) {
     server_options.bind_addresses = {options.address};
     server_options.discovery =
         opcua::DiscoveryService{.forget_after = std::chrono::seconds(options.forget_after)};
-    if (const auto known = becomeApplication(
-            options.port == 0 ? "discovery" : fmt::format("discovery-{}", options.port),
-            {.application_name = "metier discovery",
-             .application_uri = fmt::format("urn:{}:metier:discovery:{}", hostName(), options.port),
-             .hosts = {hostName(), options.address}});
-        !known) {
-        return report(known.error());
+    const auto identity = Identity::create(
+        security, options.port == 0 ? "discovery" : fmt::format("discovery-{}", options.port),
+        {.application_name = "metier discovery",
+         .application_uri = fmt::format("urn:{}:metier:discovery:{}", hostName(), options.port),
+         .hosts = {hostName(), options.address}});
+    if (!identity) {
+        return report(identity.error());
     }
     const SystemClock clock;
-    const auto access = secureServer(server_options, "urn:metier:discovery", clock);
+    server_options.application_uri = "urn:metier:discovery";
+    const auto access = secureServer(server_options, *identity, clock);
     if (!access) {
         return report(access.error());
     }
@@ -58,9 +57,9 @@ Exit runDiscovery(const DiscoveryOptions& options) {
         return report(started.error());
     }
     if (*access == nullptr) {
-        noteServedOpen((*server)->endpointUrl());
+        security.noteServedOpen((*server)->endpointUrl());
     }
-    warnOfLab("metier discovery", (*server)->endpointUrl());
+    warnOfLab(security, "metier discovery", (*server)->endpointUrl());
     fmt::print("{}\n", readyLine((*server)->endpointUrl()));
     std::fflush(stdout);
     stop.wait();
@@ -69,7 +68,7 @@ Exit runDiscovery(const DiscoveryOptions& options) {
 
 }  // namespace
 
-void addDiscovery(CLI::App& app, Exit& exit) {
+void addDiscovery(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<DiscoveryOptions>();
     auto* command = app.add_subcommand(
@@ -82,7 +81,8 @@ void addDiscovery(CLI::App& app, Exit& exit) {
                      "Forget servers that did not renew for so long [s]")
         ->check(CLI::Range(1U, kLongest))
         ->capture_default_str();
-    command->callback([options, &exit] { exit = runDiscovery(*options); });
+    command->callback(
+        [options, &context] { context.exit = runDiscovery(*options, context.security); });
 }
 
 }  // namespace metier::app

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "candidate.hpp"
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/opcua/search.hpp"
 #include "metier/opcua/text.hpp"
 #include "printable.hpp"
@@ -176,9 +176,9 @@ private:
     nlohmann::json problems_ = nlohmann::json::array();
 };
 
-Exit runFind(const FindOptions& options) {
+Exit runFind(const FindOptions& options, const CommandIdentity& identity) {
     const auto sighting = searchFor(options);
-    const auto servers = survey(sighting.servers);
+    const auto servers = survey(sighting.servers, identity);
     Findings findings(options, servers);
     for (const auto& problem : sighting.problems) {
         findings.addProblem(problem);
@@ -189,7 +189,7 @@ Exit runFind(const FindOptions& options) {
 
 }  // namespace
 
-void addFind(CLI::App& app, Exit& exit) {
+void addFind(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<FindOptions>();
     auto* command = app.add_subcommand(
@@ -208,7 +208,7 @@ void addFind(CLI::App& app, Exit& exit) {
                         "Ask these discovery servers who there is. Without this and --at: the "
                         "one of this machine, opc.tcp://127.0.0.1:4840, and mDNS");
     command->add_flag("--json", options->json, "Print JSON");
-    command->callback([options, &exit] { exit = runFind(*options); });
+    command->callback([options, &context] { context.exit = runFind(*options, context.identity); });
 }
 
 }  // namespace metier::app

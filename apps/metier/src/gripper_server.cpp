@@ -11,8 +11,9 @@
 namespace metier::app {
 
 Result<std::unique_ptr<GripperServer>> GripperServer::start(
-    const cell::ServerConfig& config, const cell::GripperServer& gripper) {
-    auto device = openDevice(gripper.driver, config.name, nullptr);
+    const cell::ServerConfig& config, const cell::GripperServer& gripper,
+    const Context& context) {
+    auto device = openDevice(gripper.driver, {config.name, context.drivers});
     if (!device) {
         return fail(device.error());
     }
@@ -21,7 +22,7 @@ Result<std::unique_ptr<GripperServer>> GripperServer::start(
                     fmt::format("{}: the driver \"{}\" is not one of a gripper", config.name,
                                 gripper.driver.type));
     }
-    auto host = SkillHost::create(config, {gripper.nodeset});
+    auto host = SkillHost::create(config, context.identity, {gripper.nodeset});
     if (!host) {
         return fail(host.error());
     }

@@ -6,6 +6,7 @@
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/device/driver.hpp"
+#include "server.hpp"
 #include "skill_host.hpp"
 
 namespace metier::app {
@@ -13,14 +14,15 @@ namespace metier::app {
 /// A gripper behind its OPC UA server: the instances of its NodeSet, served by its skills.
 ///
 /// Threading: one thread starts and ends it.
-class GripperServer {
+class GripperServer final : public Server {
 public:
     /// Errors: what is wrong with the driver, the NodeSet, the skills or the port.
     /// \param gripper of `config`
-    static Result<std::unique_ptr<GripperServer>> start(
-        const cell::ServerConfig& config, const cell::GripperServer& gripper);
+    static Result<std::unique_ptr<GripperServer>> start(const cell::ServerConfig& config,
+                                                        const cell::GripperServer& gripper,
+                                                        const Context& context);
 
-    std::string url() const { return host_->url(); }
+    std::string url() const override { return host_->url(); }
 
 private:
     GripperServer(device::OpenDevice device, std::unique_ptr<SkillHost> host);

@@ -58,11 +58,11 @@ Result<void> awaitHalted(opcua::Client& client, const SkillAddress& address,
 /// Halts the skills of one server, all of them before it waits for any.
 class Halting {
 public:
-    Halting(const HaltOptions& options, SteadyTime deadline)
-        : options_(options), deadline_(deadline) {}
+    Halting(const HaltOptions& options, const CommandIdentity& identity, SteadyTime deadline)
+        : options_(options), identity_(identity), deadline_(deadline) {}
 
     Exit halt(const std::string& url) {
-        const auto client = connectTo(url);
+        const auto client = connectTo(identity_, url);
         if (!client) {
             return report(client.error());
         }
@@ -97,13 +97,14 @@ private:
     void note(const Result<void>& outcome) { exit_ = outcome ? exit_ : report(outcome.error()); }
 
     const HaltOptions& options_;
+    const CommandIdentity& identity_;
     const SteadyTime deadline_;
     std::vector<SkillAddress> called_;
     Exit exit_ = Exit::success;
 };
 
 /// All servers at the same time: one that does not answer delays none.
-Exit runHalt(const HaltOptions& options) {
+Exit runHalt(const HaltOptions& options, const CommandIdentity& identity) {
     const auto urls = addressesOf(options.servers);
     if (!urls) {
         return reportUsage(urls.error());
@@ -113,8 +114,8 @@ Exit runHalt(const HaltOptions& options) {
                                                std::chrono::duration<double>(options.timeout));
     std::vector<std::future<Exit>> servers;
     for (const auto& url : *urls) {
-        servers.push_back(std::async(std::launch::async, [&options, &url, deadline] {
-            return Halting(options, deadline).halt(url);
+        servers.push_back(std::async(std::launch::async, [&, deadline] {
+            return Halting(options, identity, deadline).halt(url);
         }));
     }
     auto exit = Exit::success;
@@ -127,7 +128,7 @@ Exit runHalt(const HaltOptions& options) {
 
 }  // namespace
 
-void addHalt(CLI::App& app, Exit& exit) {
+void addHalt(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<HaltOptions>();
     auto* command = app.add_subcommand(
@@ -141,7 +142,7 @@ void addHalt(CLI::App& app, Exit& exit) {
                      "Wait so long for standstill, of all together [s]")
         ->check(CLI::Range(0.1, 3'600.0))
         ->capture_default_str();
-    command->callback([options, &exit] { exit = runHalt(*options); });
+    command->callback([options, &context] { context.exit = runHalt(*options, context.identity); });
 }
 
 }  // namespace metier::app

@@ -24,8 +24,9 @@ struct ListedSkill {
     std::string state;
 };
 
-Result<std::vector<ListedSkill>> listSkills(const std::string& url) {
-    auto client = connectTo(url);
+Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
+                                            const std::string& url) {
+    auto client = connectTo(identity, url);
     if (!client) {
         return fail(client.error());
     }
@@ -67,7 +68,7 @@ nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& sk
 }
 
 /// A server that does not answer is told of, and the others are listed all the same.
-Exit runList(const ListOptions& options) {
+Exit runList(const ListOptions& options, const CommandIdentity& identity) {
     const auto urls = addressesOf(options.servers);
     if (!urls) {
         return reportUsage(urls.error());
@@ -75,7 +76,7 @@ Exit runList(const ListOptions& options) {
     auto exit = Exit::success;
     auto json = nlohmann::json::array();
     for (const auto& url : *urls) {
-        const auto skills = listSkills(url);
+        const auto skills = listSkills(identity, url);
         if (!skills) {
             exit = report(skills.error());
             json.push_back({{"url", url}, {"error", printable(skills.error().message)}});
@@ -93,13 +94,13 @@ Exit runList(const ListOptions& options) {
 
 }  // namespace
 
-void addList(CLI::App& app, Exit& exit) {
+void addList(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<ListOptions>();
     auto* command = app.add_subcommand("list", "List servers, their skills and the skills' states");
     addServerChoice(*command, options->servers);
     command->add_flag("--json", options->json, "Print JSON");
-    command->callback([options, &exit] { exit = runList(*options); });
+    command->callback([options, &context] { context.exit = runList(*options, context.identity); });
 }
 
 }  // namespace metier::app

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "command_context.hpp"
 #include "commands.hpp"
 #include "printable.hpp"
-#include "security.hpp"
+#include "security_options.hpp"
 
 namespace {
 
@@ -25,34 +26,34 @@ constexpr const char* kAbout =
     "Without a server:\n"
     "  metier check ur5 --to-pose 0.4,-0.1,0.3,3.14,0,0 --linear    would it move, and how";
 
-void addCommands(CLI::App& app, metier::app::Exit& exit) {
-    metier::app::addDemo(app, exit);
-    metier::app::addUp(app, exit);
-    metier::app::addServe(app, exit);
-    metier::app::addList(app, exit);
-    metier::app::addRun(app, exit);
-    metier::app::addWatch(app, exit);
-    metier::app::addHalt(app, exit);
-    metier::app::addSkillCommands(app, exit);
-    metier::app::addOwn(app, exit);
-    metier::app::addAudit(app, exit);
-    metier::app::addHistory(app, exit);
-    metier::app::addReplay(app, exit);
-    metier::app::addTrace(app, exit);
-    metier::app::addFind(app, exit);
-    metier::app::addDiscovery(app, exit);
-    metier::app::addSquare(app, exit);
-    metier::app::addPickPlace(app, exit);
-    metier::app::addFk(app, exit);
-    metier::app::addIk(app, exit);
-    metier::app::addCheck(app, exit);
-    metier::app::addPlot(app, exit);
-    metier::app::addGraph(app, exit);
-    metier::app::addDashboard(app, exit);
-    metier::app::addVirtual(app, exit);
-    metier::app::addTrust(app, exit);
-    metier::app::addUser(app, exit);
-    metier::app::addCompletion(app, exit);
+void addCommands(CLI::App& app, metier::app::CommandContext& context) {
+    metier::app::addDemo(app, context);
+    metier::app::addUp(app, context);
+    metier::app::addServe(app, context);
+    metier::app::addList(app, context);
+    metier::app::addRun(app, context);
+    metier::app::addWatch(app, context);
+    metier::app::addHalt(app, context);
+    metier::app::addSkillCommands(app, context);
+    metier::app::addOwn(app, context);
+    metier::app::addAudit(app, context);
+    metier::app::addHistory(app, context.exit);
+    metier::app::addReplay(app, context);
+    metier::app::addTrace(app, context.exit);
+    metier::app::addFind(app, context);
+    metier::app::addDiscovery(app, context);
+    metier::app::addSquare(app, context);
+    metier::app::addPickPlace(app, context);
+    metier::app::addFk(app, context.exit);
+    metier::app::addIk(app, context.exit);
+    metier::app::addCheck(app, context.exit);
+    metier::app::addPlot(app, context.exit);
+    metier::app::addGraph(app, context.exit);
+    metier::app::addDashboard(app, context);
+    metier::app::addVirtual(app, context.exit);
+    metier::app::addTrust(app, context);
+    metier::app::addUser(app, context);
+    metier::app::addCompletion(app, context.exit);
 }
 
 /// Standard output belongs to results: the log goes to standard error.
@@ -77,7 +78,7 @@ std::vector<std::string> argumentsOf(int argc, char** argv) {
 
 int run(int argc, char** argv) {
     using metier::app::Exit;
-    auto exit = Exit::success;
+    metier::app::CommandContext context;
     std::string log_level = "warning";
     CLI::App app(kAbout, "metier");
     app.set_version_flag("--version", METIER_VERSION);
@@ -87,17 +88,17 @@ int run(int argc, char** argv) {
         ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
         ->capture_default_str();
     app.fallthrough();  // the options of every command may follow it
-    metier::app::addSecurityOptions(app);
+    metier::app::addSecurityOptions(app, context);
     // The log must be set up before a subcommand runs; its callback comes after this one.
     app.parse_complete_callback([&log_level] { setUpLog(log_level); });
-    addCommands(app, exit);
+    addCommands(app, context);
     try {
         app.parse(argumentsOf(argc, argv));
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? static_cast<int>(Exit::success)
                                     : static_cast<int>(Exit::usage);
     }
-    return static_cast<int>(exit);
+    return static_cast<int>(context.exit);
 }
 
 }  // namespace

@@ -27,12 +27,16 @@ bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {
            });
 }
 
-/// Addresses of servers with a position stream, and reach and payload enough.
-std::vector<std::string> findRobots(const cell::Discovery& discovery,
-                                    const cell::MoveComponent& move,
-                                    const std::vector<std::string>& but) {
+Error noneFound(const cell::MoveComponent& move) {
+    return {Errc::not_found, fmt::format("no server with a PositionStreamSkill{} is found",
+                                         textOf({move.reach, move.payload}))};
+}
+
+}  // namespace
+
+std::vector<std::string> MoveServer::RobotSearch::find(const std::vector<std::string>& but) const {
     std::vector<std::string> urls;
-    for (const auto& server : survey(announcedServers(discovery, but))) {
+    for (const auto& server : survey(announcedServers(discovery, but), identity)) {
         if (hasStreamFor(server, {move.reach, move.payload})) {
             urls.push_back(server.server.url);
         }
@@ -40,15 +44,10 @@ std::vector<std::string> findRobots(const cell::Discovery& discovery,
     return urls;
 }
 
-Error noneFound(const cell::MoveComponent& move) {
-    return {Errc::not_found, fmt::format("no server with a PositionStreamSkill{} is found",
-                                         textOf({move.reach, move.payload}))};
-}
-
-Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Error& if_none) {
-    Result<ConnectedRobot> robot = fail(if_none);
-    for (const auto& url : urls) {
-        robot = connectRobot(url);
+Result<ConnectedRobot> MoveServer::RobotSearch::connectAny() const {
+    Result<ConnectedRobot> robot = fail(noneFound(move));
+    for (const auto& url : find({})) {
+        robot = connectRobot(url, identity);
         if (robot) {
             break;
         }
@@ -56,16 +55,10 @@ Result<ConnectedRobot> connectAny(const std::vector<std::string>& urls, const Er
     return robot;
 }
 
-Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
-                                  const cell::MoveComponent& move,
-                                  const link::StopSignal& stop) {
-    if (!move.discover) {
-        return connectRobot(move.robot);
-    }
-    spdlog::info("{} seeks a robot", config.name);
+Result<ConnectedRobot> MoveServer::RobotSearch::first(const link::StopSignal& stop) const {
     const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
     while (true) {
-        auto robot = connectAny(findRobots(config.discovery, move, {}), noneFound(move));
+        auto robot = connectAny();
         if (robot || std::chrono::steady_clock::now() > deadline) {
             return robot;
         }
@@ -75,27 +68,31 @@ Result<ConnectedRobot> firstRobot(const cell::ServerConfig& config,
     }
 }
 
-}  // namespace
-
 Result<std::unique_ptr<MoveServer>> MoveServer::start(const cell::ServerConfig& config,
                                                       const cell::MoveComponent& move,
-                                                      const link::StopSignal& stop) {
-    auto robot = firstRobot(config, move, stop);
+                                                      const Context& context) {
+    RobotSearch search{config.discovery, move, context.identity};
+    if (move.discover) {
+        spdlog::info("{} seeks a robot", config.name);
+    }
+    auto robot =
+        move.discover ? search.first(context.stop) : connectRobot(move.robot, context.identity);
     if (!robot) {
         return fail(std::move(robot.error()));
     }
     spdlog::info("{} moves {} ({})", config.name, robot->arm->info().name, robot->url);
-    auto moves = RobotMoves::serve(config, std::move(*robot), nullptr);
+    auto moves = RobotMoves::serve(config, context.identity, std::move(*robot), nullptr);
     if (!moves) {
         return fail(std::move(moves.error()));
     }
-    return std::unique_ptr<MoveServer>(new MoveServer(config, move, std::move(*moves)));
+    return std::unique_ptr<MoveServer>(
+        new MoveServer(config, std::move(search), std::move(*moves)));
 }
 
-MoveServer::MoveServer(cell::ServerConfig config, cell::MoveComponent move,
+MoveServer::MoveServer(cell::ServerConfig config, RobotSearch search,
                        std::unique_ptr<RobotMoves> moves)
     : config_(std::move(config)),
-      move_(std::move(move)),
+      search_(std::move(search)),
       url_(moves->url()),
       announced_url_(moves->announcedUrl()),
       moves_(std::move(moves)),
@@ -134,8 +131,7 @@ bool MoveServer::awaitNext(const std::stop_token& stop) {
 
 std::vector<std::string> MoveServer::candidates() const {
     if (moves_ == nullptr) {
-        return move_.discover ? findRobots(config_.discovery, move_, {announced_url_})
-                              : std::vector{robot_url_};
+        return search_.move.discover ? search_.find({announced_url_}) : std::vector{robot_url_};
     }
     const auto absence = moves_->robot().arm->absence();
     if (!absence) {
@@ -145,20 +141,20 @@ std::vector<std::string> MoveServer::candidates() const {
         return {robot_url_};
     }
     const std::chrono::duration<double> away = std::chrono::steady_clock::now() - absence->since;
-    return move_.discover && away.count() > move_.rebind_after
-               ? findRobots(config_.discovery, move_, {announced_url_, robot_url_})
+    return search_.move.discover && away.count() > search_.move.rebind_after
+               ? search_.find({announced_url_, robot_url_})
                : std::vector<std::string>();
 }
 
 /// Nothing moves now: what ran when the robot was lost is Halted.
 Result<void> MoveServer::exchange(const std::string& robot_url) {
-    auto robot = connectRobot(robot_url);
+    auto robot = connectRobot(robot_url, search_.identity);
     if (!robot) {
         return fail(std::move(robot.error()));
     }
     const auto name = robot->arm->info().name;
     moves_.reset();  // lets go of the port
-    auto moves = RobotMoves::serve(config_, std::move(*robot), names_);
+    auto moves = RobotMoves::serve(config_, search_.identity, std::move(*robot), names_);
     if (!moves) {
         return fail(std::move(moves.error()));
     }

@@ -11,8 +11,8 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
-#include "metier/link/stop_signal.hpp"
 #include "robot_moves.hpp"
+#include "server.hpp"
 
 namespace metier::app {
 
@@ -22,7 +22,7 @@ namespace metier::app {
 /// comes back with another arm, or other limits, is taken as a new one. As each robot has axes,
 /// ranges and limits of its own, the OPC UA server ends then and starts again at the same address.
 /// Threading: one thread starts and ends it; it waits some seconds for a thread that exchanges.
-class MoveServer {
+class MoveServer final : public Server {
 public:
     /// Waits until a robot is found, 20 s at most, if one is to be found.
     /// Errors: the robot's server cannot be reached or does not tell enough, or the port is taken;
@@ -30,16 +30,29 @@ public:
     /// \param move of `config`
     static Result<std::unique_ptr<MoveServer>> start(const cell::ServerConfig& config,
                                                      const cell::MoveComponent& move,
-                                                     const link::StopSignal& stop);
-    ~MoveServer();
-    MoveServer(const MoveServer&) = delete;
-    MoveServer& operator=(const MoveServer&) = delete;
+                                                     const Context& context);
+    ~MoveServer() override;
 
     /// Stays the same.
-    const std::string& url() const noexcept { return url_; }
+    std::string url() const override { return url_; }
 
 private:
-    MoveServer(cell::ServerConfig config, cell::MoveComponent move,
+    /// Where robots are found that a move component may move.
+    struct RobotSearch {
+        cell::Discovery discovery;
+        cell::MoveComponent move;
+        const Identity& identity;
+
+        /// Addresses of servers with a position stream, and reach and payload enough.
+        std::vector<std::string> find(const std::vector<std::string>& but) const;
+        /// One of them, when there is one; waits 20 s at most.
+        Result<ConnectedRobot> first(const link::StopSignal& stop) const;
+
+    private:
+        Result<ConnectedRobot> connectAny() const;
+    };
+
+    MoveServer(cell::ServerConfig config, RobotSearch search,
                std::unique_ptr<RobotMoves> moves);
 
     void run(const std::stop_token& stop);
@@ -50,7 +63,7 @@ private:
     void tell(const Error& error);
 
     cell::ServerConfig config_;  // with the port that the server has
-    const cell::MoveComponent move_;
+    const RobotSearch search_;
     const std::string url_;
     const std::string announced_url_;
     // Of the thread, once it runs.

@@ -46,9 +46,9 @@ Result<std::vector<client::SkillAddress::Above>> controllersOf(opcua::Client& cl
     return controllers;
 }
 
-Exit runOwn(const OwnOptions& options) {
+Exit runOwn(const OwnOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
-    auto client = connectTo(options.url);
+    auto client = connectTo(identity, options.url);
     if (!client) {
         return report(client.error());
     }
@@ -84,7 +84,7 @@ Exit runOwn(const OwnOptions& options) {
 
 }  // namespace
 
-void addOwn(CLI::App& app, Exit& exit) {
+void addOwn(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<OwnOptions>();
     auto* command = app.add_subcommand(
@@ -93,7 +93,7 @@ void addOwn(CLI::App& app, Exit& exit) {
         ->required();
     addOwnerOptions(*command, options->owner,
                     "Control is lost after so long without a heartbeat, such as 300ms [1s]");
-    command->callback([options, &exit] { exit = runOwn(*options); });
+    command->callback([options, &context] { context.exit = runOwn(*options, context.identity); });
 }
 
 }  // namespace metier::app

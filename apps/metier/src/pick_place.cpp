@@ -38,10 +38,11 @@ struct Tally {
     double time = 0.0;                  // of all parts [s]
 };
 
-Result<std::vector<Component>> findComponents(const std::vector<std::string>& urls) {
+Result<std::vector<Component>> findComponents(const CommandIdentity& identity,
+                                              const std::vector<std::string>& urls) {
     std::vector<Component> found;
     for (const auto& url : urls) {
-        auto client = connectTo(url);
+        auto client = connectTo(identity, url);
         if (!client) {
             return fail(client.error());
         }
@@ -151,8 +152,9 @@ private:
 };
 
 /// All components at the same time.
+/// \param recover as Mover takes it
 std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSettings& settings,
-                           const std::vector<std::string>& urls) {
+                           const std::function<void()>& recover) {
     std::vector<std::string> names;
     for (const auto& component : components) {
         names.push_back(component.name);
@@ -160,9 +162,7 @@ std::vector<Tally> moveAll(std::vector<Component>& components, const PickPlaceSe
     std::vector<Tally> tallies(components.size());
     runSideBySide(names, settings.timeout * settings.parts,
                   [&](std::size_t row, const TellRow& tell) {
-                      tallies[row] = Mover(components[row], settings, tell, [&urls] {
-                                         resetAllHalted(urls, kLongestReset);
-                                     }).run();
+                      tallies[row] = Mover(components[row], settings, tell, recover).run();
                       return tallies[row].failures.empty();
                   });
     return tallies;
@@ -202,9 +202,9 @@ struct PickPlaceOptions {
     PickPlaceSettings settings;
 };
 
-Exit runPickPlace(const PickPlaceOptions& options) {
+Exit runPickPlace(const PickPlaceOptions& options, const CommandIdentity& identity) {
     const auto urls = addressesOf(options.servers);
-    return urls ? pickAndPlace(*urls, options.settings) : reportUsage(urls.error());
+    return urls ? pickAndPlace(identity, *urls, options.settings) : reportUsage(urls.error());
 }
 
 /// An option that is a list of numbers, as "0.3,-0.1,0.2,3.14,0,0".
@@ -250,12 +250,14 @@ void addPickPlaceOptions(CLI::App& command, PickPlaceSettings& settings) {
     command.add_flag("--json", settings.json, "Print the result as JSON");
 }
 
-Exit pickAndPlace(const std::vector<std::string>& urls, const PickPlaceSettings& settings) {
-    auto components = findComponents(urls);
+Exit pickAndPlace(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                  const PickPlaceSettings& settings) {
+    auto components = findComponents(identity, urls);
     if (!components) {
         return report(components.error());
     }
-    const auto tallies = moveAll(*components, settings, urls);
+    const auto tallies =
+        moveAll(*components, settings, [&] { resetAllHalted(identity, urls, kLongestReset); });
     fmt::print("{}", settings.json ? jsonOf(*components, tallies) : tableOf(*components, tallies));
     const bool all_placed = std::all_of(tallies.begin(), tallies.end(), [&](const auto& one) {
         return one.placed == settings.parts;
@@ -263,7 +265,7 @@ Exit pickAndPlace(const std::vector<std::string>& urls, const PickPlaceSettings&
     return all_placed ? Exit::success : Exit::failed;
 }
 
-void addPickPlace(CLI::App& app, Exit& exit) {
+void addPickPlace(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<PickPlaceOptions>();
     auto* command = app.add_subcommand(
@@ -274,7 +276,8 @@ void addPickPlace(CLI::App& app, Exit& exit) {
         "Exit status 1 if a part was not placed.");
     addServerChoice(*command, options->servers);
     addPickPlaceOptions(*command, options->settings);
-    command->callback([options, &exit] { exit = runPickPlace(*options); });
+    command->callback(
+        [options, &context] { context.exit = runPickPlace(*options, context.identity); });
 }
 
 }  // namespace metier::app

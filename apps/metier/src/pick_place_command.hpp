@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/base/quantities.hpp"
 
 namespace metier::app {
@@ -31,6 +31,7 @@ void addPickPlaceOptions(CLI::App& command, PickPlaceSettings& settings);
 /// Has every PickPlaceSkill that the servers have move its parts, all at the same time, shows how
 /// it goes, and prints the result. After a part that failed the skill is Reset and takes the next,
 /// or that part again.
-Exit pickAndPlace(const std::vector<std::string>& urls, const PickPlaceSettings& settings);
+Exit pickAndPlace(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                  const PickPlaceSettings& settings);
 
 }  // namespace metier::app

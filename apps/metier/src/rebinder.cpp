@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "metier/opcua_skill/used_skills.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -83,7 +82,8 @@ void Rebinder::renew(Bond& bond) {
     if (!idle) {
         return;  // in the middle of an execution nothing changes
     }
-    const auto servers = discoverServers(setup_.discovery, {setup_.own_url, bond.server->url()});
+    const auto servers =
+        discoverServers(setup_.discovery, setup_.identity, {setup_.own_url, bond.server->url()});
     Result<void> moved = fail(Errc::not_found, "nobody else is found");
     for (const auto& server : servers) {
         moved = moveTo(server, bond);
@@ -105,7 +105,7 @@ Result<void> Rebinder::moveTo(const DiscoveredServer& other, Bond& bond) {
     auto server = client::RemoteServer::connect({.url = other.found.url,
                                                        .name = chosen->begin()->second.server,
                                                        .application_name = setup_.application_name,
-                                                       .security = ownCredentials(),
+                                                       .security = setup_.identity.credentials(),
                                                        .own_server = setup_.own_server},
                                                       setup_.executor);
     if (!server) {

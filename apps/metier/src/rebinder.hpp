@@ -41,6 +41,7 @@ class Rebinder {
 public:
     struct Setup {
         cell::Discovery discovery;
+        const Identity& identity;      ///< of the component
         std::string own_url;           ///< of the component, which does not serve itself
         std::string application_name;  ///< as others see it
         std::string own_server;  ///< ApplicationUri that executions are told as their parent's

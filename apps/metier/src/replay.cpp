@@ -72,7 +72,7 @@ Result<skill::ValueMap> parametersOf(const records::Execution& execution,
     return values;
 }
 
-Exit runAgain(const ReplayOptions& options) {
+Exit runAgain(const ReplayOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
     const auto store = openRecords(options.drawing.records);
     const auto execution = store ? (*store)->find(options.drawing.id)
@@ -86,6 +86,7 @@ Exit runAgain(const ReplayOptions& options) {
     }
     const auto& controller = execution->controller;
     auto open = openSkill(
+        identity,
         {*url, controller.empty() ? execution->skill : controller + "/" + execution->skill},
         OnLoss::reconnect);
     if (!open) {
@@ -108,17 +109,17 @@ Exit runAgain(const ReplayOptions& options) {
     return runSkill(signal, *open, *values, options.how);
 }
 
-Exit runReplay(const ReplayOptions& options) {
+Exit runReplay(const ReplayOptions& options, const CommandIdentity& identity) {
     if (options.run == !options.drawing.svg.empty()) {
         return reportUsage({Errc::invalid_argument,
                             "say either --svg FILE, to draw it, or --run, to run it again"});
     }
-    return options.run ? runAgain(options) : drawExecution(options.drawing);
+    return options.run ? runAgain(options, identity) : drawExecution(options.drawing);
 }
 
 }  // namespace
 
-void addReplay(CLI::App& app, Exit& exit) {
+void addReplay(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<ReplayOptions>();
     auto& drawing = options->drawing;
@@ -144,7 +145,8 @@ void addReplay(CLI::App& app, Exit& exit) {
                     "Take control for the run; it is lost after so long without a heartbeat, such "
                     "as 300ms");
     command->add_flag("--json", options->how.json, "Print the result as JSON");
-    command->callback([options, &exit] { exit = runReplay(*options); });
+    command->callback(
+        [options, &context] { context.exit = runReplay(*options, context.identity); });
 }
 
 }  // namespace metier::app

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "kinematics_conversion.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -39,8 +38,8 @@ opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device
 
 }  // namespace
 
-Result<ConnectedRobot> connectRobot(const std::string& url) {
-    auto arm = client::RemoteArm::connect({.url = url, .security = ownCredentials()});
+Result<ConnectedRobot> connectRobot(const std::string& url, const Identity& identity) {
+    auto arm = client::RemoteArm::connect({.url = url, .security = identity.credentials()});
     if (!arm) {
         return fail(arm.error().code, fmt::format("{}: {}", url, arm.error().message));
     }
@@ -52,9 +51,9 @@ Result<ConnectedRobot> connectRobot(const std::string& url) {
 }
 
 Result<std::unique_ptr<RobotMoves>> RobotMoves::serve(
-    const cell::ServerConfig& config, ConnectedRobot robot,
+    const cell::ServerConfig& config, const Identity& identity, ConnectedRobot robot,
     std::shared_ptr<skill::ExecutionNames> names) {
-    auto host = SkillHost::create(config, {}, std::move(names));
+    auto host = SkillHost::create(config, identity, {}, std::move(names));
     if (!host) {
         return fail(host.error());
     }

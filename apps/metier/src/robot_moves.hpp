@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "identity.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/motion/robot_model.hpp"
@@ -20,7 +21,7 @@ struct ConnectedRobot {
 };
 
 /// Errors: it cannot be reached, or does not tell enough.
-Result<ConnectedRobot> connectRobot(const std::string& url);
+Result<ConnectedRobot> connectRobot(const std::string& url, const Identity& identity);
 
 /// An OPC UA server with the move skills of one robot, over its position stream.
 ///
@@ -31,7 +32,7 @@ public:
     ///              Programs; null: those of its state folder
     /// Errors: the port is taken.
     static Result<std::unique_ptr<RobotMoves>> serve(const cell::ServerConfig& config,
-                                                     ConnectedRobot robot,
+                                                     const Identity& identity, ConnectedRobot robot,
                                                      std::shared_ptr<skill::ExecutionNames> names);
 
     const ConnectedRobot& robot() const noexcept { return robot_; }

@@ -174,9 +174,9 @@ void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
     }
 }
 
-Exit runRun(const RunOptions& options) {
+Exit runRun(const RunOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
-    auto open = openSkill(options.choice, OnLoss::reconnect);
+    auto open = openSkill(identity, options.choice, OnLoss::reconnect);
     if (!open) {
         return report(open.error());
     }
@@ -215,7 +215,7 @@ Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::Valu
     return Exit::success;
 }
 
-void addRun(CLI::App& app, Exit& exit) {
+void addRun(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<RunOptions>();
     auto* command = app.add_subcommand(
@@ -236,7 +236,7 @@ void addRun(CLI::App& app, Exit& exit) {
                     "Take control for the run; it is lost after so long without a heartbeat, such "
                     "as 300ms");
     command->add_flag("--json", options->run.json, "Print the result as JSON");
-    command->callback([options, &exit] { exit = runRun(*options); });
+    command->callback([options, &context] { context.exit = runRun(*options, context.identity); });
 }
 
 }  // namespace metier::app

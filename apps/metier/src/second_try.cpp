@@ -32,9 +32,10 @@ Result<void> resetUntilReady(client::SkillHandle& skill, std::chrono::millisecon
     }
 }
 
-void resetAllHalted(const std::vector<std::string>& urls, std::chrono::milliseconds longest) {
+void resetAllHalted(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                    std::chrono::milliseconds longest) {
     for (const auto& url : urls) {
-        const auto client = connectTo(url);
+        const auto client = connectTo(identity, url);
         const auto skills = client ? client::findSkills(**client)
                                    : opcua::Answer<std::vector<client::SkillAddress>>();
         if (!client || !skills) {

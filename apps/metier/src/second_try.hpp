@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "command_identity.hpp"
 #include "metier/client/skill_handle.hpp"
 
 namespace metier::app {
@@ -19,6 +20,7 @@ Result<void> resetUntilReady(client::SkillHandle& skill, std::chrono::millisecon
 
 /// The same for every Halted skill of those servers: a watchdog, or a lost link, has halted them
 /// besides the skill that used them. A server that does not answer is left out.
-void resetAllHalted(const std::vector<std::string>& urls, std::chrono::milliseconds longest);
+void resetAllHalted(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                    std::chrono::milliseconds longest);
 
 }  // namespace metier::app

@@ -7,23 +7,14 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 
-#include "announcement.hpp"
-#include "arm_server.hpp"
-#include "commands.hpp"
-#include "composition_server.hpp"
 #include "folders.hpp"
-#include "gripper_server.hpp"
-#include "lab_warning.hpp"
-#include "metier/base/overloaded.hpp"
 #include "metier/link/start_watch.hpp"
 #include "metier/link/stop_signal.hpp"
-#include "move_server.hpp"
 #include "ready_line.hpp"
 #include "recorded.hpp"
-#include "security.hpp"
-#include "synchronized_server.hpp"
+#include "security_options.hpp"
+#include "server.hpp"
 
 namespace metier::app {
 namespace {
@@ -163,34 +154,17 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
     return cell.resolved(std::move(config));
 }
 
-/// A server at another port is another application.
-Result<void> becomeServer(const cell::ServerConfig& config) {
-    std::vector<std::string> hosts{hostName()};
-    for (const auto& host : {config.address, config.discovery.announce_as}) {
-        const bool names_one = !host.empty() && host != "0.0.0.0";
-        if (names_one && host.find(':') == std::string::npos) {
-            hosts.push_back(host);
-        }
-    }
-    return becomeApplication(
-        config.port == 0 ? config.name : fmt::format("{}-{}", config.name, config.port),
-        {.application_name = "metier " + config.name,
-         .application_uri = applicationUriOf(config),
-         .hosts = std::move(hosts)});
-}
-
-/// Starts a server and serves until the signal; then it brakes what moves and ends.
-/// \param start makes the server
-template <typename Start>
-Exit serveUntil(const link::StopSignal& stop, const ServeOptions& options, Start start) {
+/// Serves until the signal; then it brakes what moves and ends.
+Exit serveUntil(const link::StopSignal& stop, const cell::ServerConfig& config,
+                const Identity& identity, const ServeOptions& options) {
     auto starting = std::make_unique<link::StartWatch>(stop);
-    auto server = start();
+    const auto server = start(config, {identity, device::drivers(), stop});
     starting.reset();
     if (!server) {
         return report(server.error());
     }
     if (!options.lab_is_known) {
-        warnOfLab("metier " + options.server, (*server)->url());
+        warnOfLab(identity.security(), "metier " + options.server, (*server)->url());
     }
     fmt::print("{}\n", readyLine((*server)->url()));
     std::fflush(stdout);
@@ -199,7 +173,7 @@ Exit serveUntil(const link::StopSignal& stop, const ServeOptions& options, Start
     return Exit::success;
 }
 
-Exit runServe(const ServeOptions& options) {
+Exit runServe(const ServeOptions& options, const Security& security) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
     const auto cell = cell::loadCell(options.cell);
@@ -210,40 +184,19 @@ Exit runServe(const ServeOptions& options) {
     if (!config) {
         return reportUsage(config.error());
     }
-    if (const auto known = becomeServer(*config); !known) {
-        return report(known.error());
+    const auto identity = identityOf(*config, security);
+    if (!identity) {
+        return report(identity.error());
     }
     if (config->port == 0) {
         config->port = options.again_at;
     }
-    return std::visit(
-        overloaded{[&](const cell::ArmServer& arm) {
-                       return serveUntil(stop, options,
-                                         [&] { return ArmServer::start(*config, arm); });
-                   },
-                   [&](const cell::GripperServer& gripper) {
-                       return serveUntil(stop, options,
-                                         [&] { return GripperServer::start(*config, gripper); });
-                   },
-                   [&](const cell::MoveComponent& move) {
-                       return serveUntil(stop, options,
-                                         [&] { return MoveServer::start(*config, move, stop); });
-                   },
-                   [&](const cell::CompositionServer& composition) {
-                       return serveUntil(stop, options, [&] {
-                           return CompositionServer::start(*config, composition, stop);
-                       });
-                   },
-                   [&](const cell::SynchronizedServer& both) {
-                       return serveUntil(stop, options,
-                                         [&] { return SynchronizedServer::start(*config, both); });
-                   }},
-        config->kind);
+    return serveUntil(stop, *config, *identity, options);
 }
 
 }  // namespace
 
-void addServe(CLI::App& app, Exit& exit) {
+void addServe(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<ServeOptions>();
     auto* command = app.add_subcommand(
@@ -282,7 +235,7 @@ void addServe(CLI::App& app, Exit& exit) {
     command->add_option("--metrics", options->metrics,
                         "Tell figures at http://ADDRESS:PORT/metrics and /healthz, instead of the "
                         "file's; PORT alone is one of 127.0.0.1; off");
-    command->callback([options, &exit] { exit = runServe(*options); });
+    command->callback([options, &context] { context.exit = runServe(*options, context.security); });
 }
 
 }  // namespace metier::app

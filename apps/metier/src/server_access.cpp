@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -38,9 +37,10 @@ fs::file_time_type latestChange(const security::SecurityFolder& folder) {
 
 }  // namespace
 
-Result<std::unique_ptr<ServerAccess>> ServerAccess::open(opcua::Credentials own,
+Result<std::unique_ptr<ServerAccess>> ServerAccess::open(const Security& security,
+                                                         opcua::Credentials own,
                                                          const Clock& clock) {
-    auto folder = openSecurityFolder();
+    auto folder = security.openFolder();
     if (!folder) {
         return fail(folder.error());
     }
@@ -223,14 +223,12 @@ void ServerAccess::closeStrangers(opcua::Server& server) {
 }
 
 Result<std::unique_ptr<ServerAccess>> secureServer(opcua::ServerOptions& options,
-                                                   const std::string& lab_uri, const Clock& clock) {
-    options.application_uri = lab_uri;
-    auto own = ownCredentials();
-    if (!own) {
+                                                   const Identity& identity, const Clock& clock) {
+    if (!identity.credentials()) {
         return std::unique_ptr<ServerAccess>();
     }
-    options.application_uri = own->identity.certificate.applicationUri();
-    auto access = ServerAccess::open(std::move(*own), clock);
+    options.application_uri = identity.credentials()->identity.certificate.applicationUri();
+    auto access = ServerAccess::open(identity.security(), *identity.credentials(), clock);
     if (access) {
         options.security = (*access)->security();
     }

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "identity.hpp"
 #include "metier/base/background_read.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
@@ -30,9 +31,11 @@ namespace metier::app {
 /// for a disk; threads of its own read and write files.
 class ServerAccess {
 public:
+    /// \param own of `security`
     /// \param clock must outlive this
-    /// Errors: as openSecurityFolder(), security::LoginGuard::open().
-    static Result<std::unique_ptr<ServerAccess>> open(opcua::Credentials own, const Clock& clock);
+    /// Errors: as Security::openFolder(), security::LoginGuard::open().
+    static Result<std::unique_ptr<ServerAccess>> open(const Security& security,
+                                                      opcua::Credentials own, const Clock& clock);
     ~ServerAccess();
     ServerAccess(const ServerAccess&) = delete;
     ServerAccess& operator=(const ServerAccess&) = delete;
@@ -82,10 +85,10 @@ private:
     BackgroundRead<Folder> folder_now_;  // last: its thread uses both folders
 };
 
-/// Makes a server of this process closed, under the ApplicationUri of its certificate; in an
-/// insecure lab it is open, under the other, and the result null.
+/// Makes a server with these options closed, under the ApplicationUri of its certificate; in an
+/// insecure lab it stays open, under the one that the options have, and the result is null.
 /// Errors: as ServerAccess::open().
 Result<std::unique_ptr<ServerAccess>> secureServer(opcua::ServerOptions& options,
-                                                   const std::string& lab_uri, const Clock& clock);
+                                                   const Identity& identity, const Clock& clock);
 
 }  // namespace metier::app

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "metier/cell/cell.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 
@@ -31,22 +30,23 @@ Result<std::vector<std::string>> addressesOf(const ServerChoice& choice) {
     return urls;
 }
 
-Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url, OnLoss on_loss) {
+Result<std::unique_ptr<opcua::Client>> connectTo(const CommandIdentity& identity,
+                                                 const std::string& url, OnLoss on_loss) {
     opcua::ClientOptions options;
     options.application_name = "metier command";
     options.publishing_interval = std::chrono::milliseconds(20);
     if (on_loss == OnLoss::reconnect) {
         options.reconnect.emplace();
     }
-    if (const auto secured = secure(options, url); !secured) {
+    if (const auto secured = identity.secure(options, url); !secured) {
         return fail(secured.error().code, fmt::format("{}: {}", url, secured.error().message));
     }
     auto client = opcua::Client::connect(url, options);
     if (!client) {
-        return fail(client.error().code,
-                    fmt::format("{}: {}{}", url, client.error().message, adviceOn(client.error())));
+        return fail(client.error().code, fmt::format("{}: {}{}", url, client.error().message,
+                                                     identity.adviceOn(client.error())));
     }
-    noteConnected(options, url);
+    identity.noteConnected(options, url);
     return std::move(*client);
 }
 
@@ -85,8 +85,9 @@ void addSkillChoice(CLI::App& command, SkillChoice& choice) {
         ->required();
 }
 
-Result<OpenSkill> openSkill(const SkillChoice& choice, OnLoss on_loss) {
-    auto client = connectTo(choice.url, on_loss);
+Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& choice,
+                            OnLoss on_loss) {
+    auto client = connectTo(identity, choice.url, on_loss);
     if (!client) {
         return fail(client.error());
     }

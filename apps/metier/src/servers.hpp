@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/client/skill_handle.hpp"
@@ -27,7 +27,8 @@ Result<std::vector<std::string>> addressesOf(const ServerChoice& choice);
 enum class OnLoss { fail, reconnect };
 
 /// Connects within 5 s. The error names the address.
-Result<std::unique_ptr<opcua::Client>> connectTo(const std::string& url,
+Result<std::unique_ptr<opcua::Client>> connectTo(const CommandIdentity& identity,
+                                                 const std::string& url,
                                                  OnLoss on_loss = OnLoss::fail);
 /// "connection back; server restarted: no", for people.
 std::string textOf(const opcua::ConnectionChange& change);
@@ -53,6 +54,7 @@ struct OpenSkill {
 };
 
 /// Errors: those of connectTo(), findSkill() and SkillHandle::open().
-Result<OpenSkill> openSkill(const SkillChoice& choice, OnLoss on_loss = OnLoss::fail);
+Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& choice,
+                            OnLoss on_loss = OnLoss::fail);
 
 }  // namespace metier::app

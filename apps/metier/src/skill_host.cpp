@@ -15,7 +15,6 @@
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
 #include "port_lock.hpp"
-#include "security.hpp"
 #include "server_limits.hpp"
 
 namespace metier::app {
@@ -121,13 +120,14 @@ Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
 }  // namespace
 
 Result<std::unique_ptr<SkillHost>> SkillHost::create(const cell::ServerConfig& config,
+                                                     const Identity& identity,
                                                      std::vector<std::string> nodesets,
                                                      std::shared_ptr<skill::ExecutionNames> names) {
     auto port_lock = lockPort(config);
     if (!port_lock) {
         return fail(port_lock.error());
     }
-    std::unique_ptr<SkillHost> host(new SkillHost(config));
+    std::unique_ptr<SkillHost> host(new SkillHost(config, identity));
     host->port_lock_ = std::move(*port_lock);
     if (auto made = host->makeServer(std::move(nodesets)); !made) {
         return fail(made.error());
@@ -184,7 +184,8 @@ Result<void> SkillHost::keepNames(const cell::ServerConfig& config) {
     return {};
 }
 
-SkillHost::SkillHost(cell::ServerConfig config) : config_(std::move(config)) {}
+SkillHost::SkillHost(cell::ServerConfig config, const Identity& identity)
+    : config_(std::move(config)), identity_(identity) {}
 
 Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     opcua::ServerOptions options;
@@ -196,7 +197,8 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     options.event_publishing = config_.publish_at_once ? opcua::EventPublishing::at_once
                                                        : opcua::EventPublishing::at_interval;
     options.limits = limitsOf(config_.limits);
-    auto access = secureServer(options, applicationUriOf(config_), clock_);
+    options.application_uri = applicationUriOf(config_);
+    auto access = secureServer(options, identity_, clock_);
     if (!access) {
         return fail(access.error());
     }
@@ -244,10 +246,10 @@ Result<void> SkillHost::start() {
     watchStalls();
     auto started = server_->start();
     if (started && access_ == nullptr) {
-        noteServedOpen(url());
+        identity_.security().noteServedOpen(url());
     }
     if (started) {
-        announcement_.emplace(config_, application_uri_, url());
+        announcement_.emplace(config_, identity_, application_uri_, url());
     }
     return started;
 }

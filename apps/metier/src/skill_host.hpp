@@ -41,12 +41,13 @@ std::vector<DeviceSkill> sharing(const std::shared_ptr<skill::Resource>& resourc
 /// Threading: one thread at a time makes, starts and ends it.
 class SkillHost {
 public:
+    /// \param identity must outlive this
     /// \param nodesets besides those that every skill needs
     /// \param names of a server before this one in the same place, shared with the Programs; null:
     ///              those of the state folder
     static Result<std::unique_ptr<SkillHost>> create(
-        const cell::ServerConfig& config, std::vector<std::string> nodesets,
-        std::shared_ptr<skill::ExecutionNames> names = nullptr);
+        const cell::ServerConfig& config, const Identity& identity,
+        std::vector<std::string> nodesets, std::shared_ptr<skill::ExecutionNames> names = nullptr);
     /// Brakes what moves and waits until it stands, 2 s at most; then ends the server.
     ~SkillHost();
     SkillHost(const SkillHost&) = delete;
@@ -107,7 +108,7 @@ public:
     Result<void> start();
 
 private:
-    explicit SkillHost(cell::ServerConfig config);
+    SkillHost(cell::ServerConfig config, const Identity& identity);
     Result<void> makeServer(std::vector<std::string> nodesets);
     Result<void> keepNames(const cell::ServerConfig& config);
     Result<void> watchPrograms();
@@ -115,6 +116,7 @@ private:
 
     std::optional<link::NameLock> port_lock_;  // until the server is gone
     const cell::ServerConfig config_;
+    const Identity& identity_;
     std::string application_uri_;
     SystemClock clock_;
     std::unique_ptr<ServerAccess> access_;  // none in an insecure lab

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "metier/opcua/text.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -113,16 +112,17 @@ opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client) {
 class Interview {
 public:
     Result<std::vector<SurveyedSkill>> ask(const std::string& url,
+                                           const ConnectionSecurity& security,
                                            std::chrono::milliseconds limit) {
         auto options = optionsFor(limit);
-        if (auto secured = secure(options, url); !secured) {
+        if (auto secured = security.secure(options, url); !secured) {
             return fail(std::move(secured.error()));
         }
         auto client = opcua::Client::connect(url, options);
         if (!client) {
             return fail(client.error().code, opcua::sanitise(client.error().message));
         }
-        noteConnected(options, url);
+        security.noteConnected(options, url);
         {
             const std::lock_guard lock(mutex_);
             if (cut_) {
@@ -161,14 +161,15 @@ private:
 /// Servers that are asked at the same time, each by a thread of its own.
 class Round {
 public:
-    Round(std::vector<opcua::FoundServer> servers, std::chrono::milliseconds limit)
+    Round(std::vector<opcua::FoundServer> servers, const ConnectionSecurity& security,
+          std::chrono::milliseconds limit)
         : servers_(std::move(servers)),
           interviews_(servers_.size()),
           answers_(servers_.size()),
           open_(servers_.size()) {
         for (std::size_t i = 0; i < servers_.size(); ++i) {
-            threads_.emplace_back([this, i, limit] {
-                auto answer = interviews_[i].ask(servers_[i].url, limit);
+            threads_.emplace_back([this, i, &security, limit] {
+                auto answer = interviews_[i].ask(servers_[i].url, security, limit);
                 const std::lock_guard lock(mutex_);
                 answers_[i] = std::move(answer);
                 --open_;
@@ -214,12 +215,13 @@ private:
 }  // namespace
 
 std::vector<SurveyedServer> survey(const std::vector<opcua::FoundServer>& servers,
+                                   const ConnectionSecurity& security,
                                    std::chrono::milliseconds limit) {
     std::vector<SurveyedServer> result;
     for (std::size_t begin = 0; begin < servers.size(); begin += kAtOnce) {
         const auto first = servers.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto count = std::min(kAtOnce, servers.size() - begin);
-        Round round({first, first + static_cast<std::ptrdiff_t>(count)}, limit);
+        Round round({first, first + static_cast<std::ptrdiff_t>(count)}, security, limit);
         auto answers = round.take(std::chrono::steady_clock::now() + limit);
         std::move(answers.begin(), answers.end(), std::back_inserter(result));
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "arm_figures.hpp"
+#include "identity.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/search.hpp"
 #include "metier/client/skill_finder.hpp"
@@ -32,6 +33,7 @@ struct SurveyedServer {
 /// within `limit` has an error instead.
 /// Threads: any; waits, about a second longer than `limit` for each 32 servers at most.
 std::vector<SurveyedServer> survey(const std::vector<opcua::FoundServer>& servers,
+                                   const ConnectionSecurity& security,
                                    std::chrono::milliseconds limit = std::chrono::seconds(2));
 
 /// Whether a skill is of a type, with or without its ending "Type", or of one derived from it; or

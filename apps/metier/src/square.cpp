@@ -17,10 +17,11 @@ struct ConnectedArm {
     SquareArm arm;
 };
 
-Result<std::vector<ConnectedArm>> findArms(const std::vector<std::string>& urls) {
+Result<std::vector<ConnectedArm>> findArms(const CommandIdentity& identity,
+                                           const std::vector<std::string>& urls) {
     std::vector<ConnectedArm> found;
     for (const auto& url : urls) {
-        auto client = connectTo(url);
+        auto client = connectTo(identity, url);
         if (!client) {
             return fail(client.error());
         }
@@ -30,7 +31,7 @@ Result<std::vector<ConnectedArm>> findArms(const std::vector<std::string>& urls)
         }
         for (auto& arm : *arms) {
             if (*client == nullptr) {
-                client = connectTo(url);  // a connection for each arm
+                client = connectTo(identity, url);  // a connection for each arm
                 if (!client) {
                     return fail(client.error());
                 }
@@ -69,9 +70,9 @@ struct SquareOptions {
     SquareOutput output;
 };
 
-Exit runSquareCommand(const SquareOptions& options) {
+Exit runSquareCommand(const SquareOptions& options, const CommandIdentity& identity) {
     const auto urls = addressesOf(options.servers);
-    return urls ? moveAlongSquares(*urls, options.settings, options.output)
+    return urls ? moveAlongSquares(identity, *urls, options.settings, options.output)
                 : reportUsage(urls.error());
 }
 
@@ -89,9 +90,9 @@ void addSquareOptions(CLI::App& command, SquareSettings& settings, SquareOutput&
     command.add_flag("--json", output.json, "Print the result as JSON");
 }
 
-Exit moveAlongSquares(const std::vector<std::string>& urls, const SquareSettings& settings,
-                      const SquareOutput& output) {
-    auto arms = findArms(urls);
+Exit moveAlongSquares(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                      const SquareSettings& settings, const SquareOutput& output) {
+    auto arms = findArms(identity, urls);
     if (!arms) {
         return report(arms.error());
     }
@@ -107,14 +108,15 @@ Exit moveAlongSquares(const std::vector<std::string>& urls, const SquareSettings
     return all_done ? Exit::success : Exit::failed;
 }
 
-void addSquare(CLI::App& app, Exit& exit) {
+void addSquare(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<SquareOptions>();
     auto* command = app.add_subcommand(
         "square", "Move every arm of some servers along an upright square, and measure it");
     addServerChoice(*command, options->servers);
     addSquareOptions(*command, options->settings, options->output);
-    command->callback([options, &exit] { exit = runSquareCommand(*options); });
+    command->callback(
+        [options, &context] { context.exit = runSquareCommand(*options, context.identity); });
 }
 
 }  // namespace metier::app

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "square_run.hpp"
 
 namespace metier::app {
@@ -18,7 +18,7 @@ void addSquareOptions(CLI::App& command, SquareSettings& settings, SquareOutput&
 
 /// Moves every arm that the servers have along its square, all at the same time, shows how it
 /// goes, and prints the result.
-Exit moveAlongSquares(const std::vector<std::string>& urls, const SquareSettings& settings,
-                      const SquareOutput& output);
+Exit moveAlongSquares(const CommandIdentity& identity, const std::vector<std::string>& urls,
+                      const SquareSettings& settings, const SquareOutput& output);
 
 }  // namespace metier::app

@@ -6,7 +6,6 @@
 
 #include "composition_files.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
-#include "security.hpp"
 #include "skill_matching.hpp"
 
 namespace metier::app {
@@ -26,12 +25,14 @@ std::string originOf(const std::string& component) {
 }  // namespace
 
 Result<std::unique_ptr<SynchronizedServer>> SynchronizedServer::start(
-    const cell::ServerConfig& config, const cell::SynchronizedServer& arms) {
-    auto host = SkillHost::create(config, {});
+    const cell::ServerConfig& config, const cell::SynchronizedServer& arms,
+    const Context& context) {
+    auto host = SkillHost::create(config, context.identity, {});
     if (!host) {
         return fail(host.error());
     }
-    std::unique_ptr<SynchronizedServer> server(new SynchronizedServer(std::move(*host)));
+    std::unique_ptr<SynchronizedServer> server(
+        new SynchronizedServer(context.identity, std::move(*host)));
     if (auto offered = server->offer(config.name, arms); !offered) {
         return fail(std::move(offered.error()));
     }
@@ -70,7 +71,7 @@ Result<Arm> SynchronizedServer::connect(const cell::UsedServer& used,
                                                        .name = used.name,
                                                        .application_name = "metier " + component,
                                                        .session_timeout = kSessionTimeout,
-                                                       .security = ownCredentials(),
+                                                       .security = identity_.credentials(),
                                                        .own_server = host_->applicationUri()},
                                                       host_->skills().executor());
     if (!server) {

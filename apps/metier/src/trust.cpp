@@ -6,10 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/security/security_folder.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -29,8 +28,8 @@ struct Place {
     TrustStore store;
 };
 
-Result<Place> openPlace() {
-    auto folder = openSecurityFolder();
+Result<Place> openPlace(const Security& security) {
+    auto folder = security.openFolder();
     if (!folder) {
         return fail(folder.error());
     }
@@ -143,9 +142,9 @@ Result<void> renew(Place& place, const TrustOptions& options) {
     return {};
 }
 
-Result<void> forget(Place& /*place*/, const TrustOptions& options) {
-    const auto known = knownServers();
-    const auto forgotten = known ? known->forget(options.what) : fail(known.error());
+Result<void> forget(Place& place, const TrustOptions& options) {
+    const auto known = SecurityFolder::knownServers(place.folder.path());
+    const auto forgotten = known.forget(options.what);
     if (!forgotten) {
         return fail(forgotten.error());
     }
@@ -156,22 +155,24 @@ Result<void> forget(Place& /*place*/, const TrustOptions& options) {
 
 using Action = Result<void> (*)(Place&, const TrustOptions&);
 
-Exit runAction(Action action, const TrustOptions& options) {
-    auto place = openPlace();
+Exit runAction(Action action, const TrustOptions& options, const Security& security) {
+    auto place = openPlace(security);
     const auto done = place ? action(*place, options) : fail(place.error());
     return done ? Exit::success : report(done.error());
 }
 
 }  // namespace
 
-void addTrust(CLI::App& app, Exit& exit) {
+void addTrust(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callbacks, which read it.
     auto options = std::make_shared<TrustOptions>();
     auto* command = app.add_subcommand("trust", "Decide which applications are trusted");
     command->require_subcommand(1);
     const auto add = [&](const char* name, const char* about, Action action) {
         auto* one = command->add_subcommand(name, about);
-        one->callback([options, action, &exit] { exit = runAction(action, *options); });
+        one->callback([options, action, &context] {
+            context.exit = runAction(action, *options, context.security);
+        });
         return one;
     };
     add("list", "Own certificates, those trusted, and those that were rejected",

@@ -5,11 +5,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cell_runner.hpp"
-#include "commands.hpp"
+#include "cell_commands.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "printable.hpp"
-#include "security.hpp"
+#include "security_options.hpp"
 
 namespace metier::app {
 namespace {
@@ -53,22 +52,21 @@ Exit lookAfter(CellRunner& cell, const link::StopSignal& stop, OnFailure on_fail
     return Exit::success;
 }
 
-Exit runUp(const UpOptions& options) {
+Exit runUp(const UpOptions& options, const Security& security) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
     const auto config = cell::loadCell(options.cell);
     if (!config) {
         return reportUsage(config.error());
     }
-    if (isInsecureLab()) {
-        fmt::print(stderr, "{}\n", kInsecureLab);
-    }
-    const auto ports = options.free_ports ? Ports::free : Ports::configured;
-    auto cell =
-        CellRunner::start(*config, ports, stop.descriptor(), [](const CellRunner::Running& server) {
-            fmt::print("{:<16} {}\n", server.name, server.url);
-            std::fflush(stdout);
-        });
+    printLabNotice(security);
+    const MetierCommands commands(*config, options.free_ports ? Ports::free : Ports::configured,
+                                  security);
+    auto cell = CellRunner::start(*config, commands, stop.descriptor(),
+                                  [](const CellRunner::Running& server) {
+                                      fmt::print("{:<16} {}\n", server.name, server.url);
+                                      std::fflush(stdout);
+                                  });
     if (!cell) {
         return report(cell.error());
     }
@@ -82,7 +80,7 @@ Exit runUp(const UpOptions& options) {
 
 }  // namespace
 
-void addUp(CLI::App& app, Exit& exit) {
+void addUp(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<UpOptions>();
     auto* command = app.add_subcommand("up", "Start every server of a cell, until Ctrl-C");
@@ -100,7 +98,7 @@ void addUp(CLI::App& app, Exit& exit) {
     command->add_flag_callback(
         "--exit-on-failure", [options] { options->on_failure = OnFailure::end_cell; },
         "End the whole cell when one of its processes ends by itself; exit status 1");
-    command->callback([options, &exit] { exit = runUp(*options); });
+    command->callback([options, &context] { context.exit = runUp(*options, context.security); });
 }
 
 }  // namespace metier::app

@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
+#include "command_context.hpp"
 #include "metier/security/users.hpp"
-#include "security.hpp"
+#include "password.hpp"
 
 namespace metier::app {
 namespace {
@@ -47,8 +47,8 @@ Result<void> remove(UserTable& users, const UserOptions& options) {
 
 using Action = Result<void> (*)(UserTable&, const UserOptions&);
 
-Result<void> act(Action action, const UserOptions& options) {
-    const auto folder = openSecurityFolder();
+Result<void> act(Action action, const UserOptions& options, const Security& security) {
+    const auto folder = security.openFolder();
     if (!folder) {
         return fail(folder.error());
     }
@@ -64,16 +64,16 @@ Result<void> act(Action action, const UserOptions& options) {
 
 }  // namespace
 
-void addUser(CLI::App& app, Exit& exit) {
+void addUser(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callbacks, which read it.
     auto options = std::make_shared<UserOptions>();
     auto* command = app.add_subcommand("user", "Decide who may log in, and as what");
     command->require_subcommand(1);
     const auto addAction = [&](const char* name, const char* about, Action action) {
         auto* one = command->add_subcommand(name, about);
-        one->callback([options, action, &exit] {
-            const auto done = act(action, *options);
-            exit = done ? Exit::success : report(done.error());
+        one->callback([options, action, &context] {
+            const auto done = act(action, *options, context.security);
+            context.exit = done ? Exit::success : report(done.error());
         });
         return one;
     };

@@ -146,10 +146,10 @@ void lookAgain(std::vector<SkillHandle>& handles) {
     }
 }
 
-Exit runWatch(const WatchOptions& options) {
+Exit runWatch(const WatchOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
     Printer printer(options);
-    auto client = connectTo(options.url, OnLoss::reconnect);
+    auto client = connectTo(identity, options.url, OnLoss::reconnect);
     if (!client) {
         return report(client.error());
     }
@@ -167,7 +167,7 @@ Exit runWatch(const WatchOptions& options) {
 
 }  // namespace
 
-void addWatch(CLI::App& app, Exit& exit) {
+void addWatch(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<WatchOptions>();
     auto* command = app.add_subcommand(
@@ -179,7 +179,7 @@ void addWatch(CLI::App& app, Exit& exit) {
     command->add_option("--count", options->count, "End after so many transitions; 0: at Ctrl-C")
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--json", options->json, "Print one JSON object per line");
-    command->callback([options, &exit] { exit = runWatch(*options); });
+    command->callback([options, &context] { context.exit = runWatch(*options, context.identity); });
 }
 
 }  // namespace metier::app

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <thread>
 
@@ -18,10 +19,35 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Key;
+using ::testing::Pair;
 using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
-/// A cell of processes that only say that they are ready (fake_metier.cpp).
+/// This program in the roles of servers and virtual controllers (fake_metier.cpp).
+class FakeCommands final : public CellCommands {
+public:
+    explicit FakeCommands(const cell::CellConfig& cell) : cell_(cell) {}
+
+    CellCommand of(const cell::VirtualController& controller,
+                   const CellAddresses& known) const override {
+        known_of_[controller.name] = known;
+        return {{"/proc/self/exe", "virtual", cell_.file.string(), controller.name}};
+    }
+    CellCommand of(const cell::ServerConfig& server,
+                   const CellAddresses& known) const override {
+        known_of_[server.name] = known;
+        return {{"/proc/self/exe", "serve", cell_.file.string(), server.name}, "--again-at"};
+    }
+    /// Addresses that were known when the command of that process was asked for.
+    const CellAddresses& knownOf(const std::string& name) const { return known_of_.at(name); }
+
+private:
+    const cell::CellConfig& cell_;
+    mutable std::map<std::string, CellAddresses> known_of_;
+};
+
+/// A cell of processes that only say that they are ready.
 class CellOfFakes : public ::testing::Test {
 protected:
     CellOfFakes() {
@@ -50,7 +76,7 @@ protected:
     }
     Result<CellRunner> start(int stop_descriptor = -1) {
         return CellRunner::start(
-            cell_, Ports::free, stop_descriptor,
+            cell_, commands_, stop_descriptor,
             [this](const CellRunner::Running& server) { ready_.push_back(server.name); });
     }
     /// Output of the processes.
@@ -97,6 +123,7 @@ protected:
     std::filesystem::path diaryFile() const { return cell_.file.string() + ".diary"; }
 
     cell::CellConfig cell_;
+    FakeCommands commands_{cell_};
     std::vector<std::string> ready_;
     int wake_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 };
@@ -115,6 +142,31 @@ TEST_F(CellOfFakes, StartsWhatOthersUseBeforeThemAndEndsItAfterThem) {
     }
     EXPECT_THAT(diary("ends"), ElementsAre("composed ends", "both ends", "arm-move ends",
                                            "arm ends", "controller ends", "world ends"));
+}
+
+TEST_F(CellOfFakes, TellsEachCommandTheAddressesOfThoseBefore) {
+    add<cell::CompositionServer>("composed");
+    add("arm");
+    addVirtual("controller", "ur");
+    addVirtual("world", "world");
+    const auto cell = start();
+    ASSERT_TRUE(cell) << cell.error().message;
+    EXPECT_TRUE(commands_.knownOf("world").controllers.empty());
+    EXPECT_THAT(commands_.knownOf("controller").controllers, UnorderedElementsAre(Key("world")));
+    EXPECT_THAT(commands_.knownOf("arm").controllers,
+                UnorderedElementsAre(Key("world"), Pair("controller", "controller:7400")));
+    EXPECT_TRUE(commands_.knownOf("arm").servers.empty());
+    const auto& arm = cell->servers().front();
+    EXPECT_THAT(commands_.knownOf("composed").servers, UnorderedElementsAre(Pair("arm", arm.url)));
+    EXPECT_EQ(cell->virtualControllers().at("controller"), "controller:7400");
+}
+
+TEST_F(CellOfFakes, StartsArmsBeforeGrippers) {
+    add<cell::GripperServer>("hand");
+    add("arm");
+    const auto cell = start();
+    ASSERT_TRUE(cell) << cell.error().message;
+    EXPECT_THAT(ready_, ElementsAre("arm", "hand"));
 }
 
 TEST_F(CellOfFakes, StartsAServerThatEndedAgainAtItsPort) {

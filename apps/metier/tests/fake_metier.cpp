@@ -1,5 +1,5 @@
-// The test program as its own `metier serve` and `metier virtual run`: processes that say that they
-// are ready, write down what becomes of them, and behave as their name says.
+// The test program as the processes of a cell: `serve CELL NAME` and `virtual CELL NAME` say that
+// they are ready, write down what becomes of them, and behave as their name says.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,14 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "security.hpp"
-
 namespace metier::app {
-
-std::vector<std::string> securityArguments() {
-    return {};
-}
-
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -56,7 +49,7 @@ int serve(const Arguments& arguments) {
     sigaddset(&ends, SIGTERM);
     sigprocmask(SIG_BLOCK, &ends, nullptr);
     const auto& cell = arguments.at(1);
-    const auto name = valueOf(arguments, "--server");
+    const auto& name = arguments.at(2);
     const auto again = valueOf(arguments, "--again-at");
     note(cell, name + " starts" + (again.empty() ? "" : " at " + again));
     if (name == "refused") {
@@ -77,9 +70,9 @@ int runVirtual(const Arguments& arguments) {
     sigemptyset(&ends);
     sigaddset(&ends, SIGTERM);
     sigprocmask(SIG_BLOCK, &ends, nullptr);
-    const auto& cell = arguments.at(2);
-    const auto& name = arguments.at(3);
-    say("ready virtual " + valueOf(arguments, "--address"));
+    const auto& cell = arguments.at(1);
+    const auto& name = arguments.at(2);
+    say("ready virtual " + name + ":7400");
     awaitEnd();
     note(cell, name + " ends");
     return 0;

@@ -1,8 +1,7 @@
 // Which servers a command speaks to, and what servers publish of their audit log.
-#include "security.hpp"
+#include "command_identity.hpp"
 
 #include <gmock/gmock.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -32,22 +31,14 @@ fs::path freshFolder() {
 class Connections : public ::testing::Test {
 protected:
     Connections() {
-        be("--insecure-lab=false");
         opcua::ServerOptions options;
         options.port = 0;
         options.nodesets = {"device", "robotics", "metier"};
         server_ = opcua::Server::create(std::move(options)).value();
     }
-    ~Connections() override { be("--insecure-lab=false"); }
 
     void serve() const { ASSERT_TRUE(server_->start()); }
-    /// As the command line says it.
-    void be(const std::string& lab) const {
-        CLI::App app;
-        addSecurityOptions(app);
-        std::vector<std::string> arguments{lab, folder_.string(), "--security"};  // last first
-        app.parse(arguments);
-    }
+    void beALab() { security_.insecure_lab = true; }
     std::string url() const { return server_->endpointUrl(); }
     /// As a connection to a closed server was made.
     opcua::ClientOptions secured() const {
@@ -65,10 +56,13 @@ protected:
     }
     Result<void> secureNow() const {
         opcua::ClientOptions options;
-        return secure(options, url());
+        return command_.secure(options, url());
     }
 
     const fs::path folder_ = freshFolder();
+    Security security_{.folder = folder_};
+    const std::string user_;
+    const CommandIdentity command_{security_, user_};
     std::unique_ptr<opcua::Server> server_;
 };
 
@@ -79,23 +73,23 @@ TEST_F(Connections, AreMadeToNoOpenServerUnlessItIsALab) {
     EXPECT_EQ(refused.error().code, Errc::access_denied);
     EXPECT_THAT(refused.error().message,
                 AllOf(HasSubstr("has no security"), HasSubstr("--insecure-lab")));
-    be("--insecure-lab");
+    beALab();
     EXPECT_TRUE(secureNow());
     EXPECT_FALSE(fs::exists(folder_)) << "a lab needs no folder";
 }
 
 TEST_F(Connections, AreMadeToNoOpenServerWhereAClosedOneWas) {
     serve();
-    noteConnected(secured(), url());
+    command_.noteConnected(secured(), url());
     EXPECT_THAT(secureNow().error().message, HasSubstr("was closed before"));
-    be("--insecure-lab");
+    beALab();
     const auto refused = secureNow();
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message,
                 AllOf(HasSubstr("was closed before"), HasSubstr("metier trust forget " + url())));
-    noteServedOpen(url());
+    security_.noteServedOpen(url());
     EXPECT_TRUE(secureNow()) << "by the hand of its own user";
-    noteConnected(opcua::ClientOptions(), url());
+    command_.noteConnected(opcua::ClientOptions(), url());
     EXPECT_TRUE(secureNow()) << "an open connection proves nothing";
 }
 

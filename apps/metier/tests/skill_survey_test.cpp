@@ -5,13 +5,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <stdexcept>
 
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
-#include "security.hpp"
 
 namespace metier::app {
 namespace {
@@ -61,16 +59,12 @@ private:
 /// The servers of these tests have no security.
 class SkillSurvey : public ::testing::Test {
 protected:
-    SkillSurvey() {
-        CLI::App app;
-        addSecurityOptions(app);
-        app.parse(std::vector<std::string>{"--insecure-lab"});
-    }
+    const Identity lab_ = Identity::create({.insecure_lab = true}, "survey", {}).value();
 };
 
 TEST_F(SkillSurvey, TellsTypesWithAllThatTheyAreDerivedFrom) {
     const auto server = serveIiwa();
-    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}});
+    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}}, lab_);
     ASSERT_THAT(servers, SizeIs(1));
     ASSERT_TRUE(servers[0].skills) << servers[0].skills.error().message;
     EXPECT_FALSE(servers[0].skills->empty());
@@ -91,7 +85,7 @@ TEST_F(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
                                  {server->endpointUrl(), "", ""},
                                  {second.url(), "", ""},
                                  {"opc.tcp://127.0.0.1:1", "", ""}},
-                                3s);
+                                lab_, 3s);
     const auto took = std::chrono::steady_clock::now() - begin;
     ASSERT_THAT(servers, SizeIs(4));
     EXPECT_FALSE(servers[0].skills);
@@ -103,7 +97,7 @@ TEST_F(SkillSurvey, AsksAllAtTheSameTimeAndWaitsForNobodyLonger) {
 }
 
 TEST_F(SkillSurvey, OfNobodyIsEmpty) {
-    EXPECT_THAT(survey({}), IsEmpty());
+    EXPECT_THAT(survey({}, lab_), IsEmpty());
 }
 
 TEST_F(SkillSurvey, KnowsComposedSkillsByTheirName) {
@@ -117,7 +111,7 @@ TEST_F(SkillSurvey, KnowsComposedSkillsByTheirName) {
 
 TEST_F(SkillSurvey, TellsWhatSkillsAreForByTheirTypes) {
     const auto server = serveIiwa();
-    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}});
+    const auto servers = survey({{server->endpointUrl(), "iiwa", "test"}}, lab_);
     ASSERT_TRUE(servers[0].skills) << servers[0].skills.error().message;
     const auto& skills = *servers[0].skills;
     const auto line = std::find_if(skills.begin(), skills.end(), [](const auto& skill) {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "command_identity.hpp"
+#include "commands.hpp"
+
+namespace metier::app {
+
+/// What commands that speak to servers have in common. Main makes it, and the command line fills it
+/// before a command runs.
+struct CommandContext {
+    Security security;
+    std::string user;  ///< log in as this one; empty: as the application
+    CommandIdentity identity{security, user};
+    Exit exit = Exit::success;  ///< how the command ended
+};
+
+}  // namespace metier::app

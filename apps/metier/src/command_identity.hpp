@@ -1,0 +1,36 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "identity.hpp"
+
+namespace metier::app {
+
+/// Name of a command to the servers that it speaks to: a certificate that all commands share, and a
+/// user if one is named. Both are made, and the password asked for, when the first closed server
+/// needs them.
+///
+/// Threads: any, once the command line is read.
+class CommandIdentity final : public ConnectionSecurity {
+public:
+    /// \param security, user of the command line; both must outlive this
+    CommandIdentity(const Security& security, const std::string& user);
+
+    Result<void> secure(opcua::ClientOptions& options, const std::string& url) const override;
+    void noteConnected(const opcua::ClientOptions& options, const std::string& url) const override;
+    /// What is to be done about a connection that was refused; empty if that is not known.
+    std::string adviceOn(const opcua::Failure& refusal) const;
+
+private:
+    Result<void> prepare() const;
+
+    const Security& security_;
+    const std::string& user_;
+    mutable std::mutex mutex_;  // of what follows
+    mutable std::optional<opcua::Credentials> credentials_;
+    mutable std::optional<opcua::UserName> login_;
+};
+
+}  // namespace metier::app
