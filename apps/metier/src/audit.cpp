@@ -15,7 +15,7 @@
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
-#include "server_audit.hpp"
+#include "metier/server/audit_anchor.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
@@ -141,9 +141,9 @@ Result<std::string> anchorOfServer(const CommandIdentity& identity, const std::s
         return fail(client.error());
     }
     const auto metier = (*client)->namespaceIndex(opcua_skill::kMetierUri);
-    const auto variable = metier
-                              ? (*client)->translate(opcua::ids::kServer, {{*metier, kAuditAnchor}})
-                              : opcua::Answer<opcua::NodeId>(tl::unexpected(metier.error()));
+    const auto variable =
+        metier ? (*client)->translate(opcua::ids::kServer, {{*metier, server::kAuditAnchor}})
+               : opcua::Answer<opcua::NodeId>(tl::unexpected(metier.error()));
     if (!variable) {
         return fail(Errc::not_found, fmt::format("{}: keeps no audit log", url));
     }

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "metier/base/overloaded.hpp"
 #include "metier/base/random.hpp"
 #include "security_options.hpp"
 
@@ -24,7 +23,7 @@ std::string freeAddress() {
 }
 
 /// Options of `metier serve` for the servers that a server uses.
-void addUsed(const cell::ServerConfig& server, const CellAddresses& known,
+void addUsed(const cell::ServerConfig& server, const server::CellAddresses& known,
              std::vector<std::string>& command) {
     if (const auto* move = server.as<cell::MoveComponent>()) {
         const auto robot = known.servers.find(move->robot);
@@ -41,7 +40,7 @@ void addUsed(const cell::ServerConfig& server, const CellAddresses& known,
 }
 
 /// Options of `metier serve` for the virtual controllers of a server's devices.
-void addControllers(const cell::ServerConfig& server, const CellAddresses& known,
+void addControllers(const cell::ServerConfig& server, const server::CellAddresses& known,
                     std::vector<std::string>& command) {
     const auto give = [&](const cell::DriverChoice& driver, const char* option) {
         const auto found = known.controllers.find(driver.controller);
@@ -61,13 +60,13 @@ void addControllers(const cell::ServerConfig& server, const CellAddresses& known
 }  // namespace
 
 MetierCommands::MetierCommands(const cell::CellConfig& cell, Ports ports,
-                               const Security& security)
+                               const server::Security& security)
     : cell_(cell), ports_(ports), security_(securityArguments(security)) {}
 
-CellCommand MetierCommands::of(const cell::VirtualController& controller,
-                               const CellAddresses& known) const {
+server::CellCommand MetierCommands::of(const cell::VirtualController& controller,
+                                       const server::CellAddresses& known) const {
     const auto* world = cell_.world();
-    CellCommand command{{self(), "virtual", "run", cell_.file.string(), controller.name}};
+    server::CellCommand command{{self(), "virtual", "run", cell_.file.string(), controller.name}};
     auto& words = command.words;
     if (ports_ == Ports::free) {
         words.insert(words.end(), {"--address", freeAddress()});
@@ -78,9 +77,9 @@ CellCommand MetierCommands::of(const cell::VirtualController& controller,
     return command;
 }
 
-CellCommand MetierCommands::of(const cell::ServerConfig& server,
-                               const CellAddresses& known) const {
-    CellCommand command{{self()}};
+server::CellCommand MetierCommands::of(const cell::ServerConfig& server,
+                                       const server::CellAddresses& known) const {
+    server::CellCommand command{{self()}};
     auto& words = command.words;
     words.insert(words.end(), security_.begin(), security_.end());
     words.insert(words.end(),

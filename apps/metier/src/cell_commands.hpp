@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "cell_runner.hpp"
-#include "identity.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/server/cell_runner.hpp"
+#include "metier/server/identity.hpp"
 
 namespace metier::app {
 
@@ -17,15 +17,16 @@ enum class Ports {
 };
 
 /// The processes of a cell as commands of this program: `metier serve` and `metier virtual run`.
-class MetierCommands final : public CellCommands {
+class MetierCommands final : public server::CellCommands {
 public:
     /// \param cell must outlive this
-    MetierCommands(const cell::CellConfig& cell, Ports ports, const Security& security);
+    MetierCommands(const cell::CellConfig& cell, Ports ports,
+                   const server::Security& security);
 
-    CellCommand of(const cell::VirtualController& controller,
-                   const CellAddresses& known) const override;
-    CellCommand of(const cell::ServerConfig& server,
-                   const CellAddresses& known) const override;
+    server::CellCommand of(const cell::VirtualController& controller,
+                           const server::CellAddresses& known) const override;
+    server::CellCommand of(const cell::ServerConfig& server,
+                           const server::CellAddresses& known) const override;
 
 private:
     const cell::CellConfig& cell_;

@@ -10,7 +10,7 @@ namespace metier::app {
 /// What commands that speak to servers have in common. Main makes it, and the command line fills it
 /// before a command runs.
 struct CommandContext {
-    Security security;
+    server::Security security;
     std::string user;  ///< log in as this one; empty: as the application
     CommandIdentity identity{security, user};
     Exit exit = Exit::success;  ///< how the command ended

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "folders.hpp"
 #include "metier/opcua/discovery.hpp"
 #include "metier/opcua/text.hpp"
+#include "metier/server/user_folders.hpp"
 #include "password.hpp"
 
 namespace metier::app {
 namespace {
 
-Error openServer(const Security& security, const std::string& url) {
+Error openServer(const server::Security& security, const std::string& url) {
     if (security.wasClosed(url)) {
         return {Errc::access_denied,
                 fmt::format("this server was closed before, and now one without security answers "
@@ -38,7 +38,7 @@ Result<bool> offersNoSecurity(const std::string& url, std::chrono::milliseconds 
 
 }  // namespace
 
-CommandIdentity::CommandIdentity(const Security& security, const std::string& user)
+CommandIdentity::CommandIdentity(const server::Security& security, const std::string& user)
     : security_(security), user_(user) {}
 
 Result<void> CommandIdentity::secure(opcua::ClientOptions& options, const std::string& url) const {
@@ -62,8 +62,8 @@ Result<void> CommandIdentity::prepare() const {
     if (!credentials_) {
         auto made = security_.credentials(
             "command", {.application_name = "metier command",
-                        .application_uri = fmt::format("urn:{}:metier:command", hostName()),
-                        .hosts = {hostName()}});
+                        .application_uri = fmt::format("urn:{}:metier:command", server::hostName()),
+                        .hosts = {server::hostName()}});
         if (!made) {
             return fail(made.error());
         }

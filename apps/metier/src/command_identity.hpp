@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "identity.hpp"
+#include "metier/server/identity.hpp"
 
 namespace metier::app {
 
@@ -13,10 +13,10 @@ namespace metier::app {
 /// needs them.
 ///
 /// Threads: any, once the command line is read.
-class CommandIdentity final : public ConnectionSecurity {
+class CommandIdentity final : public server::ConnectionSecurity {
 public:
     /// \param security, user of the command line; both must outlive this
-    CommandIdentity(const Security& security, const std::string& user);
+    CommandIdentity(const server::Security& security, const std::string& user);
 
     Result<void> secure(opcua::ClientOptions& options, const std::string& url) const override;
     void noteConnected(const opcua::ClientOptions& options, const std::string& url) const override;
@@ -26,7 +26,7 @@ public:
 private:
     Result<void> prepare() const;
 
-    const Security& security_;
+    const server::Security& security_;
     const std::string& user_;
     mutable std::mutex mutex_;  // of what follows
     mutable std::optional<opcua::Credentials> credentials_;

@@ -16,7 +16,7 @@
 #include "metier/opcua/search.hpp"
 #include "metier/link/start_watch.hpp"
 #include "metier/link/stop_signal.hpp"
-#include "ready_line.hpp"
+#include "metier/server/ready_line.hpp"
 #include "recorded.hpp"
 #include "robot_argument.hpp"
 #include "security_options.hpp"
@@ -172,7 +172,7 @@ Result<Exit> serve(const DashboardOptions& options, const CommandContext& contex
         return page.error().code == Errc::invalid_argument ? Result<Exit>(reportUsage(page.error()))
                                                            : fail(page.error());
     }
-    fmt::print("{}\n", readyLine(urlOf(options.address, (*page)->port())));
+    fmt::print("{}\n", server::readyLine(urlOf(options.address, (*page)->port())));
     std::fflush(stdout);
     if (options.discovery.empty() && !options.mdns) {
         stop.wait();

@@ -35,26 +35,26 @@ struct DemoOptions {
 };
 
 /// Until Enter; Ctrl-C ends the program, and the cell with it.
-void waitForEnter(CellRunner& cell, const Security& security) {
+void waitForEnter(server::CellRunner& cell, const server::Security& security) {
     fmt::print(
         "\nThe cell stays up: connect UaExpert to an address above, or try `metier{0} list URL` "
         "and\n"
         "`metier{0} run URL SKILL --fields` in another terminal. Enter or Ctrl-C ends it.\n",
         security.insecure_lab ? " --insecure-lab" : "");
     std::fflush(stdout);
-    cell.lookAfter(STDIN_FILENO, OnFailure::restart,
+    cell.lookAfter(STDIN_FILENO, server::OnFailure::restart,
                    [](const std::string& text) { fmt::print(stderr, "metier: {}\n", text); });
 }
 
 /// A cell that runs.
 struct DemoCell {
-    CellRunner servers;
+    server::CellRunner servers;
     int second_tries = 0;
 };
 
 /// Says what is wrong unless it runs.
 tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOptions& options,
-                                       const Security& security) {
+                                       const server::Security& security) {
     const auto cell = cell::loadCell(file);
     if (!cell) {
         return tl::unexpected(cell.error().code == Errc::invalid_argument
@@ -64,8 +64,8 @@ tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOption
     fmt::print(stderr, "the servers of the cell '{}':\n", cell->name);
     const MetierCommands commands(*cell, options.free_ports ? Ports::free : Ports::configured,
                                   security);
-    auto started =
-        CellRunner::start(*cell, commands, kNoDescriptor, [](const CellRunner::Running& server) {
+    auto started = server::CellRunner::start(
+        *cell, commands, kNoDescriptor, [](const server::CellRunner::Running& server) {
             fmt::print(stderr, "  {:<16} {}\n", server.name, server.url);
         });
     if (!started) {
@@ -74,7 +74,7 @@ tl::expected<DemoCell, Exit> startCell(const std::string& file, const DemoOption
     return DemoCell{std::move(*started), secondTries(*cell)};
 }
 
-std::vector<std::string> addressesOf(const CellRunner& cell) {
+std::vector<std::string> addressesOf(const server::CellRunner& cell) {
     std::vector<std::string> urls;
     for (const auto& server : cell.servers()) {
         urls.push_back(server.url);

@@ -6,13 +6,12 @@
 #include <optional>
 #include <set>
 
-#include "candidate.hpp"
 #include "command_context.hpp"
 #include "metier/opcua/search.hpp"
 #include "metier/opcua/text.hpp"
+#include "metier/server/candidate.hpp"
+#include "metier/server/skill_survey.hpp"
 #include "printable.hpp"
-#include "skill_survey.hpp"
-#include "used_arms.hpp"
 
 namespace metier::app {
 namespace {
@@ -22,7 +21,7 @@ constexpr const char* kLocalDiscovery = "opc.tcp://127.0.0.1:4840";
 
 struct FindOptions {
     std::string task;  // a type or a term
-    ArmWishes wishes;
+    server::ArmFigures wishes;
     std::vector<std::string> at;
     std::vector<std::string> discovery;
     bool json = false;
@@ -44,14 +43,15 @@ opcua::Sighting searchFor(const FindOptions& options) {
     return sighting;
 }
 
-std::string nameOf(const SurveyedSkill& skill) {
+std::string nameOf(const server::SurveyedSkill& skill) {
     const auto controller = skill.address.controllerName();
     return controller.empty() ? skill.address.name : controller + "/" + skill.address.name;
 }
 
 /// Why a skill is a candidate, and how it is as to each wish.
-std::vector<std::string> reasonsOf(const SurveyedSkill& skill,
-                                   const std::optional<std::string>& term, const Verdict& verdict) {
+std::vector<std::string> reasonsOf(const server::SurveyedSkill& skill,
+                                   const std::optional<std::string>& term,
+                                   const server::Verdict& verdict) {
     std::vector<std::string> reasons;
     if (term) {
         reasons.push_back(fmt::format("term {}", *term));
@@ -62,7 +62,7 @@ std::vector<std::string> reasonsOf(const SurveyedSkill& skill,
 }
 
 /// What the skills of a server are for, each term once.
-std::vector<std::string> termsOf(const std::vector<SurveyedSkill>& skills) {
+std::vector<std::string> termsOf(const std::vector<server::SurveyedSkill>& skills) {
     std::set<std::string> terms;
     for (const auto& skill : skills) {
         terms.insert(skill.terms.begin(), skill.terms.end());
@@ -77,7 +77,7 @@ nlohmann::json orNull(const std::optional<double>& number) {
 /// Prints what was found; counts what fits.
 class Findings {
 public:
-    Findings(const FindOptions& options, const std::vector<SurveyedServer>& servers)
+    Findings(const FindOptions& options, const std::vector<server::SurveyedServer>& servers)
         : options_(options), servers_(servers) {}
 
     void addServers() {
@@ -123,8 +123,8 @@ private:
         const auto& skills = *servers_[server].skills;
         bool any = false;
         for (std::size_t skill = 0; skill < skills.size(); ++skill) {
-            auto term = termOf(skills[skill], options_.task);
-            if (term || isA(skills[skill], options_.task)) {
+            auto term = server::termOf(skills[skill], options_.task);
+            if (term || server::isA(skills[skill], options_.task)) {
                 addCandidate(server, skill, term);
                 any = true;
             }
@@ -145,8 +145,8 @@ private:
                       const std::optional<std::string>& term) {
         const auto& server = servers_[index].server;
         const auto& skill = (*servers_[index].skills)[skill_index];
-        const auto figures = figuresOf(servers_, index, skill_index);
-        const auto verdict = judge(options_.wishes, figures);
+        const auto figures = server::figuresOf(servers_, index, skill_index);
+        const auto verdict = server::judge(options_.wishes, figures);
         const auto reasons = reasonsOf(skill, term, verdict);
         fitting_ += verdict.fits ? 1 : 0;
         say(server, fmt::format("{} {}: {}", nameOf(skill), verdict.fits ? "fits" : "does not fit",
@@ -168,7 +168,7 @@ private:
     }
 
     const FindOptions& options_;
-    const std::vector<SurveyedServer>& servers_;
+    const std::vector<server::SurveyedServer>& servers_;
     int fitting_ = 0;
     nlohmann::json candidates_ = nlohmann::json::array();
     nlohmann::json others_ = nlohmann::json::array();
@@ -178,7 +178,7 @@ private:
 
 Exit runFind(const FindOptions& options, const CommandIdentity& identity) {
     const auto sighting = searchFor(options);
-    const auto servers = survey(sighting.servers, identity);
+    const auto servers = server::survey(sighting.servers, identity);
     Findings findings(options, servers);
     for (const auto& problem : sighting.problems) {
         findings.addProblem(problem);

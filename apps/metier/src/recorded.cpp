@@ -5,13 +5,13 @@
 
 #include <algorithm>
 
-#include "folders.hpp"
 #include "metier/base/text.hpp"
+#include "metier/server/user_folders.hpp"
 #include "robot_argument.hpp"
 
 namespace metier::app {
 std::string defaultRecords() {
-    const auto folder = userStateFolder();
+    const auto folder = server::userStateFolder();
     return folder.empty() ? std::string() : (folder / "records.db").string();
 }
 

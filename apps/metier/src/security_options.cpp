@@ -16,7 +16,7 @@ void addSecurityOptions(CLI::App& app, CommandContext& context) {
                    "METIER_PASSWORD");
 }
 
-std::vector<std::string> securityArguments(const Security& security) {
+std::vector<std::string> securityArguments(const server::Security& security) {
     std::vector<std::string> arguments;
     if (security.insecure_lab) {
         arguments.emplace_back("--insecure-lab");
@@ -27,14 +27,15 @@ std::vector<std::string> securityArguments(const Security& security) {
     return arguments;
 }
 
-void printLabNotice(const Security& security) {
+void printLabNotice(const server::Security& security) {
     if (security.insecure_lab) {
         fmt::print(stderr,
                    "INSECURE LAB: no encryption, and everybody on this machine may command\n");
     }
 }
 
-void warnOfLab(const Security& security, const std::string& server, const std::string& url) {
+void warnOfLab(const server::Security& security, const std::string& server,
+               const std::string& url) {
     if (security.insecure_lab) {
         spdlog::warn("INSECURE LAB: {} at {} has no encryption and lets anonymous users in", server,
                      url);

@@ -8,13 +8,13 @@
 #include <optional>
 #include <utility>
 
-#include "folders.hpp"
 #include "metier/link/start_watch.hpp"
 #include "metier/link/stop_signal.hpp"
-#include "ready_line.hpp"
+#include "metier/server/ready_line.hpp"
+#include "metier/server/server.hpp"
+#include "metier/server/user_folders.hpp"
 #include "recorded.hpp"
 #include "security_options.hpp"
-#include "server.hpp"
 
 namespace metier::app {
 namespace {
@@ -44,7 +44,7 @@ std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t por
     if (!options.state.empty()) {
         return options.state;
     }
-    const auto folder = port == 0 ? std::filesystem::path() : userStateFolder();
+    const auto folder = port == 0 ? std::filesystem::path() : server::userStateFolder();
     std::error_code error;
     if (!folder.empty() && !std::filesystem::create_directories(folder, error) && error) {
         spdlog::warn("{}: {}; after a restart a repeated StartWith may start again",
@@ -156,9 +156,9 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
 
 /// Serves until the signal; then it brakes what moves and ends.
 Exit serveUntil(const link::StopSignal& stop, const cell::ServerConfig& config,
-                const Identity& identity, const ServeOptions& options) {
+                const server::Identity& identity, const ServeOptions& options) {
     auto starting = std::make_unique<link::StartWatch>(stop);
-    const auto server = start(config, {identity, device::drivers(), stop});
+    const auto server = server::start(config, {identity, device::drivers(), stop});
     starting.reset();
     if (!server) {
         return report(server.error());
@@ -166,14 +166,14 @@ Exit serveUntil(const link::StopSignal& stop, const cell::ServerConfig& config,
     if (!options.lab_is_known) {
         warnOfLab(identity.security(), "metier " + options.server, (*server)->url());
     }
-    fmt::print("{}\n", readyLine((*server)->url()));
+    fmt::print("{}\n", server::readyLine((*server)->url()));
     std::fflush(stdout);
     stop.wait();
     link::StopSignal::endWithin(kLongestEnd);
     return Exit::success;
 }
 
-Exit runServe(const ServeOptions& options, const Security& security) {
+Exit runServe(const ServeOptions& options, const server::Security& security) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
     const auto cell = cell::loadCell(options.cell);
@@ -184,7 +184,7 @@ Exit runServe(const ServeOptions& options, const Security& security) {
     if (!config) {
         return reportUsage(config.error());
     }
-    const auto identity = identityOf(*config, security);
+    const auto identity = server::identityOf(*config, security);
     if (!identity) {
         return report(identity.error());
     }

@@ -7,10 +7,10 @@
 #include <mutex>
 #include <utility>
 
-#include "kinematics_conversion.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/motion/kinematics.hpp"
 #include "metier/path_evaluation/placement.hpp"
+#include "metier/server/kinematics_conversion.hpp"
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "second_try.hpp"
@@ -111,7 +111,7 @@ private:
         if (!joints) {
             return fail(joints.error());
         }
-        const auto chain = toChain(*data, *joints);
+        const auto chain = server::toChain(*data, *joints);
         if (!chain) {
             return fail(chain.error());
         }

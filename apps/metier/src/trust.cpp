@@ -28,7 +28,7 @@ struct Place {
     TrustStore store;
 };
 
-Result<Place> openPlace(const Security& security) {
+Result<Place> openPlace(const server::Security& security) {
     auto folder = security.openFolder();
     if (!folder) {
         return fail(folder.error());
@@ -155,7 +155,7 @@ Result<void> forget(Place& place, const TrustOptions& options) {
 
 using Action = Result<void> (*)(Place&, const TrustOptions&);
 
-Exit runAction(Action action, const TrustOptions& options, const Security& security) {
+Exit runAction(Action action, const TrustOptions& options, const server::Security& security) {
     auto place = openPlace(security);
     const auto done = place ? action(*place, options) : fail(place.error());
     return done ? Exit::success : report(done.error());

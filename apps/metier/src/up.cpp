@@ -17,10 +17,10 @@ struct UpOptions {
     std::string cell;
     bool free_ports = false;
     std::string endpoints;
-    OnFailure on_failure = OnFailure::restart;
+    server::OnFailure on_failure = server::OnFailure::restart;
 };
 
-Result<void> writeEndpoints(const std::string& file, const CellRunner& cell) {
+Result<void> writeEndpoints(const std::string& file, const server::CellRunner& cell) {
     auto servers = nlohmann::json::array();
     for (const auto& server : cell.servers()) {
         servers.push_back({{"name", server.name}, {"url", server.url}});
@@ -42,7 +42,8 @@ void say(const std::string& text) {
     std::fputs(fmt::format("metier: {}\n", printable(text)).c_str(), stderr);
 }
 
-Exit lookAfter(CellRunner& cell, const link::StopSignal& stop, OnFailure on_failure) {
+Exit lookAfter(server::CellRunner& cell, const link::StopSignal& stop,
+               server::OnFailure on_failure) {
     fmt::print("the cell is up; Ctrl-C ends it\n");
     std::fflush(stdout);
     if (const auto ended = cell.lookAfter(stop.descriptor(), on_failure, say)) {
@@ -52,7 +53,7 @@ Exit lookAfter(CellRunner& cell, const link::StopSignal& stop, OnFailure on_fail
     return Exit::success;
 }
 
-Exit runUp(const UpOptions& options, const Security& security) {
+Exit runUp(const UpOptions& options, const server::Security& security) {
     const link::StopSignal stop;
     link::StopSignal::outliveOutput();
     const auto config = cell::loadCell(options.cell);
@@ -62,11 +63,11 @@ Exit runUp(const UpOptions& options, const Security& security) {
     printLabNotice(security);
     const MetierCommands commands(*config, options.free_ports ? Ports::free : Ports::configured,
                                   security);
-    auto cell = CellRunner::start(*config, commands, stop.descriptor(),
-                                  [](const CellRunner::Running& server) {
-                                      fmt::print("{:<16} {}\n", server.name, server.url);
-                                      std::fflush(stdout);
-                                  });
+    auto cell = server::CellRunner::start(*config, commands, stop.descriptor(),
+                                          [](const server::CellRunner::Running& server) {
+                                              fmt::print("{:<16} {}\n", server.name, server.url);
+                                              std::fflush(stdout);
+                                          });
     if (!cell) {
         return report(cell.error());
     }
@@ -96,7 +97,7 @@ void addUp(CLI::App& app, CommandContext& context) {
         "--endpoints", options->endpoints,
         "Write the names and addresses of servers and virtual controllers to this JSON file");
     command->add_flag_callback(
-        "--exit-on-failure", [options] { options->on_failure = OnFailure::end_cell; },
+        "--exit-on-failure", [options] { options->on_failure = server::OnFailure::end_cell; },
         "End the whole cell when one of its processes ends by itself; exit status 1");
     command->callback([options, &context] { context.exit = runUp(*options, context.security); });
 }

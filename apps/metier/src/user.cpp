@@ -47,7 +47,7 @@ Result<void> remove(UserTable& users, const UserOptions& options) {
 
 using Action = Result<void> (*)(UserTable&, const UserOptions&);
 
-Result<void> act(Action action, const UserOptions& options, const Security& security) {
+Result<void> act(Action action, const UserOptions& options, const server::Security& security) {
     const auto folder = security.openFolder();
     if (!folder) {
         return fail(folder.error());

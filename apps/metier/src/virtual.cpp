@@ -14,8 +14,8 @@
 #include "metier/link/tcp_link.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/link/stop_signal.hpp"
+#include "metier/server/ready_line.hpp"
 #include "metier/virtual_controller/host.hpp"
-#include "ready_line.hpp"
 
 namespace metier::app {
 namespace {
@@ -68,8 +68,8 @@ Result<Exit> runController(const VirtualRunOptions& options, const link::StopSig
     if (!host) {
         return fail(host.error());
     }
-    fmt::print("{}\n",
-               readyVirtualLine(options.address.empty() ? controller->address : options.address));
+    fmt::print("{}\n", server::readyVirtualLine(options.address.empty() ? controller->address
+                                                                        : options.address));
     std::fflush(stdout);
     std::jthread running([&] { (*host)->run(); });
     stop.wait();

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace metier::server {
+
+/// The one line a server prints to standard output, once clients may connect.
+inline std::string readyLine(std::string_view url) {
+    return "ready " + std::string(url);
+}
+
+/// The same of a virtual controller.
+inline std::string readyVirtualLine(std::string_view address) {
+    return "ready virtual " + std::string(address);
+}
+
+/// The address in a ready line of either kind; nothing if it is none.
+inline std::optional<std::string> addressOfReadyLine(std::string_view line) {
+    constexpr std::string_view kServer = "ready opc.tcp://";
+    constexpr std::string_view kVirtual = "ready virtual ";
+    if (line.starts_with(kServer)) {
+        return std::string(line.substr(std::string_view("ready ").size()));
+    }
+    if (line.starts_with(kVirtual)) {
+        return std::string(line.substr(kVirtual.size()));
+    }
+    return std::nullopt;
+}
+
+}  // namespace metier::server

@@ -1,0 +1,110 @@
+#include "host/server_audit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "metier/opcua_skill/namespaces.hpp"
+#include "metier/server/audit_anchor.hpp"
+#include "metier/security/users.hpp"
+
+namespace metier::server {
+namespace {
+
+security::Entry entryOf(const opcua::AuditRecord& record) {
+    security::Entry entry{record.time, record.event, {}};
+    const auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty()) {
+            entry.fields.emplace_back(name, value);
+        }
+    };
+    const auto& session = record.session;
+    const bool of_client = !session.id.isNull();
+    add("user", session.user);
+    add("role", of_client ? std::string(security::toString(session.role)) : "");
+    add("application", session.application_name);
+    add("application_uri", session.application_uri);
+    add("thumbprint", session.thumbprint);
+    add("session", of_client ? session.id.toString() : session.name);
+    add("object", record.object_name);
+    add("object_id", record.object.isNull() ? "" : record.object.toString());
+    add("method", record.method_name == record.event ? "" : record.method_name);
+    add("inputs", fmt::format("{}", fmt::join(record.inputs, "; ")));
+    add("status", record.status.name());
+    add("text", record.text);
+    return entry;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const cell::ServerConfig& config,
+                                                       opcua::ServerOptions& options) {
+    if (config.state_folder.empty()) {
+        const auto level = options.security ? spdlog::level::warn : spdlog::level::info;
+        spdlog::log(level, "{}: no state folder, so no audit log", config.name);
+        return nullptr;
+    }
+    std::unique_ptr<ServerAudit> audit(new ServerAudit(config.name));
+    auto log = security::AuditLog::open(
+        {.file = config.state_folder / "audit" /
+                 fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
+         .on_health = [&audit = *audit](security::Health health, const std::string& why) {
+             audit.tell(health, why);
+         }});
+    if (!log) {
+        return fail(log.error());
+    }
+    audit->log_ = std::move(*log);
+    options.on_audit = [&log = *audit->log_,
+                        before = std::move(options.on_audit)](const opcua::AuditRecord& record) {
+        log.append(entryOf(record));
+        if (before) {
+            before(record);
+        }
+    };
+    return audit;
+}
+
+Result<void> ServerAudit::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
+    if (auto published = publishAnchor(server.nodes()); !published) {
+        return published;
+    }
+    return alarm_.follow(server, std::move(executor));
+}
+
+Result<void> ServerAudit::publishAnchor(opcua::AddressSpace& nodes) {
+    const auto metier = nodes.namespaceIndex(opcua_skill::kMetierUri);
+    if (!metier) {
+        return fail(metier.error());
+    }
+    const auto variable = nodes.addVariable(
+        {.node = {.id = {},
+                  .parent = opcua::ids::kServer,
+                  .browse_name = {*metier, kAuditAnchor},
+                  .description = {"en", "Chain value of the newest line of the audit log"}},
+         .data_type = opcua::ids::kString,
+         .value = opcua::Value::of(log_->anchor())});
+    if (!variable) {
+        return fail(variable.error());
+    }
+    return nodes.setDataSource(
+        *variable, {.read =
+                        [&log = *log_](const opcua::Session& /*session*/) {
+                            return opcua::DataValue{opcua::Value::of(log.anchor()), {}, {}, {}};
+                        },
+                    .write = {}});
+}
+
+void ServerAudit::tell(security::Health health, const std::string& why) {
+    if (health == security::Health::failing) {
+        alarm_.tell(
+            ServerAlarm::Kind::begins,
+            fmt::format("the audit log cannot be written: {}; up to 10000 entries wait", why));
+    } else {
+        alarm_.tell(ServerAlarm::Kind::over, "the audit log is written again");
+    }
+}
+
+}  // namespace metier::server

@@ -1,0 +1,181 @@
+#include "kinds/arm_server.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "host/device_opening.hpp"
+#include "kinds/own_compositions.hpp"
+#include "metier/motion/frame.hpp"
+#include "metier/robot_skills/gripper_skills.hpp"
+
+namespace metier::server {
+namespace {
+
+/// Objects for a robot without a NodeSet of its own.
+opcua_skill::MotionDeviceSystemSpec specOf(const cell::ServerConfig& config,
+                                           const motion::RobotModel& model) {
+    opcua_skill::MotionDeviceSystemSpec spec;
+    spec.name = config.name;
+    spec.description = fmt::format("{} {}", model.maker(), model.product());
+    spec.manufacturer = model.maker();
+    spec.model = model.product();
+    for (const auto& joint : model.chain().joints) {
+        spec.axis_names.push_back(joint.name);
+    }
+    return spec;
+}
+
+std::vector<std::string> nodesetsOf(const cell::ArmServer& config) {
+    if (config.nodeset.empty()) {
+        return {};
+    }
+    return {config.nodeset};
+}
+
+/// The model with the tools of the cell besides its own.
+Result<motion::RobotModel> withTools(const motion::RobotModel& model,
+                                     const std::vector<cell::Tool>& tools) {
+    auto chain = model.chain();
+    for (const auto& tool : tools) {
+        const auto& f = tool.frame;
+        chain.tools.push_back(
+            {tool.name, motion::toPose(Frame{f[0], f[1], f[2], f[3], f[4], f[5]}), tool.mass});
+    }
+    return model.withChain(std::move(chain));
+}
+
+/// \return nothing if the cell file names none
+Result<std::optional<device::OpenDevice>> openSensor(const std::string& server,
+                                                     const cell::ArmServer& config,
+                                                     std::span<const device::Driver> drivers) {
+    if (!config.force_torque_sensor) {
+        return std::optional<device::OpenDevice>();
+    }
+    auto sensor = openDevice(*config.force_torque_sensor, {server, drivers});
+    if (!sensor) {
+        return fail(sensor.error());
+    }
+    if (sensor->force_torque_sensor == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the driver \"{}\" is not one of a force-torque sensor", server,
+                                config.force_torque_sensor->type));
+    }
+    return std::optional(std::move(*sensor));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& config,
+                                                    const cell::ArmServer& arm,
+                                                    const Context& context) {
+    auto loaded = motion::RobotModel::load(arm.model).and_then(
+        [&](const auto& model) { return withTools(model, arm.tools); });
+    if (!loaded) {
+        return fail(loaded.error());
+    }
+    auto model = std::make_unique<const motion::RobotModel>(std::move(*loaded));
+    auto device = openDevice(arm.driver, {config.name, context.drivers, model.get()});
+    if (!device) {
+        return fail(device.error());
+    }
+    if (device->arm == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
+                                arm.driver.type));
+    }
+    auto host = SkillHost::create(config, context.identity, nodesetsOf(arm));
+    if (!host) {
+        return fail(host.error());
+    }
+    auto sensor = openSensor(config.name, arm, context.drivers);
+    if (!sensor) {
+        return fail(sensor.error());
+    }
+    awaitConnection(*device);
+    std::unique_ptr<ArmServer> server(
+        new ArmServer(std::move(model), std::move(*device), std::move(*sensor), std::move(*host)));
+    if (auto offered = server->offer(config, arm); !offered) {
+        return fail(offered.error());
+    }
+    if (auto started = server->host_->start(); !started) {
+        return fail(started.error());
+    }
+    return server;
+}
+
+ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
+                     device::OpenDevice device, std::optional<device::OpenDevice> sensor,
+                     std::unique_ptr<SkillHost> host)
+    : file_model_(std::move(file_model)),
+      device_(std::move(device)),
+      sensor_(std::move(sensor)),
+      model_(device_.model ? *device_.model : *file_model_),
+      host_(std::move(host)) {}
+
+Result<void> ArmServer::offer(const cell::ServerConfig& config,
+                              const cell::ArmServer& arm) {
+    const auto system = arm.nodeset.empty() ? opcua_skill::publishMotionDeviceSystem(
+                                                  host_->nodes(), specOf(config, model_))
+                                            : opcua_skill::findMotionDeviceSystem(host_->nodes());
+    if (!system) {
+        return fail(system.error());
+    }
+    if (auto offered = offerSkills(*system, arm); !offered) {
+        return offered;
+    }
+    if (auto offered = offerOwnCompositions(*host_, system->skills,
+                                            {.server = config.name, .files = arm.compositions});
+        !offered) {
+        return offered;
+    }
+    if (auto offered = host_->offerControl(system->controller); !offered) {
+        return offered;
+    }
+    host_->haltOnLossOf(*device_.arm);
+    if (device_.gripper != nullptr) {
+        host_->stopOnStall(*device_.gripper);
+        if (auto shown = host_->publishGripper(system->controller, *device_.gripper); !shown) {
+            return shown;
+        }
+    }
+    // A controller that measures the wrench itself needs no sensor in the cell file.
+    return host_->publishArm(*system,
+                             {*device_.arm, model_, arm.payload,
+                              sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor,
+                              stream_report_, stopping_report_});
+}
+
+Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
+                                    const cell::ArmServer& config) {
+    // What a controller that plans cannot stop by itself, its own measurement can.
+    auto* const own_sensor = device_.planner != nullptr ? device_.force_torque_sensor : nullptr;
+    auto arm = robot_skills::makeArmSkills(
+        {.arm = *device_.arm,
+         .planner = device_.planner,
+         .sensor = sensor_ ? sensor_->force_torque_sensor : own_sensor},
+        model_, host_->clock(), {.longest_silence = config.stream_silence});
+    if (!arm) {
+        return fail(arm.error());
+    }
+    stream_report_ = arm->stream_report;
+    stopping_report_ = arm->stopping_report;
+    auto skills = std::move(arm->moves);
+    skills.push_back(std::move(arm->position_stream));
+    if (device_.gripper != nullptr) {
+        // A gripper of the arm's own controller is moved by it, as the axes are.
+        auto gripper = robot_skills::makeGripperSkills(*device_.gripper);
+        std::move(gripper.skills.begin(), gripper.skills.end(), std::back_inserter(skills));
+    }
+    auto offered = sharing(arm->resource, std::move(skills));
+    if (device_.gripper != nullptr) {
+        offered.push_back(
+            {robot_skills::makeHoldSkill(*device_.gripper, host_->skills().executor()), nullptr});
+    }
+    return host_->offerSkills(system.skills, config.skills, std::move(offered));
+}
+
+}  // namespace metier::server

@@ -1,0 +1,356 @@
+#include "kinds/composition_server.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "finding/arm_figures.hpp"
+#include "finding/skill_matching.hpp"
+#include "kinds/composition_files.hpp"
+#include "metier/composition/composition.hpp"
+#include "metier/composition/local_child.hpp"
+#include "metier/composition/sequence_skill.hpp"
+#include "metier/opcua_skill/used_skills.hpp"
+
+namespace metier::server {
+
+using composition::Definition;
+
+namespace {
+
+constexpr std::chrono::seconds kLongestSearch{20};
+constexpr std::chrono::milliseconds kSearchPause{200};
+
+/// "ptp, line"
+std::string namesOf(const std::vector<composition::Use>& uses) {
+    std::string names;
+    for (const auto& use : uses) {
+        names += (names.empty() ? "" : ", ") + use.alias;
+    }
+    return names;
+}
+
+}  // namespace
+
+/// Finds the children of one definition and what to publish of them.
+class CompositionServer::Cast {
+public:
+    Cast(CompositionServer& server, const Definition& definition)
+        : server_(server),
+          definition_(definition),
+          origin_(fmt::format("{}.{}", server.name_, definition.name)) {}
+
+    const std::string& origin() const noexcept { return origin_; }
+
+    /// Errors: a line "file:line: uses.ALIAS: why" for each use that nothing serves; cancelled (a
+    ///         stop was asked for).
+    Result<void> find(const link::StopSignal& stop) {
+        std::string problems;
+        for (const auto& use : definition_.uses) {
+            if (const auto found = findOne(use); !found) {
+                problems +=
+                    fmt::format("{}{}:{}: uses.{}: {}", problems.empty() ? "" : "\n",
+                                definition_.file, use.line, use.alias, found.error().message);
+            }
+        }
+        return problems.empty() ? discover(stop) : fail(Errc::invalid_argument, problems);
+    }
+
+    /// What was found by discovery, to be kept bound.
+    void keepBonds(composition::SequenceSkill& skill, const opcua::NodeId& node) {
+        for (auto& bond : bonds_) {
+            bond.skill = &skill;
+            bond.node = node;
+            server_.bonds_.push_back(std::move(bond));
+        }
+    }
+
+    composition::Descriptions descriptions() const {
+        composition::Descriptions result;
+        for (const auto& [alias, child] : children_) {
+            result.emplace(alias, child->description());
+        }
+        return result;
+    }
+    std::map<std::string, std::unique_ptr<composition::Child>> takeChildren() {
+        return std::move(children_);
+    }
+
+    Result<void> publish(const opcua::NodeId& skills, const std::string& name) {
+        auto& nodes = server_.host_->nodes();
+        const auto user = opcua_skill::findSkillObject(nodes, skills, name);
+        if (!user) {
+            return fail(user.error());
+        }
+        for (const auto& used : remote_) {
+            if (auto published = opcua_skill::publishUse(nodes, *user, used); !published) {
+                return published;
+            }
+        }
+        for (const auto& used : local_) {
+            const auto object = opcua_skill::findSkillObject(nodes, skills, used);
+            if (!object) {
+                return fail(object.error());
+            }
+            if (auto published = opcua_skill::publishUse(nodes, *user, *object); !published) {
+                return published;
+            }
+        }
+        return {};
+    }
+
+private:
+    Result<void> findOne(const composition::Use& use) {
+        const bool own = use.server.empty() || use.server == server_.name_;
+        for (auto* program : server_.host_->skills().programs()) {
+            if (own && program->description().type == use.type) {
+                return checkOwn(use).map([&] { useLocal(use, *program); });
+            }
+        }
+        return findRemote(use);
+    }
+
+    void useLocal(const composition::Use& use, skill::Program& program) {
+        const auto& name = definition_.name;
+        children_.emplace(use.alias, std::make_unique<composition::LocalChild>(
+                                         program, server_.host_->skills().executor(),
+                                         skill::Caller{.session_id = "composition " + name,
+                                                       .client_name = name,
+                                                       .of_this_server = true}));
+        const auto& used = program.description().name;
+        if (std::find(local_.begin(), local_.end(), used) == local_.end()) {
+            local_.push_back(used);
+        }
+    }
+
+    Result<void> findRemote(const composition::Use& use) {
+        auto offered = choose(use, server_.offered_);
+        if (!offered && offered.error().code == Errc::not_found && server_.config_.discover) {
+            sought_.push_back(use);
+            return {};
+        }
+        if (!offered) {
+            return fail(std::move(offered.error()));
+        }
+        auto& remote = *server_.servers_[offered->index];
+        auto child = remote.use(offered->address, origin_);
+        if (!child) {
+            return fail(std::move(child.error()));
+        }
+        children_.emplace(use.alias, std::move(*child));
+        note(use.alias, remote, offered->address);
+        return {};
+    }
+
+    void note(const std::string& alias, const client::RemoteServer& remote,
+              const client::SkillAddress& skill) {
+        remote_.push_back(
+            {alias, remote.url(), skill.name, skill.type_name, skill.controllerName()});
+    }
+
+    /// Others may be starting at this moment.
+    Result<void> discover(const link::StopSignal& stop) {
+        if (!sought_.empty()) {
+            spdlog::info("{} seeks {}", definition_.name, namesOf(sought_));
+        }
+        const auto deadline = std::chrono::steady_clock::now() + kLongestSearch;
+        while (!sought_.empty()) {
+            const auto servers = discoverServers(server_.discovery_, server_.identity_, {});
+            const auto assigned = assign(sought_, servers);
+            if (assigned) {
+                return useAll(*assigned);
+            }
+            if (std::chrono::steady_clock::now() > deadline) {
+                return fail(Errc::not_found,
+                            fmt::format("{}: {}", definition_.file, assigned.error().message));
+            }
+            if (stop.waitUntil(std::chrono::steady_clock::now() + kSearchPause)) {
+                return fail(Errc::cancelled, fmt::format("stopped before {} had found {}",
+                                                         definition_.name, namesOf(sought_)));
+            }
+        }
+        return {};
+    }
+
+    Result<void> useAll(const std::vector<Assignment>& assignments) {
+        for (const auto& [server, uses] : assignments) {
+            const auto chosen = chooseAll(uses, *server);
+            auto remote = chosen ? server_.connectFound(*server) : fail(chosen.error());
+            if (!remote) {
+                return fail(std::move(remote.error()));
+            }
+            for (const auto& [alias, skill] : *chosen) {
+                auto child = (*remote)->use(skill.address, origin_);
+                if (!child) {
+                    return fail(std::move(child.error()));
+                }
+                children_.emplace(alias, std::move(*child));
+                note(alias, **remote, skill.address);
+            }
+            spdlog::info("{} uses {} ({})", definition_.name, (*remote)->name(), (*remote)->url());
+            bonds_.push_back({definition_.name, nullptr, {}, origin_, uses, *remote});
+        }
+        return {};
+    }
+
+    CompositionServer& server_;
+    const Definition& definition_;
+    std::string origin_;
+    std::map<std::string, std::unique_ptr<composition::Child>> children_;
+    std::vector<opcua_skill::RemoteSkill> remote_;
+    std::vector<std::string> local_;        // names of used skills of this server
+    std::vector<composition::Use> sought_;  // that no server of the list offers
+    std::vector<Bond> bonds_;
+};
+
+Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
+    const cell::ServerConfig& config, const cell::CompositionServer& composition,
+    const Context& context) {
+    auto definitions = loadDefinitions(composition.files);
+    if (!definitions) {
+        return fail(std::move(definitions.error()));
+    }
+    auto host = SkillHost::create(config, context.identity, {});
+    if (!host) {
+        return fail(host.error());
+    }
+    std::unique_ptr<CompositionServer> server(
+        new CompositionServer(config, composition, context.identity, std::move(*host)));
+    if (auto connected = server->connect(composition.servers); !connected) {
+        return fail(std::move(connected.error()));
+    }
+    if (auto offered = server->offer(std::move(*definitions), context.stop); !offered) {
+        return fail(std::move(offered.error()));
+    }
+    if (auto started = server->host_->start(); !started) {
+        return fail(started.error());
+    }
+    server->keepBound();
+    return server;
+}
+
+CompositionServer::CompositionServer(const cell::ServerConfig& config,
+                                     cell::CompositionServer composition,
+                                     const Identity& identity, std::unique_ptr<SkillHost> host)
+    : config_(std::move(composition)),
+      discovery_(config.discovery),
+      name_(config.name),
+      identity_(identity),
+      life_(newLife()),
+      host_(std::move(host)) {}
+
+CompositionServer::~CompositionServer() {
+    if (rebinder_) {
+        rebinder_->stop();
+    }
+}
+
+void CompositionServer::keepBound() {
+    if (bonds_.empty()) {
+        return;
+    }
+    rebinder_ = std::make_unique<Rebinder>(
+        Rebinder::Setup{.discovery = discovery_,
+                        .identity = identity_,
+                        .own_url = host_->announcedUrl(),
+                        .application_name = "metier " + name_,
+                        .own_server = host_->applicationUri(),
+                        .rebind_after = std::chrono::duration<double>(config_.rebind_after),
+                        .executor = host_->skills().executor(),
+                        .nodes = host_->nodes()},
+        std::move(bonds_));
+}
+
+Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
+    const DiscoveredServer& found) {
+    for (const auto& known : found_) {
+        if (known->url() == found.found.url) {
+            return known;
+        }
+    }
+    auto server = client::RemoteServer::connect({.url = found.found.url,
+                                                       .name = found.found.name,
+                                                       .application_name = "metier " + name_,
+                                                       .security = identity_.credentials(),
+                                                       .own_server = host_->applicationUri()},
+                                                      host_->skills().executor());
+    if (!server) {
+        return fail(std::move(server.error()));
+    }
+    found_.emplace_back(std::move(*server));
+    return found_.back();
+}
+
+Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& servers) {
+    for (const auto& used : servers) {
+        auto server = client::RemoteServer::connect({.url = used.url,
+                                                           .name = used.name,
+                                                           .application_name = "metier " + name_,
+                                                           .security = identity_.credentials(),
+                                                           .own_server = host_->applicationUri()},
+                                                          host_->skills().executor());
+        if (!server) {
+            return fail(std::move(server.error()));
+        }
+        auto skills = (*server)->skills();
+        if (!skills) {
+            return fail(std::move(skills.error()));
+        }
+        for (auto& skill : *skills) {
+            const auto arm = figuresOfArm((*server)->client(), skill);
+            offered_.push_back({used.name, servers_.size(), std::move(skill), arm});
+        }
+        servers_.push_back(std::move(*server));
+    }
+    return {};
+}
+
+Result<void> CompositionServer::offer(std::vector<Definition> definitions,
+                                      const link::StopSignal& stop) {
+    const auto place = opcua_skill::publishSkillController(host_->nodes(), name_,
+                                                           "Skills that are made of other skills.");
+    if (!place) {
+        return fail(place.error());
+    }
+    for (auto& definition : definitions) {
+        if (auto offered = offerOne(*place, std::move(definition), stop); !offered) {
+            return offered;
+        }
+    }
+    return host_->offerControl(place->controller);
+}
+
+Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
+                                         Definition definition, const link::StopSignal& stop) {
+    const auto name = definition.name;
+    Cast cast(*this, definition);
+    if (auto found = cast.find(stop); !found) {
+        return found;
+    }
+    auto composed = composition::compose(definition, cast.descriptions());
+    if (!composed) {
+        return fail(std::move(composed.error()));
+    }
+    const skill::ProgramOptions options{.control = host_->control(),
+                                        .names = host_->names(),
+                                        .rest_deadline = composition::restDeadlineOf(definition)};
+    auto sequence = std::make_unique<composition::SequenceSkill>(
+        std::move(*composed), cast.takeChildren(), host_->skills().executor(), host_->clock(),
+        cast.origin() + "~" + life_);
+    auto& skill = *sequence;
+    const auto published = host_->skills().publish(place.skills, std::move(sequence), options);
+    if (!published) {
+        return fail(published.error());
+    }
+    const auto node = opcua_skill::findSkillObject(host_->nodes(), place.skills, name);
+    if (!node) {
+        return fail(node.error());
+    }
+    cast.keepBonds(skill, *node);
+    return cast.publish(place.skills, name);
+}
+
+}  // namespace metier::server

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "finding/discovered_servers.hpp"
+#include "metier/base/clock.hpp"
+#include "metier/composition/sequence_skill.hpp"
+#include "metier/cell/cell.hpp"
+#include "metier/opcua/address_space.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/skill/executor.hpp"
+
+namespace metier::server {
+
+/// What one composed skill uses of one server that was found.
+struct Bond {
+    std::string skill_name;
+    composition::SequenceSkill* skill = nullptr;  ///< for the executor's thread
+    opcua::NodeId node;                           ///< of the composed skill
+    std::string origin;                           ///< as RemoteServer::use() takes it
+    std::vector<composition::Use> uses;           ///< they move together
+    /// Shared by the bonds to one server.
+    std::shared_ptr<client::RemoteServer> server;
+    SteadyTime next_try{};
+};
+
+/// Gives composed skills other servers where theirs stay away, between two executions.
+///
+/// The former server is kept until it is back: what still runs there of the skill is halted then.
+/// Threading: a thread of its own asks and connects; what it changes it changes on the executor's.
+/// stop() waits for it, some seconds, on neither of the two.
+class Rebinder {
+public:
+    struct Setup {
+        cell::Discovery discovery;
+        const Identity& identity;      ///< of the component
+        std::string own_url;           ///< of the component, which does not serve itself
+        std::string application_name;  ///< as others see it
+        std::string own_server;  ///< ApplicationUri that executions are told as their parent's
+        std::chrono::duration<double> rebind_after;  ///< absence of a server [s]
+        std::shared_ptr<skill::Executor> executor;   ///< shared by what its thread owns
+        opcua::AddressSpace& nodes;                  ///< of the component
+    };
+
+    Rebinder(Setup setup, std::vector<Bond> bonds);
+    /// Stops. After the composed skills, which use its servers.
+    ~Rebinder();
+    Rebinder(const Rebinder&) = delete;
+    Rebinder& operator=(const Rebinder&) = delete;
+
+    /// Ends its work; before the composed skills end. May be called again.
+    void stop();
+
+private:
+    struct Former;
+    struct Exchange;
+
+    void run(const std::stop_token& stop);
+    void renew(Bond& bond);
+    Result<void> moveTo(const DiscoveredServer& other, Bond& bond);
+    Result<void> exchange(Exchange& parts, Bond& bond);
+    void show(const Exchange& parts, const Bond& bond);
+    void forget();
+    Result<void> onExecutor(std::function<Result<void>()> work);
+    void tell(const Bond& bond, const Error& error);
+
+    const Setup setup_;
+    std::vector<Bond> bonds_;
+    std::vector<Former> formers_;
+    std::string told_;  // the last complaint, which is not repeated
+    std::mutex mutex_;  // for the wait
+    std::condition_variable_any wake_;
+    std::jthread thread_;
+};
+
+}  // namespace metier::server

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "metier/base/error.hpp"
+
+namespace metier::server {
+
+/// Whether a server does what it is for, and in words why not.
+struct ServerHealth {
+    bool good = true;
+    std::string text{};
+};
+
+/// An HTTP server of its own threads with `/metrics` and `/healthz`.
+///
+/// It has no log-in and no encryption: whoever reaches the address reads the figures. A client has
+/// two seconds to ask; eight are connected at the same time.
+/// Threading: one thread makes and ends it, and waits for nobody's request.
+class MetricsEndpoint {
+public:
+    struct Options {
+        std::string address = "127.0.0.1";  ///< to listen on, IPv4 or IPv6
+        std::uint16_t port = 0;             ///< 0: a free one
+        /// The page for Prometheus. On threads of the endpoint, several at the same time; must not
+        /// wait.
+        std::function<std::string()> metrics{};
+        /// 200 if good, 503 if not, with the text. As `metrics`.
+        std::function<ServerHealth()> health{};
+    };
+
+    /// Errors: resource_unavailable (the address cannot be listened on).
+    static Result<std::unique_ptr<MetricsEndpoint>> start(Options options);
+    ~MetricsEndpoint();
+    MetricsEndpoint(const MetricsEndpoint&) = delete;
+    MetricsEndpoint& operator=(const MetricsEndpoint&) = delete;
+
+    std::uint16_t port() const noexcept;
+
+private:
+    class Server;
+    explicit MetricsEndpoint(std::unique_ptr<Server> server);
+
+    std::unique_ptr<Server> server_;
+};
+
+}  // namespace metier::server

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "metier/base/clock.hpp"
+#include "metier/base/histogram.hpp"
+#include "metier/skill/program.hpp"
+#include "metrics/counter.hpp"
+
+namespace metier::server {
+
+/// Counts what one Program does.
+///
+/// Threading: made and ended by the Program's owner; its figures are read by any thread, and nobody
+/// waits.
+class ProgramMeter final : private skill::ProgramObserver {
+public:
+    static constexpr std::size_t kReasons = 8;  ///< of skill::Reason
+    static constexpr std::size_t kMethods = 6;  ///< of skill::Method
+
+    /// \param program must outlive this
+    explicit ProgramMeter(skill::Program& program);
+    ~ProgramMeter() override;
+    ProgramMeter(const ProgramMeter&) = delete;
+    ProgramMeter& operator=(const ProgramMeter&) = delete;
+
+    const std::string& skill() const noexcept { return skill_; }
+    skill::State state() const noexcept { return state_.load(std::memory_order_relaxed); }
+    std::uint64_t starts() const noexcept { return starts_.value(); }
+    /// Executions that reached their end.
+    std::uint64_t finished() const noexcept { return finished_.value(); }
+    std::uint64_t suspends() const noexcept { return suspends_.value(); }
+    /// Executions that were Halted, and why.
+    std::uint64_t halts(skill::Reason reason) const noexcept {
+        return halts_.at(static_cast<std::size_t>(reason)).value();
+    }
+    /// Calls of a method that were refused.
+    std::uint64_t refusals(skill::Method method) const noexcept {
+        return refusals_.at(static_cast<std::size_t>(method)).value();
+    }
+    /// From Running to the end, however it was [s].
+    const TimeHistogram& durations() const noexcept { return durations_; }
+
+private:
+    void onTransition(const skill::TransitionEvent& event) override;
+    void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
+    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
+    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
+    void onResult(const skill::ValueMap& /*result*/) override {}
+    void onProgress(const skill::Value& /*intermediate*/) override {}
+    void onDiagnostic(const skill::Diagnostic& diagnostic) override;
+    void ended();
+
+    skill::Program& program_;
+    const std::string skill_;
+    std::atomic<skill::State> state_;
+    SteadyTime started_{};
+    bool runs_ = false;
+    Counter starts_;
+    Counter finished_;
+    Counter suspends_;
+    std::array<Counter, kReasons> halts_;
+    std::array<Counter, kMethods> refusals_;
+    TimeHistogram durations_;
+};
+
+}  // namespace metier::server

@@ -1,0 +1,90 @@
+#include "metrics/text_page.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace metier::server {
+namespace {
+
+constexpr std::string_view typeName(MetricKind kind) {
+    switch (kind) {
+        case MetricKind::counter:
+            return "counter";
+        case MetricKind::gauge:
+            return "gauge";
+        case MetricKind::histogram:
+            return "histogram";
+    }
+    return "untyped";
+}
+
+std::string escaped(std::string_view text, std::string_view also) {
+    std::string result;
+    for (const char letter : text) {
+        if (letter == '\n') {
+            result += "\\n";
+        } else if (letter == '\\' || also.find(letter) != std::string_view::npos) {
+            result += '\\';
+            result += letter;
+        } else {
+            result += letter;
+        }
+    }
+    return result;
+}
+
+std::string textOf(double value) {
+    if (std::isnan(value)) {
+        return "NaN";
+    }
+    if (std::isinf(value)) {
+        return value > 0 ? "+Inf" : "-Inf";
+    }
+    return fmt::format("{}", value);
+}
+
+}  // namespace
+
+void TextPage::family(std::string_view name, MetricKind kind, std::string_view help) {
+    family_ = name;
+    text_ +=
+        fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, escaped(help, ""), name, typeName(kind));
+}
+
+void TextPage::add(const Labels& labels, double value) {
+    line("", labels, textOf(value));
+}
+
+void TextPage::add(const Labels& labels, std::uint64_t value) {
+    line("", labels, fmt::format("{}", value));
+}
+
+void TextPage::add(const Labels& labels, const TimeHistogram::Snapshot& histogram) {
+    auto of_bucket = labels;
+    of_bucket.emplace_back("le", "");
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < TimeHistogram::kBuckets; ++i) {
+        count += histogram.counts.at(i);
+        of_bucket.back().second =
+            i < TimeHistogram::kBounds.size() ? textOf(TimeHistogram::kBounds.at(i)) : "+Inf";
+        line("_bucket", of_bucket, fmt::format("{}", count));
+    }
+    line("_sum", labels, textOf(histogram.sum));
+    line("_count", labels, fmt::format("{}", count));
+}
+
+void TextPage::line(std::string_view suffix, const Labels& labels, std::string_view value) {
+    text_ += family_;
+    text_ += suffix;
+    char before = '{';
+    for (const auto& [name, label] : labels) {
+        text_ += fmt::format("{}{}=\"{}\"", before, name, escaped(label, "\""));
+        before = ',';
+    }
+    text_ += labels.empty() ? " " : "} ";
+    text_ += value;
+    text_ += '\n';
+}
+
+}  // namespace metier::server
