@@ -1,11 +1,13 @@
+#include "squares.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "servers.hpp"
 #include "side_by_side.hpp"
-#include "square_command.hpp"
 #include "square_report.hpp"
 
 namespace metier::app {
@@ -64,18 +66,6 @@ std::vector<SquareOutcome> moveAll(std::vector<ConnectedArm>& arms,
     return outcomes;
 }
 
-struct SquareOptions {
-    ServerChoice servers;
-    SquareSettings settings;
-    SquareOutput output;
-};
-
-Exit runSquareCommand(const SquareOptions& options, const CommandIdentity& identity) {
-    const auto urls = addressesOf(options.servers);
-    return urls ? moveAlongSquares(identity, *urls, options.settings, options.output)
-                : reportUsage(urls.error());
-}
-
 }  // namespace
 
 void addSquareOptions(CLI::App& command, SquareSettings& settings, SquareOutput& output) {
@@ -106,17 +96,6 @@ Exit moveAlongSquares(const CommandIdentity& identity, const std::vector<std::st
         return outcome.result.has_value();
     });
     return all_done ? Exit::success : Exit::failed;
-}
-
-void addSquare(CLI::App& app, CommandContext& context) {
-    // Shared by CLI11, which fills it, and the callback, which reads it.
-    auto options = std::make_shared<SquareOptions>();
-    auto* command = app.add_subcommand(
-        "square", "Move every arm of some servers along an upright square, and measure it");
-    addServerChoice(*command, options->servers);
-    addSquareOptions(*command, options->settings, options->output);
-    command->callback(
-        [options, &context] { context.exit = runSquareCommand(*options, context.identity); });
 }
 
 }  // namespace metier::app

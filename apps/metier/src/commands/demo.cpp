@@ -9,9 +9,9 @@
 #include "cell_commands.hpp"
 #include "metier/base/wake_up_delay.hpp"
 #include "metier/link/stop_signal.hpp"
-#include "pick_place_command.hpp"
+#include "pick_place_run.hpp"
 #include "security_options.hpp"
-#include "square_command.hpp"
+#include "squares.hpp"
 
 namespace metier::app {
 namespace {

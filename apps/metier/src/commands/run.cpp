@@ -1,13 +1,8 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <thread>
+#include <utility>
 
-#include "metier/skill/json.hpp"
-#include "metier/client/control_handle.hpp"
 #include "metier/client/skill_handle.hpp"
 #include "printable.hpp"
 #include "skill_run.hpp"
@@ -81,91 +76,6 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
     return values;
 }
 
-void printResult(const skill::ValueMap& result, bool as_json) {
-    if (as_json) {
-        fmt::print("{}\n", skill::toJson(result).dump(2, ' ', false,
-                                                      nlohmann::json::error_handler_t::replace));
-        return;
-    }
-    fmt::print("done\n");
-    for (const auto& [name, value] : result) {
-        fmt::print("  {:<22} {}\n", name, printable(skill::toString(value)));
-    }
-}
-
-/// Ctrl-C halts the skill; the run then ends with the Halted that follows.
-class HaltOnSignal {
-public:
-    HaltOnSignal(const link::StopSignal& signal, opcua::Client& client,
-                 client::SkillAddress skill)
-        : thread_([&signal, &client, skill = std::move(skill)](const std::stop_token& stop) {
-              while (!stop.stop_requested()) {
-                  if (signal.waitUntil(std::chrono::steady_clock::now() + kLook)) {
-                      halt(client, skill);
-                      return;
-                  }
-              }
-          }) {}
-
-private:
-    static constexpr std::chrono::milliseconds kLook{100};
-
-    static void halt(opcua::Client& client, const client::SkillAddress& skill) {
-        const auto method = client.translate(skill.node, {{0, "Halt"}});
-        const auto called = method
-                                ? client.call(skill.node, *method)
-                                : opcua::Answer<opcua::CallResult>(tl::unexpected(method.error()));
-        if (called) {
-            return;
-        }
-        fmt::print(stderr, "metier: Halt: {}\n", printable(called.error().message));
-        if (called.error().delivery != opcua::Failure::Delivery::answered) {
-            client.close();  // the user does not wait for the connection: the run ends as unknown
-        }
-    }
-
-    std::jthread thread_;
-};
-
-void showTransitions(SkillHandle& skill) {
-    skill.onTransition([](const skill::TransitionEvent& event) {
-        fmt::print(stderr, "{} to {}{}{}\n", toString(event.from), toString(event.to),
-                   event.reason_text.empty() ? "" : ": ", event.reason_text);
-    });
-}
-
-struct OwnedRun {
-    const skill::ValueMap& values;
-    SteadyTime deadline;
-    const OwnerOptions& owner;
-};
-
-/// Runs the skill as the command line says, under a lease, with a choice for the loss of this
-/// client; with an id, so that its end is learnt whatever the network does. Servers that know no
-/// executions get plain writes and Start.
-opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& client,
-                                        const OwnedRun& run) {
-    std::optional<client::ControlHandle> control;
-    if (run.owner.lease_ms != 0) {
-        const auto* controller = skill.address().controller();
-        auto taken = client::ControlHandle::acquire(
-            client, controller == nullptr ? opcua::NodeId() : controller->node,
-            {.lease = run.owner.lease(), .on_loss = run.owner.action()});
-        if (!taken) {
-            return tl::unexpected(taken.error());
-        }
-        control = std::move(*taken);
-    }
-    if (!control && run.owner.action() == skill::OwnerLossAction::skill_default &&
-        !skill.knowsExecutions()) {
-        return skill.run(run.values, run.deadline);
-    }
-    return skill.runWith({.parameters = run.values,
-                          .on_owner_loss = run.owner.action(),
-                          .epoch = control ? control->epoch() : 0},
-                         run.deadline);
-}
-
 /// A skill that is Halted runs nothing until somebody resets it.
 void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
     if (skill.state() == skill::State::halted) {
@@ -198,22 +108,6 @@ Exit runRun(const RunOptions& options, const CommandIdentity& identity) {
 }
 
 }  // namespace
-
-Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
-              const SkillRun& run) {
-    auto& skill = open.skill;
-    showTransitions(skill);
-    const HaltOnSignal halt_on_signal(signal, *open.client, skill.address());
-    const auto deadline =
-        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                               std::chrono::duration<double>(run.timeout));
-    const auto result = runOwned(skill, *open.client, {values, deadline, run.owner});
-    if (!result) {
-        return reportOutcome(result.error());
-    }
-    printResult(*result, run.json);
-    return Exit::success;
-}
 
 void addRun(CLI::App& app, CommandContext& context) {
     // Shared by CLI11, which fills it, and the callback, which reads it.

@@ -25,9 +25,6 @@ struct PickPlaceSettings {
     bool json = false;
 };
 
-/// Adds the options of pick and place to a command.
-void addPickPlaceOptions(CLI::App& command, PickPlaceSettings& settings);
-
 /// Has every PickPlaceSkill that the servers have move its parts, all at the same time, shows how
 /// it goes, and prints the result. After a part that failed the skill is Reset and takes the next,
 /// or that part again.
