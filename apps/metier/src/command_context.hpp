@@ -7,7 +7,7 @@
 
 namespace metier::app {
 
-/// What commands that speak to servers have in common. Main makes it, and the command line fills it
+/// State that commands share which speak to servers. Main makes it, and the command line fills it
 /// before a command runs.
 struct CommandContext {
     server::Security security;

@@ -20,7 +20,7 @@ public:
 
     Result<void> secure(opcua::ClientOptions& options, const std::string& url) const override;
     void noteConnected(const opcua::ClientOptions& options, const std::string& url) const override;
-    /// What is to be done about a connection that was refused; empty if that is not known.
+    /// Remedy for a connection that was refused; empty if none is known.
     std::string adviceOn(const opcua::Failure& refusal) const;
 
 private:

@@ -8,7 +8,7 @@
 
 namespace metier::app {
 
-/// What the program returns to the shell.
+/// Exit status of the program.
 enum class Exit : int {
     success = 0,
     failed = 1,          ///< a server, a skill or a device refused, failed or was not there

@@ -23,7 +23,7 @@ void addServerChoice(CLI::App& command, ServerChoice& choice);
 /// Errors: invalid_argument if neither addresses nor a cell are given, or the cell is wrong.
 Result<std::vector<std::string>> addressesOf(const ServerChoice& choice);
 
-/// What a command does when its connection breaks.
+/// Reaction of a command to the loss of its connection.
 enum class OnLoss { fail, reconnect };
 
 /// Connects within 5 s. The error names the address.

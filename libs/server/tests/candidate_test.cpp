@@ -8,7 +8,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-ToldFigures figures(std::optional<double> reach, std::optional<double> payload) {
+KnownFigures figures(std::optional<double> reach, std::optional<double> payload) {
     return {.reach = {reach, ""}, .payload = {payload, ""}};
 }
 
@@ -37,8 +37,8 @@ TEST(Candidate, DoesNotFitWhereNobodyKnows) {
 }
 
 TEST(Candidate, SaysHowAFigureIsKnown) {
-    const ToldFigures told{.reach = {0.85, "of ur, opc.tcp://ur:4840"},
-                           .payload = {std::nullopt, "opc.tcp://ur:4840 was not asked"}};
+    const KnownFigures told{.reach = {0.85, "of ur, opc.tcp://ur:4840"},
+                            .payload = {std::nullopt, "opc.tcp://ur:4840 was not asked"}};
     const auto verdict = judge({.reach = 0.5, .payload = 1.0}, told);
     EXPECT_FALSE(verdict.fits);
     EXPECT_THAT(verdict.reasons, ElementsAre("reach 0.85 m >= 0.5 m (of ur, opc.tcp://ur:4840)",

@@ -43,7 +43,7 @@ SurveyedServer server(const std::string& name, std::vector<SurveyedSkill> skills
 }
 
 /// Of the first skill of the first server.
-ToldFigures figures(const std::vector<SurveyedServer>& servers) {
+KnownFigures figures(const std::vector<SurveyedServer>& servers) {
     return figuresOf(servers, 0, 0);
 }
 

@@ -61,7 +61,7 @@ std::vector<std::string> reasonsOf(const server::SurveyedSkill& skill,
     return reasons;
 }
 
-/// What the skills of a server are for, each term once.
+/// Terms of the skills of a server, each once.
 std::vector<std::string> termsOf(const std::vector<server::SurveyedSkill>& skills) {
     std::set<std::string> terms;
     for (const auto& skill : skills) {

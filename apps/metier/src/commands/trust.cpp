@@ -22,7 +22,7 @@ struct TrustOptions {
     std::string role;
 };
 
-/// What every one of these commands works on.
+/// Files that each of these commands works on.
 struct Place {
     SecurityFolder folder;
     TrustStore store;

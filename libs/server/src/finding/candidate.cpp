@@ -41,7 +41,7 @@ public:
         }
     }
 
-    ToldFigures result() const { return {.reach = told(reach_), .payload = told(payload_)}; }
+    KnownFigures result() const { return {.reach = told(reach_), .payload = told(payload_)}; }
 
 private:
     using Place = std::pair<std::size_t, std::size_t>;  // server, skill
@@ -123,7 +123,7 @@ private:
         return static_cast<std::size_t>(found - skills.begin());
     }
 
-    ToldFigure told(const Figure& figure) const {
+    KnownFigure told(const Figure& figure) const {
         if (!figure.unknown.empty()) {
             return {std::nullopt, figure.unknown};
         }
@@ -149,7 +149,7 @@ struct Name {
     std::string_view unit;
 };
 
-void judgeOne(const Name& figure, std::optional<double> wish, const ToldFigure& told,
+void judgeOne(const Name& figure, std::optional<double> wish, const KnownFigure& told,
               Verdict& verdict) {
     if (!wish) {
         return;
@@ -169,8 +169,8 @@ void judgeOne(const Name& figure, std::optional<double> wish, const ToldFigure& 
 
 }  // namespace
 
-ToldFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t server,
-                      std::size_t skill) {
+KnownFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t server,
+                       std::size_t skill) {
     const auto& asked = (*servers[server].skills)[skill];
     if (asked.uses.empty() || asked.arm.reach || asked.arm.payload) {
         return {.reach = {asked.arm.reach, ""}, .payload = {asked.arm.payload, ""}};
@@ -180,7 +180,7 @@ ToldFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t se
     return walk.result();
 }
 
-Verdict judge(const ArmFigures& wishes, const ToldFigures& figures) {
+Verdict judge(const ArmFigures& wishes, const KnownFigures& figures) {
     Verdict verdict;
     judgeOne({"reach", "m"}, wishes.reach, figures.reach, verdict);
     judgeOne({"payload", "kg"}, wishes.payload, figures.payload, verdict);

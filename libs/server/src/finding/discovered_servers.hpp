@@ -19,7 +19,7 @@ struct DiscoveredServer {
     std::vector<OfferedSkill> offered;
 };
 
-/// Whoever discovery tells of now; nobody has asked them yet.
+/// Servers that discovery knows now; nobody has asked them yet.
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
 std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discovery,

@@ -26,7 +26,7 @@ opcua::ClientOptions optionsFor(std::chrono::milliseconds limit) {
     return options;
 }
 
-/// What is asked about the skills of one server; about types and arms once each.
+/// Questions about the skills of one server; about types and arms once each.
 class Questions {
 public:
     Questions(opcua::Client& client, const client::ReferenceReader& references)
@@ -52,7 +52,7 @@ public:
     }
 
 private:
-    /// What a type and all that it is derived from tell.
+    /// Names and terms of a type and of all that it is derived from.
     struct Purpose {
         std::vector<std::string> types;
         std::vector<std::string> terms;

@@ -10,7 +10,7 @@
 namespace metier::server {
 namespace {
 
-/// Of "opc.tcp://127.0.0.1:48411".
+/// 48411 of "opc.tcp://127.0.0.1:48411".
 std::uint16_t portOf(const std::string& url) {
     return static_cast<std::uint16_t>(std::stoul(url.substr(url.rfind(':') + 1)));
 }

@@ -11,7 +11,7 @@
 
 namespace metier::server {
 
-/// What a server is called for good, wherever it is: urn:HOST:metier:NAME:PORT. One on any free
+/// ApplicationUri of a server, which stays the same: urn:HOST:metier:NAME:PORT. One on any free
 /// port is another one each time.
 std::string applicationUriOf(const cell::ServerConfig& config);
 

@@ -21,7 +21,7 @@
 
 namespace metier::server {
 
-/// Who is let in to a closed server of this process, by the folder of `--security`.
+/// Decides whom a closed server lets in, by the security folder.
 ///
 /// Users log in by name and password; an application without a user gets the role it has in the
 /// folder, if any. What changes there holds within seconds: sessions of applications that are

@@ -7,7 +7,7 @@
 
 namespace metier::server {
 
-/// What clients may ask of a server: what its cell file says, else what it is by default. More
+/// Limits for the clients of a server: those of its cell file, else the defaults. More
 /// Sessions than Connections bring as many Connections with them.
 opcua::ServerLimits limitsOf(const std::vector<cell::Limit>& limits);
 

@@ -17,7 +17,7 @@
 
 namespace metier::server {
 
-/// What the Programs of a server move; each may be missing.
+/// Device that the Programs of a server move; each part may be missing.
 struct MovedDevice {
     const device::Arm* arm = nullptr;
     const device::ForceTorqueSensor* sensor = nullptr;

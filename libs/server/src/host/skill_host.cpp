@@ -10,8 +10,6 @@
 
 #include "host/port_lock.hpp"
 #include "host/server_limits.hpp"
-#include "metier/base/recent_mean.hpp"
-#include "metier/motion/frame.hpp"
 #include "metier/opcua_skill/base_placement.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/skill_dictionary.hpp"
@@ -21,87 +19,6 @@ namespace metier::server {
 namespace {
 
 constexpr std::chrono::seconds kLongestBraking{2};
-
-/// SafetyStateKind of the Metier NodeSet.
-std::int32_t safetyKind(device::SafetyState state) {
-    switch (state) {
-        case device::SafetyState::normal:
-            return 1;
-        case device::SafetyState::protective_stop:
-            return 3;
-        case device::SafetyState::emergency_stop:
-            return 4;
-        case device::SafetyState::fault:
-            return 5;
-        case device::SafetyState::disconnected:
-            return 0;
-    }
-    return 0;
-}
-
-opcua_skill::KinematicsState stateOf(const device::Arm& arm, const motion::RobotModel& model) {
-    const auto state = arm.state();
-    opcua_skill::KinematicsState result;
-    result.joint_position.assign(state.position.begin(), state.position.end());
-    if (const auto joints = motion::JointVector::from(result.joint_position);
-        joints && joints->size() == model.axisCount()) {
-        result.pose = motion::toFrame(model.kinematics().forward(*joints));
-    }
-    result.safety_state = safetyKind(state.safety);
-    result.missed_cycles = state.missed_cycles;
-    return result;
-}
-
-opcua_skill::StreamFigures toStreamFigures(const robot_skills::StreamReport& report) {
-    const auto now = report.figures();
-    return {now.lag, now.largest_lag, now.clock_step, now.refused, now.dropped};
-}
-
-opcua_skill::ArmFigures figuresOf(const SkillHost::ShownArm& shown, const Clock& clock) {
-    const auto& arm = shown.arm;
-    opcua_skill::ArmFigures figures;
-    figures.commanded_joint_position = [&arm]() -> std::optional<std::vector<double>> {
-        const auto state = arm.state();
-        if (state.safety == device::SafetyState::disconnected) {
-            return std::nullopt;
-        }
-        return std::vector(state.commanded_position.begin(), state.commanded_position.end());
-    };
-    figures.standstill = [&arm]() -> std::optional<bool> {
-        const auto state = arm.state();
-        return state.safety == device::SafetyState::disconnected ? std::nullopt
-                                                                 : std::optional(state.standstill);
-    };
-    figures.stopping = [&arm, &model = shown.model,
-                        report = shown.stopping]() -> std::optional<opcua_skill::StoppingFigures> {
-        const auto state = arm.state();
-        if (state.safety == device::SafetyState::disconnected) {
-            return std::nullopt;
-        }
-        const auto planned = report ? report->read() : std::nullopt;
-        const auto way = planned ? *planned : robot_skills::stoppingWayOf(state, model);
-        return opcua_skill::StoppingFigures{way.time.count(), way.distance};
-    };
-    if (const auto* jitter = arm.cycleJitter()) {
-        // Shared by the copies of the function.
-        const auto mean =
-            std::make_shared<RecentMean>(*jitter, clock, std::chrono::milliseconds(100));
-        figures.cycle_jitter = [mean] { return mean->read(); };
-    }
-    if (shown.stream) {
-        figures.stream = [report = shown.stream] { return toStreamFigures(*report); };
-    }
-    if (const auto* sensor = shown.sensor) {
-        figures.flange_wrench = [sensor]() -> std::optional<opcua_skill::FlangeWrench> {
-            const auto sample = sensor->sample();
-            if (sample.health != device::SafetyState::normal) {
-                return std::nullopt;
-            }
-            return opcua_skill::FlangeWrench{sample.force, sample.torque};
-        };
-    }
-    return figures;
-}
 
 /// Skill objects of the NodeSet that nobody wants would stay without a skill.
 Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
@@ -304,9 +221,8 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
     moved_ = {&shown.arm, shown.sensor, shown.arm.info().name};
     auto data = toKinematicsData(shown.model);
     data.payload = shown.payload;
-    auto published = opcua_skill::publishKinematics(
-        server_->nodes(), system, data,
-        [&arm = shown.arm, &model = shown.model] { return stateOf(arm, model); });
+    auto published = opcua_skill::publishKinematics(server_->nodes(), system, data,
+                                                    [shown] { return stateOf(shown); });
     if (!published) {
         return published;
     }

@@ -10,6 +10,7 @@
 #include "host/server_access.hpp"
 #include "host/server_audit.hpp"
 #include "host/server_records.hpp"
+#include "host/shown_arm.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
@@ -61,17 +62,6 @@ public:
     /// As others are told.
     std::string announcedUrl() const { return server::announcedUrl(config_.discovery, url()); }
 
-    /// What is shown of an arm; arm and model must outlive this.
-    struct ShownArm {
-        const device::Arm& arm;
-        const motion::RobotModel& model;
-        double payload = 0;                                 ///< [kg]; 0: unknown
-        const device::ForceTorqueSensor* sensor = nullptr;  ///< at its flange; must outlive this
-        /// Shared with the arm's stream skill; null: it has none.
-        std::shared_ptr<const robot_skills::StreamReport> stream{};
-        /// Shared with its moves; null: it has none of metier's.
-        std::shared_ptr<const robot_skills::StoppingReport> stopping{};
-    };
     /// Shows what is known of the arm, and its live state.
     Result<void> publishArm(const opcua_skill::MotionDeviceSystem& system, const ShownArm& shown);
     /// Shows at `parent` how wide the gripper is open and whether it holds a part. `gripper` must

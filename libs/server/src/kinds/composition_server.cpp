@@ -36,9 +36,9 @@ std::string namesOf(const std::vector<composition::Use>& uses) {
 }  // namespace
 
 /// Finds the children of one definition and what to publish of them.
-class CompositionServer::Cast {
+class CompositionServer::Roles {
 public:
-    Cast(CompositionServer& server, const Definition& definition)
+    Roles(CompositionServer& server, const Definition& definition)
         : server_(server),
           definition_(definition),
           origin_(fmt::format("{}.{}", server.name_, definition.name)) {}
@@ -59,7 +59,7 @@ public:
         return problems.empty() ? discover(stop) : fail(Errc::invalid_argument, problems);
     }
 
-    /// What was found by discovery, to be kept bound.
+    /// Hands over what discovery has found, to be kept bound.
     void keepBonds(composition::SequenceSkill& skill, const opcua::NodeId& node) {
         for (auto& bond : bonds_) {
             bond.skill = &skill;
@@ -326,11 +326,11 @@ Result<void> CompositionServer::offer(std::vector<Definition> definitions,
 Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
                                          Definition definition, const link::StopSignal& stop) {
     const auto name = definition.name;
-    Cast cast(*this, definition);
-    if (auto found = cast.find(stop); !found) {
+    Roles roles(*this, definition);
+    if (auto found = roles.find(stop); !found) {
         return found;
     }
-    auto composed = composition::compose(definition, cast.descriptions());
+    auto composed = composition::compose(definition, roles.descriptions());
     if (!composed) {
         return fail(std::move(composed.error()));
     }
@@ -338,8 +338,8 @@ Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& pla
                                         .names = host_->names(),
                                         .rest_deadline = composition::restDeadlineOf(definition)};
     auto sequence = std::make_unique<composition::SequenceSkill>(
-        std::move(*composed), cast.takeChildren(), host_->skills().executor(), host_->clock(),
-        cast.origin() + "~" + life_);
+        std::move(*composed), roles.takeChildren(), host_->skills().executor(), host_->clock(),
+        roles.origin() + "~" + life_);
     auto& skill = *sequence;
     const auto published = host_->skills().publish(place.skills, std::move(sequence), options);
     if (!published) {
@@ -349,8 +349,8 @@ Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& pla
     if (!node) {
         return fail(node.error());
     }
-    cast.keepBonds(skill, *node);
-    return cast.publish(place.skills, name);
+    roles.keepBonds(skill, *node);
+    return roles.publish(place.skills, name);
 }
 
 }  // namespace metier::server

@@ -35,7 +35,7 @@ public:
     std::string url() const override { return host_->url(); }
 
 private:
-    class Cast;
+    class Roles;
     CompositionServer(const cell::ServerConfig& config,
                       cell::CompositionServer composition, const Identity& identity,
                       std::unique_ptr<SkillHost> host);

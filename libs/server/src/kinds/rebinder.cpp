@@ -28,7 +28,7 @@ struct Rebinder::Former {
     std::shared_ptr<Children> children;
 };
 
-/// What goes to the executor's thread, and what comes back.
+/// An exchange of servers, for the executor's thread and back.
 struct Rebinder::Exchange {
     std::shared_ptr<client::RemoteServer> server;
     std::map<std::string, OfferedSkill> chosen;
@@ -180,7 +180,8 @@ void Rebinder::forget() {
     });
 }
 
-/// What has not begun at the deadline never will; what has goes on to its end, which is soon.
+/// Work that has not begun at the deadline never will; work that has goes on to its end, which is
+/// soon.
 Result<void> Rebinder::onExecutor(std::function<Result<void>()> work) {
     // Both are shared: the promise because posted work is copied, the mark with this function.
     auto promise = std::make_shared<std::promise<Result<void>>>();

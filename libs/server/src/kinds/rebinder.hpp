@@ -20,7 +20,7 @@
 
 namespace metier::server {
 
-/// What one composed skill uses of one server that was found.
+/// Uses of one composed skill that one server serves, which was found.
 struct Bond {
     std::string skill_name;
     composition::SequenceSkill* skill = nullptr;  ///< for the executor's thread

@@ -9,7 +9,8 @@
 namespace metier::server {
 namespace {
 
-// What a motion leaves of velocity and acceleration, so that the arm can follow its stream exactly.
+// Share of velocity and acceleration that a motion uses, so that the arm can follow its stream
+// exactly.
 constexpr double kShare = 0.98;
 
 Result<motion::RobotModel> modelOf(const client::RemoteArm& arm) {

@@ -135,12 +135,12 @@ struct ServerConfig {
     std::filesystem::path state_folder;
     /// Longest time without a sign of life of the server's thread; then its device is stopped [s].
     double stall_limit = 0.25;
-    /// What clients may ask of it, where that is not as opcua::ServerLimits has it.
+    /// Limits for its clients that are not as opcua::ServerLimits has them.
     std::vector<Limit> limits;
     Discovery discovery;
     Records records;                     ///< of the cell
     std::optional<HttpAddress> metrics;  ///< none: it does not
-    /// What it serves, with the keys that only servers of this kind have.
+    /// Kind of server, with the keys that only servers of this kind have.
     std::variant<ArmServer, GripperServer, MoveComponent, CompositionServer, SynchronizedServer>
         kind;
 

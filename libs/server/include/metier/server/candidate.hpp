@@ -10,27 +10,27 @@
 namespace metier::server {
 
 /// A figure of an arm, and how it is known.
-struct ToldFigure {
+struct KnownFigure {
     std::optional<double> value{};
     /// Who published it, or why nobody does: "of iiwa, opc.tcp://..."; empty: the skill's own
     /// server.
     std::string note;
 };
 
-/// What a skill's arms can do.
-struct ToldFigures {
-    ToldFigure reach;    ///< [m]
-    ToldFigure payload;  ///< [kg]
+/// Reach and payload of a skill's arms.
+struct KnownFigures {
+    KnownFigure reach;    ///< [m]
+    KnownFigure payload;  ///< [kg]
 };
 
 /// Figures of the arm that a skill moves by itself or, for a skill that runs others, of the arms
 /// that those move, over as many servers as it takes; the least of them.
 ///
-/// What an arm does not publish, or a server has that was not asked, leaves the figure unknown.
+/// A figure is unknown if one of the arms does not publish it, or its server was not asked.
 /// \param servers all that were asked; \param server, skill which of them, both in range
 /// Threads: any; pure. A circle of skills ends it no later than each was looked at once.
-ToldFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t server,
-                      std::size_t skill);
+KnownFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t server,
+                       std::size_t skill);
 
 /// Whether a skill is a candidate for a task, and why.
 struct Verdict {
@@ -40,6 +40,6 @@ struct Verdict {
 };
 
 /// Whether an arm has at least the figures that are wished. What is unknown does not fit.
-Verdict judge(const ArmFigures& wishes, const ToldFigures& figures);
+Verdict judge(const ArmFigures& wishes, const KnownFigures& figures);
 
 }  // namespace metier::server

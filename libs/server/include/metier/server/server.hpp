@@ -12,7 +12,7 @@
 
 namespace metier::server {
 
-/// What servers need besides their configuration. All of it must outlive them.
+/// Surroundings of servers, besides their configuration. All of it must outlive them.
 struct Context {
     const Identity& identity;
     std::span<const device::Driver> drivers;  ///< one of them has the device

@@ -13,7 +13,7 @@
 
 namespace metier::server {
 
-/// What a server publishes of an arm, or what is wanted of one; as far as it is known.
+/// Figures of an arm that a server publishes, or that are wanted of one; as far as known.
 struct ArmFigures {
     std::optional<double> reach{};    ///< farthest the flange can be from axis 2 [m]
     std::optional<double> payload{};  ///< greatest mass at the flange [kg]
@@ -23,7 +23,7 @@ struct ArmFigures {
 struct SurveyedSkill {
     client::SkillAddress address;
     std::vector<std::string> types;  ///< its own, and those that it is derived from
-    /// What it is for: identifiers of dictionary entries, its own, then those of its types.
+    /// Purposes: identifiers of dictionary entries, its own, then those of its types.
     std::vector<std::string> terms{};
     std::vector<client::UsedSkill> uses{};
     ArmFigures arm{};  ///< of what it moves; of nothing that it uses

@@ -11,7 +11,7 @@ std::filesystem::path userStateFolder();
 /// Where this user's settings are: $XDG_CONFIG_HOME/metier, else ~/.config/metier; may be empty.
 std::filesystem::path userConfigFolder();
 
-/// Of this machine, as it calls itself; "localhost" if it does not.
+/// Name of this machine, as it calls itself; "localhost" if it does not. Threads: any.
 std::string hostName();
 
 }  // namespace metier::server
