@@ -161,6 +161,8 @@ void Pilot::take(const Command& sent, const CabinetState& answer, SteadyTime now
     last_answer_ = now;
     note(answer, now);
     readiness_.take(answer, step);
+    bool motion_over = false;
+    std::optional<EndCause> stream_over;
     switch (mode_) {
         case Mode::settling_in:
             try_again_in_ = std::max(0.0, try_again_in_ - step);
@@ -170,14 +172,20 @@ void Pilot::take(const Command& sent, const CabinetState& answer, SteadyTime now
             takeChore(sent, answer);
             break;
         case Mode::planned:
-            takePlanned(sent, answer, step);
+            motion_over = takePlanned(sent, answer, step);
             break;
         case Mode::servo:
-            takeServo(sent, answer, step);
+            stream_over = takeServo(sent, answer, step);
             break;
     }
     judge();
     core_.publish(state_);
+    if (motion_over) {  // only now: whoever hears of it sees the states that go with it
+        slot_.end(planned_.end());
+    }
+    if (stream_over) {
+        core_.end(*stream_over);
+    }
 }
 
 void Pilot::note(const CabinetState& answer, SteadyTime now) noexcept {
@@ -222,7 +230,7 @@ void Pilot::missedCycles(std::uint64_t count) noexcept {
     skipped_ = static_cast<int>(std::min<std::uint64_t>(count, kMostSkipped));
 }
 
-void Pilot::takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept {
+bool Pilot::takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept {
     if (readiness_.notReady()) {
         planned_.stop(RunEnd::Cause::not_ready);
     }
@@ -232,19 +240,18 @@ void Pilot::takePlanned(const Command& sent, const CabinetState& answer, double 
         motion.observer->observe(state_);
     }
     if (!over) {
-        return;
+        return false;
     }
     mode_ = Mode::idle;
     if (planned_.end().cause == RunEnd::Cause::at_target && !motion.target_flange) {
         state_.commanded_position = motion.target_joints;
         holds_ = true;
     }
-    judge();
-    core_.publish(state_);
-    slot_.end(planned_.end());
+    return true;
 }
 
-void Pilot::takeServo(const Command& sent, const CabinetState& answer, double step) noexcept {
+std::optional<EndCause> Pilot::takeServo(const Command& sent, const CabinetState& answer,
+                                         double step) noexcept {
     if (readiness_.notReady()) {
         servo_.stop();
     }
@@ -252,28 +259,24 @@ void Pilot::takeServo(const Command& sent, const CabinetState& answer, double st
     state_.commanded_position = servo_.commanded();
     switch (status) {
         case ServoRun::Status::running:
-            return;
+            return std::nullopt;
         case ServoRun::Status::done:
-            endServo(EndCause::done);
-            return;
+            return endServo(EndCause::done);
         case ServoRun::Status::stopped:
-            endServo(readiness_.notReady() ? EndCause::safety : EndCause::stopped);
-            return;
+            return endServo(readiness_.notReady() ? EndCause::safety : EndCause::stopped);
         case ServoRun::Status::fault:
             latch(servo_.fault());
-            endServo(EndCause::safety);
-            return;
+            return endServo(EndCause::safety);
     }
+    return std::nullopt;
 }
 
-void Pilot::endServo(EndCause cause) noexcept {
+EndCause Pilot::endServo(EndCause cause) noexcept {
     mode_ = Mode::idle;
     holds_ = cause == EndCause::done;
     hold(answer_.position);
     settings_.require(chooseInterface(Interface::standard), chores_);
-    judge();
-    core_.publish(state_);
-    core_.end(cause);
+    return cause;
 }
 
 bool Pilot::hurried() const noexcept {

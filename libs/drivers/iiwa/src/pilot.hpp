@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "metier/device/arm_core.hpp"
@@ -71,9 +72,12 @@ private:
     void note(const CabinetState& answer, SteadyTime now) noexcept;
     void hold(const device::JointArray& measured) noexcept;
     void takeChore(const Command& sent, const CabinetState& answer) noexcept;
-    void takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept;
-    void takeServo(const Command& sent, const CabinetState& answer, double step) noexcept;
-    void endServo(device::EndCause cause) noexcept;
+    /// \return whether the motion is over
+    bool takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept;
+    /// \return how the stream ended; nothing while it runs
+    std::optional<device::EndCause> takeServo(const Command& sent, const CabinetState& answer,
+                                              double step) noexcept;
+    device::EndCause endServo(device::EndCause cause) noexcept;
     void latch(const ServoFault& fault);
     void judge();
     void change(Condition condition, std::string text);

@@ -67,7 +67,7 @@ TEST_F(PlannedRunTest, IsDoneWhereItStandsAtItsTarget) {
     moves(0.2);
     rests(0.4979);
     state_.velocity[0] = 0.1;
-    EXPECT_FALSE(passes(1.0)) << "it still moves";
+    EXPECT_FALSE(passes(0.05)) << "it still moves";
     state_.velocity[0] = 0.0;
     EXPECT_FALSE(step()) << "2 mrad and a little";
     state_.position[0] = 0.4981;
