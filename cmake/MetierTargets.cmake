@@ -7,6 +7,12 @@ target_compile_options(metier_warnings INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
     -Woverloaded-virtual -Werror>)
 
+# mold links the test programs in a quarter of the time that GNU ld needs.
+find_program(METIER_MOLD mold)
+if(METIER_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_link_options(metier_warnings INTERFACE -fuse-ld=mold)
+endif()
+
 set(METIER_SANITIZE "" CACHE STRING "Sanitizers for everything, as -fsanitize= takes them")
 if(METIER_SANITIZE)
     target_compile_options(metier_warnings INTERFACE
@@ -51,7 +57,8 @@ endfunction()
 function(metier_use_precompiled_headers target)
     if(METIER_PRECOMPILED_HEADERS)
         target_precompile_headers(${target} ${ARGN})
-        # ccache needs the first to know what a precompiled header was made from. The others: g++ 12
+        # ccache needs the first to know what a precompiled header was made from, and the presets'
+        # CCACHE_SLOPPINESS to take files that use one at all. The others: g++ 12
         # forgets there that a header is the system's, and warns of std::string.
         target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess
             -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread>)
