@@ -86,7 +86,7 @@ private:
 /// A skill that is done as soon as it has begun.
 std::unique_ptr<skill::Skill> idleSkill() {
     skill::SkillFunctions functions;
-    functions.start = [](const skill::ValueMap&, const skill::Execution& execution) {
+    functions.start = [](const skill::ValueMap&, const skill::ExecutionHandle& execution) {
         execution.finish({{"Number", 1.0}});
     };
     return std::make_unique<skill::LambdaSkill>(

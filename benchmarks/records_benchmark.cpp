@@ -54,8 +54,8 @@ double processorSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-records::Execution executionOf(std::int64_t i) {
-    records::Execution e;
+records::ExecutionRow executionOf(std::int64_t i) {
+    records::ExecutionRow e;
     e.id = fmt::format("{:08x}-{}", static_cast<std::uint32_t>(i * 2654435761U), i);
     e.server_name = fmt::format("robot{}", i % kServers);
     e.skill = fmt::format("Skill{}", i / kServers % kSkills);

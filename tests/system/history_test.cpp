@@ -43,8 +43,8 @@ protected:
     std::unique_ptr<records::Recorder> recorder(const std::string& server = "urn:test:iiwa") {
         return records::Recorder::create({.url = file_, .server = server}).value();
     }
-    static records::Execution move(const std::string& id, std::chrono::seconds after = 0s) {
-        records::Execution e;
+    static records::ExecutionRow move(const std::string& id, std::chrono::seconds after = 0s) {
+        records::ExecutionRow e;
         e.id = id;
         e.server_name = "iiwa";
         e.skill = "JointPtpMoveSkill";

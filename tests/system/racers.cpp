@@ -63,7 +63,7 @@ class EchoSkill {
 public:
     explicit EchoSkill(BenchServer& bench) : bench_(bench) {
         skill::SkillFunctions functions;
-        functions.start = [this](const skill::ValueMap& given, const skill::Execution& execution) {
+        functions.start = [this](const skill::ValueMap& given, const skill::ExecutionHandle& execution) {
             starts_.push_back(
                 {numberIn(std::get<std::vector<double>>(given.at("TargetJointPosition"))),
                  numberIn(std::get<std::vector<double>>(given.at("MaxVelocity"))),
@@ -110,7 +110,7 @@ private:
     Track track_;
     // The server's thread:
     std::vector<Set> starts_;
-    skill::Execution execution_;
+    skill::ExecutionHandle execution_;
 };
 
 /// A Program as OPC 10000-10 has it: Variables that everybody writes, a Start that reads them.

@@ -33,9 +33,9 @@ using Delivery = opcua::Failure::Delivery;
 constexpr const char* kSkill = "JointPtpMoveSkill";
 
 /// What a process says until it ends, or until a line with certain words.
-class Told {
+class RunningCommand {
 public:
-    explicit Told(const std::vector<std::string>& arguments)
+    explicit RunningCommand(const std::vector<std::string>& arguments)
         : process_(link::ChildProcess::start(metierCommand(arguments),
                                                 link::ErrorOutput::with_output)
                        .value()) {}
@@ -98,12 +98,12 @@ protected:
                 on_loss};
     }
     /// `metier run` of a move of some seconds through the relay; it is Running.
-    std::unique_ptr<Told> startLongRun() {
-        auto run = std::make_unique<Told>(longRun());
+    std::unique_ptr<RunningCommand> startLongRun() {
+        auto run = std::make_unique<RunningCommand>(longRun());
         EXPECT_EQ(next().to, State::running);
         return run;
     }
-    void cutAndComeBack(Told& client) {
+    void cutAndComeBack(RunningCommand& client) {
         relay_.cut();
         EXPECT_TRUE(client.until("connection lost")) << client.text();
         relay_.pass();
@@ -146,7 +146,7 @@ TEST_F(CutOff, RunningGoesOnAndItsEndIsLearnt) {
 TEST_F(CutOff, RunningOnAServerThatIsKilledIsUnknownAtTheEndOfItsTimeout) {
     auto line = longRun();
     line.insert(line.end(), {"--timeout", "3"});
-    Told run(line);
+    RunningCommand run(line);
     ASSERT_EQ(next().to, State::running);
     robot_->kill();
     EXPECT_EQ(run.end(), 3) << run.text();
@@ -176,7 +176,7 @@ TEST_F(CutOff, RunningIsOverWhenItsServerWasKilledAndStartedAgain) {
 TEST_F(CutOff, RunningUnderALeaseIsHaltedAndTheRunSaysSo) {
     auto arguments = longRun("halt");
     arguments.insert(arguments.end(), {"--lease", "300ms"});
-    Told run(arguments);
+    RunningCommand run(arguments);
     ASSERT_EQ(next().to, State::running);
     relay_.cut();
     const auto halted = next();
@@ -272,7 +272,7 @@ TEST_F(CutOffClient, HaltedStaysHaltedOverACutAndIsReadyAfterARestart) {
 
 TEST_F(CutOff, AStartThatDoesNotArriveMovesNothing) {
     relay_.cutAt("TargetJointPosition", TcpRelay::Moment::before);
-    Told run(longRun());
+    RunningCommand run(longRun());
     ASSERT_TRUE(relay_.awaitCut(inAMinute()));
     relay_.pass();
     EXPECT_EQ(run.end(), 1) << run.text();
@@ -284,7 +284,7 @@ TEST_F(CutOff, AStartThatDoesNotArriveMovesNothing) {
 
 TEST_F(CutOff, AStartWhoseAnswerIsLostHappensOnce) {
     relay_.cutAt("TargetJointPosition", TcpRelay::Moment::after);
-    Told run(longRun());
+    RunningCommand run(longRun());
     ASSERT_TRUE(relay_.awaitCut(inAMinute()));
     EXPECT_EQ(next().to, State::running);
     relay_.pass();
@@ -303,7 +303,7 @@ TEST_F(CutOff, ARunThatIsInterruptedByItsUserDoesNotWaitForTheConnection) {
 }
 
 TEST_F(CutOff, WatchTellsOfLossAndReturnAndGoesOn) {
-    Told watch({"watch", relay_.url(), kSkill});
+    RunningCommand watch({"watch", relay_.url(), kSkill});
     ASSERT_TRUE(watch.until("watching"));
     cutAndComeBack(watch);
     ASSERT_TRUE(bystanding_->halt());
@@ -317,7 +317,7 @@ TEST_F(CutOff, WatchTellsOfLossAndReturnAndGoesOn) {
 }
 
 TEST_F(CutOff, WatchTellsInJsonWhatHappenedMeanwhile) {
-    Told watch({"watch", relay_.url(), kSkill, "--json", "--count", "1"});
+    RunningCommand watch({"watch", relay_.url(), kSkill, "--json", "--count", "1"});
     ASSERT_TRUE(watch.until("watching"));
     relay_.cut();
     ASSERT_TRUE(watch.until(R"("connection":"lost")")) << watch.text();
@@ -329,7 +329,7 @@ TEST_F(CutOff, WatchTellsInJsonWhatHappenedMeanwhile) {
 }
 
 TEST_F(CutOff, OwnSaysThatControlIsLostWithItsConnection) {
-    Told own({"own", relay_.url()});
+    RunningCommand own({"own", relay_.url()});
     ASSERT_TRUE(own.until("Ctrl-C gives it back")) << own.text();
     relay_.cut();
     EXPECT_EQ(own.end(), 1);
@@ -338,7 +338,7 @@ TEST_F(CutOff, OwnSaysThatControlIsLostWithItsConnection) {
 }
 
 TEST_F(CutOff, OwnSaysThatControlIsLostWithItsServer) {
-    Told own({"own", relay_.url()});
+    RunningCommand own({"own", relay_.url()});
     ASSERT_TRUE(own.until("Ctrl-C gives it back")) << own.text();
     restart();
     EXPECT_EQ(own.end(), 1);
@@ -351,7 +351,7 @@ TEST_F(CutOff, ResumeSaysThatTheMotionIsOverWhenTheServerWasStartedAgain) {
     const auto run = startLongRun();
     ASSERT_TRUE(bystanding_->suspend());
     ASSERT_EQ(next().to, State::suspended);
-    Told resume({"resume", relay_.url(), kSkill});
+    RunningCommand resume({"resume", relay_.url(), kSkill});
     ASSERT_TRUE(resume.until("Running"));
     restart();
     EXPECT_EQ(resume.end(), 4) << resume.text();

@@ -35,8 +35,8 @@ public:
         return std::move(*store);
     }
     /// The newest record for which it says true, once there is one; throws after a minute.
-    records::Execution await(const records::Filter& filter,
-                             const std::function<bool(const records::Execution&)>& is) const {
+    records::ExecutionRow await(const records::Filter& filter,
+                             const std::function<bool(const records::ExecutionRow&)>& is) const {
         const auto deadline = inAMinute();
         Queue<int> nothing(1);
         while (std::chrono::steady_clock::now() < deadline) {
@@ -49,14 +49,14 @@ public:
         throw std::runtime_error("there is no such record of " + filter.skill);
     }
     /// The newest one of that skill that is over.
-    records::Execution awaitEnd(const std::string& skill) const {
+    records::ExecutionRow awaitEnd(const std::string& skill) const {
         return await({.skill = skill}, [](const auto& record) { return record.isOver(); });
     }
 
 private:
-    std::optional<records::Execution> find(
+    std::optional<records::ExecutionRow> find(
         const records::Filter& filter,
-        const std::function<bool(const records::Execution&)>& is) const {
+        const std::function<bool(const records::ExecutionRow&)>& is) const {
         const auto store = records::Store::open(file_.string());
         const auto listed =
             store ? (*store)->list(filter, {}) : Result<records::Listing>(fail(store.error()));

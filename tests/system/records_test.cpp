@@ -15,7 +15,7 @@
 namespace metier::system_tests {
 namespace {
 
-using records::Execution;
+using records::ExecutionRow;
 using skill::State;
 using ::testing::AllOf;
 using ::testing::ElementsAre;

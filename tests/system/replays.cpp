@@ -39,7 +39,7 @@ public:
     explicit Boot(const std::filesystem::path& names)
         : bench_({.names = orThrow(skill::ExecutionNames::open(names))}) {
         skill::SkillFunctions functions;
-        functions.start = [this](const skill::ValueMap&, const skill::Execution& execution) {
+        functions.start = [this](const skill::ValueMap&, const skill::ExecutionHandle& execution) {
             ++starts_;
             execution.finish();
         };

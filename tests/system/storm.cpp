@@ -148,7 +148,7 @@ private:
         description.type = "PositionStreamSkillType";
         skill::SkillFunctions functions;
         if (number % 2 == 1) {
-            functions.start = [this](const skill::ValueMap&, const skill::Execution& execution) {
+            functions.start = [this](const skill::ValueMap&, const skill::ExecutionHandle& execution) {
                 finishing_.tryPush(execution);
             };
         }
@@ -171,7 +171,7 @@ private:
     SystemClock clock_;
     std::atomic<std::uint64_t> total_{0};
     std::vector<std::unique_ptr<ServerCount>> counts_;
-    Queue<skill::Execution> finishing_{1'000};
+    Queue<skill::ExecutionHandle> finishing_{1'000};
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::jthread finisher_{[this] { finishAll(); }};

@@ -25,7 +25,7 @@ Result<void> write(const std::string& file, const std::string& svg) {
     return {};
 }
 
-std::string titleOf(const records::Execution& execution) {
+std::string titleOf(const records::ExecutionRow& execution) {
     return fmt::format("{} of {}, {}, {}", execution.skill,
                        execution.device.empty() ? execution.server_name : execution.device,
                        records::timeText(execution.started), execution.state);
@@ -75,7 +75,7 @@ Exit drawInto(const std::string& file, const motion::RobotModel& model, const st
 Exit drawExecution(const ExecutionDrawing& drawing) {
     const auto store = openRecords(drawing.records);
     const auto execution =
-        store ? (*store)->find(drawing.id) : Result<records::Execution>(fail(store.error()));
+        store ? (*store)->find(drawing.id) : Result<records::ExecutionRow>(fail(store.error()));
     if (!execution) {
         return report(execution.error());
     }

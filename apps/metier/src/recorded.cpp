@@ -41,7 +41,7 @@ Result<std::unique_ptr<records::Store>> openRecords(const std::string& url) {
     return records::Store::open(url);
 }
 
-Result<motion::RobotModel> robotOf(const records::Execution& execution, const std::string& named) {
+Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution, const std::string& named) {
     if (!named.empty()) {
         return loadRobot(named);
     }
@@ -66,7 +66,7 @@ Result<motion::RobotModel> robotOf(const records::Execution& execution, const st
 }
 
 Result<path_evaluation::MotionRecord> pathOf(records::Store& store,
-                                             const records::Execution& execution) {
+                                             const records::ExecutionRow& execution) {
     const auto samples = store.path(execution.number);
     if (!samples) {
         return fail(samples.error());

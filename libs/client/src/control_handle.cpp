@@ -90,13 +90,13 @@ public:
     void onLost(std::function<void(const Failure&)> callback) {
         {
             const std::lock_guard lock(mutex_);
-            if (!told_) {
+            if (!reported_) {
                 on_lost_ = std::move(callback);
                 return;
             }
         }
         if (callback) {
-            callback(*told_);  // written once
+            callback(*reported_);  // written once
         }
     }
 
@@ -161,7 +161,7 @@ private:
         std::function<void(const Failure&)> callback;
         {
             const std::lock_guard lock(mutex_);
-            told_ = failure;
+            reported_ = failure;
             callback = std::exchange(on_lost_, nullptr);
         }
         if (callback) {
@@ -175,7 +175,7 @@ private:
     const std::chrono::milliseconds lease_;
     const std::shared_ptr<Answers> answers_;  // with the calls that have no answer yet
     mutable std::mutex mutex_;
-    std::optional<Failure> told_;
+    std::optional<Failure> reported_;
     std::function<void(const Failure&)> on_lost_;
     std::jthread thread_;  // last: it uses everything above
 };

@@ -11,7 +11,7 @@ namespace metier::client {
 namespace {
 
 constexpr std::size_t kCheckOutputs = 5;  // of every server; the stopping way may follow
-constexpr std::size_t kWithStoppingWay = 7;
+constexpr std::size_t kWithStoppingEstimate = 7;
 constexpr std::size_t kExecutionOutputs = 6;
 
 skill::ValueMap resultsIn(const opcua::Value& pairs, const skill::Fields& results) {
@@ -68,7 +68,7 @@ opcua::Answer<skill::CheckReport> checkReportFrom(const std::vector<opcua::Value
     report.first_failing_fraction = outputs[2].as<double>().value_or(0.0);
     report.planned_duration = outputs[3].as<double>().value_or(0.0);
     report.joint_path = outputs[4].asRows().value_or(std::vector<std::vector<double>>{});
-    if (outputs.size() >= kWithStoppingWay) {
+    if (outputs.size() >= kWithStoppingEstimate) {
         report.stopping_time = outputs[5].as<double>().value_or(0.0);
         report.stopping_distance = outputs[6].as<double>().value_or(0.0);
     }

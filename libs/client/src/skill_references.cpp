@@ -51,8 +51,8 @@ Answer<SkillReferences> ReferenceReader::read(const NodeId& node) const {
 }
 
 /// A property that is missing stays empty, and so nobody is found by it.
-Answer<UsedSkill> ReferenceReader::readUse(const opcua::ReferenceDescription& used) const {
-    UsedSkill use{{}, {}, {}, used.target};
+Answer<SkillUse> ReferenceReader::readUse(const opcua::ReferenceDescription& used) const {
+    SkillUse use{{}, {}, {}, used.target};
     if (used.type_definition != NodeId(*metier_, kUsedSkillType)) {
         return use;
     }

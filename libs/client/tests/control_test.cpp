@@ -69,17 +69,17 @@ protected:
                                                          .place = skill::Place::final_result}},
                                             .on_owner_loss = OwnerLossAction::halt};
         skill::SkillFunctions functions;
-        functions.start = [](const skill::ValueMap& given, const skill::Execution& execution) {
+        functions.start = [](const skill::ValueMap& given, const skill::ExecutionHandle& execution) {
             const auto& target = std::get<std::vector<double>>(given.at("TargetJointPosition"));
             if (target.front() == 0.0) {
                 execution.finish({{"Duration", 0.25}});
             }
         };
-        functions.suspend = [](const skill::Execution& execution) -> Result<void> {
+        functions.suspend = [](const skill::ExecutionHandle& execution) -> Result<void> {
             execution.atRest();
             return {};
         };
-        functions.resume = [](const skill::Execution&) -> Result<void> { return {}; };
+        functions.resume = [](const skill::ExecutionHandle&) -> Result<void> { return {}; };
         return std::make_unique<skill::LambdaSkill>(description, functions);
     }
 

@@ -7,7 +7,7 @@
 #include "remote_skill/connection.hpp"
 #include "metier/client/remote_server.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
-#include "remote_skill/remote_child.hpp"
+#include "remote_skill/remote_used_skill.hpp"
 
 namespace metier::client {
 namespace {
@@ -34,7 +34,7 @@ protected:
     LostEvents() {
         skill::SkillFunctions functions;
         functions.start = [this](const skill::ValueMap& /*parameters*/,
-                                 const skill::Execution& execution) { execution_ = execution; };
+                                 const skill::ExecutionHandle& execution) { execution_ = execution; };
         program_ = &bench_.addSkill(system_tests::benchDescription("MoveSkill"), functions);
         bench_.serve();
         connection_.emplace(RemoteServerOptions{.url = bench_.url(), .name = "other"},
@@ -59,7 +59,7 @@ protected:
     }
     bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
 
-    skill::Execution execution_;  // of the server's thread
+    skill::ExecutionHandle execution_;  // of the server's thread
     system_tests::BenchServer bench_{{.limits = shortQueues()}};
     skill::Program* program_ = nullptr;
     std::shared_ptr<skill::testing::ManualExecutor> executor_ =

@@ -33,7 +33,7 @@ SteadyTime soon() {
 /// What all runs of the server together have done.
 class Works {
 public:
-    void begin(const skill::Execution& execution) {
+    void begin(const skill::ExecutionHandle& execution) {
         ++begun_;
         const std::lock_guard lock(mutex_);
         current_ = execution;
@@ -43,14 +43,14 @@ public:
     void fail() { current().fail(Reason::error, "axis 2 is hot: 91 °C"); }
 
 private:
-    skill::Execution current() {
+    skill::ExecutionHandle current() {
         const std::lock_guard lock(mutex_);
         return current_;
     }
 
     std::atomic<int> begun_ = 0;
     std::mutex mutex_;
-    skill::Execution current_;
+    skill::ExecutionHandle current_;
 };
 
 skill::SkillDescription description() {
@@ -87,14 +87,14 @@ public:
                                                                       .axis_names = {"A", "B"}})
                 .value();
         skill::SkillFunctions functions;
-        functions.start = [&works](const skill::ValueMap&, const skill::Execution& execution) {
+        functions.start = [&works](const skill::ValueMap&, const skill::ExecutionHandle& execution) {
             works.begin(execution);
         };
-        functions.suspend = [](const skill::Execution& execution) -> Result<void> {
+        functions.suspend = [](const skill::ExecutionHandle& execution) -> Result<void> {
             execution.atRest();
             return {};
         };
-        functions.resume = [](const skill::Execution&) -> Result<void> { return {}; };
+        functions.resume = [](const skill::ExecutionHandle&) -> Result<void> { return {}; };
         EXPECT_TRUE(skills_->publish(system.skills,
                                      std::make_unique<skill::LambdaSkill>(description(), functions),
                                      {.control = control_}));

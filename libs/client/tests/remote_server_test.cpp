@@ -1,4 +1,4 @@
-// Children of another server; its skills are the test's.
+// UsedSkills of another server; its skills are the test's.
 #include "metier/client/remote_server.hpp"
 
 #include <gmock/gmock.h>
@@ -11,46 +11,46 @@
 
 #include "remote_skill/connection.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
-#include "remote_skill/remote_child.hpp"
+#include "remote_skill/remote_used_skill.hpp"
 #include "served_skills.hpp"
 
 namespace metier::client {
 namespace {
 
 using namespace std::chrono_literals;
-using composition::ChildEnd;
+using composition::UsedSkillEnd;
 using opcua_skill::testing::ServedSkill;
 using skill::Reason;
 using skill::State;
 using ::testing::HasSubstr;
 
 /// Keeps what it is told.
-class Listener final : public composition::ChildListener {
+class Listener final : public composition::UsedSkillListener {
 public:
     void onReset(const Result<void>& outcome) override { reset = outcome; }
-    void onStopping(const composition::ChildStop& stop) override { stops.push_back(stop); }
+    void onStopping(const composition::UsedSkillStop& stop) override { stops.push_back(stop); }
     void onSuspended() override { suspended = true; }
     void onResumed() override { suspended = false; }
     void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method method, const Error& error) override {
         refusal = std::string(toString(method)) + ": " + error.message;
     }
-    void onEnd(ChildEnd told) override { end = std::move(told); }
+    void onEnd(UsedSkillEnd told) override { end = std::move(told); }
 
     std::optional<Result<void>> reset;
-    std::vector<composition::ChildStop> stops;
+    std::vector<composition::UsedSkillStop> stops;
     bool suspended = false;
     std::string refusal;
-    std::optional<ChildEnd> end;
+    std::optional<UsedSkillEnd> end;
 };
 
-class RemoteChildTest : public opcua_skill::testing::ServedSkills {
+class RemoteUsedSkillTest : public opcua_skill::testing::ServedSkills {
 protected:
-    RemoteChildTest() : move_(add(description())) {
+    RemoteUsedSkillTest() : move_(add(description())) {
         serve();
         remote_ = RemoteServer::connect({.url = server().endpointUrl(), .name = "other"}, executor_)
                       .value();
-        child_ = use("here.Test");
+        used_ = use("here.Test");
     }
 
     static skill::SkillDescription description() {
@@ -58,16 +58,16 @@ protected:
         description.on_owner_loss = skill::OwnerLossAction::keep_going;
         return description;
     }
-    std::unique_ptr<composition::Child> use(const std::string& origin) {
+    std::unique_ptr<composition::UsedSkill> use(const std::string& origin) {
         return remote_->use(remote_->skills().value().front(), origin).value();
     }
     void begin(const std::string& id) {
-        child_->begin({id, {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}}, listener_);
+        used_->begin({id, {{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}}, listener_);
     }
     void beginAndAwait(const std::string& id) {
         begin(id);
         ASSERT_TRUE(move_.hand->await("start"));
-        ASSERT_TRUE(until([this] { return child_->state() == State::running; }));
+        ASSERT_TRUE(until([this] { return used_->state() == State::running; }));
     }
     bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
 
@@ -76,11 +76,11 @@ protected:
     ServedSkill move_;
     std::unique_ptr<RemoteServer> remote_;
     Listener listener_;
-    std::unique_ptr<composition::Child> child_;
+    std::unique_ptr<composition::UsedSkill> used_;
 };
 
-TEST_F(RemoteChildTest, RunsToItsResult) {
-    EXPECT_EQ(child_->name(), "JointPtpMoveSkill of other");
+TEST_F(RemoteUsedSkillTest, RunsToItsResult) {
+    EXPECT_EQ(used_->name(), "JointPtpMoveSkill of other");
     EXPECT_FALSE(remote_->awaySince());
     beginAndAwait("here.Test/1/move/1");
     EXPECT_EQ(move_.hand->execution().id(), "here.Test/1/move/1");
@@ -95,42 +95,42 @@ TEST_F(RemoteChildTest, RunsToItsResult) {
     ASSERT_FALSE(result.empty());
     move_.hand->execution().finish(result);
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::finished);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::finished);
     for (const auto& [name, value] : result) {
         EXPECT_EQ(listener_.end->result.at(name), value);
     }
-    EXPECT_EQ(child_->state(), State::ready);
+    EXPECT_EQ(used_->state(), State::ready);
 }
 
-TEST_F(RemoteChildTest, TellsARefusedStartInTheServersWords) {
+TEST_F(RemoteUsedSkillTest, TellsARefusedStartInTheServersWords) {
     move_.hand->refuseStart({Errc::unreachable, "2 m is beyond the reach of 1 m"});
     begin("here.Test/1/move/1");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::refused);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::refused);
     EXPECT_EQ(listener_.end->text, "2 m is beyond the reach of 1 m");
 }
 
-TEST_F(RemoteChildTest, IsSuspendedResumedAndHalted) {
+TEST_F(RemoteUsedSkillTest, IsSuspendedResumedAndHalted) {
     beginAndAwait("here.Test/1/move/1");
-    ASSERT_TRUE(child_->suspend());
+    ASSERT_TRUE(used_->suspend());
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
-    ASSERT_TRUE(child_->resume());
+    ASSERT_TRUE(used_->resume());
     ASSERT_TRUE(until([this] { return !listener_.suspended; }));
-    child_->halt();
+    used_->halt();
     ASSERT_TRUE(move_.hand->await("halt"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::halted);
     EXPECT_EQ(listener_.end->reason, Reason::by_client);
-    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(used_->reset(listener_));
     ASSERT_TRUE(until([this] { return listener_.reset.has_value(); }));
     EXPECT_TRUE(*listener_.reset);
-    EXPECT_EQ(child_->state(), State::ready);
+    EXPECT_EQ(used_->state(), State::ready);
 }
 
-TEST_F(RemoteChildTest, HearsThatAnotherClientBringsItToRestBeforeItStands) {
+TEST_F(RemoteUsedSkillTest, HearsThatAnotherClientBringsItToRestBeforeItStands) {
     beginAndAwait("here.Test/1/move/1");
     const auto panel = connect("panel");
     ASSERT_EQ(call(*panel, move_, "Suspend"), "Good");
@@ -146,70 +146,70 @@ TEST_F(RemoteChildTest, HearsThatAnotherClientBringsItToRestBeforeItStands) {
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
 }
 
-TEST_F(RemoteChildTest, HaltsRightAfterItsStartWasAskedFor) {
+TEST_F(RemoteUsedSkillTest, HaltsRightAfterItsStartWasAskedFor) {
     begin("here.Test/1/move/1");
-    child_->halt();
-    EXPECT_TRUE(until([&] { return child_->state() == State::running; }));
+    used_->halt();
+    EXPECT_TRUE(until([&] { return used_->state() == State::running; }));
     ASSERT_TRUE(move_.hand->await("halt"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::halted);
 }
 
-TEST_F(RemoteChildTest, TellsARefusedReset) {
+TEST_F(RemoteUsedSkillTest, TellsARefusedReset) {
     beginAndAwait("here.Test/1/move/1");
     move_.hand->execution().fail(Reason::error, "stuck");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->text, "stuck");
     move_.hand->refuseReset({Errc::device_fault, "the emergency stop is pressed"});
-    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(used_->reset(listener_));
     ASSERT_TRUE(until([this] { return listener_.reset.has_value(); }));
     ASSERT_FALSE(*listener_.reset);
     EXPECT_EQ(listener_.reset->error().message, "the emergency stop is pressed");
 }
 
-TEST_F(RemoteChildTest, TellsTheServersWordsWhenResumeIsRefusedToIt) {
+TEST_F(RemoteUsedSkillTest, TellsTheServersWordsWhenResumeIsRefusedToIt) {
     beginAndAwait("here.Test/1/move/1");
-    ASSERT_TRUE(child_->resume()) << "it is sent; the server refuses it, since it is Running";
+    ASSERT_TRUE(used_->resume()) << "it is sent; the server refuses it, since it is Running";
     ASSERT_TRUE(until([this] { return !listener_.refusal.empty(); }));
     EXPECT_THAT(listener_.refusal, HasSubstr("Resume: Resume is not possible while Running"));
 }
 
-TEST_F(RemoteChildTest, TellsNobodyTheAnswerToAResetThatIsGivenUp) {
+TEST_F(RemoteUsedSkillTest, TellsNobodyTheAnswerToAResetThatIsGivenUp) {
     beginAndAwait("here.Test/1/move/1");
     move_.hand->execution().fail(Reason::error, "stuck");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     move_.hand->refuseReset({Errc::device_fault, "the emergency stop is pressed"});
-    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(used_->reset(listener_));
     ASSERT_TRUE(move_.hand->await("reset"));
-    child_->release();
+    used_->release();
     move_.hand->allowReset();
     Listener next;
-    ASSERT_TRUE(child_->reset(next));
+    ASSERT_TRUE(used_->reset(next));
     ASSERT_TRUE(move_.hand->await("reset")) << "the next one is sent, too";
     ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
     EXPECT_TRUE(*next.reset) << "the answer to its own Reset, not to the one before";
     EXPECT_FALSE(listener_.reset);
 }
 
-TEST_F(RemoteChildTest, TakesASkillThatIsReadyMeanwhileForReset) {
+TEST_F(RemoteUsedSkillTest, TakesASkillThatIsReadyMeanwhileForReset) {
     beginAndAwait("here.Test/1/move/1");
     move_.hand->execution().fail(Reason::error, "stuck");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    ASSERT_TRUE(child_->reset(listener_));
+    ASSERT_TRUE(used_->reset(listener_));
     ASSERT_TRUE(move_.hand->await("reset"));
     Listener next;  // whose Reset comes to a skill that is Ready
-    ASSERT_TRUE(child_->reset(next));
+    ASSERT_TRUE(used_->reset(next));
     ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
     EXPECT_TRUE(*next.reset);
-    EXPECT_EQ(child_->state(), State::ready);
+    EXPECT_EQ(used_->state(), State::ready);
 }
 
-TEST_F(RemoteChildTest, TellsARefusalToNoOtherExecution) {
+TEST_F(RemoteUsedSkillTest, TellsARefusalToNoOtherExecution) {
     // A Resume that was refused when its execution had just ended made the next one fail.
     beginAndAwait("here.Test/1/move/1");
     const auto before = executor_->posts();
-    ASSERT_TRUE(child_->resume()) << "it is Running: refused";
+    ASSERT_TRUE(used_->resume()) << "it is Running: refused";
     ASSERT_TRUE(executor_->awaitPosts(before + 1));
     move_.hand->execution().fail(Reason::error, "stuck");
     ASSERT_TRUE(executor_->awaitPosts(before + 2)) << "the end, right behind the refusal";
@@ -217,38 +217,38 @@ TEST_F(RemoteChildTest, TellsARefusalToNoOtherExecution) {
     listener_ = {};
     begin("here.Test/2/move/1");  // it is Halted: refused, later than the Resume
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::refused);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::refused);
     EXPECT_EQ(listener_.refusal, "");
 }
 
-TEST_F(RemoteChildTest, SuspendsRightAfterItsStartWasAskedFor) {
+TEST_F(RemoteUsedSkillTest, SuspendsRightAfterItsStartWasAskedFor) {
     begin("here.Test/1/move/1");
-    ASSERT_TRUE(child_->suspend());
-    EXPECT_TRUE(until([&] { return child_->state() == State::running; }));
+    ASSERT_TRUE(used_->suspend());
+    EXPECT_TRUE(until([&] { return used_->state() == State::running; }));
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
     EXPECT_FALSE(listener_.end);
 }
 
-TEST_F(RemoteChildTest, ChecksWithoutMoving) {
+TEST_F(RemoteUsedSkillTest, ChecksWithoutMoving) {
     std::optional<Result<skill::CheckReport>> report;
     const auto checked = [&](Result<skill::CheckReport> answer) { report = std::move(answer); };
-    child_->check({{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}, checked);
+    used_->check({{"TargetJointPosition", std::vector<double>{0.1, 0.2}}}, checked);
     EXPECT_FALSE(report) << "in a later turn";
     ASSERT_TRUE(until([&] { return report.has_value(); }));
     ASSERT_TRUE(*report) << report->error().message;
     EXPECT_TRUE((*report)->possible);
     report.reset();
-    child_->check({{"TargetJointPosition", std::vector<double>{9.0, 0.2}}}, checked);
+    used_->check({{"TargetJointPosition", std::vector<double>{9.0, 0.2}}}, checked);
     ASSERT_TRUE(until([&] { return report.has_value(); }));
     EXPECT_TRUE(!*report || !(*report)->possible) << "9 rad is over the limit of 3 rad";
-    EXPECT_EQ(child_->state(), State::ready);
+    EXPECT_EQ(used_->state(), State::ready);
 }
 
-TEST_F(RemoteChildTest, ComparesClocksWithinHalfARoundTrip) {
+TEST_F(RemoteUsedSkillTest, ComparesClocksWithinHalfARoundTrip) {
     std::optional<Result<composition::ClockOffset>> offset;
-    child_->compareClocks(
+    used_->compareClocks(
         [&](Result<composition::ClockOffset> answer) { offset = std::move(answer); });
     ASSERT_TRUE(until([&] { return offset.has_value(); }));
     ASSERT_TRUE(*offset) << offset->error().message;
@@ -258,65 +258,65 @@ TEST_F(RemoteChildTest, ComparesClocksWithinHalfARoundTrip) {
         << "it is the same clock, but for the server's steps of it";
 }
 
-TEST_F(RemoteChildTest, IsHaltedIfItIsResetWhileItIsSuspended) {
+TEST_F(RemoteUsedSkillTest, IsHaltedIfItIsResetWhileItIsSuspended) {
     beginAndAwait("here.Test/1/move/1");
-    ASSERT_TRUE(child_->suspend());
+    ASSERT_TRUE(used_->suspend());
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
     ASSERT_EQ(call(*connect("panel"), move_, "Reset"), "Good");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::halted);
     EXPECT_EQ(listener_.end->text, "it was reset while it was suspended");
-    EXPECT_EQ(child_->state(), State::ready);
+    EXPECT_EQ(used_->state(), State::ready);
 }
 
-TEST_F(RemoteChildTest, ShowsWhatOtherClientsDoAndTellsItToNobody) {
+TEST_F(RemoteUsedSkillTest, ShowsWhatOtherClientsDoAndTellsItToNobody) {
     const auto panel = connect("panel");
     beginAndAwait("here.Test/1/move/1");
     move_.hand->execution().finish();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     listener_ = {};
     ASSERT_EQ(call(*panel, move_, "Halt"), "Good");
-    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::halted; }));
     ASSERT_EQ(call(*panel, move_, "Reset"), "Good");
-    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::ready; }));
     EXPECT_FALSE(listener_.end);
     EXPECT_TRUE(listener_.stops.empty());
 }
 
-TEST_F(RemoteChildTest, TellsWhyItIsHalted) {
+TEST_F(RemoteUsedSkillTest, TellsWhyItIsHalted) {
     beginAndAwait("here.Test/1/move/1");
     move_.hand->execution().fail(Reason::limit_violated, "too fast");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->reason, Reason::limit_violated);
-    EXPECT_EQ(child_->state(), State::halted);
-    EXPECT_EQ(child_->reasonText(), "too fast");
+    EXPECT_EQ(used_->state(), State::halted);
+    EXPECT_EQ(used_->reasonText(), "too fast");
     EXPECT_EQ(use("there.Test")->reasonText(), "too fast") << "also to who comes later";
 }
 
-TEST_F(RemoteChildTest, TellsNobodyWhoHasLetGo) {
+TEST_F(RemoteUsedSkillTest, TellsNobodyWhoHasLetGo) {
     beginAndAwait("here.Test/1/move/1");
-    child_->release();
+    used_->release();
     move_.hand->execution().finish();
-    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::ready; }));
     executor_->run();
     EXPECT_FALSE(listener_.end);
 }
 
-TEST_F(RemoteChildTest, ThatIsLostSaysSoToEverythingThatIsAsked) {
+TEST_F(RemoteUsedSkillTest, ThatIsLostSaysSoToEverythingThatIsAsked) {
     shutDown();
-    ASSERT_TRUE(until([this] { return !child_->available(); }));
-    EXPECT_EQ(child_->available().error().code, Errc::connection_lost);
-    EXPECT_EQ(child_->suspend().error().code, Errc::connection_lost);
-    EXPECT_EQ(child_->resume().error().code, Errc::connection_lost);
-    EXPECT_EQ(child_->reset(listener_).error().code, Errc::connection_lost);
+    ASSERT_TRUE(until([this] { return !used_->available(); }));
+    EXPECT_EQ(used_->available().error().code, Errc::connection_lost);
+    EXPECT_EQ(used_->suspend().error().code, Errc::connection_lost);
+    EXPECT_EQ(used_->resume().error().code, Errc::connection_lost);
+    EXPECT_EQ(used_->reset(listener_).error().code, Errc::connection_lost);
     std::optional<Result<skill::CheckReport>> report;
-    child_->check({}, [&](Result<skill::CheckReport> answer) { report = std::move(answer); });
+    used_->check({}, [&](Result<skill::CheckReport> answer) { report = std::move(answer); });
     ASSERT_TRUE(until([&] { return report.has_value(); }));
     EXPECT_FALSE(*report);
     std::optional<Result<composition::ClockOffset>> offset;
-    child_->compareClocks(
+    used_->compareClocks(
         [&](Result<composition::ClockOffset> answer) { offset = std::move(answer); });
     ASSERT_TRUE(until([&] { return offset.has_value(); }));
     ASSERT_FALSE(*offset);
@@ -324,14 +324,14 @@ TEST_F(RemoteChildTest, ThatIsLostSaysSoToEverythingThatIsAsked) {
     begin("here.Test/1/move/1");
     EXPECT_FALSE(listener_.end) << "not from inside the call";
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::lost);
     EXPECT_FALSE(listener_.reset);
 }
 
-TEST_F(RemoteChildTest, TellsItsServersNameAndAddress) {
+TEST_F(RemoteUsedSkillTest, TellsItsServersNameAndAddress) {
     EXPECT_EQ(remote_->name(), "other");
     EXPECT_EQ(remote_->url(), server().endpointUrl());
-    EXPECT_EQ(child_->description().name, "JointPtpMoveSkill");
+    EXPECT_EQ(used_->description().name, "JointPtpMoveSkill");
     const auto unnamed =
         RemoteServer::connect({.url = server().endpointUrl(), .name = ""}, executor_).value();
     EXPECT_EQ(unnamed->name(), server().endpointUrl());
@@ -341,18 +341,18 @@ TEST_F(RemoteChildTest, TellsItsServersNameAndAddress) {
     EXPECT_THAT(nobody.error().message, HasSubstr(remote_->url() + ": "));
 }
 
-TEST_F(RemoteChildTest, IsLostWithItsServer) {
+TEST_F(RemoteUsedSkillTest, IsLostWithItsServer) {
     beginAndAwait("here.Test/1/move/1");
     shutDown();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::lost);
     EXPECT_EQ(listener_.end->reason, Reason::device_lost);
-    EXPECT_FALSE(child_->available());
+    EXPECT_FALSE(used_->available());
     ASSERT_TRUE(remote_->awaySince());
     EXPECT_LE(*remote_->awaySince(), std::chrono::steady_clock::now());
 }
 
-TEST_F(RemoteChildTest, HaltsWhatIsLeftOverOfItsOwnAndNothingElse) {
+TEST_F(RemoteUsedSkillTest, HaltsWhatIsLeftOverOfItsOwnAndNothingElse) {
     beginAndAwait("here.Test/1/move/1");
     const auto other = use("there.Test");
     EXPECT_EQ(other->state(), State::running);
@@ -371,52 +371,52 @@ class Log final : public spdlog::sinks::base_sink<std::mutex> {
 public:
     /// Waits until `text` was told that often, at any level.
     bool await(const std::string& text, int count) {
-        std::unique_lock lock(told_mutex_);
+        std::unique_lock lock(reported_mutex_);
         return changed_.wait_for(lock, 10s,
                                  [&] { return countOf(text, spdlog::level::trace) >= count; });
     }
     int warnings(const std::string& text) {
-        const std::lock_guard lock(told_mutex_);
+        const std::lock_guard lock(reported_mutex_);
         return countOf(text, spdlog::level::warn);
     }
 
 private:
     void sink_it_(const spdlog::details::log_msg& message) override {
         {
-            const std::lock_guard lock(told_mutex_);
-            told_.emplace_back(message.level,
+            const std::lock_guard lock(reported_mutex_);
+            reported_.emplace_back(message.level,
                                std::string(message.payload.data(), message.payload.size()));
         }
         changed_.notify_all();
     }
     void flush_() override {}
     int countOf(const std::string& text, spdlog::level::level_enum least) const {
-        return static_cast<int>(std::count_if(told_.begin(), told_.end(), [&](const auto& line) {
+        return static_cast<int>(std::count_if(reported_.begin(), reported_.end(), [&](const auto& line) {
             return line.first >= least && line.second.find(text) != std::string::npos;
         }));
     }
 
-    std::mutex told_mutex_;
+    std::mutex reported_mutex_;
     std::condition_variable changed_;
-    std::vector<std::pair<spdlog::level::level_enum, std::string>> told_;
+    std::vector<std::pair<spdlog::level::level_enum, std::string>> reported_;
 };
 
 /// Takes the place of the program's log, with all levels.
-class LoggedRemoteChild : public RemoteChildTest {
+class LoggedRemoteUsedSkill : public RemoteUsedSkillTest {
 protected:
-    LoggedRemoteChild() {
+    LoggedRemoteUsedSkill() {
         auto logger = std::make_shared<spdlog::logger>("test", log_);
         logger->set_level(spdlog::level::trace);
         spdlog::set_default_logger(std::move(logger));
-        child_.reset();
+        used_.reset();
         remote_ =
             RemoteServer::connect(
                 {.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms}, executor_)
                 .value();
-        child_ = use("here.Test");
+        used_ = use("here.Test");
     }
-    ~LoggedRemoteChild() override {
-        child_.reset();
+    ~LoggedRemoteUsedSkill() override {
+        used_.reset();
         remote_.reset();
         spdlog::set_default_logger(former_);
     }
@@ -425,14 +425,14 @@ protected:
     std::shared_ptr<Log> log_ = std::make_shared<Log>();                 // with the logger
 };
 
-TEST_F(LoggedRemoteChild, TellsOnceThatItsServerIsAway) {
+TEST_F(LoggedRemoteUsedSkill, TellsOnceThatItsServerIsAway) {
     shutDown();
     ASSERT_TRUE(log_->await("connecting again", 1));
     ASSERT_TRUE(log_->await("BadConnectionRejected", 5)) << "it tries again and again";
     EXPECT_EQ(log_->warnings(""), 2) << "the loss, and why it cannot be mended";
 }
 
-TEST_F(LoggedRemoteChild, TellsALossOnceThatIsHeardOfInTwoWays) {
+TEST_F(LoggedRemoteUsedSkill, TellsALossOnceThatIsHeardOfInTwoWays) {
     Connection connection({.url = server().endpointUrl(), .name = "other", .retry_interval = 10ms},
                           connect("component"));
     remote_.reset();
@@ -443,11 +443,11 @@ TEST_F(LoggedRemoteChild, TellsALossOnceThatIsHeardOfInTwoWays) {
     EXPECT_EQ(log_->warnings("its events have ended"), 0);
 }
 
-/// A child that hears of no transition, as if all were lost on their way.
-class DeafChild : public RemoteChildTest {
+/// A used skill that hears of no transition, as if all were lost on their way.
+class DeafUsedSkill : public RemoteUsedSkillTest {
 protected:
-    DeafChild() : connection_({.url = server().endpointUrl(), .name = "other"}, connect("deaf")) {
-        link_ = std::make_shared<ChildLink>(executor_);
+    DeafUsedSkill() : connection_({.url = server().endpointUrl(), .name = "other"}, connect("deaf")) {
+        link_ = std::make_shared<UsedSkillLink>(executor_);
         deaf_.emplace(connection_, link_, "JointPtpMoveSkill of other", "here.Test");
         auto opened = client::AsyncSkill::open(connection_.client(),
                                                      remote_->skills().value().front(), {});
@@ -463,35 +463,35 @@ protected:
     }
 
     Connection connection_;
-    std::shared_ptr<ChildLink> link_;
-    std::optional<RemoteChild> deaf_;
+    std::shared_ptr<UsedSkillLink> link_;
+    std::optional<RemoteUsedSkill> deaf_;
 };
 
-TEST_F(DeafChild, LearnsTheEndWhenTransitionsMayHaveBeenMissed) {
+TEST_F(DeafUsedSkill, LearnsTheEndWhenTransitionsMayHaveBeenMissed) {
     move_.hand->execution().finish();
-    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::ready; }));
     EXPECT_FALSE(listener_.end);
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::finished);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::finished);
     EXPECT_EQ(deaf_->state(), State::ready);
 }
 
-TEST_F(DeafChild, LearnsWhyItWasHalted) {
+TEST_F(DeafUsedSkill, LearnsWhyItWasHalted) {
     move_.hand->execution().fail(Reason::error, "axis 2 is hot");
-    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::halted; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::halted);
     EXPECT_EQ(listener_.end->reason, Reason::error);
     EXPECT_EQ(listener_.end->text, "axis 2 is hot");
 }
 
-TEST_F(DeafChild, LearnsThatItWasSuspendedAndResumed) {
+TEST_F(DeafUsedSkill, LearnsThatItWasSuspendedAndResumed) {
     ASSERT_EQ(call(*connect(), move_, "Suspend"), "Good");
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
-    ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::suspended; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
     ASSERT_EQ(call(*connect(), move_, "Resume"), "Good");
@@ -500,33 +500,33 @@ TEST_F(DeafChild, LearnsThatItWasSuspendedAndResumed) {
     EXPECT_FALSE(listener_.end);
 }
 
-TEST_F(DeafChild, LearnsThatItWasResetWhileItWasSuspended) {
+TEST_F(DeafUsedSkill, LearnsThatItWasResetWhileItWasSuspended) {
     const auto panel = connect();
     ASSERT_EQ(call(*panel, move_, "Suspend"), "Good");
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
-    ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::suspended; }));
     ASSERT_EQ(call(*panel, move_, "Reset"), "Good");
-    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::ready; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::halted);
     EXPECT_EQ(listener_.end->text, "it was reset while it was suspended");
 }
 
-TEST_F(DeafChild, LearnsItsResult) {
+TEST_F(DeafUsedSkill, LearnsItsResult) {
     move_.hand->execution().finish({{"Duration", 1.5}});
-    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::ready; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->result.at("Duration"), skill::Value(1.5));
 }
 
-TEST_F(DeafChild, IsToldASuspendOnceAlsoIfItIsAskedAgain) {
+TEST_F(DeafUsedSkill, IsToldASuspendOnceAlsoIfItIsAskedAgain) {
     ASSERT_EQ(call(*connect(), move_, "Suspend"), "Good");
     ASSERT_TRUE(move_.hand->await("suspend"));
     move_.hand->execution().atRest();
-    ASSERT_TRUE(until([this] { return child_->state() == State::suspended; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::suspended; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.suspended; }));
     listener_.suspended = false;
@@ -538,21 +538,21 @@ TEST_F(DeafChild, IsToldASuspendOnceAlsoIfItIsAskedAgain) {
     EXPECT_FALSE(listener_.end);
 }
 
-TEST_F(DeafChild, SeesTheStateOnceNothingRunsFromHere) {
+TEST_F(DeafUsedSkill, SeesTheStateOnceNothingRunsFromHere) {
     move_.hand->execution().finish();
-    ASSERT_TRUE(until([this] { return child_->state() == State::ready; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::ready; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     ASSERT_EQ(call(*connect(), move_, "Halt"), "Good");
-    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::halted; }));
     EXPECT_EQ(deaf_->state(), State::ready);
     deaf_->onMissed();
     EXPECT_TRUE(until([this] { return deaf_->state() == State::halted; }));
 }
 
-TEST_F(DeafChild, TellsAResetThatIsUnderWayWhenItsServerIsLost) {
+TEST_F(DeafUsedSkill, TellsAResetThatIsUnderWayWhenItsServerIsLost) {
     move_.hand->execution().fail(Reason::error, "stuck");
-    ASSERT_TRUE(until([this] { return child_->state() == State::halted; }));
+    ASSERT_TRUE(until([this] { return used_->state() == State::halted; }));
     deaf_->onMissed();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     ASSERT_TRUE(deaf_->reset(listener_));
@@ -566,23 +566,23 @@ TEST_F(DeafChild, TellsAResetThatIsUnderWayWhenItsServerIsLost) {
     EXPECT_FALSE(listener_.reset) << "once";
 }
 
-TEST_F(RemoteChildTest, IsLostWithItsEventsAndComesBackByItself) {
+TEST_F(RemoteUsedSkillTest, IsLostWithItsEventsAndComesBackByItself) {
     Connection connection({.url = server().endpointUrl(), .name = "other"}, connect("component"));
-    const auto link = std::make_shared<ChildLink>(executor_);
-    RemoteChild child(connection, link, "JointPtpMoveSkill of other", "here.Test");
+    const auto link = std::make_shared<UsedSkillLink>(executor_);
+    RemoteUsedSkill used(connection, link, "JointPtpMoveSkill of other", "here.Test");
     const auto opened = connection.open(remote_->skills().value().front(), link).value();
-    child.adopt(opened, opened->skill.now().value());
-    child.begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
+    used.adopt(opened, opened->skill.now().value());
+    used.begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
                 listener_);
     ASSERT_TRUE(move_.hand->await("start"));
     connection.noteLoss(connection.client(), "its events have ended: BadTimeout");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::lost);
     EXPECT_EQ(listener_.end->text, "its events have ended: BadTimeout");
-    ASSERT_TRUE(until([&] { return child.leftOver(); }));
+    ASSERT_TRUE(until([&] { return used.leftOver(); }));
     ASSERT_TRUE(move_.hand->await("halt")) << "nobody waits for it any more";
     move_.hand->execution().atRest();
-    ASSERT_TRUE(until([&] { return child.available() && child.state() == State::halted; }));
+    ASSERT_TRUE(until([&] { return used.available() && used.state() == State::halted; }));
     EXPECT_FALSE(connection.awaySince());
 }
 

@@ -90,7 +90,7 @@ protected:
             return {};
         };
         functions.start = [behaviour = behaviour_](const skill::ValueMap& snapshot,
-                                                   const skill::Execution& execution) {
+                                                   const skill::ExecutionHandle& execution) {
             behaviour->first_axis =
                 std::get<std::vector<double>>(snapshot.at("TargetJointPosition")).front();
             if (behaviour->fail) {
@@ -102,11 +102,11 @@ protected:
         if (suspend_ == Suspend::refused) {
             return std::make_unique<skill::LambdaSkill>(jointMove(), functions);
         }
-        functions.suspend = [](const skill::Execution& execution) -> Result<void> {
+        functions.suspend = [](const skill::ExecutionHandle& execution) -> Result<void> {
             execution.atRest();
             return {};
         };
-        functions.resume = [](const skill::Execution& execution) -> Result<void> {
+        functions.resume = [](const skill::ExecutionHandle& execution) -> Result<void> {
             execution.finish({{"Duration", 0.5}});
             return {};
         };

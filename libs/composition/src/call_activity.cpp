@@ -22,13 +22,13 @@ constexpr auto kResetPause = 100ms;
 
 CallActivity::~CallActivity() {
     if (stage_ == Stage::resetting || stage_ == Stage::runs) {
-        child().release();
+        used().release();
     }
     run_.detach(*this);
 }
 
 std::string CallActivity::describe() const {
-    return fmt::format("step {}: {}", path_, child().name());
+    return fmt::format("step {}: {}", path_, used().name());
 }
 
 StepFailure CallActivity::failure(Reason reason, const std::string& text,
@@ -54,16 +54,16 @@ void CallActivity::unpark() {
 void CallActivity::launch() {
     reset_pause_.cancel();
     const auto& used = run_.used(step_.use);
-    if (const auto available = child().available(); !available) {
+    if (const auto available = used().available(); !available) {
         over(failure(Reason::device_lost, "cannot be reached: " + available.error().message));
-    } else if (child().state() != State::halted) {
+    } else if (used().state() != State::halted) {
         begin();
     } else if (used.mayReset()) {
         askReset();
     } else {
         over(failure(Reason::error,
                      fmt::format("is Halted: {}; reset it, or write reset = true in [uses.{}]",
-                                 child().reasonText(), step_.use)));
+                                 used().reasonText(), step_.use)));
     }
 }
 
@@ -72,14 +72,14 @@ void CallActivity::askReset() {
     if (!reset_limit_.running()) {
         reset_limit_.start(kLongestReset, [this] { resetTimePassed(); });
     }
-    if (const auto asked = child().reset(*this); !asked) {
+    if (const auto asked = used().reset(*this); !asked) {
         resetRefused(asked.error());
     }
 }
 
 /// A device that takes longer than its server waits for it is asked again.
 void CallActivity::resetRefused(const Error& error) {
-    child().release();
+    used().release();
     if (error.code != Errc::timeout) {
         over(failure(Reason::error, "refused Reset: " + error.message));
         return;
@@ -90,7 +90,7 @@ void CallActivity::resetRefused(const Error& error) {
 }
 
 void CallActivity::resetTimePassed() {
-    child().release();
+    used().release();
     over(failure(Reason::error,
                  fmt::format("was not Ready within {} s after Reset{}", kLongestReset.count(),
                              refusal_.empty() ? std::string() : fmt::format(" ({})", refusal_))));
@@ -102,12 +102,12 @@ void CallActivity::onReset(const Result<void>& outcome) {
             return;
         }
         if (halting_) {
-            child().release();
+            used().release();
             over(cancelled());
         } else if (!outcome) {
             resetRefused(outcome.error());
         } else {
-            child().release();
+            used().release();
             stage_ = Stage::parked;
             if (!run_.held()) {
                 begin();
@@ -121,7 +121,7 @@ void CallActivity::begin() {
     refusal_.clear();
     skill::ValueMap parameters;
     for (const auto& argument : step_.arguments) {
-        const auto& fields = child().description().parameters;
+        const auto& fields = used().description().parameters;
         const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
             return candidate.name == argument.name;
         });
@@ -136,13 +136,13 @@ void CallActivity::begin() {
         }
         parameters.emplace(argument.name, std::move(*value));
     }
-    auto request = run_.childExecution(step_.name, child());
+    auto request = run_.stepExecution(step_.name, used());
     request.parameters = std::move(parameters);
     request.on_owner_loss = run_.onOwnerLoss();
     stage_ = Stage::runs;
     begun_ = run_.now();
     run_.used(step_.use).halted_by_us = false;
-    child().begin(std::move(request), *this);
+    used().begin(std::move(request), *this);
 }
 
 void CallActivity::halt() {
@@ -154,15 +154,15 @@ void CallActivity::halt() {
         over(cancelled());
         return;
     }
-    haltChild();
+    haltUsed();
 }
 
-void CallActivity::haltChild() {
+void CallActivity::haltUsed() {
     reset_limit_.cancel();
     rest_timer_ = run_.after(run_.restTime(), [this] { restTimePassed(); });
     if (stage_ == Stage::runs) {
         run_.used(step_.use).halted_by_us = true;
-        child().halt();
+        used().halt();
     }
 }
 
@@ -172,7 +172,7 @@ void CallActivity::restTimePassed() {
     if (!refusal_.empty()) {
         text += " (" + refusal_ + ")";
     }
-    child().release();
+    used().release();
     over(failure(Reason::error, text, StepFailure::Kind::final));
 }
 
@@ -180,13 +180,13 @@ void CallActivity::suspend() {
     if (stage_ != Stage::runs || halting_ || stopping_ || suspended_) {
         return;
     }
-    if (const auto asked = child().suspend(); !asked) {
+    if (const auto asked = used().suspend(); !asked) {
         refusal_ = asked.error().message;
     }
 }
 
 Result<void> CallActivity::resume() {
-    auto resumed = child().resume();
+    auto resumed = used().resume();
     if (resumed) {
         suspended_ = false;
     }
@@ -199,13 +199,13 @@ void CallActivity::fail(const Error& error) {
     }
     halting_ = true;
     failure_ = failure(Reason::error, "refused Resume: " + error.message, StepFailure::Kind::final);
-    haltChild();
+    haltUsed();
 }
 
 void CallActivity::forceStop() noexcept {
     if (stage_ == Stage::runs && !halting_) {
         run_.used(step_.use).halted_by_us = true;
-        child().halt();
+        used().halt();
     }
 }
 
@@ -214,7 +214,7 @@ bool CallActivity::atRest() const noexcept {
            (stage_ == Stage::runs && suspended_);
 }
 
-void CallActivity::onStopping(const ChildStop& stop) {
+void CallActivity::onStopping(const UsedSkillStop& stop) {
     run_.enter([this, stop] {
         if (stage_ != Stage::runs || halting_ || stop.to != State::suspended) {
             return;
@@ -263,20 +263,20 @@ void CallActivity::onRefused(skill::Method method, const Error& error) {
     });
 }
 
-Outcome CallActivity::outcomeOf(ChildEnd& end) {
+Outcome CallActivity::outcomeOf(UsedSkillEnd& end) {
     if (failure_) {
         return std::move(failure_);
     }
     switch (end.kind) {
-        case ChildEnd::Kind::finished:
+        case UsedSkillEnd::Kind::finished:
             return std::nullopt;
-        case ChildEnd::Kind::refused:
+        case UsedSkillEnd::Kind::refused:
             return failure(end.reason, "refused Start: " + end.text);
-        case ChildEnd::Kind::lost:
+        case UsedSkillEnd::Kind::lost:
             // Its server halts it, or it is halted once it can be reached: either is by us.
             run_.used(step_.use).halted_by_us = true;
             return failure(Reason::device_lost, "is lost: " + end.text);
-        case ChildEnd::Kind::halted:
+        case UsedSkillEnd::Kind::halted:
             break;
     }
     if (halting_) {
@@ -289,10 +289,10 @@ Outcome CallActivity::outcomeOf(ChildEnd& end) {
                    final ? StepFailure::Kind::final : StepFailure::Kind::failed);
 }
 
-void CallActivity::onEnd(ChildEnd end) {
+void CallActivity::onEnd(UsedSkillEnd end) {
     run_.enter([this, end = std::move(end)]() mutable {
-        child().release();
-        if (end.kind == ChildEnd::Kind::finished) {
+        used().release();
+        if (end.kind == UsedSkillEnd::Kind::finished) {
             progress_ = 1.0;
             run_.finished(path_, run_.now() - begun_);
             run_.scope().setResult(step_.name, std::move(end.result));

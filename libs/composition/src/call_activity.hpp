@@ -4,13 +4,13 @@
 #include <string>
 
 #include "activity.hpp"
-#include "metier/composition/child.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "run.hpp"
 
 namespace metier::composition {
 
 /// A step that runs a used skill.
-class CallActivity final : public Activity, private ChildListener {
+class CallActivity final : public Activity, private UsedSkillListener {
 public:
     using Activity::Activity;
     ~CallActivity() override;
@@ -37,25 +37,25 @@ private:
     enum class Stage { parked, resetting, runs, ended };
 
     void onReset(const Result<void>& outcome) override;
-    void onStopping(const ChildStop& stop) override;
+    void onStopping(const UsedSkillStop& stop) override;
     void onSuspended() override;
     void onResumed() override;
     void onProgress(const skill::Value& intermediate) override;
     void onRefused(skill::Method method, const Error& error) override;
-    void onEnd(ChildEnd end) override;
+    void onEnd(UsedSkillEnd end) override;
 
     void launch();
     void askReset();
     void resetRefused(const Error& error);
     void resetTimePassed();
     void begin();
-    void haltChild();
+    void haltUsed();
     void restTimePassed();
     void over(Outcome outcome);
-    Outcome outcomeOf(ChildEnd& end);
+    Outcome outcomeOf(UsedSkillEnd& end);
     StepFailure failure(skill::Reason reason, const std::string& text,
                         StepFailure::Kind kind = StepFailure::Kind::failed) const;
-    Child& child() const { return *run_.used(step_.use).child; }
+    UsedSkill& used() const { return *run_.used(step_.use).skill; }
 
     Stage stage_ = Stage::ended;
     bool halting_ = false;

@@ -23,11 +23,11 @@ std::string hashOf(std::string_view text) {
 
 }  // namespace
 
-std::string childExecutionId(const ChildExecution& child) {
-    const auto own = fmt::format("/{}/{}", child.step, child.count);
-    auto above = fmt::format("{}/{}", child.origin, child.execution);
+std::string stepExecutionId(const StepExecution& used) {
+    const auto own = fmt::format("/{}/{}", used.step, used.count);
+    auto above = fmt::format("{}/{}", used.origin, used.execution);
     if (above.size() + own.size() > kLongestId) {
-        above = above.substr(0, child.origin.size() + 1) + hashOf(above);
+        above = above.substr(0, used.origin.size() + 1) + hashOf(above);
     }
     return above + own;
 }

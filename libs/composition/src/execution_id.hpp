@@ -6,7 +6,7 @@
 namespace metier::composition {
 
 /// What the execution of a used skill is named after.
-struct ChildExecution {
+struct StepExecution {
     const std::string& origin;     ///< component, skill and life of the component
     const std::string& execution;  ///< of the skill that uses it
     const std::string& step;
@@ -14,6 +14,6 @@ struct ChildExecution {
 };
 
 /// "ORIGIN/EXECUTION/STEP/COUNT", or with a hash of the execution where that is too long for an id.
-std::string childExecutionId(const ChildExecution& child);
+std::string stepExecutionId(const StepExecution& used);
 
 }  // namespace metier::composition

@@ -233,13 +233,13 @@ void LoopActivity::nextRound() {
         return;
     }
     ++round_;
-    body_ = makeSequence(run_, step_, step_.steps, fmt::format("{}[{}]", path_, round_),
+    work_ = makeSequence(run_, step_, step_.steps, fmt::format("{}[{}]", path_, round_),
                          [this](Outcome outcome) { roundEnded(std::move(outcome)); });
-    body_->start();
+    work_->start();
 }
 
 void LoopActivity::roundEnded(Outcome outcome) {
-    body_.reset();
+    work_.reset();
     if (outcome) {
         end(std::move(outcome));
     } else {
@@ -249,15 +249,15 @@ void LoopActivity::roundEnded(Outcome outcome) {
 
 void LoopActivity::halt() {
     halting_ = true;
-    if (body_) {
-        body_->halt();
+    if (work_) {
+        work_->halt();
     }
 }
 
 double LoopActivity::progress() const {
-    const double current = body_ ? body_->progress() : 0.0;
+    const double current = work_ ? work_->progress() : 0.0;
     const auto rounds = times_ ? *times_ : step_.at_most.value_or(1);
-    const auto done = static_cast<double>(round_) - (body_ ? 1.0 : 0.0);
+    const auto done = static_cast<double>(round_) - (work_ ? 1.0 : 0.0);
     return rounds == 0 ? 1.0 : std::min(1.0, (done + current) / static_cast<double>(rounds));
 }
 

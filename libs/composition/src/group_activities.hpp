@@ -114,7 +114,7 @@ private:
     std::optional<std::uint64_t> times_;
     std::uint64_t round_ = 0;
     bool halting_ = false;
-    std::unique_ptr<Activity> body_;
+    std::unique_ptr<Activity> work_;
 };
 
 }  // namespace metier::composition

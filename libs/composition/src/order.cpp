@@ -41,12 +41,12 @@ private:
             return {};
         }
         const auto& definition = given_[index];
-        const bool around = std::find(way_.begin(), way_.end(), definition.type) != way_.end();
-        way_.push_back(definition.type);
+        const bool around = std::find(joint_path_.begin(), joint_path_.end(), definition.type) != joint_path_.end();
+        joint_path_.push_back(definition.type);
         if (around) {
             return fail(Errc::invalid_argument,
                         fmt::format("{}: {}: uses itself: {}", definition.file, definition.name,
-                                    fmt::join(way_, " uses ")));
+                                    fmt::join(joint_path_, " uses ")));
         }
         for (const auto& use : definition.uses) {
             for (std::size_t other = 0; other < given_.size(); ++other) {
@@ -58,7 +58,7 @@ private:
                 }
             }
         }
-        way_.pop_back();
+        joint_path_.pop_back();
         taken_[index] = true;
         sorted_.push_back(given_[index]);
         return {};
@@ -66,7 +66,7 @@ private:
 
     std::vector<Definition> given_;
     std::vector<bool> taken_;
-    std::vector<std::string> way_;  // types, from the first to the one looked at
+    std::vector<std::string> joint_path_;  // types, from the first to the one looked at
     std::vector<Definition> sorted_;
 };
 

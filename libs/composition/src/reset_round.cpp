@@ -15,16 +15,16 @@ constexpr std::chrono::milliseconds kPause{100};
 }  // namespace
 
 /// The Reset of one skill.
-class ResetRound::One final : public ChildListener {
+class ResetRound::One final : public UsedSkillListener {
 public:
-    One(Run& run, UsedSkill& used, ResetRound& round) : run_(run), used_(used), round_(round) {}
-    ~One() override { used_.child->release(); }
+    One(Run& run, BoundSkill& used, ResetRound& round) : run_(run), used_(used), round_(round) {}
+    ~One() override { used_.skill->release(); }
     One(const One&) = delete;
     One& operator=(const One&) = delete;
 
     /// \return whether its outcome is still to come
     bool ask() {
-        const auto asked = used_.child->reset(*this);
+        const auto asked = used_.skill->reset(*this);
         return asked || again(asked.error());
     }
 
@@ -40,7 +40,7 @@ public:
     void onResumed() override {}
     void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
-    void onEnd(ChildEnd /*end*/) override {}
+    void onEnd(UsedSkillEnd /*end*/) override {}
 
 private:
     /// A device that takes longer than its server waits for it is asked again.
@@ -57,7 +57,7 @@ private:
     }
 
     Run& run_;
-    UsedSkill& used_;
+    BoundSkill& used_;
     ResetRound& round_;
     skill::Timer pause_;
 };
@@ -65,10 +65,10 @@ private:
 ResetRound::ResetRound(Run& run, std::function<void()> done) : run_(run), done_(std::move(done)) {}
 ResetRound::~ResetRound() = default;
 
-void ResetRound::start(UsedSkills& used) {
+void ResetRound::start(BoundSkills& used) {
     for (auto& [alias, each] : used) {
-        const auto& child = *each.child;
-        if (!each.halted_by_us || !child.available() || child.state() != skill::State::halted) {
+        const auto& used = *each.skill;
+        if (!each.halted_by_us || !used.available() || used.state() != skill::State::halted) {
             continue;
         }
         auto one = std::make_unique<One>(run_, each, *this);

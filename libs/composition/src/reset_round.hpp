@@ -26,7 +26,7 @@ public:
     ResetRound& operator=(const ResetRound&) = delete;
 
     /// Once.
-    void start(UsedSkills& used);
+    void start(BoundSkills& used);
 
 private:
     class One;

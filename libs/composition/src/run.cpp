@@ -55,7 +55,7 @@ Run::~Run() {
     root_.reset();
 }
 
-void Run::start(skill::Execution execution) {
+void Run::start(skill::ExecutionHandle execution) {
     execution_ = std::move(execution);
     enter([this] {
         const auto& root = setup_.composition.definition.root;
@@ -105,10 +105,10 @@ void Run::finished(const std::string& path, std::chrono::nanoseconds time) {
     }
 }
 
-skill::StartRequest Run::childExecution(const std::string& step, const Child& child) {
+skill::StartRequest Run::stepExecution(const std::string& step, const UsedSkill& used) {
     skill::StartRequest request{.parent = {.id = execution_.id()}};
-    request.execution_id = childExecutionId({setup_.origin, execution_.id(), step, ++begun_});
-    execution_.started({request.execution_id, child.description().name, child.serverUrl()});
+    request.execution_id = stepExecutionId({setup_.origin, execution_.id(), step, ++begun_});
+    execution_.started({request.execution_id, used.description().name, used.serverUrl()});
     return request;
 }
 
@@ -256,12 +256,12 @@ void Run::report() {
     if (over_ || !root_) {
         return;
     }
-    if (auto step = stepNames(); step != told_step_ && !step.empty()) {
-        told_step_ = std::move(step);
-        execution_.step(told_step_);
+    if (auto step = stepNames(); step != reported_step_ && !step.empty()) {
+        reported_step_ = std::move(step);
+        execution_.step(reported_step_);
     }
-    if (const auto progress = root_->progress(); progress != told_progress_) {
-        told_progress_ = progress;
+    if (const auto progress = root_->progress(); progress != published_progress_) {
+        published_progress_ = progress;
         execution_.progress(progress);
     }
 }

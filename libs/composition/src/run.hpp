@@ -12,7 +12,7 @@
 #include "metier/base/clock.hpp"
 #include "metier/composition/composition.hpp"
 #include "metier/composition/sequence_skill.hpp"
-#include "metier/skill/execution.hpp"
+#include "metier/skill/execution_handle.hpp"
 #include "metier/skill/executor.hpp"
 #include "reset_round.hpp"
 #include "scope.hpp"
@@ -50,7 +50,7 @@ private:
 /// What an execution of a composed skill is given.
 struct RunSetup {
     const Composition& composition;
-    UsedSkills& used;
+    BoundSkills& used;
     std::shared_ptr<skill::Executor> executor;
     const Clock& clock;
     const std::string& origin;
@@ -67,7 +67,7 @@ public:
     Run(const Run&) = delete;
     Run& operator=(const Run&) = delete;
 
-    void start(skill::Execution execution);
+    void start(skill::ExecutionHandle execution);
     void suspend();
     /// Errors: what the first skill to resume refuses with; then all stay at rest.
     Result<void> resume();
@@ -84,7 +84,7 @@ public:
     void nextTurn(std::function<void()> work);
     bool held() const noexcept { return held_; }
     Scope& scope() noexcept { return scope_; }
-    UsedSkill& used(const std::string& alias) { return setup_.used.find(alias)->second; }
+    BoundSkill& used(const std::string& alias) { return setup_.used.find(alias)->second; }
     skill::Timer after(std::chrono::nanoseconds delay, std::function<void()> due);
     std::chrono::nanoseconds restTime() const { return setup_.composition.definition.rest_time; }
     skill::OwnerLossAction onOwnerLoss() const {
@@ -94,7 +94,7 @@ public:
     void finished(const std::string& path, std::chrono::nanoseconds time);
     SteadyTime now() const { return setup_.clock.now(); }
     /// The next execution of a used skill, named and told to whoever watches this one.
-    skill::StartRequest childExecution(const std::string& step, const Child& child);
+    skill::StartRequest stepExecution(const std::string& step, const UsedSkill& used);
     void attach(CallActivity& call) { calls_.push_back(&call); }
     /// Somebody else has suspended a used skill: the whole follows. \param why for a person
     void suspendedByOther(std::string why) { execution_.suspend(std::move(why)); }
@@ -114,7 +114,7 @@ private:
 
     RunSetup setup_;
     Scope scope_;
-    skill::Execution execution_;
+    skill::ExecutionHandle execution_;
     std::deque<std::function<void()>> due_;
     bool draining_ = false;
     bool held_ = false;
@@ -126,8 +126,8 @@ private:
     std::uint64_t begun_ = 0;
     std::vector<std::string> finished_;  // paths
     std::vector<double> times_;          // of these [s]
-    std::string told_step_;
-    double told_progress_ = -1.0;
+    std::string reported_step_;
+    double published_progress_ = -1.0;
     std::vector<CallActivity*> calls_;
     std::vector<StepTimer*> timers_;
     skill::Timer rest_timer_;

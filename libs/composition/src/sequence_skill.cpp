@@ -13,13 +13,13 @@ namespace {
 
 using skill::State;
 
-class SequenceBody final : public skill::Body {
+class SequenceWork final : public skill::ExecutionWork {
 public:
-    SequenceBody(RunSetup setup, const skill::ValueMap& parameters,
+    SequenceWork(RunSetup setup, const skill::ValueMap& parameters,
                  std::shared_ptr<const char> counted)
         : run_(std::move(setup), parameters), counted_(std::move(counted)) {}
 
-    void start(skill::Execution execution) override { run_.start(std::move(execution)); }
+    void start(skill::ExecutionHandle execution) override { run_.start(std::move(execution)); }
     Result<void> suspend() override {
         run_.suspend();
         return {};
@@ -52,9 +52,9 @@ void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& ali
 }  // namespace
 
 /// A Reset of a used skill that nobody waits for: what it leads to shows at the next Start.
-class SequenceSkill::Unheard final : public ChildListener {
+class SequenceSkill::Unheard final : public UsedSkillListener {
 public:
-    explicit Unheard(UsedSkill& used) : used_(used) {}
+    explicit Unheard(BoundSkill& used) : used_(used) {}
 
     void onReset(const Result<void>& outcome) override {
         used_.halted_by_us = used_.halted_by_us && !outcome;
@@ -63,14 +63,14 @@ public:
     void onResumed() override {}
     void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
-    void onEnd(ChildEnd /*end*/) override {}
+    void onEnd(UsedSkillEnd /*end*/) override {}
 
 private:
-    UsedSkill& used_;
+    BoundSkill& used_;
 };
 
 SequenceSkill::SequenceSkill(Composition composition,
-                             std::map<std::string, std::unique_ptr<Child>> children,
+                             std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                              std::shared_ptr<skill::Executor> executor, const Clock& clock,
                              std::string origin)
     : composition_(std::move(composition)),
@@ -79,7 +79,7 @@ SequenceSkill::SequenceSkill(Composition composition,
       origin_(std::move(origin)) {
     for (const auto& use : composition_.definition.uses) {
         auto& used = used_[use.alias];
-        used = UsedSkill{std::move(children.at(use.alias)), use.reset};
+        used = BoundSkill{std::move(used_skills.at(use.alias)), use.reset};
         unheard_.emplace(use.alias, std::make_unique<Unheard>(used));
     }
     collectNeeded(composition_.definition.root.steps, needed_);
@@ -89,63 +89,63 @@ SequenceSkill::~SequenceSkill() = default;
 
 Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
     const auto& used = used_.find(alias)->second;
-    const auto& child = *used.child;
-    if (const auto available = child.available(); !available) {
+    const auto& used = *used.skill;
+    if (const auto available = used.available(); !available) {
         return fail(available.error().code,
-                    fmt::format("{} ({}) cannot be reached: {}", child.name(), alias,
+                    fmt::format("{} ({}) cannot be reached: {}", used.name(), alias,
                                 available.error().message));
     }
-    if (child.state() == State::halted && !used.mayReset()) {
+    if (used.state() == State::halted && !used.mayReset()) {
         return fail(Errc::invalid_state,
                     fmt::format("{} ({}) is Halted: {}; reset it, or write reset = true in "
                                 "[uses.{}]",
-                                child.name(), alias, child.reasonText(), alias));
+                                used.name(), alias, used.reasonText(), alias));
     }
-    if (child.state() == State::running || child.state() == State::suspended) {
-        return fail(Errc::resource_unavailable, fmt::format("{} ({}) is {}", child.name(), alias,
-                                                            skill::toString(child.state())));
+    if (used.state() == State::running || used.state() == State::suspended) {
+        return fail(Errc::resource_unavailable, fmt::format("{} ({}) is {}", used.name(), alias,
+                                                            skill::toString(used.state())));
     }
     return {};
 }
 
-Result<std::unique_ptr<skill::Body>> SequenceSkill::prepare(const skill::ValueMap& snapshot) {
+Result<std::unique_ptr<skill::ExecutionWork>> SequenceSkill::prepare(const skill::ValueMap& snapshot) {
     for (const auto& alias : needed_) {
         if (auto usable = checkUsable(alias); !usable) {
             return fail(std::move(usable.error()));
         }
     }
-    return std::make_unique<SequenceBody>(RunSetup{composition_, used_, executor_, clock_, origin_},
-                                          snapshot, body_count_);
+    return std::make_unique<SequenceWork>(RunSetup{composition_, used_, executor_, clock_, origin_},
+                                          snapshot, work_count_);
 }
 
 Descriptions SequenceSkill::descriptionsWith(
-    const std::map<std::string, std::unique_ptr<Child>>& children) const {
+    const std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills) const {
     Descriptions descriptions;
     for (const auto& [alias, used] : used_) {
-        const auto other = children.find(alias);
-        const auto& child = other == children.end() ? *used.child : *other->second;
-        descriptions.emplace(alias, child.description());
+        const auto other = used_skills.find(alias);
+        const auto& used = other == used_skills.end() ? *used.skill : *other->second;
+        descriptions.emplace(alias, used.description());
     }
     return descriptions;
 }
 
-Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<Child>>& children) {
+Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills) {
     if (underWay()) {
         return fail(Errc::invalid_state, "an execution is under way");
     }
-    for (const auto& [alias, child] : children) {
+    for (const auto& [alias, used] : used_skills) {
         if (used_.find(alias) == used_.end()) {
             return fail(Errc::not_found, fmt::format("no use {}", alias));
         }
     }
-    auto composed = compose(composition_.definition, descriptionsWith(children));
+    auto composed = compose(composition_.definition, descriptionsWith(used_skills));
     if (!composed) {
         return fail(std::move(composed.error()));
     }
     composition_ = std::move(*composed);
-    for (auto& [alias, child] : children) {
+    for (auto& [alias, used] : used_skills) {
         auto& used = used_.find(alias)->second;
-        std::swap(used.child, child);
+        std::swap(used.skill, used);
         used.halted_by_us = false;
     }
     return {};
@@ -153,12 +153,12 @@ Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<Child>>
 
 Result<void> SequenceSkill::reset() {
     for (auto& [alias, used] : used_) {
-        auto& child = *used.child;
-        if (!used.mayReset() || !child.available() || child.state() != State::halted) {
+        auto& used = *used.skill;
+        if (!used.mayReset() || !used.available() || used.state() != State::halted) {
             continue;
         }
-        if (const auto asked = child.reset(*unheard_.at(alias)); !asked) {
-            return fail(asked.error().code, fmt::format("{} ({}) refused Reset: {}", child.name(),
+        if (const auto asked = used.reset(*unheard_.at(alias)); !asked) {
+            return fail(asked.error().code, fmt::format("{} ({}) refused Reset: {}", used.name(),
                                                         alias, asked.error().message));
         }
     }

@@ -14,7 +14,7 @@
 #include "metier/skill/program.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
 #include "metier/skill/testing/recording_observer.hpp"
-#include "scripted_child.hpp"
+#include "scripted_used_skill.hpp"
 
 namespace metier::composition::testing {
 
@@ -89,7 +89,7 @@ name = "first"
 run = "b"
 )";
 
-/// A composed skill over scripted children; the test moves the time and everything else.
+/// A composed skill over scripted used_skills; the test moves the time and everything else.
 class Bench {
 public:
     /// \param text a composition file; what it uses by the type GraspSkillType grasps, all else
@@ -100,15 +100,15 @@ public:
             throw std::invalid_argument(definition.error().message);
         }
         Descriptions descriptions;
-        std::map<std::string, std::unique_ptr<Child>> children;
+        std::map<std::string, std::unique_ptr<UsedSkill>> used_skills;
         for (const auto& use : definition->uses) {
             const auto description =
                 use.type == "GraspSkillType" ? graspDescription() : moveDescription();
-            auto child =
-                std::make_unique<ScriptedChild>(description.name + " " + use.alias, description);
-            children_[use.alias] = child.get();
+            auto used =
+                std::make_unique<ScriptedUsedSkill>(description.name + " " + use.alias, description);
+            used_skills_[use.alias] = used.get();
             descriptions.emplace(use.alias, description);
-            children.emplace(use.alias, std::move(child));
+            used_skills.emplace(use.alias, std::move(used));
         }
         const auto deadline = restDeadlineOf(*definition);
         auto composition = compose(std::move(*definition), descriptions);
@@ -116,7 +116,7 @@ public:
             throw std::invalid_argument(composition.error().message);
         }
         auto sequence =
-            std::make_unique<SequenceSkill>(std::move(*composition), std::move(children), executor,
+            std::make_unique<SequenceSkill>(std::move(*composition), std::move(used_skills), executor,
                                             executor->clock(), "here.TestSkill");
         skill = sequence.get();
         program =
@@ -125,7 +125,7 @@ public:
         program->attach(observer);
     }
 
-    ScriptedChild& operator[](const std::string& alias) { return *children_.at(alias); }
+    ScriptedUsedSkill& operator[](const std::string& alias) { return *used_skills_.at(alias); }
 
     /// Starts, and lets what follows happen.
     Result<void> start(skill::ValueMap parameters = {}) {
@@ -165,7 +165,7 @@ private:
         }
     }
 
-    std::map<std::string, ScriptedChild*> children_;  // owned by the skill
+    std::map<std::string, ScriptedUsedSkill*> used_skills_;  // owned by the skill
 };
 
 }  // namespace metier::composition::testing

@@ -10,7 +10,7 @@ using testing::Bench;
 using ::testing::HasSubstr;
 using testing::kHead;
 using testing::moveDescription;
-using testing::ScriptedChild;
+using testing::ScriptedUsedSkill;
 
 const std::string kOneAfterTheOther = kHead + R"(
 [[step]]
@@ -25,28 +25,28 @@ name = "third"
 run = "b"
 )";
 
-using Children = std::map<std::string, std::unique_ptr<Child>>;
+using UsedSkills = std::map<std::string, std::unique_ptr<UsedSkill>>;
 
 class RebindOfASequence : public ::testing::Test {
 protected:
     /// Another skill for the alias `a`.
-    Children other(const skill::SkillDescription& description = moveDescription()) {
-        auto child = std::make_unique<ScriptedChild>("other", description);
-        other_ = child.get();
-        Children children;
-        children.emplace("a", std::move(child));
-        return children;
+    UsedSkills other(const skill::SkillDescription& description = moveDescription()) {
+        auto used = std::make_unique<ScriptedUsedSkill>("other", description);
+        other_ = used.get();
+        UsedSkills used_skills;
+        used_skills.emplace("a", std::move(used));
+        return used_skills;
     }
 
     Bench bench_{kOneAfterTheOther};
-    ScriptedChild* other_ = nullptr;  // owned by the map, later by the skill
+    ScriptedUsedSkill* other_ = nullptr;  // owned by the map, later by the skill
 };
 
 TEST_F(RebindOfASequence, TakesPlaceForTheNextExecution) {
-    auto children = other();
-    const auto rebound = bench_.skill->rebind(children);
+    auto used_skills = other();
+    const auto rebound = bench_.skill->rebind(used_skills);
     ASSERT_TRUE(rebound) << rebound.error().message;
-    EXPECT_EQ(children.at("a").get(), &bench_["a"]) << "the old one is handed back";
+    EXPECT_EQ(used_skills.at("a").get(), &bench_["a"]) << "the old one is handed back";
     ASSERT_TRUE(bench_.start());
     EXPECT_TRUE(other_->runs());
     EXPECT_FALSE(bench_["a"].runs());
@@ -56,11 +56,11 @@ TEST_F(RebindOfASequence, TakesPlaceForTheNextExecution) {
 TEST_F(RebindOfASequence, IsRefusedInTheMiddleOfAnExecution) {
     ASSERT_TRUE(bench_.start());
     bench_["a"].finish();  // between two steps that use it
-    auto children = other();
-    const auto rebound = bench_.skill->rebind(children);
+    auto used_skills = other();
+    const auto rebound = bench_.skill->rebind(used_skills);
     ASSERT_FALSE(rebound);
     EXPECT_EQ(rebound.error().code, Errc::invalid_state);
-    EXPECT_EQ(children.at("a").get(), other_);
+    EXPECT_EQ(used_skills.at("a").get(), other_);
     bench_.run();
     EXPECT_TRUE(bench_["a"].runs()) << "the second step is the old one's as well";
 }
@@ -71,8 +71,8 @@ TEST_F(RebindOfASequence, IsRefusedWhileItIsSuspended) {
     bench_["a"].suspended();
     bench_.run();
     ASSERT_EQ(bench_.state(), "Suspended");
-    auto children = other();
-    EXPECT_FALSE(bench_.skill->rebind(children));
+    auto used_skills = other();
+    EXPECT_FALSE(bench_.skill->rebind(used_skills));
 }
 
 TEST_F(RebindOfASequence, IsPossibleOnceTheExecutionIsOver) {
@@ -80,17 +80,17 @@ TEST_F(RebindOfASequence, IsPossibleOnceTheExecutionIsOver) {
     bench_["a"].refused("broken");
     bench_.run();
     ASSERT_EQ(bench_.state(), "Halted");
-    auto children = other();
-    EXPECT_TRUE(bench_.skill->rebind(children));
+    auto used_skills = other();
+    EXPECT_TRUE(bench_.skill->rebind(used_skills));
     ASSERT_TRUE(bench_.call(skill::Method::reset));
     ASSERT_TRUE(bench_.call(skill::Method::start));
     EXPECT_TRUE(other_->runs());
 }
 
 TEST_F(RebindOfASequence, DoesNotResetASkillThatSomebodyElseHalted) {
-    auto children = other();
+    auto used_skills = other();
     other_->state_now = skill::State::halted;
-    ASSERT_TRUE(bench_.skill->rebind(children));
+    ASSERT_TRUE(bench_.skill->rebind(used_skills));
     const auto started = bench_.start();
     ASSERT_FALSE(started);
     EXPECT_THAT(started.error().message, HasSubstr("other (a) is Halted"));
@@ -101,8 +101,8 @@ TEST_F(RebindOfASequence, IsRefusedWhereTheBindingsDoNotFit) {
     auto parameters = narrow.parameters.toVector();
     parameters.front().range = skill::Range{0.0, 0.5};
     narrow.parameters = std::move(parameters);
-    auto children = other(narrow);
-    const auto rebound = bench_.skill->rebind(children);
+    auto used_skills = other(narrow);
+    const auto rebound = bench_.skill->rebind(used_skills);
     ASSERT_FALSE(rebound);
     EXPECT_EQ(rebound.error().code, Errc::invalid_argument);
     EXPECT_THAT(rebound.error().message, HasSubstr("Target"));
@@ -111,11 +111,11 @@ TEST_F(RebindOfASequence, IsRefusedWhereTheBindingsDoNotFit) {
 }
 
 TEST_F(RebindOfASequence, KnowsOnlyItsOwnAliases) {
-    auto children = other();
-    auto node = children.extract("a");
+    auto used_skills = other();
+    auto node = used_skills.extract("a");
     node.key() = "c";
-    children.insert(std::move(node));
-    EXPECT_EQ(bench_.skill->rebind(children).error().code, Errc::not_found);
+    used_skills.insert(std::move(node));
+    EXPECT_EQ(bench_.skill->rebind(used_skills).error().code, Errc::not_found);
 }
 
 }  // namespace

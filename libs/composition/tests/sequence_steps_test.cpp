@@ -64,10 +64,10 @@ TEST(Sequence, ShortensIdsThatWouldBeTooLong) {
                 "[[step]]\nname = \"first\"\nrun = \"a\"\n[[step]]\nname = \"s\"\nrun = \"b\"\n");
     const std::string id(120, 'x');
     ASSERT_TRUE(bench.program->startWith(testing::kClient, {id, {}}));
-    const auto& child = bench["a"].request.execution_id;
-    EXPECT_LE(child.size(), 128U);
-    EXPECT_EQ(child.find("here.TestSkill/"), 0U);
-    EXPECT_NE(child.find("/first/1"), std::string::npos);
+    const auto& used = bench["a"].request.execution_id;
+    EXPECT_LE(used.size(), 128U);
+    EXPECT_EQ(used.find("here.TestSkill/"), 0U);
+    EXPECT_NE(used.find("/first/1"), std::string::npos);
 }
 
 TEST(Sequence, GivesParametersResultsAndConstantsToItsSteps) {
@@ -605,10 +605,10 @@ TEST(Sequence, TakesNoProgressThatIsNone) {
 TEST(Sequence, IsShownWhatItStartsWithNameAndSkill) {
     Bench bench(parallel(""));
     ASSERT_TRUE(bench.start());
-    ASSERT_EQ(bench.observer.children.size(), 2U);
-    EXPECT_EQ(bench.observer.children[0].id, "here.TestSkill/run/left/1");
-    EXPECT_EQ(bench.observer.children[0].skill, "MoveSkill");
-    EXPECT_EQ(bench.observer.children[1].id, "here.TestSkill/run/right/2");
+    ASSERT_EQ(bench.observer.used_skills.size(), 2U);
+    EXPECT_EQ(bench.observer.used_skills[0].id, "here.TestSkill/run/left/1");
+    EXPECT_EQ(bench.observer.used_skills[0].skill, "MoveSkill");
+    EXPECT_EQ(bench.observer.used_skills[1].id, "here.TestSkill/run/right/2");
     EXPECT_EQ(bench["a"].request.parent.id, "run");
 }
 

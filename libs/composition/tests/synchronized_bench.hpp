@@ -12,13 +12,13 @@
 #include "metier/skill/testing/manual_executor.hpp"
 #include "metier/skill/testing/recording_observer.hpp"
 #include "metier/composition/synchronized_move_skill.hpp"
-#include "scripted_child.hpp"
+#include "scripted_used_skill.hpp"
 
 namespace metier::composition {
 
 using namespace std::chrono_literals;
 using composition::ClockOffset;
-using composition::testing::ScriptedChild;
+using composition::testing::ScriptedUsedSkill;
 
 inline const skill::Caller kClient{"session", "client", "user"};
 
@@ -33,8 +33,8 @@ inline skill::SkillDescription moveDescription(const std::string& name) {
 
 /// The two moves of one arm, as the test has them behave.
 struct ScriptedArm {
-    ScriptedChild* pose;
-    ScriptedChild* joint;
+    ScriptedUsedSkill* pose;
+    ScriptedUsedSkill* joint;
 };
 
 /// A synchronized move of two scripted arms; the test moves the time and everything else.
@@ -43,9 +43,9 @@ public:
     Bench() {
         std::vector<Arm> arms;
         for (const std::string name : {"left", "right"}) {
-            auto pose = std::make_unique<ScriptedChild>("CartesianPtpMoveSkill of " + name,
+            auto pose = std::make_unique<ScriptedUsedSkill>("CartesianPtpMoveSkill of " + name,
                                                         moveDescription("CartesianPtpMoveSkill"));
-            auto joint = std::make_unique<ScriptedChild>("JointPtpMoveSkill of " + name,
+            auto joint = std::make_unique<ScriptedUsedSkill>("JointPtpMoveSkill of " + name,
                                                          moveDescription("JointPtpMoveSkill"));
             arms_[name] = {pose.get(), joint.get()};
             arms.push_back({name, std::move(pose), std::move(joint)});
@@ -81,8 +81,8 @@ public:
         report.planned_duration = duration;
         report.joint_path = {{from}, {(from + to) / 2}, {to}};
         auto& asked = arms_.at(arm);
-        for (auto* child : {asked.pose, asked.joint}) {
-            if (auto done = std::exchange(child->check_done, nullptr)) {
+        for (auto* used : {asked.pose, asked.joint}) {
+            if (auto done = std::exchange(used->check_done, nullptr)) {
                 done(report);
                 run();
             }

@@ -19,8 +19,8 @@ protected:
         static_cast<void>(bench["right"].joint->heard());
     }
 
-    ScriptedChild& left() { return *bench["left"].joint; }
-    ScriptedChild& right() { return *bench["right"].joint; }
+    ScriptedUsedSkill& left() { return *bench["left"].joint; }
+    ScriptedUsedSkill& right() { return *bench["right"].joint; }
     void run() { bench.run(); }
     void suspendBoth() {
         EXPECT_TRUE(bench.call(bench.program->suspend(kClient)));
@@ -34,10 +34,10 @@ protected:
         static_cast<void>(right().heard());
     }
     /// A suspended execution that was reset.
-    void given(ScriptedChild& child) {
-        child.state_now = State::ready;
-        child.listener->onEnd(
-            {composition::ChildEnd::Kind::halted, {}, Reason::by_client, "reset"});
+    void given(ScriptedUsedSkill& used) {
+        used.state_now = State::ready;
+        used.listener->onEnd(
+            {composition::UsedSkillEnd::Kind::halted, {}, Reason::by_client, "reset"});
         run();
     }
 
@@ -74,7 +74,7 @@ TEST_F(SynchronizedStop, OneThatBrakesForAHaltHaltsTheOtherBeforeItStands) {
 }
 
 TEST_F(SynchronizedStop, OneThatIsLostHaltsTheOther) {
-    right().listener->onEnd({composition::ChildEnd::Kind::lost, {}, Reason::device_lost, "gone"});
+    right().listener->onEnd({composition::UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "gone"});
     run();
     EXPECT_THAT(left().heard(), ElementsAre("halt"));
     left().halted();

@@ -32,12 +32,12 @@ double distance(const KinematicsData& data, std::size_t axis,
     constexpr double kRadians = 0.02;
     const auto told = motion::toPose(jointFrame(data, axis));
     const auto& direction = data.joint_axes[axis];
-    const Eigen::Vector3d told_axis =
+    const Eigen::Vector3d reported_axis =
         told.rotation * Eigen::Vector3d(direction.x, direction.y, direction.z);
     const Eigen::Vector3d axis_of_model = joint.parent_from_joint.rotation * joint.axis;
     return std::max({(told.translation - joint.parent_from_joint.translation).norm() / kMetres,
                      told.rotation.angularDistance(joint.parent_from_joint.rotation) / kRadians,
-                     (told_axis - axis_of_model).norm() / kRadians});
+                     (reported_axis - axis_of_model).norm() / kRadians});
 }
 
 json jointsJson(const KinematicsData& data, const RobotModel* model) {

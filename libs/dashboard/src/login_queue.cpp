@@ -4,13 +4,13 @@
 
 namespace metier::dashboard {
 
-LoginQueue::Turn::~Turn() {
+LoginQueue::Place::~Place() {
     if (queue_ != nullptr) {
         queue_->end();
     }
 }
 
-LoginQueue::Turn LoginQueue::await(std::chrono::milliseconds longest) {
+LoginQueue::Place LoginQueue::await(std::chrono::milliseconds longest) {
     std::unique_lock lock(mutex_);
     const auto own = next_++;
     waiting_.push_back(own);
@@ -19,7 +19,7 @@ LoginQueue::Turn LoginQueue::await(std::chrono::milliseconds longest) {
     waiting_.erase(std::find(waiting_.begin(), waiting_.end(), own));
     asking_ += came ? 1 : 0;
     changed_.notify_all();  // another one is first now
-    return Turn(came ? this : nullptr);
+    return Place(came ? this : nullptr);
 }
 
 void LoginQueue::end() {

@@ -17,12 +17,12 @@ public:
     explicit LoginQueue(std::size_t at_a_time) : at_a_time_(at_a_time) {}
 
     /// The right to ask, until its end. Must not outlive the queue.
-    class Turn {
+    class Place {
     public:
-        explicit Turn(LoginQueue* queue) : queue_(queue) {}
-        ~Turn();
-        Turn(const Turn&) = delete;
-        Turn& operator=(const Turn&) = delete;
+        explicit Place(LoginQueue* queue) : queue_(queue) {}
+        ~Place();
+        Place(const Place&) = delete;
+        Place& operator=(const Place&) = delete;
         explicit operator bool() const noexcept { return queue_ != nullptr; }
 
     private:
@@ -30,7 +30,7 @@ public:
     };
 
     /// Waits for a turn. \return none: it did not come within that time
-    Turn await(std::chrono::milliseconds longest);
+    Place await(std::chrono::milliseconds longest);
 
 private:
     void end();

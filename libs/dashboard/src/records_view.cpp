@@ -19,7 +19,7 @@
 namespace metier::dashboard {
 
 using nlohmann::json;
-using records::Execution;
+using records::ExecutionRow;
 using records::Member;
 using records::Store;
 

@@ -11,7 +11,7 @@
 
 #include "board.hpp"
 #include "metier/http/httplib.hpp"
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 #include "metier/records/kept_store.hpp"
 #include "metier/records/store.hpp"
 #include "reply.hpp"
@@ -36,7 +36,7 @@ public:
     void show(bool shown);
 
 private:
-    nlohmann::json recordJson(const records::Execution& execution) const;
+    nlohmann::json recordJson(const records::ExecutionRow& execution) const;
     Result<nlohmann::json> detailsOf(records::Store& store, std::int64_t number) const;
     void work(const std::stop_token& stop);
     /// Looks for changes. \param revision of the look before; nothing before the first

@@ -153,7 +153,7 @@ std::string Survey::noteUses(const SkillAddress& address) {
     const auto references =
         reader ? reader->read(address.node) : Answer<client::SkillReferences>();
     std::string first;
-    for (const auto& use : references ? references->uses : std::vector<client::UsedSkill>()) {
+    for (const auto& use : references ? references->uses : std::vector<client::SkillUse>()) {
         const auto used = use.endpoint_url.empty() ? "" : context_.server_at(use.endpoint_url);
         if (used.empty() || used == context_.server.name) {
             continue;

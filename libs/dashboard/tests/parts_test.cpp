@@ -315,7 +315,7 @@ void recordMove(const std::string& file, const std::string& id) {
     options.url = file;
     options.server = "urn:test:iiwa";
     const auto recorder = records::Recorder::create(std::move(options)).value();
-    records::Execution execution;
+    records::ExecutionRow execution;
     execution.id = id;
     execution.parameters = R"({"MaxVelocity":[1.0]})";
     execution.started = kNoon;

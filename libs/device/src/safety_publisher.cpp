@@ -5,7 +5,7 @@
 namespace metier::device {
 
 SafetyPublisher::SafetyPublisher(Safety initial)
-    : state_(initial.state), known_(std::move(initial)), told_(known_.state) {}
+    : state_(initial.state), known_(std::move(initial)), reported_(known_.state) {}
 
 Safety SafetyPublisher::safety() const {
     const std::lock_guard lock(mutex_);
@@ -28,11 +28,11 @@ void SafetyPublisher::dispatch() {
     Safety now;
     {
         const std::lock_guard lock(mutex_);
-        if (known_.state == told_) {
+        if (known_.state == reported_) {
             return;
         }
         now = known_;
-        told_ = now.state;
+        reported_ = now.state;
     }
     std::vector<Callback> callbacks;
     {

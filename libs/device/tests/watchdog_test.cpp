@@ -30,7 +30,7 @@ protected:
                         const std::lock_guard lock(mutex_);
                         posted_.push_back(std::move(work));
                     },
-                .tell = [this](std::chrono::nanoseconds stalled) { told_.push_back(stalled); },
+                .tell = [this](std::chrono::nanoseconds stalled) { reported_.push_back(stalled); },
                 .noticed = [this](std::chrono::nanoseconds) { ++noticed_; }};
     }
 
@@ -49,7 +49,7 @@ protected:
     ManualClock clock_;
     std::atomic<int> stops_ = 0;
     std::atomic<int> noticed_ = 0;
-    std::vector<std::chrono::nanoseconds> told_;
+    std::vector<std::chrono::nanoseconds> reported_;
     std::mutex mutex_;
     std::vector<std::function<void()>> posted_;
     Watchdog watchdog_{actions(), kLimit, clock_};
@@ -72,7 +72,7 @@ TEST_F(WatchedThread, IsLeftAloneWhileItTicksInTime) {
     watchdog_.tick();
     runPosted();
     EXPECT_EQ(stops_, 0);
-    EXPECT_TRUE(told_.empty());
+    EXPECT_TRUE(reported_.empty());
 }
 
 TEST_F(WatchedThread, ThatStallsHasItsDevicesStopped) {
@@ -81,7 +81,7 @@ TEST_F(WatchedThread, ThatStallsHasItsDevicesStopped) {
     watchdog_.look();
     EXPECT_GE(stops_, 1);
     EXPECT_EQ(noticed_, 1);
-    EXPECT_TRUE(told_.empty()) << "nobody is there to be told";
+    EXPECT_TRUE(reported_.empty()) << "nobody is there to be told";
 }
 
 TEST_F(WatchedThread, IsLookedAtRightWhenItsLimitIsOver) {
@@ -112,8 +112,8 @@ TEST_F(WatchedThread, IsToldOnceForHowLongItDidNotWork) {
     runPosted();
     watchdog_.tick();
     runPosted();
-    ASSERT_EQ(told_.size(), 1U);
-    EXPECT_EQ(told_[0], kLimit + 1s + 1ns);
+    ASSERT_EQ(reported_.size(), 1U);
+    EXPECT_EQ(reported_[0], kLimit + 1s + 1ns);
     EXPECT_EQ(noticed_, 1);
 }
 
@@ -124,8 +124,8 @@ TEST_F(WatchedThread, ThatTicksFirstAfterTheWholeProcessWasStoppedIsToldToo) {
     watchdog_.look();
     runPosted();
     EXPECT_GE(stops_, 1);
-    ASSERT_EQ(told_.size(), 1U);
-    EXPECT_EQ(told_[0], 5s);
+    ASSERT_EQ(reported_.size(), 1U);
+    EXPECT_EQ(reported_[0], 5s);
     EXPECT_EQ(noticed_, 1);
 }
 
@@ -136,7 +136,7 @@ TEST_F(WatchedThread, IsToldOfEachStall) {
         watchdog_.look();
         runPosted();
     }
-    EXPECT_EQ(told_.size(), 3U);
+    EXPECT_EQ(reported_.size(), 3U);
 }
 
 TEST_F(WatchedThread, IsNotWatchedAnyLongerAfterTheEnd) {
@@ -145,7 +145,7 @@ TEST_F(WatchedThread, IsNotWatchedAnyLongerAfterTheEnd) {
     clock_.advance(1s);
     watchdog_.tick();
     EXPECT_EQ(stops_, 0);
-    EXPECT_TRUE(told_.empty());
+    EXPECT_TRUE(reported_.empty());
 }
 
 TEST(Watchdog, LooksByItself) {

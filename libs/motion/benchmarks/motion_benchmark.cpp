@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "../tests/kdl_oracle.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "metier/motion/planner.hpp"
 #include "metier/motion/stream_follower.hpp"
@@ -312,11 +312,11 @@ void checkForce(benchmark::State& state, const std::string& robot) {
 void sampleLine(benchmark::State& state, const std::string& robot) {
     const RobotModel model = load(robot);
     const Trajectory trajectory = planLin(model, line(model, 0.1)).value();
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     std::vector<double> costs;
     for (auto _ : state) {
         if (execution.finished()) {
-            execution = MotionExecution(trajectory);
+            execution = MotionRun(trajectory);
         }
         const auto begin = std::chrono::steady_clock::now();
         benchmark::DoNotOptimize(execution.next(Seconds(0.001)));

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "turn.hpp"
+#include "axis_rotation.hpp"
 
 namespace metier::motion {
 
@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 /// Three turns whose product is a given rotation.
 struct Decomposition {
-    std::array<std::array<Turn, 3>, 2> turns;
+    std::array<std::array<AxisRotation, 3>, 2> turns;
     std::size_t count = 0;
     bool delicate = false;
 };
@@ -29,10 +29,10 @@ struct ThreeAxes {
 };
 
 /// rotation = R(first) R(second) R(third). Where the outer axes align, `otherwise` is the first.
-Decomposition decompose(const Matrix3d& rotation, const ThreeAxes& axes, const Turn& otherwise) {
+Decomposition decompose(const Matrix3d& rotation, const ThreeAxes& axes, const AxisRotation& otherwise) {
     const Vector3d image = rotation * axes.third;
-    const Turns second =
-        turnsOntoPlane({axes.first, axes.first.dot(image)}, axes.third, axes.second, Turn{});
+    const AxisRotations second =
+        rotationsOntoPlane({axes.first, axes.first.dot(image)}, axes.third, axes.second, AxisRotation{});
     const Vector3d across = axes.third.unitOrthogonal();
     const Vector3d across_image = rotation * across;
     Decomposition result;
@@ -40,10 +40,10 @@ Decomposition decompose(const Matrix3d& rotation, const ThreeAxes& axes, const T
     for (std::size_t i = 0; i < second.count; ++i) {
         const Vector3d turned = rotate(axes.second, second.value[i], axes.third);
         const bool free = axes.first.cross(turned).squaredNorm() < kFree * kFree;
-        const Turn first = free ? otherwise : turnBetween(turned, image, axes.first, otherwise);
+        const AxisRotation first = free ? otherwise : rotationBetween(turned, image, axes.first, otherwise);
         const Vector3d back = rotate(axes.second, second.value[i].inverse(),
                                      rotate(axes.first, first.inverse(), across_image));
-        const Turn third = turnBetween(across, back, axes.third, Turn{});
+        const AxisRotation third = rotationBetween(across, back, axes.third, AxisRotation{});
         result.turns[result.count++] = {first, second.value[i], third};
     }
     return result;
@@ -76,23 +76,23 @@ double across(const Vector3d& v, const Vector3d& axis) {
 
 /// What is common to the arms whose axes 2 and 3 are parallel: two links in a plane.
 struct PlanarPair {
-    std::array<Turn, 2> second;
-    std::array<Turn, 2> third;
+    std::array<AxisRotation, 2> second;
+    std::array<AxisRotation, 2> third;
     std::size_t count = 0;
     bool delicate = false;
 };
 
-/// Turns of axes 2 and 3 for which R2 (p23 + R3 p3e) = end.
+/// AxisRotations of axes 2 and 3 for which R2 (p23 + R3 p3e) = end.
 PlanarPair solvePlanarPair(const ZeroPosition& zero, const Vector3d& p3e, const Vector3d& end,
-                           const Turn& otherwise) {
+                           const AxisRotation& otherwise) {
     const Vector3d p23 = zero.point[2] - zero.point[1];
     const double distance = (end.squaredNorm() - p23.squaredNorm() - p3e.squaredNorm()) / 2;
-    const Turns third = turnsOntoPlane({p23, distance, zero.slack}, p3e, zero.axis[2], Turn{});
+    const AxisRotations third = rotationsOntoPlane({p23, distance, zero.slack}, p3e, zero.axis[2], AxisRotation{});
     PlanarPair pair;
     pair.delicate = third.delicate;
     for (std::size_t i = 0; i < third.count; ++i) {
         const Vector3d reached = p23 + rotate(zero.axis[2], third.value[i], p3e);
-        pair.second[i] = turnBetween(reached, end, zero.axis[1], otherwise);
+        pair.second[i] = rotationBetween(reached, end, zero.axis[1], otherwise);
         pair.third[i] = third.value[i];
     }
     pair.count = third.count;
@@ -247,32 +247,32 @@ ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const Close
 
     ClosedFormSolutions result;
     // axis[1] . R1^-1 x = offset, written as a plane for x turned back about axis 1.
-    const Turns back1 =
-        turnsOntoPlane({axis[1], offset, zero.slack}, from_first, axis[0], Turn::of(-reference[0]));
+    const AxisRotations back1 =
+        rotationsOntoPlane({axis[1], offset, zero.slack}, from_first, axis[0], AxisRotation::of(-reference[0]));
     if (back1.count == 0) {
         noteMiss(result, {"the wrist", 0, across(from_first, axis[0]), std::abs(offset)});
     }
     for (std::size_t i = 0; i < back1.count; ++i) {
-        const Turn turn1 = back1.value[i].inverse();
+        const AxisRotation turn1 = back1.value[i].inverse();
         const double q1 = turn1.angle();
         const Matrix3d unturned = rotationMatrix(axis[0], back1.value[i]);
         // R1^-1 R = R(axis 2, q2 +- q3 +- q4) R5 R6: solved backwards, so that q6 may be free.
         const Matrix3d wrist = (unturned * target.turned).transpose();
-        const Decomposition wrists = decompose(wrist, wrist_axes, Turn::of(-reference[5]));
+        const Decomposition wrists = decompose(wrist, wrist_axes, AxisRotation::of(-reference[5]));
         const Vector3d from_second =
             rotate(axis[0], back1.value[i], from_first) - (zero.point[1] - zero.point[0]);
         for (std::size_t k = 0; k < wrists.count; ++k) {
             const double q6 = -wrists.turns[k][0].angle();
             const double q5 = -wrists.turns[k][1].angle();
-            const Turn sum = wrists.turns[k][2].inverse();
+            const AxisRotation sum = wrists.turns[k][2].inverse();
             const Vector3d end = from_second - rotate(axis[1], sum, p45);
-            const PlanarPair pair = solvePlanarPair(zero, p34, end, Turn::of(reference[1]));
+            const PlanarPair pair = solvePlanarPair(zero, p34, end, AxisRotation::of(reference[1]));
             if (pair.count == 0) {
                 noteLinks(result, across(end, axis[1]), across(p23, axis[1]), across(p34, axis[1]));
             }
             for (std::size_t m = 0; m < pair.count; ++m) {
-                const Turn third = sign3 > 0 ? pair.third[m] : pair.third[m].inverse();
-                const Turn fourth = sum * (pair.second[m] * third).inverse();
+                const AxisRotation third = sign3 > 0 ? pair.third[m] : pair.third[m].inverse();
+                const AxisRotation fourth = sum * (pair.second[m] * third).inverse();
                 const double q4 = sign4 > 0 ? fourth.angle() : -fourth.angle();
                 add(result, {q1, pair.second[m].angle(), pair.third[m].angle(), q4, q5, q6},
                     back1.delicate || wrists.delicate || pair.delicate);
@@ -293,8 +293,8 @@ ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFo
     const ThreeAxes wrist_axes{axis[3], axis[4], axis[5]};
 
     ClosedFormSolutions result;
-    const Turns back1 =
-        turnsOntoPlane({axis[1], offset}, from_first, axis[0], Turn::of(-reference[0]));
+    const AxisRotations back1 =
+        rotationsOntoPlane({axis[1], offset}, from_first, axis[0], AxisRotation::of(-reference[0]));
     if (back1.count == 0) {
         noteMiss(result, {"the wrist", 0, across(from_first, axis[0]), std::abs(offset)});
     }
@@ -302,7 +302,7 @@ ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFo
         const double q1 = -back1.value[i].angle();
         const Vector3d end =
             rotate(axis[0], back1.value[i], from_first) - (zero.point[1] - zero.point[0]);
-        const PlanarPair pair = solvePlanarPair(zero, p3w, end, Turn::of(reference[1]));
+        const PlanarPair pair = solvePlanarPair(zero, p3w, end, AxisRotation::of(reference[1]));
         if (pair.count == 0) {
             noteLinks(result, across(end, axis[1]), across(p23, axis[1]), across(p3w, axis[1]));
         }
@@ -310,7 +310,7 @@ ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFo
         for (std::size_t m = 0; m < pair.count; ++m) {
             const Matrix3d wrist = rotationMatrix(axis[2], pair.third[m].inverse()) *
                                    (rotationMatrix(axis[1], pair.second[m].inverse()) * unturned);
-            const Decomposition wrists = decompose(wrist, wrist_axes, Turn::of(reference[3]));
+            const Decomposition wrists = decompose(wrist, wrist_axes, AxisRotation::of(reference[3]));
             const double q2 = pair.second[m].angle();
             const double q3 = pair.third[m].angle();
             for (std::size_t k = 0; k < wrists.count; ++k) {
@@ -339,7 +339,7 @@ ArmPlane armPlane(const Vector3d& shoulder_to_wrist) {
 namespace {
 
 /// The upper arm's rotation that brings `line` to the plane's line and `normal` to the arm angle.
-Matrix3d shoulderRotation(const ArmPlane& plane, const Turn& angle, const Vector3d& line,
+Matrix3d shoulderRotation(const ArmPlane& plane, const AxisRotation& angle, const Vector3d& line,
                           const Vector3d& normal) {
     const Vector3d target_normal = angle.c * plane.up + angle.s * plane.side;
     Matrix3d from;
@@ -380,7 +380,7 @@ ClosedFormSolutions solveArmAngle(const ZeroPosition& zero, const ClosedFormQuer
     const Vector3d fore = zero.point[4] - zero.point[3];
     const double distance =
         (shoulder_to_wrist.squaredNorm() - upper.squaredNorm() - fore.squaredNorm()) / 2;
-    const Turns elbow = turnsOntoPlane({upper, distance}, fore, axis[3], Turn{});
+    const AxisRotations elbow = rotationsOntoPlane({upper, distance}, fore, axis[3], AxisRotation{});
     ClosedFormSolutions result;
     if (elbow.count == 0) {
         noteLinks(result, shoulder_to_wrist.norm(), upper.norm(), fore.norm());
@@ -389,18 +389,18 @@ ClosedFormSolutions solveArmAngle(const ZeroPosition& zero, const ClosedFormQuer
         return result;
     }
     const ArmPlane plane = armPlane(shoulder_to_wrist);
-    const Turn angle = Turn::of(query.redundancy_angle);
+    const AxisRotation angle = AxisRotation::of(query.redundancy_angle);
     for (std::size_t i = 0; i < elbow.count; ++i) {
         const Vector3d line = (upper + rotate(axis[3], elbow.value[i], fore)).normalized();
         const Vector3d normal = axis[3].cross(line).normalized();
-        const Turn side = upper.dot(normal) < 0 ? Turn{-angle.c, -angle.s} : angle;
+        const AxisRotation side = upper.dot(normal) < 0 ? AxisRotation{-angle.c, -angle.s} : angle;
         const Matrix3d shoulder = shoulderRotation(plane, side, line, normal);
         const Matrix3d wrist = rotationMatrix(axis[3], elbow.value[i].inverse()) *
                                (shoulder.transpose() * target.turned);
         ArmHalves halves;
         halves.shoulder =
-            decompose(shoulder, {axis[0], axis[1], axis[2]}, Turn::of(query.reference[0]));
-        halves.wrist = decompose(wrist, {axis[4], axis[5], axis[6]}, Turn::of(query.reference[4]));
+            decompose(shoulder, {axis[0], axis[1], axis[2]}, AxisRotation::of(query.reference[0]));
+        halves.wrist = decompose(wrist, {axis[4], axis[5], axis[6]}, AxisRotation::of(query.reference[4]));
         halves.q4 = elbow.value[i].angle();
         halves.delicate = elbow.delicate;
         addCombinations(result, halves);

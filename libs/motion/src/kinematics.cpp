@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "closed_form.hpp"
-#include "turn.hpp"
+#include "axis_rotation.hpp"
 
 namespace metier::motion {
 
@@ -187,11 +187,11 @@ double Kinematics::redundancyAngle(const JointVector& q) const noexcept {
     }
     // Elbow and axis 4 at q, from the zero position turned by axes 1 to 3.
     const auto& axis = zero_.axis;
-    const Matrix3d shoulder = rotationMatrix(axis[0], Turn::of(q[0])) *
-                              rotationMatrix(axis[1], Turn::of(q[1])) *
-                              rotationMatrix(axis[2], Turn::of(q[2]));
+    const Matrix3d shoulder = rotationMatrix(axis[0], AxisRotation::of(q[0])) *
+                              rotationMatrix(axis[1], AxisRotation::of(q[1])) *
+                              rotationMatrix(axis[2], AxisRotation::of(q[2]));
     const Vector3d upper = zero_.point[3] - zero_.point[0];
-    const Vector3d line = upper + rotate(axis[3], Turn::of(q[3]), zero_.point[4] - zero_.point[3]);
+    const Vector3d line = upper + rotate(axis[3], AxisRotation::of(q[3]), zero_.point[4] - zero_.point[3]);
     const Vector3d normal = axis[3].cross(line);
     const ArmPlane plane = armPlane(shoulder * line);
     const Vector3d elbow = shoulder * (upper.dot(normal) < 0 ? Vector3d(-normal) : normal);

@@ -281,13 +281,13 @@ void synchronise(std::vector<Trajectory>& trajectories) {
 
 namespace {
 
-StoppingWay longestStop(const Trajectory& trajectory) {
+StoppingEstimate longestStop(const Trajectory& trajectory) {
     constexpr int kPlaces = 200;
-    StoppingWay longest;
-    MotionExecution execution(trajectory);
+    StoppingEstimate longest;
+    MotionRun execution(trajectory);
     for (int i = 0; i < kPlaces; ++i) {
         execution.next(trajectory.duration() / kPlaces);
-        const auto way = execution.stoppingWay();
+        const auto way = execution.stoppingEstimate();
         longest.time = std::max(longest.time, way.time);
         longest.distance = std::max(longest.distance, way.distance);
     }

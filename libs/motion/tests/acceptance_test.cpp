@@ -11,7 +11,7 @@
 
 #include "kdl_oracle.hpp"
 #include "metier/motion/rotation.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
@@ -74,8 +74,8 @@ TEST_P(AcceptanceOf, BetweenSamplesAQuickMotionStaysNearTheLineToo) {
 TEST_P(AcceptanceOf, TheSameMotionSampledAtTwoRatesAgrees) {
     const auto plan = Planner(model_).lin(vertical(model_, 0.08));
     ASSERT_TRUE(plan);
-    MotionExecution slow(*plan);
-    MotionExecution quick(*plan);
+    MotionRun slow(*plan);
+    MotionRun quick(*plan);
     while (!slow.finished()) {
         slow.next(Seconds(0.008));
         for (int i = 0; i < 8; ++i) {

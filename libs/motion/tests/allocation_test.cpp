@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "metier/motion/planner.hpp"
 #include "metier/motion/stream_follower.hpp"
@@ -22,7 +22,7 @@ TEST_P(AllocationOf, ASampledMotionDoesNotAllocate) {
     request.start = model_.home();
     request.reference = TargetReference::relative_base;
     request.target.translation = {0, 0, 0.1};
-    MotionExecution execution(planLin(model_, request).value());
+    MotionRun execution(planLin(model_, request).value());
     const std::size_t before = allocationCount();
     for (int i = 0; i < 2000; ++i) {
         if (i == 100) {
@@ -35,7 +35,7 @@ TEST_P(AllocationOf, ASampledMotionDoesNotAllocate) {
             execution.halt();
         }
         execution.next(Seconds(0.001));
-        EXPECT_GE(execution.stoppingWay().time.count(), 0.0);
+        EXPECT_GE(execution.stoppingEstimate().time.count(), 0.0);
     }
     EXPECT_EQ(allocationCount() - before, 0U);
 }

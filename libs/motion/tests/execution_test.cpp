@@ -1,4 +1,4 @@
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, ExecutionOf, testing::ValuesIn(kRobots), robotN
 
 TEST_P(ExecutionOf, RunsTheTrajectoryAsPlanned) {
     const Trajectory trajectory = lineOf(model_, 0.1);
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     EXPECT_EQ(execution.current().position, trajectory.start());
     for (int i = 1; !execution.finished(); ++i) {
         ASSERT_LE(
@@ -44,7 +44,7 @@ TEST_P(ExecutionOf, SuspendsAndResumesAnywhereOnThePath) {
     const Trajectory trajectory = lineOf(model_, 0.1);
     std::uniform_int_distribution<int> when(0, static_cast<int>(trajectory.duration() / kCycle));
     for (int run = 0; run < scaled(1000); ++run) {
-        MotionExecution execution(trajectory);
+        MotionRun execution(trajectory);
         const int stop_at = when(random);
         for (int i = 0; i < stop_at; ++i) {
             execution.next(kCycle);
@@ -70,7 +70,7 @@ TEST_P(ExecutionOf, SuspendsAndResumesAnywhereOnThePath) {
 TEST(Execution, StopsFromAQuarterOfAMetrePerSecondWithinThreeTenthsOfASecond) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     while (execution.pathParameter() < 0.5) {
         execution.next(kCycle);
     }
@@ -90,8 +90,8 @@ TEST(Execution, StopsFromAQuarterOfAMetrePerSecondWithinThreeTenthsOfASecond) {
 TEST(Execution, BrakesWithTheFirstSetPointAfterAStopOrHalt) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
-    for (const auto brake : {&MotionExecution::stop, &MotionExecution::halt}) {
-        MotionExecution execution(trajectory);
+    for (const auto brake : {&MotionRun::stop, &MotionRun::halt}) {
+        MotionRun execution(trajectory);
         while (execution.pathParameter() < 0.5) {
             execution.next(kCycle);
         }
@@ -126,7 +126,7 @@ protected:
     static constexpr Seconds kLength{0.8};
     const RobotModel model_ = loadRobot("ur5");
     const Trajectory trajectory_ = lineOf(model_, 0.4);
-    MotionExecution execution_{trajectory_};
+    MotionRun execution_{trajectory_};
 };
 
 TEST_F(StopInATime, TakesJustThatTimeOnThePath) {
@@ -139,7 +139,7 @@ TEST_F(StopInATime, TakesJustThatTimeOnThePath) {
 }
 
 TEST_F(StopInATime, IsNoReasonForAHaltToTakeLonger) {
-    MotionExecution at_once(trajectory_);
+    MotionRun at_once(trajectory_);
     while (at_once.pathParameter() < execution_.pathParameter()) {
         at_once.next(kCycle);
     }
@@ -175,7 +175,7 @@ TEST_F(StopInATime, FollowsAHaltAndAResume) {
 TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     std::mt19937_64 random(2);
     std::uniform_real_distribution<double> factor(0.05, 1.0);
     int cycles = 0;
@@ -193,7 +193,7 @@ TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
 TEST(Execution, OverrideOfZeroStandsOnThePathUntilItIsRaised) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.1);
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     for (int i = 0; i < 20; ++i) {
         execution.next(kCycle);
     }
@@ -212,7 +212,7 @@ TEST(Execution, OverrideOfZeroStandsOnThePathUntilItIsRaised) {
 TEST(Execution, ALateCycleStaysOnTheTimeBase) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.1);
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     execution.next(kCycle);
     execution.next(3 * kCycle);
     EXPECT_LE(maxDifference(execution.current().position, trajectory.sample(4 * kCycle).position),
@@ -237,7 +237,7 @@ protected:
     static constexpr int kMostSkipped = 3;
     RobotModel model_ = loadRobot("ur5");
     Trajectory trajectory_ = lineOf(model_, 0.2);
-    MotionExecution execution_{trajectory_, {kCycle, kMostSkipped}};
+    MotionRun execution_{trajectory_, {kCycle, kMostSkipped}};
 };
 
 TEST_F(LateCycle, GoesOnOnTheTimeBaseIfNoMoreCyclesAreSkippedThanAllowed) {
@@ -283,7 +283,7 @@ TEST_F(LateCycle, AtRestMeansNothing) {
 
 TEST(Execution, AMotionOfNoLengthIsFinishedAtOnce) {
     const RobotModel model = loadRobot("ur5");
-    MotionExecution execution(lineOf(model, 0.0));
+    MotionRun execution(lineOf(model, 0.0));
     execution.next(kCycle);
     EXPECT_TRUE(execution.finished());
     EXPECT_EQ(execution.current().position, model.home());

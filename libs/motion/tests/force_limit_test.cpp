@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
@@ -157,7 +157,7 @@ TEST(ForceLimit, StopsALineAtAWallWithinTheBrakingDistanceOfTwiceTheLimits) {
         const Trajectory trajectory = planLin(model, request).value();
         const double surface = trajectory.poseAt(0).translation.z() - 0.06;
 
-        MotionExecution execution(trajectory);
+        MotionRun execution(trajectory);
         ForceLimit limit = limitOf({kLimit, 0, {}}, cycle.count());
         double tripped_at = 0;
         double depth = 0;

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "metier/motion/rotation.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
@@ -136,15 +136,15 @@ private:
 struct Stop {
     double time = 0;       ///< [s]
     double possible = 0;   ///< what the limits of axes and tool frame allow [s]
-    double announced = 0;  ///< what stoppingWay() said before [s]
-    double farther = 0;    ///< beyond the distance that stoppingWay() said [m]
+    double announced = 0;  ///< what stoppingEstimate() said before [s]
+    double farther = 0;    ///< beyond the distance that stoppingEstimate() said [m]
 };
 
 class StoppingOf : public EachRobot {
 protected:
     /// What the robot's own limits allow from here: each axis by itself, and the tool frame's
     /// speed along its path.
-    double possible(const Trajectory& plan, const MotionExecution& execution) const {
+    double possible(const Trajectory& plan, const MotionRun& execution) const {
         const SetPoint& now = execution.current();
         double longest = 0;
         for (std::size_t i = 0; i < now.position.size(); ++i) {
@@ -160,8 +160,8 @@ protected:
         return longest;
     }
 
-    double toolSpeed(const Trajectory& plan, const MotionExecution& execution) const {
-        MotionExecution later = execution;
+    double toolSpeed(const Trajectory& plan, const MotionRun& execution) const {
+        MotionRun later = execution;
         constexpr double step = 1e-5;
         later.next(Seconds(step));
         return motion::distanceBetween(plan.toolPose(execution.current().position),
@@ -171,7 +171,7 @@ protected:
 
     /// Lets it come to rest; checks that it stays on its path and within `factor` of the limits.
     /// \param taken the time that it took [s]
-    void comeToRest(const Trajectory& plan, MotionExecution& execution, double factor,
+    void comeToRest(const Trajectory& plan, MotionRun& execution, double factor,
                     double& taken) const {
         const Seconds step(model_.cycleTime() / 4);
         JointVector before = execution.current().velocity;
@@ -192,10 +192,10 @@ protected:
         }
     }
 
-    Stop stopped(const Trajectory& plan, MotionExecution& execution, void (MotionExecution::*how)(),
+    Stop stopped(const Trajectory& plan, MotionRun& execution, void (MotionRun::*how)(),
                  double factor) const {
         Stop stop;
-        const StoppingWay way = execution.stoppingWay();
+        const StoppingEstimate way = execution.stoppingEstimate();
         stop.announced = way.time.count();
         stop.possible = possible(plan, execution);
         const auto from = plan.toolPose(execution.current().position);
@@ -257,13 +257,13 @@ protected:
     }
 
     /// The clock of a motion that runs as planned.
-    static ScalarState timeOf(const Trajectory& plan, const MotionExecution& execution) {
+    static ScalarState timeOf(const Trajectory& plan, const MotionRun& execution) {
         return plan.profile().at(plan.profile().duration() - execution.remaining().count());
     }
 
     /// Runs a random move to a random place.
-    MotionExecution onTheWay(const Trajectory& plan, Moves& moves) const {
-        MotionExecution execution(plan);
+    MotionRun onTheWay(const Trajectory& plan, Moves& moves) const {
+        MotionRun execution(plan);
         execution.next(moves.between(0, 0.999) * plan.duration());
         return execution;
     }
@@ -277,9 +277,9 @@ TEST_P(StoppingOf, HaltTakesWhatTheRobotNeedsHoweverSlowThePlan) {
     for (int i = 0; i < scaled(kMoves) && !HasFailure(); ++i) {
         SCOPED_TRACE(i);
         const Trajectory plan = moves.next();
-        MotionExecution execution = onTheWay(plan, moves);
+        MotionRun execution = onTheWay(plan, moves);
         const ScalarState from = plan.pathParameter(timeOf(plan, execution));
-        Stop stop = stopped(plan, execution, &MotionExecution::halt, 2.0);
+        Stop stop = stopped(plan, execution, &MotionRun::halt, 2.0);
         checkTime(plan, from, stop);
         EXPECT_LE(stop.time, stop.announced + model_.cycleTime());
         EXPECT_LE(stop.farther, 1e-9);
@@ -295,11 +295,11 @@ TEST_P(StoppingOf, SuspendTakesWhatTheRobotNeedsOrHalfASecond) {
     for (int i = 0; i < scaled(kMoves) && !HasFailure(); ++i) {
         SCOPED_TRACE(i);
         const Trajectory plan = moves.next();
-        MotionExecution execution = onTheWay(plan, moves);
+        MotionRun execution = onTheWay(plan, moves);
         const ScalarState from = plan.pathParameter(timeOf(plan, execution));
 
-        Stop stop = stopped(plan, execution, &MotionExecution::stop, 1.0);
-        if (stop.time > MotionExecution::kGentleStop.count() + model_.cycleTime()) {
+        Stop stop = stopped(plan, execution, &MotionRun::stop, 1.0);
+        if (stop.time > MotionRun::kGentleStop.count() + model_.cycleTime()) {
             checkTime(plan, from, stop);
             largest = std::max(largest, excess(stop, model_.cycleTime()));
         }
@@ -316,11 +316,11 @@ TEST_P(StoppingOf, HaltIsHarderThanSuspendAndSuspendMayTurnIntoIt) {
     Moves moves(model_, 9);
     for (int i = 0; i < scaled(100); ++i) {
         const Trajectory plan = moves.next();
-        MotionExecution suspended = onTheWay(plan, moves);
-        if (suspended.stoppingWay().time < Seconds(0.02)) {
+        MotionRun suspended = onTheWay(plan, moves);
+        if (suspended.stoppingEstimate().time < Seconds(0.02)) {
             continue;
         }
-        MotionExecution halted = suspended;
+        MotionRun halted = suspended;
         suspended.stop();
         halted.halt();
         EXPECT_LT(halted.remaining(), 0.95 * suspended.remaining()) << "move " << i;
@@ -337,7 +337,7 @@ TEST_P(StoppingOf, AMotionThatIsResumedWhileItBrakesStaysOnItsPath) {
     Moves moves(model_, 10);
     for (int i = 0; i < scaled(200); ++i) {
         const Trajectory plan = moves.next();
-        MotionExecution execution = onTheWay(plan, moves);
+        MotionRun execution = onTheWay(plan, moves);
         execution.halt();
         execution.next(moves.between(0, 1) * execution.remaining());
         const JointVector there = execution.current().position;
@@ -357,16 +357,16 @@ TEST_P(StoppingOf, ASlowPtpStandsAfterMilliseconds) {
     target[0] += 1.0;
     request.target = target;
     const Trajectory plan = planPtp(model_, request).value().stretchedTo(Seconds(60));
-    MotionExecution execution(plan);
+    MotionRun execution(plan);
     execution.next(Seconds(30));
-    EXPECT_GT(execution.stoppingWay().time, Seconds(0));
-    EXPECT_GT(execution.stoppingWay().distance, 0.0);
+    EXPECT_GT(execution.stoppingEstimate().time, Seconds(0));
+    EXPECT_GT(execution.stoppingEstimate().distance, 0.0);
     const double speed = execution.current().velocity[0];
     const JointLimits& own = model_.limits(0);
     execution.halt();
     EXPECT_LT(execution.remaining().count(), shortestStop(speed, 0, own.acceleration, own.jerk));
     EXPECT_LT(execution.remaining().count(), 0.1);
-    EXPECT_EQ(MotionExecution(plan).stoppingWay().time, Seconds(0));
+    EXPECT_EQ(MotionRun(plan).stoppingEstimate().time, Seconds(0));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ private:
 /// Listens, and notes what it is told of every connection.
 class LoopConnections : public ::testing::Test {
 protected:
-    struct Told {
+    struct Report {
         ConnectionId id = 0;
         UA_ConnectionState state{};
         std::string text;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "turns.hpp"
+#include "fair_queue.hpp"
 
 namespace metier::opcua {
 namespace {
@@ -12,7 +12,7 @@ using ::testing::ElementsAre;
 
 const SteadyTime kStart{1000s};
 
-std::vector<ConnectionId> served(Turns& turns, std::size_t count, Turns::Cost cost = 1ms) {
+std::vector<ConnectionId> served(FairQueue& turns, std::size_t count, FairQueue::Cost cost = 1ms) {
     std::vector<ConnectionId> order;
     while (order.size() < count && !turns.empty()) {
         order.push_back(*turns.next());
@@ -21,8 +21,8 @@ std::vector<ConnectionId> served(Turns& turns, std::size_t count, Turns::Cost co
     return order;
 }
 
-TEST(Turns, AreTakenInTheOrderOfWaitingByThoseWhoHaveCostTheSame) {
-    Turns turns;
+TEST(FairQueue, AreTakenInTheOrderOfWaitingByThoseWhoHaveCostTheSame) {
+    FairQueue turns;
     for (const ConnectionId id : {3U, 1U, 2U}) {
         turns.ready(id, Standing::member, kStart);
         turns.ready(id, Standing::member, kStart);
@@ -31,8 +31,8 @@ TEST(Turns, AreTakenInTheOrderOfWaitingByThoseWhoHaveCostTheSame) {
     EXPECT_FALSE(turns.next());
 }
 
-TEST(Turns, WhoCostsLittleWaitsForNoMoreThanOneOfThoseWhoCostMuch) {
-    Turns turns;
+TEST(FairQueue, WhoCostsLittleWaitsForNoMoreThanOneOfThoseWhoCostMuch) {
+    FairQueue turns;
     auto now = kStart;
     for (ConnectionId busy = 1; busy <= 100; ++busy) {
         turns.ready(busy, Standing::member, now);
@@ -53,8 +53,8 @@ TEST(Turns, WhoCostsLittleWaitsForNoMoreThanOneOfThoseWhoCostMuch) {
     EXPECT_LE(most, 5U);  // 10 ms, its own 50 us 200 times
 }
 
-TEST(Turns, NobodyWaitsForEver) {
-    Turns turns;
+TEST(FairQueue, NobodyWaitsForEver) {
+    FairQueue turns;
     auto now = kStart;
     turns.ready(1, Standing::member, now);
     turns.used((turns.next(), 20ms));
@@ -69,8 +69,8 @@ TEST(Turns, NobodyWaitsForEver) {
     EXPECT_TRUE(served_at_last);
 }
 
-TEST(Turns, StrangersGetHalfOfTheTimeHoweverManyTheyAre) {
-    Turns turns;
+TEST(FairQueue, StrangersGetHalfOfTheTimeHoweverManyTheyAre) {
+    FairQueue turns;
     for (ConnectionId stranger = 1; stranger <= 100; ++stranger) {
         turns.ready(stranger, Standing::stranger, kStart);
     }
@@ -85,8 +85,8 @@ TEST(Turns, StrangersGetHalfOfTheTimeHoweverManyTheyAre) {
     EXPECT_NEAR(static_cast<double>(of_member), 500, 2);
 }
 
-TEST(Turns, WhoIsForgottenIsNotServed) {
-    Turns turns;
+TEST(FairQueue, WhoIsForgottenIsNotServed) {
+    FairQueue turns;
     turns.ready(1, Standing::member, kStart);
     turns.ready(2, Standing::stranger, kStart);
     turns.forget(1);

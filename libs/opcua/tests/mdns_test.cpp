@@ -80,7 +80,7 @@ TEST_F(Mdns, TellsOfAServerForAsLongAsItLives) {
         for (const auto& server : servers) {
             if (server.url == url) {
                 EXPECT_EQ(server.name, "metier test arm");
-                EXPECT_EQ(server.told_by, "mDNS");
+                EXPECT_EQ(server.reported_by, "mDNS");
             }
         }
     }

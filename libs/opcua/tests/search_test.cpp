@@ -45,7 +45,7 @@ TEST_F(Search, TellsEachAddressOnceWhoeverKnowsIt) {
     EXPECT_THAT(sighting.servers, ElementsAre(Field(&FoundServer::url, "opc.tcp://a:1"),
                                               Field(&FoundServer::url, "opc.tcp://b:1")));
     EXPECT_EQ(sighting.servers.front().name, "a");
-    EXPECT_EQ(sighting.servers.front().told_by, lds_->endpointUrl());
+    EXPECT_EQ(sighting.servers.front().reported_by, lds_->endpointUrl());
 }
 
 TEST_F(Search, LeavesOutWhatNoClientOfOursCanReach) {

@@ -2,7 +2,7 @@
 
 #include "metier/opcua/value.hpp"
 #include "metier/skill/program_observer.hpp"
-#include "purpose.hpp"
+#include "node_role.hpp"
 
 namespace metier::opcua_skill {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "metier/opcua/address_space.hpp"
-#include "purpose.hpp"
+#include "node_role.hpp"
 
 namespace metier::opcua_skill {
 

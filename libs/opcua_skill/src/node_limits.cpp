@@ -52,7 +52,7 @@ bool isAngle(Part part) {
 
 }  // namespace
 
-void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose) {
+void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node, NodeRole node_role) {
     const auto limit = nodes.find(node, opcua::QualifiedName{0, "EURange"});
     if (!limit) {
         return;
@@ -60,7 +60,7 @@ void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node
     const auto value = nodes.read(*limit);
     const auto range = value ? value->value.as<Range>() : Result<Range>(fail(value.error()));
     if (range && range->low < range->high) {
-        limits_.push_back({purpose.field, static_cast<Part>(purpose.detail), *range});
+        limits_.push_back({node_role.field, static_cast<Part>(node_role.detail), *range});
     }
 }
 

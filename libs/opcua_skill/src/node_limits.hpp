@@ -5,7 +5,7 @@
 
 #include "metier/opcua/address_space.hpp"
 #include "metier/skill/field.hpp"
-#include "purpose.hpp"
+#include "node_role.hpp"
 
 namespace metier::opcua_skill {
 
@@ -15,7 +15,7 @@ namespace metier::opcua_skill {
 class NodeLimits {
 public:
     /// Takes over the EURange of a parameter's node, if it has one.
-    void add(const opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose);
+    void add(const opcua::AddressSpace& nodes, const opcua::NodeId& node, NodeRole node_role);
     /// Errors: out_of_range, with field, part, value, limits and unit.
     Result<void> check(std::uint16_t index, const skill::Field& field,
                        const skill::Value& value) const;

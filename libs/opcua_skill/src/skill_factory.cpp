@@ -45,20 +45,20 @@ std::string textOf(const NodeId& id) {
     return id.toString();
 }
 
-bool isUnit(Role role) {
-    return role == Role::parameter_unit || role == Role::result_unit;
+bool isUnit(NodeKind kind) {
+    return kind == NodeKind::parameter_unit || kind == NodeKind::result_unit;
 }
-bool isRange(Role role) {
-    return role == Role::parameter_range || role == Role::result_range;
-}
-
-const skill::Field& fieldOf(const skill::SkillDescription& description, Purpose purpose) {
-    const bool is_result = purpose.role == Role::result || purpose.role == Role::result_unit ||
-                           purpose.role == Role::result_range;
-    return (is_result ? description.results : description.parameters)[purpose.field];
+bool isRange(NodeKind kind) {
+    return kind == NodeKind::parameter_range || kind == NodeKind::result_range;
 }
 
-/// Which nodes of a layout an instance has: the mandatory ones, those with a purpose, and what
+const skill::Field& fieldOf(const skill::SkillDescription& description, NodeRole node_role) {
+    const bool is_result = node_role.kind == NodeKind::result || node_role.kind == NodeKind::result_unit ||
+                           node_role.kind == NodeKind::result_range;
+    return (is_result ? description.results : description.parameters)[node_role.field];
+}
+
+/// Which nodes of a layout an instance has: the mandatory ones, those with a node_role, and what
 /// these hang below.
 std::vector<bool> neededNodes(const SkillLayout& layout, const std::vector<UsedNode>& used) {
     std::vector<bool> needed(layout.size());
@@ -103,7 +103,7 @@ void dropWhatCompactLacks(SkillLayout& layout) {
 SkillInstance declarationsOf(const SkillLayout& layout, const std::vector<UsedNode>& used) {
     SkillInstance declarations;
     for (const auto& node : used) {
-        declarations.nodes.push_back({layout[node.index].reference.target, node.purpose});
+        declarations.nodes.push_back({layout[node.index].reference.target, node.node_role});
     }
     return declarations;
 }
@@ -126,8 +126,8 @@ Result<SkillInstance> SkillFactory::make(const NodeId& skills,
         const NodeId& parent = step.parent == LayoutNode::kSkill ? instance.id : made[step.parent];
         METIER_ASSIGN(auto node, addNode(step, parent, prefix, style));
         made.push_back(node);
-        if (step.purpose && !step.shared) {
-            instance.nodes.push_back({std::move(node), *step.purpose});
+        if (step.node_role && !step.shared) {
+            instance.nodes.push_back({std::move(node), *step.node_role});
         }
     }
     return instance;
@@ -170,7 +170,7 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
     if (style == NodeStyle::compact) {
         dropWhatCompactLacks(layout);
     }
-    METIER_ASSIGN(auto used, assignPurposes(layout, description));
+    METIER_ASSIGN(auto used, assignNodeRoles(layout, description));
     METIER_TRY(checkTypes(nodes_, declarationsOf(layout, used), description));
     const auto needed = neededNodes(layout, used);
     std::vector<std::size_t> step_of(layout.size());
@@ -186,7 +186,7 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
         auto& node = layout[i];
         Step step;
         if (next_used != used.end() && next_used->index == i) {
-            step.purpose = next_used++->purpose;
+            step.node_role = next_used++->node_role;
         }
         if (!needed[i]) {
             continue;
@@ -196,7 +196,7 @@ Result<SkillFactory::Plan> SkillFactory::makePlan(const skill::SkillDescription&
         step.declaration = std::move(node.reference);
         METIER_TRY(describe(step));
         if (node.declared_by_skill) {
-            takeFrom(fieldOf(description, *step.purpose), step);
+            takeFrom(fieldOf(description, *step.node_role), step);
         }
         step.shared = !has_children[i] && serves(step, description);
         step_of[i] = plan.steps.size();
@@ -235,17 +235,17 @@ bool SkillFactory::serves(const Step& step, const skill::SkillDescription& descr
     if (step.declaration.node_class != NodeClass::variable) {
         return false;
     }
-    if (!step.purpose) {
+    if (!step.node_role) {
         return true;
     }
-    if (isUnit(step.purpose->role)) {
+    if (isUnit(step.node_role->kind)) {
         const auto declared = step.value.as<opcua::EuInformation>();
-        const auto wanted = toOpcua(fieldOf(description, *step.purpose).unit);
+        const auto wanted = toOpcua(fieldOf(description, *step.node_role).unit);
         return declared && declared->unit_id == wanted.unit_id;
     }
-    if (isRange(step.purpose->role)) {
+    if (isRange(step.node_role->kind)) {
         const auto declared = step.value.as<opcua::Range>();
-        const auto& wanted = *fieldOf(description, *step.purpose).range;
+        const auto& wanted = *fieldOf(description, *step.node_role).range;
         return declared && declared->low == wanted.low && declared->high == wanted.high;
     }
     return false;
@@ -321,10 +321,10 @@ Result<NodeId> SkillFactory::addNode(const Step& step, const NodeId& parent,
     spec.data_type = step.shape.data_type;
     spec.value_rank = step.shape.value_rank;
     spec.array_dimensions = step.shape.array_dimensions;
-    spec.access = step.purpose && step.purpose->role == Role::parameter ? opcua::Access::read_write
+    spec.access = step.node_role && step.node_role->kind == NodeKind::parameter ? opcua::Access::read_write
                                                                         : opcua::Access::read;
     spec.children = opcua::Children::none;
-    if (!step.purpose) {
+    if (!step.node_role) {
         spec.value = step.value;
     }
     return nodes_.addVariable(spec);

@@ -10,7 +10,7 @@
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/skill.hpp"
 #include "model_ids.hpp"
-#include "purpose.hpp"
+#include "node_role.hpp"
 #include "skill_layout.hpp"
 
 namespace metier::opcua_skill {
@@ -18,7 +18,7 @@ namespace metier::opcua_skill {
 /// A node of an instance, and what it is for.
 struct BoundNode {
     opcua::NodeId id;
-    Purpose purpose;
+    NodeRole node_role;
 };
 
 /// A skill object and those of its nodes that lead to the Program.
@@ -45,7 +45,7 @@ private:
     struct Step {
         std::size_t parent = LayoutNode::kSkill;  ///< index of a step
         bool shared = false;                      ///< the type's own node serves
-        std::optional<Purpose> purpose;
+        std::optional<NodeRole> node_role;
         std::string path;
         opcua::Reference declaration;
         opcua::LocalizedText description;

@@ -29,11 +29,11 @@ LocalizedText textOf(Name name) {
     return {"en", std::string(skill::toString(name))};
 }
 
-const skill::Field& fieldOf(const skill::Program& program, Purpose purpose) {
+const skill::Field& fieldOf(const skill::Program& program, NodeRole node_role) {
     const auto& description = program.description();
-    const bool is_result = purpose.role == Role::result || purpose.role == Role::result_unit ||
-                           purpose.role == Role::result_range;
-    return (is_result ? description.results : description.parameters)[purpose.field];
+    const bool is_result = node_role.kind == NodeKind::result || node_role.kind == NodeKind::result_unit ||
+                           node_role.kind == NodeKind::result_range;
+    return (is_result ? description.results : description.parameters)[node_role.field];
 }
 
 Value unitOf(const skill::Field& field) {
@@ -44,19 +44,19 @@ Value rangeOf(const skill::Field& field) {
     return Value::of(*field.range);
 }
 
-/// A Purpose fits into the tag of its Variable.
-std::uint32_t tagOf(Purpose purpose) {
-    return static_cast<std::uint32_t>(purpose.role) << 24U |
-           static_cast<std::uint32_t>(purpose.detail) << 16U | purpose.field;
+/// A NodeRole fits into the tag of its Variable.
+std::uint32_t tagOf(NodeRole node_role) {
+    return static_cast<std::uint32_t>(node_role.kind) << 24U |
+           static_cast<std::uint32_t>(node_role.detail) << 16U | node_role.field;
 }
 
-Purpose purposeOf(std::uint32_t tag) {
-    return {static_cast<Role>(tag >> 24U), static_cast<std::uint8_t>((tag >> 16U) & 0xFFU),
+NodeRole nodeRoleOf(std::uint32_t tag) {
+    return {static_cast<NodeKind>(tag >> 24U), static_cast<std::uint8_t>((tag >> 16U) & 0xFFU),
             static_cast<std::uint16_t>(tag)};
 }
 
-Part partIn(Purpose purpose) {
-    return static_cast<Part>(purpose.detail);
+Part partIn(NodeRole node_role) {
+    return static_cast<Part>(node_role.detail);
 }
 
 }  // namespace
@@ -92,38 +92,38 @@ SkillNode::~SkillNode() {
 
 Result<void> SkillNode::bind(opcua::AddressSpace& nodes, const std::vector<BoundNode>& bound) {
     slots_.reserve(bound.size());
-    for (const auto& [node, purpose] : bound) {
-        METIER_TRY(bindNode(nodes, node, purpose));
+    for (const auto& [node, node_role] : bound) {
+        METIER_TRY(bindNode(nodes, node, node_role));
     }
     return {};
 }
 
-Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node, Purpose purpose) {
-    switch (purpose.role) {
-        case Role::method:
-            return bindMethod(nodes, node, static_cast<skill::Method>(purpose.detail));
-        case Role::check:
+Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node, NodeRole node_role) {
+    switch (node_role.kind) {
+        case NodeKind::method:
+            return bindMethod(nodes, node, static_cast<skill::Method>(node_role.detail));
+        case NodeKind::check:
             return nodes.setMethod(node, [this](const opcua::CallContext& context, auto inputs) {
                 return check(context.session, inputs);
             });
-        case Role::get_execution:
+        case NodeKind::get_execution:
             return nodes.setMethod(
                 node,
                 [this](const opcua::CallContext& /*context*/, auto inputs) {
                     return getExecution(inputs);
                 },
                 opcua::MethodEffect::tells);
-        case Role::parameter_unit:
-        case Role::result_unit:
-            return nodes.write(node, unitOf(fieldOf(*program_, purpose)));
-        case Role::parameter_range:
-        case Role::result_range:
-            return nodes.write(node, rangeOf(fieldOf(*program_, purpose)));
+        case NodeKind::parameter_unit:
+        case NodeKind::result_unit:
+            return nodes.write(node, unitOf(fieldOf(*program_, node_role)));
+        case NodeKind::parameter_range:
+        case NodeKind::result_range:
+            return nodes.write(node, rangeOf(fieldOf(*program_, node_role)));
         default:
-            if (purpose.role == Role::parameter && !fieldOf(*program_, purpose).range) {
-                limits_.add(nodes, node, purpose);
+            if (node_role.kind == NodeKind::parameter && !fieldOf(*program_, node_role).range) {
+                limits_.add(nodes, node, node_role);
             }
-            slots_.push_back({this, tagOf(purpose)});
+            slots_.push_back({this, tagOf(node_role)});
             return nodes.setHandler(node, slots_.back());
     }
 }
@@ -149,41 +149,41 @@ void SkillNode::sessionClosed(const Session& session) {
 }
 
 DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
-    const auto purpose = purposeOf(tag);
-    switch (purpose.role) {
-        case Role::state:
-        case Role::state_id:
-        case Role::state_number:
-            return {readState(purpose), {}, program_->diagnostic().last_transition_time, {}};
-        case Role::transition:
-        case Role::transition_id:
-        case Role::transition_number:
-        case Role::transition_time:
-            return {readTransition(purpose), {}, program_->diagnostic().last_transition_time, {}};
-        case Role::sub_state:
-        case Role::sub_state_id:
-        case Role::sub_state_number:
-            return readSubState(purpose);
-        case Role::parameter:
-            return {readParameter(purpose), {}, {}, {}};
-        case Role::result:
-            return {readResult(purpose), {}, {}, {}};
-        case Role::diagnostic:
+    const auto node_role = nodeRoleOf(tag);
+    switch (node_role.kind) {
+        case NodeKind::state:
+        case NodeKind::state_id:
+        case NodeKind::state_number:
+            return {readState(node_role), {}, program_->diagnostic().last_transition_time, {}};
+        case NodeKind::transition:
+        case NodeKind::transition_id:
+        case NodeKind::transition_number:
+        case NodeKind::transition_time:
+            return {readTransition(node_role), {}, program_->diagnostic().last_transition_time, {}};
+        case NodeKind::sub_state:
+        case NodeKind::sub_state_id:
+        case NodeKind::sub_state_number:
+            return readSubState(node_role);
+        case NodeKind::parameter:
+            return {readParameter(node_role), {}, {}, {}};
+        case NodeKind::result:
+            return {readResult(node_role), {}, {}, {}};
+        case NodeKind::diagnostic:
             return {
-                readDiagnostic(program_->diagnostic(), static_cast<DiagnosticItem>(purpose.detail)),
+                readDiagnostic(program_->diagnostic(), static_cast<DiagnosticItem>(node_role.detail)),
                 {},
                 {},
                 {}};
-        case Role::reason_text: {
+        case NodeKind::reason_text: {
             return {Value::of(readReason(session)), {}, {}, {}};
         }
-        case Role::execution_id:
+        case NodeKind::execution_id:
             return {Value::of(program_->executionId()), {}, {}, {}};
-        case Role::steps:
+        case NodeKind::steps:
             return {Value::of(program_->description().steps), {}, {}, {}};
-        case Role::current_step:
+        case NodeKind::current_step:
             return {Value::of(program_->step()), {}, {}, {}};
-        case Role::progress: {
+        case NodeKind::progress: {
             const auto* progress = std::get_if<double>(&program_->intermediate());
             return {Value::of(progress == nullptr ? 0.0 : *progress), {}, {}, {}};
         }
@@ -205,73 +205,73 @@ std::string SkillNode::readReason(const Session& session) const {
                : fmt::format("{}; it is Halted: {}", *refusal, reason);
 }
 
-Value SkillNode::readState(Purpose purpose) const {
+Value SkillNode::readState(NodeRole node_role) const {
     const auto state = program_->state();
-    switch (purpose.role) {
-        case Role::state_id:
+    switch (node_role.kind) {
+        case NodeKind::state_id:
             return Value::of(stateId(state));
-        case Role::state_number:
+        case NodeKind::state_number:
             return Value::of(static_cast<std::uint32_t>(state));
         default:
             return Value::of(textOf(state));
     }
 }
 
-Value SkillNode::readTransition(Purpose purpose) const {
+Value SkillNode::readTransition(NodeRole node_role) const {
     const auto& last = program_->lastTransition();
-    switch (purpose.role) {
-        case Role::transition_id:
+    switch (node_role.kind) {
+        case NodeKind::transition_id:
             return Value::of(last ? transitionId(last->number) : NodeId());
-        case Role::transition_number:
+        case NodeKind::transition_number:
             return Value::of(last ? static_cast<std::uint32_t>(last->number) : 0U);
-        case Role::transition_time:
+        case NodeKind::transition_time:
             return Value::of(last ? last->time : UtcTime::min());
         default:
             return Value::of(last ? textOf(last->number) : LocalizedText());
     }
 }
 
-DataValue SkillNode::readSubState(Purpose purpose) const {
+DataValue SkillNode::readSubState(NodeRole node_role) const {
     const auto sub_state = program_->subState();
-    const bool active = static_cast<std::uint8_t>(program_->state()) == purpose.detail &&
+    const bool active = static_cast<std::uint8_t>(program_->state()) == node_role.detail &&
                         sub_state != skill::SubState::none;
     // A Bad status comes with a value all the same: 1.4.18 gives an empty one a status of its own.
     const auto status = active ? opcua::StatusCode() : opcua::status::kBadStateNotActive;
-    switch (purpose.role) {
-        case Role::sub_state_id:
+    switch (node_role.kind) {
+        case NodeKind::sub_state_id:
             return {Value::of(active ? context_.ids.sub_states.at(sub_state) : NodeId()),
                     status,
                     {},
                     {}};
-        case Role::sub_state_number:
+        case NodeKind::sub_state_number:
             return {Value::of(active ? numberOf(sub_state) : 0U), status, {}, {}};
         default:
             return {Value::of(active ? textOf(sub_state) : opcua::LocalizedText()), status, {}, {}};
     }
 }
 
-Value SkillNode::readParameter(Purpose purpose) const {
-    const auto value = program_->read(fieldOf(*program_, purpose).name);
-    return value ? partOf(*value, partIn(purpose)) : Value();
+Value SkillNode::readParameter(NodeRole node_role) const {
+    const auto value = program_->read(fieldOf(*program_, node_role).name);
+    return value ? partOf(*value, partIn(node_role)) : Value();
 }
 
-Value SkillNode::readResult(Purpose purpose) const {
+Value SkillNode::readResult(NodeRole node_role) const {
     const auto& result = program_->finalResult();
-    const auto found = result.find(fieldOf(*program_, purpose).name);
-    return found == result.end() ? Value() : partOf(found->second, partIn(purpose));
+    const auto found = result.find(fieldOf(*program_, node_role).name);
+    return found == result.end() ? Value() : partOf(found->second, partIn(node_role));
 }
 
 Result<void> SkillNode::write(const opcua::WriteContext& writer, std::uint32_t tag,
                               const Value& value) {
     const auto& session = writer.session;
-    const auto purpose = purposeOf(tag);
-    if (purpose.role != Role::parameter) {
+    const auto node_role = nodeRoleOf(tag);
+    if (node_role.kind != NodeKind::parameter) {
         return fail(Errc::access_denied, "only parameters can be written");
     }
-    const auto& field = fieldOf(*program_, purpose);
+    const auto& field = fieldOf(*program_, node_role);
     auto old = program_->read(field.name);
-    auto taken = withPart(field, old.value_or(skill::Value()), partIn(purpose), value);
-    auto within = taken ? limits_.check(purpose.field, field, *taken) : fail(taken.error());
+    auto taken = withPart(field, old.value_or(skill::Value()), partIn(node_role), value);
+    auto within = taken ? limits_.check(node_role.field, field, *taken) : fail(taken.error());
     if (!within) {
         return remember(session, std::move(within));
     }

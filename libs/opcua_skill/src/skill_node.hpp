@@ -13,7 +13,7 @@
 #include "metier/skill/program.hpp"
 #include "model_ids.hpp"
 #include "node_limits.hpp"
-#include "purpose.hpp"
+#include "node_role.hpp"
 #include "skill_factory.hpp"
 
 namespace metier::opcua_skill {
@@ -86,7 +86,7 @@ private:
     void auditOwnAct(const skill::TransitionEvent& event);
     void raise(opcua::EventEmitter& emitter, const opcua::Event& occurrence);
     Result<void> call(const opcua::Session& session, skill::Method method);
-    Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, Purpose purpose);
+    Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, NodeRole node_role);
     Result<void> bindMethod(opcua::AddressSpace& nodes, const opcua::NodeId& node,
                             skill::Method method);
     Result<std::vector<opcua::Value>> startWith(const opcua::Session& session,
@@ -104,11 +104,11 @@ private:
     Result<Given> givenIn(const opcua::Value& pairs) const;
     std::vector<opcua::KeyValue> pairsOf(const skill::ValueMap& values) const;
     std::string readReason(const opcua::Session& session) const;
-    opcua::Value readState(Purpose purpose) const;
-    opcua::Value readTransition(Purpose purpose) const;
-    opcua::DataValue readSubState(Purpose purpose) const;
-    opcua::Value readParameter(Purpose purpose) const;
-    opcua::Value readResult(Purpose purpose) const;
+    opcua::Value readState(NodeRole node_role) const;
+    opcua::Value readTransition(NodeRole node_role) const;
+    opcua::DataValue readSubState(NodeRole node_role) const;
+    opcua::Value readParameter(NodeRole node_role) const;
+    opcua::Value readResult(NodeRole node_role) const;
     Result<void> remember(const opcua::Session& session, Result<void> outcome);
 
     opcua::NodeId id_;

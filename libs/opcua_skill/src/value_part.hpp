@@ -3,7 +3,7 @@
 #include "metier/base/error.hpp"
 #include "metier/opcua/value.hpp"
 #include "metier/skill/field.hpp"
-#include "purpose.hpp"
+#include "node_role.hpp"
 
 namespace metier::opcua_skill {
 

@@ -60,14 +60,14 @@ Result<SkillLayout> declarationsOf(const AddressSpace& nodes, const NodeId& inst
 Result<void> checkTypes(const AddressSpace& nodes, const SkillInstance& instance,
                         const skill::SkillDescription& description) {
     std::vector<std::string> wrong;
-    for (const auto& [id, purpose] : instance.nodes) {
-        const bool is_result = purpose.role == Role::result;
-        if ((purpose.role != Role::parameter && !is_result) ||
-            static_cast<Part>(purpose.detail) != Part::whole) {
+    for (const auto& [id, node_role] : instance.nodes) {
+        const bool is_result = node_role.kind == NodeKind::result;
+        if ((node_role.kind != NodeKind::parameter && !is_result) ||
+            static_cast<Part>(node_role.detail) != Part::whole) {
             continue;
         }
         const auto& fields = is_result ? description.results : description.parameters;
-        const auto& field = fields[purpose.field];
+        const auto& field = fields[node_role.field];
         const auto shape = nodes.shapeOf(id);
         if (!shape || !holds(nodes, *shape, field.type)) {
             wrong.push_back(fmt::format("{} ({})", field.name, skill::toString(field.type)));
@@ -84,13 +84,13 @@ Result<SkillInstance> wireExisting(AddressSpace& nodes, const NodeId& skill_obje
                                    const skill::SkillDescription& description) {
     METIER_ASSIGN(auto layout, layoutOfInstance(nodes, skill_object));
     METIER_ASSIGN(const auto declared, declarationsOf(nodes, skill_object));
-    METIER_ASSIGN(auto used, assignPurposes(layout, description, declared));
+    METIER_ASSIGN(auto used, assignNodeRoles(layout, description, declared));
     SkillInstance instance{skill_object, {}};
     auto next_used = used.begin();
     for (std::size_t i = 0; i < layout.size(); ++i) {
         const auto& node = layout[i];
         if (next_used != used.end() && next_used->index == i) {
-            instance.nodes.push_back({node.reference.target, next_used++->purpose});
+            instance.nodes.push_back({node.reference.target, next_used++->node_role});
         } else if (isParameterPath(node.path) &&
                    node.reference.node_class == opcua::NodeClass::variable) {
             METIER_TRY(nodes.setAccess(node.reference.target, opcua::Access::read));

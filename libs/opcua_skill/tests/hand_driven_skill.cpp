@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::chrono::seconds kPatience{5};
 
-class HandDrivenBody final : public skill::Body {
+class HandDrivenWork final : public skill::ExecutionWork {
 public:
-    explicit HandDrivenBody(std::shared_ptr<Hand> hand) : hand_(std::move(hand)) {}
-    void start(skill::Execution execution) override { hand_->started(std::move(execution)); }
+    explicit HandDrivenWork(std::shared_ptr<Hand> hand) : hand_(std::move(hand)) {}
+    void start(skill::ExecutionHandle execution) override { hand_->started(std::move(execution)); }
     Result<void> suspend() override { return tell("suspend"); }
     Result<void> resume() override { return tell("resume"); }
     void halt() override { hand_->told("halt"); }
@@ -49,7 +49,7 @@ std::vector<double> zeros(std::size_t size) {
 
 }  // namespace
 
-skill::Execution Hand::execution() const {
+skill::ExecutionHandle Hand::execution() const {
     const std::lock_guard lock(mutex_);
     return execution_;
 }
@@ -61,11 +61,11 @@ skill::ValueMap Hand::snapshot() const {
 
 bool Hand::await(const std::string& what) {
     std::unique_lock lock(mutex_);
-    const auto find = [&] { return std::find(told_.begin(), told_.end(), what); };
-    if (!changed_.wait_for(lock, kPatience, [&] { return find() != told_.end(); })) {
+    const auto find = [&] { return std::find(reported_.begin(), reported_.end(), what); };
+    if (!changed_.wait_for(lock, kPatience, [&] { return find() != reported_.end(); })) {
         return false;
     }
-    told_.erase(find());
+    reported_.erase(find());
     return true;
 }
 
@@ -87,12 +87,12 @@ void Hand::allowReset() {
 void Hand::told(const std::string& what) {
     {
         const std::lock_guard lock(mutex_);
-        told_.push_back(what);
+        reported_.push_back(what);
     }
     changed_.notify_all();
 }
 
-void Hand::started(skill::Execution execution) {
+void Hand::started(skill::ExecutionHandle execution) {
     {
         const std::lock_guard lock(mutex_);
         execution_ = std::move(execution);
@@ -111,9 +111,9 @@ Result<void> Hand::mayReset() const {
     return reset_answer_;
 }
 
-Result<std::unique_ptr<skill::Body>> HandDrivenSkill::prepare(const skill::ValueMap& snapshot) {
+Result<std::unique_ptr<skill::ExecutionWork>> HandDrivenSkill::prepare(const skill::ValueMap& snapshot) {
     METIER_TRY(hand_->prepared(snapshot));
-    return std::make_unique<HandDrivenBody>(hand_);
+    return std::make_unique<HandDrivenWork>(hand_);
 }
 
 Result<void> HandDrivenSkill::reset() {

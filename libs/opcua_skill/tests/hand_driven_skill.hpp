@@ -11,16 +11,16 @@
 
 namespace metier::opcua_skill::testing {
 
-/// A test's hold on the body of a skill: sees what is asked of it, and answers by hand.
+/// A test's hold on the work of a skill: sees what is asked of it, and answers by hand.
 ///
 /// Threading: any; shared by the test and the skill on the server's thread.
 class Hand {
 public:
     /// The execution that runs, once it was started.
-    skill::Execution execution() const;
+    skill::ExecutionHandle execution() const;
     /// What the skill was last started with.
     skill::ValueMap snapshot() const;
-    /// Whether the body is asked to `what` ("start", "suspend", ...), or the skill to "reset",
+    /// Whether the work is asked to `what` ("start", "suspend", ...), or the skill to "reset",
     /// within 5 s; each is told once.
     bool await(const std::string& what);
     /// From now on Start, or Reset, is refused with this.
@@ -29,15 +29,15 @@ public:
     void allowReset();
 
     void told(const std::string& what);
-    void started(skill::Execution execution);
+    void started(skill::ExecutionHandle execution);
     Result<void> prepared(const skill::ValueMap& snapshot);
     Result<void> mayReset() const;
 
 private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<std::string> told_;
-    skill::Execution execution_;
+    std::vector<std::string> reported_;
+    skill::ExecutionHandle execution_;
     skill::ValueMap snapshot_;
     Result<void> start_answer_;
     Result<void> reset_answer_;
@@ -50,7 +50,7 @@ public:
         : description_(std::move(description)), hand_(std::move(hand)) {}
 
     const skill::SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<skill::Body>> prepare(const skill::ValueMap& snapshot) override;
+    Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& snapshot) override;
     Result<void> reset() override;
 
 private:

@@ -161,7 +161,7 @@ TEST_F(Parameters, UnitAndRangeAreThoseOfTheSkill) {
     EXPECT_EQ(*client_->read(*range)->as<opcua::Range>(), (opcua::Range{-3.0, 3.0}));
 }
 
-TEST_F(Parameters, ALiveParameterReachesTheBodyWithItsSourceTimeWhileRunning) {
+TEST_F(Parameters, ALiveParameterReachesTheWorkWithItsSourceTimeWhileRunning) {
     ASSERT_EQ(call(*client_, stream_, "Start"), "Good");
     ASSERT_TRUE(stream_.hand->await("start"));
     const auto written = client_->write(stream_.node(kTarget), Value::of(std::vector{0.125, 0.0}),

@@ -28,7 +28,7 @@ ordered_json valueOf(const Member& /*member*/, T number) {
     return number;
 }
 
-ordered_json durationOf(const Execution& execution) {
+ordered_json durationOf(const ExecutionRow& execution) {
     const std::chrono::duration<double> duration = execution.ended - execution.started;
     return execution.isOver() ? ordered_json(duration.count()) : ordered_json();
 }
@@ -96,7 +96,7 @@ std::string dump(const ordered_json& json) {
     return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-ordered_json jsonOf(const Execution& execution) {
+ordered_json jsonOf(const ExecutionRow& execution) {
     auto json = ordered_json::object();
     visitMembers(execution, [&](const Member& member, const auto& value) {
         json[std::string(member.name)] = valueOf(member, value);
@@ -107,7 +107,7 @@ ordered_json jsonOf(const Execution& execution) {
     return json;
 }
 
-std::string toJson(const Execution& execution) {
+std::string toJson(const ExecutionRow& execution) {
     return dump(jsonOf(execution));
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kLostText = "the server ended while this was under way";
 
 /// The latest time that is known of an execution under way.
-Result<UtcTime> lastSignOf(Database& database, const Execution& execution) {
+Result<UtcTime> lastSignOf(Database& database, const ExecutionRow& execution) {
     const auto rows = database.query(
         "SELECT events, samples FROM parts WHERE part >= $1 AND part < $2 ORDER BY part DESC "
         "LIMIT 1",

@@ -19,7 +19,7 @@ std::size_t textsOf(const Record& record) {
     return bytes;
 }
 
-std::size_t sizeOf(const std::unique_ptr<Execution>& execution) {
+std::size_t sizeOf(const std::unique_ptr<ExecutionRow>& execution) {
     return sizeof *execution + textsOf(*execution);
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <variant>
 
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 #include "metier/records/recorder.hpp"
 
 namespace metier::records {
@@ -14,7 +14,7 @@ namespace metier::records {
 struct Message {
     Recorder::Key key = 0;
     // The pointer: an execution is three times as large as the others.
-    std::variant<std::unique_ptr<Execution>, Transition, Intermediate, Outcome> content{};
+    std::variant<std::unique_ptr<ExecutionRow>, Transition, Intermediate, Outcome> content{};
 };
 
 /// Memory that it takes, about [byte].

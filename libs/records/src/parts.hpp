@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "database.hpp"
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 
 namespace metier::records {
 

@@ -81,7 +81,7 @@ private:
 
     void watch(const std::stop_token& stop);
     bool hangs() const;
-    std::optional<HealthReport> news();
+    std::optional<WriteReport> news();
 
     const Options options_;
 
@@ -97,7 +97,7 @@ private:
     std::uint64_t written_ = 0;
     std::optional<SteadyTime> unwritten_since_;  // begin of the first round since one went well
     std::string error_;  // of the last round; empty: it went well, or others were in the way
-    Health reported_ = Health::writing;
+    WriteState reported_ = WriteState::writing;
     std::uint64_t reported_loss_ = 0;
     // ---- used by the writer's thread alone
     std::unique_ptr<Database> database_;
@@ -125,7 +125,7 @@ Recorder::Impl::~Impl() {
 }
 
 Recorder::Key Recorder::Impl::begin(Execution execution) {
-    Message message{.content = std::make_unique<Execution>(std::move(execution))};
+    Message message{.content = std::make_unique<ExecutionRow>(std::move(execution))};
     const auto size = sizeOf(message);
     const std::lock_guard lock(mutex_);
     if (isFull(size)) {
@@ -195,7 +195,7 @@ bool Recorder::Impl::flush(SteadyTime deadline) {
 
 Recorder::Status Recorder::Impl::status() const {
     const std::lock_guard lock(mutex_);
-    return {.health = reported_,
+    return {.write_state = reported_,
             .waiting = waiting_.messages.size() + taken_,
             .waiting_samples = waiting_.samples.size(),
             .written = written_,
@@ -336,15 +336,15 @@ bool Recorder::Impl::isIdle() const {
 void Recorder::Impl::watch(const std::stop_token& stop) {
     bool last = false;
     while (!last) {
-        std::optional<HealthReport> report;
+        std::optional<WriteReport> report;
         {
             std::unique_lock lock(mutex_);
             changed_.wait_for(lock, stop, kWatchEvery, [] { return false; });
             last = stop.stop_requested();
             report = news();
         }
-        if (report && options_.on_health) {
-            options_.on_health(*report);
+        if (report && options_.on_write_state) {
+            options_.on_write_state(*report);
         }
     }
 }
@@ -355,22 +355,22 @@ bool Recorder::Impl::hangs() const {
 }
 
 /// With the lock. Nothing if all is as it was reported.
-std::optional<HealthReport> Recorder::Impl::news() {
+std::optional<WriteReport> Recorder::Impl::news() {
     const auto lost = sumOf(dropped_);
     const bool new_loss = lost > std::exchange(reported_loss_, lost);
     const bool fails = !error_.empty() || hangs() || new_loss;
-    const auto health = fails ? Health::failing : Health::writing;
-    if (health == std::exchange(reported_, health)) {
+    const auto write_state = fails ? WriteState::failing : WriteState::writing;
+    if (write_state == std::exchange(reported_, write_state)) {
         return std::nullopt;
     }
     if (!fails) {
-        return HealthReport{health, "executions are recorded again; lost are " + lossText(dropped_),
+        return WriteReport{write_state, "executions are recorded again; lost are " + lossText(dropped_),
                             dropped_};
     }
     const auto why = !error_.empty() ? error_
                      : hangs()       ? options_.url + " takes too long"
                                      : "more comes than can be written";
-    return HealthReport{health, "executions are not recorded: " + why, dropped_};
+    return WriteReport{write_state, "executions are not recorded: " + why, dropped_};
 }
 
 Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {

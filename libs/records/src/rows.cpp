@@ -84,7 +84,7 @@ Argument argumentOf(std::uint64_t count) {
 }
 
 /// Appends the values of the members that are wanted.
-std::vector<Argument> valuesOf(const Execution& execution, Wanted wanted,
+std::vector<Argument> valuesOf(const ExecutionRow& execution, Wanted wanted,
                                std::vector<Argument> values = {}) {
     visitMembers(execution, [&](const Member& member, const auto& value) {
         if (wanted(member)) {
@@ -96,7 +96,7 @@ std::vector<Argument> valuesOf(const Execution& execution, Wanted wanted,
 
 }  // namespace
 
-Result<std::vector<Execution>> readExecutions(Database& database, std::string_view condition,
+Result<std::vector<ExecutionRow>> readExecutions(Database& database, std::string_view condition,
                                               const std::vector<Cell>& values) {
     static const auto kSelect =
         fmt::format("SELECT {} FROM history WHERE ", listOf(columnsOf(isAny)));
@@ -104,7 +104,7 @@ Result<std::vector<Execution>> readExecutions(Database& database, std::string_vi
     if (!rows) {
         return fail(rows.error());
     }
-    std::vector<Execution> result(rows->size());
+    std::vector<ExecutionRow> result(rows->size());
     for (std::size_t i = 0; i < rows->size(); ++i) {
         std::size_t column = 0;
         visitMembers(result[i], [&](const Member& /*member*/, auto& value) {
@@ -136,7 +136,7 @@ Result<std::int64_t> RowWriter::insertOrFind(std::string_view insert, std::strin
     return fail(Errc::internal, database_.name() + ": a row that was inserted is not there");
 }
 
-Result<std::int64_t> RowWriter::kindOf(const Execution& execution) {
+Result<std::int64_t> RowWriter::kindOf(const ExecutionRow& execution) {
     const auto values = valuesOf(execution, isOfKind);
     std::string key;
     for (const auto& value : values) {
@@ -168,7 +168,7 @@ Result<std::int64_t> RowWriter::noteOf(const std::string& text) {
         "SELECT note FROM notes WHERE reason_text = $1", std::array<Argument, 1>{text});
 }
 
-Result<void> RowWriter::save(Execution& execution) {
+Result<void> RowWriter::save(ExecutionRow& execution) {
     const auto kind = kindOf(execution);
     if (!kind) {
         return fail(kind.error());
@@ -182,7 +182,7 @@ Result<void> RowWriter::save(Execution& execution) {
                                  : update(execution, *kind, *note);
 }
 
-Result<void> RowWriter::insert(Execution& execution, std::int64_t kind, std::int64_t note) {
+Result<void> RowWriter::insert(ExecutionRow& execution, std::int64_t kind, std::int64_t note) {
     static const auto kColumns = columnsOf(isInserted, {"kind", "note", "revision"});
     static const auto kInsert =
         fmt::format("INSERT INTO executions ({}) VALUES ({}) RETURNING number", listOf(kColumns),
@@ -191,7 +191,7 @@ Result<void> RowWriter::insert(Execution& execution, std::int64_t kind, std::int
         .map([&](const Rows& rows) { execution.number = rows.front().integer(0); });
 }
 
-Result<void> RowWriter::update(const Execution& execution, std::int64_t kind, std::int64_t note) {
+Result<void> RowWriter::update(const ExecutionRow& execution, std::int64_t kind, std::int64_t note) {
     static const auto kColumns = columnsOf(isUpdated, {"kind", "note", "revision"});
     static const auto kUpdate =
         fmt::format("UPDATE executions SET {} WHERE number = ${}",
@@ -201,7 +201,7 @@ Result<void> RowWriter::update(const Execution& execution, std::int64_t kind, st
     return database_.execute(kUpdate, values).map([](const Rows& /*none*/) {});
 }
 
-Result<std::int64_t> RowWriter::numberOf(const Execution& e) {
+Result<std::int64_t> RowWriter::numberOf(const ExecutionRow& e) {
     return database_.number(
         "SELECT number FROM history WHERE id = $1 AND started = $2 AND server = $3 AND skill = $4 "
         "AND controller = $5",

@@ -59,11 +59,11 @@ Result<std::unique_ptr<Store>> Store::open(const std::string& url, Access access
     });
 }
 
-Result<Execution> Store::find(std::string_view number_or_id) {
+Result<ExecutionRow> Store::find(std::string_view number_or_id) {
     if (const auto number = toNumber(number_or_id)) {
         auto found = readExecutions(*database_, "number = $1", {*number});
         if (!found || !found->empty()) {
-            return found ? Result<Execution>(std::move(found->front())) : fail(found.error());
+            return found ? Result<ExecutionRow>(std::move(found->front())) : fail(found.error());
         }
     }
     auto found = readExecutions(*database_, "id = $1 ORDER BY started DESC, number DESC LIMIT 1",
@@ -73,7 +73,7 @@ Result<Execution> Store::find(std::string_view number_or_id) {
     }
     return found->empty() ? fail(Errc::not_found, fmt::format("{}: no execution '{}'",
                                                               database_->name(), number_or_id))
-                          : Result<Execution>(std::move(found->front()));
+                          : Result<ExecutionRow>(std::move(found->front()));
 }
 
 Result<Listing> Store::list(const Filter& filter, const Page& page) {
@@ -90,19 +90,19 @@ Result<Listing> Store::list(const Filter& filter, const Page& page) {
     }
     const auto condition =
         fmt::format("number IN ({}) ORDER BY started DESC, number DESC", fmt::join(*numbers, ", "));
-    return readExecutions(*database_, condition).map([&](std::vector<Execution> found) {
+    return readExecutions(*database_, condition).map([&](std::vector<ExecutionRow> found) {
         listing.executions = std::move(found);
         return listing;
     });
 }
 
-Result<std::vector<Execution>> Store::children(std::int64_t number) {
+Result<std::vector<ExecutionRow>> Store::children(std::int64_t number) {
     const auto parent = readExecutions(*database_, "number = $1", {number});
     if (!parent) {
         return fail(parent.error());
     }
     if (parent->empty() || parent->front().id.empty()) {
-        return std::vector<Execution>{};
+        return std::vector<ExecutionRow>{};
     }
     return readExecutions(*database_,
                           "parent = $1 AND parent <> '' AND number <> $2 AND "

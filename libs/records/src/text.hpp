@@ -23,7 +23,7 @@ std::string storable(std::string_view text, std::size_t longest = kLongestText);
 /// Replaces a text by what storable() makes of it.
 void makeStorable(std::string& text, Form form);
 
-/// Does so with every text of an Execution, Transition, Intermediate or Outcome.
+/// Does so with every text of an ExecutionRow, Transition, Intermediate or Outcome.
 template <typename Record>
 void makeStorable(Record& record) {
     visitMembers(record, [](const Member& member, auto& value) {

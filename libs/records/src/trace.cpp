@@ -23,11 +23,11 @@ public:
     Trace(Store& store, UtcTime origin) : store_(store), origin_(toMicroseconds(origin)) {}
 
     /// With all that it started. \param parent whose arrow leads to it; nullptr: nobody's
-    Result<void> add(const Execution& execution, const Execution* parent);
+    Result<void> add(const ExecutionRow& execution, const ExecutionRow* parent);
     ordered_json events() && { return std::move(events_); }
 
 private:
-    struct Lane {
+    struct TraceRow {
         std::size_t process = 0;
         std::size_t thread = 0;
     };
@@ -38,12 +38,12 @@ private:
         std::int64_t to;
     };
 
-    Lane laneOf(const Execution& execution);
-    void nameIt(const char* what, const Lane& lane, const std::string& name);
-    void addSlice(const Slice& slice, const Lane& lane, ordered_json arguments);
-    void addArrow(const Execution& parent, const Execution& child);
-    Result<std::vector<Transition>> addEvents(const Execution& execution, std::int64_t& end);
-    void addStates(const std::vector<Transition>& transitions, const Execution& execution,
+    TraceRow laneOf(const ExecutionRow& execution);
+    void nameIt(const char* what, const TraceRow& row, const std::string& name);
+    void addSlice(const Slice& slice, const TraceRow& row, ordered_json arguments);
+    void addArrow(const ExecutionRow& parent, const ExecutionRow& child);
+    Result<std::vector<Transition>> addEvents(const ExecutionRow& execution, std::int64_t& end);
+    void addStates(const std::vector<Transition>& transitions, const ExecutionRow& execution,
                    std::int64_t end);
 
     Store& store_;
@@ -54,7 +54,7 @@ private:
     std::set<std::int64_t> known_;
 };
 
-Result<void> Trace::add(const Execution& execution, const Execution* parent) {
+Result<void> Trace::add(const ExecutionRow& execution, const ExecutionRow* parent) {
     if (known_.size() >= kMostExecutions || !known_.insert(execution.number).second) {
         return {};
     }
@@ -79,13 +79,13 @@ Result<void> Trace::add(const Execution& execution, const Execution* parent) {
 }
 
 /// Intermediate results. \param end moved to the last event of an execution under way
-Result<std::vector<Transition>> Trace::addEvents(const Execution& execution, std::int64_t& end) {
+Result<std::vector<Transition>> Trace::addEvents(const ExecutionRow& execution, std::int64_t& end) {
     auto transitions = store_.transitions(execution.number);
     const auto intermediates = store_.intermediates(execution.number);
     if (!transitions || !intermediates) {
         return transitions ? fail(intermediates.error()) : transitions;
     }
-    const auto lane = laneOf(execution);
+    const auto row = laneOf(execution);
     for (const auto& one : *intermediates) {
         const auto time = toMicroseconds(one.time);
         end = execution.isOver() ? end : std::max(end, time);
@@ -94,8 +94,8 @@ Result<std::vector<Transition>> Trace::addEvents(const Execution& execution, std
                            {"name", "intermediate result"},
                            {"cat", "result"},
                            {"ts", time - origin_},
-                           {"pid", lane.process},
-                           {"tid", lane.thread},
+                           {"pid", row.process},
+                           {"tid", row.thread},
                            {"args", {{"value", parsed(one.value)}}}});
     }
     for (const auto& one : *transitions) {
@@ -105,9 +105,9 @@ Result<std::vector<Transition>> Trace::addEvents(const Execution& execution, std
 }
 
 /// States, and steps within them.
-void Trace::addStates(const std::vector<Transition>& transitions, const Execution& execution,
+void Trace::addStates(const std::vector<Transition>& transitions, const ExecutionRow& execution,
                       std::int64_t end) {
-    const auto lane = laneOf(execution);
+    const auto row = laneOf(execution);
     const auto within = [&](UtcTime time) {
         return std::clamp(toMicroseconds(time), toMicroseconds(execution.started), end);
     };
@@ -116,7 +116,7 @@ void Trace::addStates(const std::vector<Transition>& transitions, const Executio
     const auto close = [&](std::optional<Slice>& slice, std::int64_t time) {
         if (slice && time > slice->from) {
             slice->to = time;
-            addSlice(*slice, lane, ordered_json::object());
+            addSlice(*slice, row, ordered_json::object());
         }
         slice.reset();
     };
@@ -138,50 +138,50 @@ void Trace::addStates(const std::vector<Transition>& transitions, const Executio
     close(state, end);
 }
 
-Trace::Lane Trace::laneOf(const Execution& e) {
+Trace::TraceRow Trace::laneOf(const ExecutionRow& e) {
     const auto process = processes_.try_emplace(e.server, processes_.size() + 1);
     const auto pid = process.first->second;
     const auto skill = e.controller.empty() ? e.skill : e.controller + "/" + e.skill;
     const auto thread = threads_.try_emplace({pid, skill}, threads_.size() + 1);
-    const Lane lane{pid, thread.first->second};
+    const TraceRow row{pid, thread.first->second};
     if (process.second) {
-        nameIt("process_name", lane, e.server_name.empty() ? e.server : e.server_name);
+        nameIt("process_name", row, e.server_name.empty() ? e.server : e.server_name);
     }
     if (thread.second) {
-        nameIt("thread_name", lane, skill);
+        nameIt("thread_name", row, skill);
     }
-    return lane;
+    return row;
 }
 
-void Trace::nameIt(const char* what, const Lane& lane, const std::string& name) {
+void Trace::nameIt(const char* what, const TraceRow& row, const std::string& name) {
     events_.push_back({{"ph", "M"},
                        {"name", what},
-                       {"pid", lane.process},
-                       {"tid", lane.thread},
+                       {"pid", row.process},
+                       {"tid", row.thread},
                        {"args", {{"name", name}}}});
 }
 
-void Trace::addSlice(const Slice& slice, const Lane& lane, ordered_json arguments) {
+void Trace::addSlice(const Slice& slice, const TraceRow& row, ordered_json arguments) {
     events_.push_back({{"ph", "X"},
                        {"name", slice.name},
                        {"cat", slice.category},
                        {"ts", slice.from - origin_},
                        {"dur", slice.to - slice.from},
-                       {"pid", lane.process},
-                       {"tid", lane.thread},
+                       {"pid", row.process},
+                       {"tid", row.thread},
                        {"args", std::move(arguments)}});
 }
 
-void Trace::addArrow(const Execution& parent, const Execution& child) {
-    const auto add = [&](const char* phase, const Lane& lane) -> ordered_json& {
+void Trace::addArrow(const ExecutionRow& parent, const ExecutionRow& child) {
+    const auto add = [&](const char* phase, const TraceRow& row) -> ordered_json& {
         return events_.emplace_back(
             ordered_json::object({{"ph", phase},
                                   {"name", "starts"},
                                   {"cat", "parent"},
                                   {"id", child.number},
                                   {"ts", toMicroseconds(child.started) - origin_},
-                                  {"pid", lane.process},
-                                  {"tid", lane.thread}}));
+                                  {"pid", row.process},
+                                  {"tid", row.thread}}));
     };
     add("s", laneOf(parent));
     add("f", laneOf(child))["bp"] = "e";

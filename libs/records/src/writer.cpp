@@ -23,7 +23,7 @@ Dropped Writer::take(Batch batch) {
     return dropped_;
 }
 
-void Writer::take(Recorder::Key key, std::unique_ptr<Execution> execution) {
+void Writer::take(Recorder::Key key, std::unique_ptr<ExecutionRow> execution) {
     execution->server = server_;
     makeStorable(*execution);
     auto& active = active_[key];

@@ -8,7 +8,7 @@
 
 #include "database.hpp"
 #include "messages.hpp"
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 #include "metier/records/recorder.hpp"
 #include "parts.hpp"
 #include "rows.hpp"
@@ -47,7 +47,7 @@ private:
 
         bool hasPart() const { return !events.empty() || !samples.empty(); }
     };
-    void take(Recorder::Key key, std::unique_ptr<Execution> execution);
+    void take(Recorder::Key key, std::unique_ptr<ExecutionRow> execution);
     void take(Recorder::Key key, Transition transition);
     void take(Recorder::Key key, Intermediate intermediate);
     void take(Recorder::Key key, Outcome outcome);

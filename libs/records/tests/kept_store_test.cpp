@@ -77,7 +77,7 @@ TEST(KeptFile, IsOpenedAnewOnceItWasReplaced) {
     KeptStore kept(file);
     const auto newest = [&kept] {
         return kept.use([](Store& store) { return store.find("1"); })
-            .map([](const Execution& execution) { return execution.id; })
+            .map([](const ExecutionRow& execution) { return execution.id; })
             .value_or("nothing");
     };
     EXPECT_EQ(newest(), "old");

@@ -54,7 +54,7 @@ struct RecordedProgram : ::testing::Test {
     PathSampler sampler{arm, nullptr, file.recorder()};
     std::shared_ptr<skill::testing::ManualExecutor> executor =
         std::make_shared<skill::testing::ManualExecutor>();
-    skill::Execution execution;
+    skill::ExecutionHandle execution;
     std::unique_ptr<skill::Program> program = std::make_unique<skill::Program>(
         skill::ProgramOptions{},
         std::make_unique<skill::LambdaSkill>(description(), skill::testing::manualWork(execution)),
@@ -181,7 +181,7 @@ struct ArmlessProgram : RecordedProgram {
         recorder = std::make_unique<ProgramRecorder>(
             *program, file.recorder(), nullptr, ProgramRecorder::Place{"ur5", "Controller", ""});
     }
-    std::vector<Execution> all() {
+    std::vector<ExecutionRow> all() {
         const auto listed = file.store()->list({}, {.count = 500});
         EXPECT_TRUE(listed);
         auto executions = listed->executions;

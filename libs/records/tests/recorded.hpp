@@ -80,12 +80,12 @@ inline std::unique_ptr<Recorder> recorderOf(const std::string& url,
     Recorder::Options options;
     options.url = url;
     options.server = server;
-    options.patience = std::chrono::milliseconds(100);  // for tests that await Health::failing
+    options.patience = std::chrono::milliseconds(100);  // for tests that await WriteState::failing
     return Recorder::create(std::move(options)).value();
 }
 
 /// An execution that is over before anything is written.
-inline void recordOne(Recorder& recorder, const Execution& execution, const Outcome& outcome) {
+inline void recordOne(Recorder& recorder, const ExecutionRow& execution, const Outcome& outcome) {
     recorder.end(recorder.begin(execution), outcome);
 }
 

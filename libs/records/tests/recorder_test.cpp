@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-/// Reports of a recorder on its health.
+/// Reports of a recorder on its write_state.
 class Alarms {
 public:
-    std::function<void(const HealthReport&)> listener() {
-        return [this](const HealthReport& report) {
+    std::function<void(const WriteReport&)> listener() {
+        return [this](const WriteReport& report) {
             {
                 const std::lock_guard lock(mutex_);
                 reports_.push_back(report);
@@ -34,7 +34,7 @@ public:
         };
     }
     /// The report of that number, from 0; throws if it does not come.
-    HealthReport await(std::size_t number) {
+    WriteReport await(std::size_t number) {
         std::unique_lock lock(mutex_);
         if (!changed_.wait_until(lock, soon(), [&] { return reports_.size() > number; })) {
             throw std::runtime_error("no report " + std::to_string(number));
@@ -49,7 +49,7 @@ public:
 private:
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<HealthReport> reports_;
+    std::vector<WriteReport> reports_;
 };
 
 /// Memory of three executions of moveOf() that wait, and not of a fourth [byte].
@@ -61,7 +61,7 @@ protected:
         Recorder::Options options;
         options.url = file_.string();
         options.server = "urn:test:ur5";
-        options.on_health = alarms_.listener();
+        options.on_write_state = alarms_.listener();
         return options;
     }
     std::unique_ptr<Recorder> make(Recorder::Options options) {
@@ -86,7 +86,7 @@ TEST_F(TroubledRecorder, KeepsWhatFitsWhileTheStoreIsAwayAndReportsItsLossOnce) 
     auto few = options();
     few.most_waiting = kRoomForThree;
     const auto recorder = make(std::move(few));
-    EXPECT_EQ(alarms_.await(0).health, Health::failing);
+    EXPECT_EQ(alarms_.await(0).write_state, WriteState::failing);
     EXPECT_THAT(alarms_.await(0).text, HasSubstr(file_.string()));
     std::vector<Recorder::Key> keys;
     for (int i = 0; i < 5; ++i) {
@@ -97,11 +97,11 @@ TEST_F(TroubledRecorder, KeepsWhatFitsWhileTheStoreIsAwayAndReportsItsLossOnce) 
     }
     EXPECT_EQ(recorder->status().dropped.executions, 2U);
     EXPECT_EQ(recorder->status().waiting, 6U);
-    EXPECT_EQ(recorder->status().health, Health::failing);
+    EXPECT_EQ(recorder->status().write_state, WriteState::failing);
     EXPECT_EQ(alarms_.count(), 1U);
 
     fs::remove(folder_);
-    EXPECT_EQ(alarms_.await(1).health, Health::writing);
+    EXPECT_EQ(alarms_.await(1).write_state, WriteState::writing);
     EXPECT_THAT(alarms_.await(1).text, HasSubstr("again"));
     EXPECT_THAT(alarms_.await(1).text, HasSubstr("2 executions"));
     ASSERT_TRUE(recorder->flush(soon()));
@@ -146,7 +146,7 @@ TEST_F(TroubledRecorder, DelaysNobodyWhileTheDiskHangsAndDropsTheOldestSamples) 
                                    .step = {},
                                    .reason = {},
                                    .reason_text = {}});
-        EXPECT_EQ(alarms_.await(0).health, Health::failing);
+        EXPECT_EQ(alarms_.await(0).write_state, WriteState::failing);
         // The file is locked until the end of this block: nobody may wait for it.
         for (int i = 0; i < kSamples; ++i) {
             recorder->sample(key, sampleAt(i, i));
@@ -156,7 +156,7 @@ TEST_F(TroubledRecorder, DelaysNobodyWhileTheDiskHangsAndDropsTheOldestSamples) 
         EXPECT_FALSE(store()->find("m-1")->isOver());
         hanging->rollBack();
     }
-    EXPECT_EQ(alarms_.await(1).health, Health::writing);
+    EXPECT_EQ(alarms_.await(1).write_state, WriteState::writing);
     ASSERT_TRUE(recorder->flush(soon()));
     EXPECT_EQ(store()->find("m-1")->state, "Ready");
     const auto path = store()->path(1).value();
@@ -263,7 +263,7 @@ TEST_F(TroubledRecorder, ReportsPagesThatAreDamaged) {
     EXPECT_EQ(listing.error().code, Errc::invalid_argument) << listing.error().message;
     const auto recorder = make(options());
     recordOne(*recorder, moveOf("m-1"), finished(at(1)));
-    EXPECT_EQ(alarms_.await(0).health, Health::failing);
+    EXPECT_EQ(alarms_.await(0).write_state, WriteState::failing);
 }
 
 TEST_F(TroubledRecorder, ReportsNothingWhileOthersLockTheStoreForAWhile) {
@@ -341,7 +341,7 @@ TEST_F(TroubledRecorder, InAFolderThatCannotBeWrittenIsReadButNotContinued) {
         EXPECT_EQ((*reading)->find("m-1")->state, "Ready");
         const auto recorder = make(options());
         recordOne(*recorder, moveOf("m-2"), finished(at(1)));
-        EXPECT_EQ(alarms_.await(0).health, Health::failing);
+        EXPECT_EQ(alarms_.await(0).write_state, WriteState::failing);
         EXPECT_THAT(alarms_.await(0).text, HasSubstr(file_.string()));
     }
     fs::permissions(folder_, fs::perms::owner_all);
@@ -362,10 +362,10 @@ TEST_F(TroubledRecorder, ReportsAFullDiskAndGoesOnOnceThereIsRoom) {
     const auto recorder = make(options());
     recordOne(*recorder, moveOf("m-1"), finished(at(1)));
     const auto full = alarms_.await(0);
-    EXPECT_EQ(full.health, Health::failing);
+    EXPECT_EQ(full.write_state, WriteState::failing);
     EXPECT_THAT(full.text, ::testing::AnyOf(HasSubstr("full"), HasSubstr("I/O error")));
     ASSERT_EQ(::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, "size=1m"), 0);
-    EXPECT_EQ(alarms_.await(1).health, Health::writing);
+    EXPECT_EQ(alarms_.await(1).write_state, WriteState::writing);
     ASSERT_TRUE(recorder->flush(soon()));
     EXPECT_EQ(store()->find("m-1")->state, "Ready");
     // Full again, now with a store in it.
@@ -373,10 +373,10 @@ TEST_F(TroubledRecorder, ReportsAFullDiskAndGoesOnOnceThereIsRoom) {
     auto execution = moveOf("m-2");
     execution.parameters = large;
     recordOne(*recorder, execution, finished(at(2)));
-    EXPECT_EQ(alarms_.await(2).health, Health::failing);
+    EXPECT_EQ(alarms_.await(2).write_state, WriteState::failing);
     EXPECT_EQ(store()->find("m-1")->state, "Ready");
     ASSERT_EQ(::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, "size=16m"), 0);
-    EXPECT_EQ(alarms_.await(3).health, Health::writing);
+    EXPECT_EQ(alarms_.await(3).write_state, WriteState::writing);
     ASSERT_TRUE(recorder->flush(soon()));
     EXPECT_EQ(store()->find("m-2")->parameters, large);
     EXPECT_EQ(store()->list({}, {})->executions.size(), 2U);
@@ -392,7 +392,7 @@ TEST(RecorderOfPostgres, GoesOnOnceTheDatabaseIsBackWithNothingTwice) {
     Recorder::Options options;
     options.url = postgres->freshDatabase();
     options.server = "urn:test:ur5";
-    options.on_health = alarms.listener();
+    options.on_write_state = alarms.listener();
     const auto url = options.url;
     const auto recorder = Recorder::create(std::move(options)).value();
     const auto key = recorder->begin(moveOf("m-1"));
@@ -400,10 +400,10 @@ TEST(RecorderOfPostgres, GoesOnOnceTheDatabaseIsBackWithNothingTwice) {
     postgres->kill();
     recorder->end(key, finished(at(1)));
     recordOne(*recorder, moveOf("m-2"), halted(at(2), "axis 1"));
-    EXPECT_EQ(alarms.await(0).health, Health::failing);
+    EXPECT_EQ(alarms.await(0).write_state, WriteState::failing);
     EXPECT_EQ(Store::open(url).error().code, Errc::connection_lost);
     postgres->start();
-    EXPECT_EQ(alarms.await(1).health, Health::writing);
+    EXPECT_EQ(alarms.await(1).write_state, WriteState::writing);
     ASSERT_TRUE(recorder->flush(soon()));
     const auto all = Store::open(url).value()->list({}, {})->executions;
     ASSERT_EQ(all.size(), 2U);
@@ -416,7 +416,7 @@ TEST(RecorderOfPostgres, DoesNotShowItsPassword) {
     Recorder::Options options;
     options.url = "postgresql://anna:secret@127.0.0.1:1/records";
     options.server = "urn:test:ur5";
-    options.on_health = alarms.listener();
+    options.on_write_state = alarms.listener();
     const auto recorder = Recorder::create(std::move(options)).value();
     EXPECT_THAT(alarms.await(0).text, ::testing::AllOf(HasSubstr("127.0.0.1:1/records"),
                                                        ::testing::Not(HasSubstr("secret"))));

@@ -1,7 +1,7 @@
 // A server that records executions one after another, for tests that kill it or run several.
 // Arguments: store, ApplicationUri, how many executions (0: until it is killed).
 // After each one that was given to the recorder, a line with its id and the time [us since 1970];
-// "ready" comes first, and "health TEXT" whenever that changes.
+// "ready" comes first, and "write_state TEXT" whenever that changes.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -29,7 +29,7 @@ std::unique_ptr<Recorder> make(const std::string& url, const std::string& server
     Recorder::Options options;
     options.url = url;
     options.server = server;
-    options.on_health = [](const HealthReport& report) { show("health " + report.text); };
+    options.on_write_state = [](const WriteReport& report) { show("health " + report.text); };
     return Recorder::create(std::move(options)).value();
 }
 

@@ -20,7 +20,7 @@ protected:
     }
     void begin() {
         Batch batch;
-        batch.messages.push_back({1, std::make_unique<Execution>(moveOf("m-1"))});
+        batch.messages.push_back({1, std::make_unique<ExecutionRow>(moveOf("m-1"))});
         EXPECT_FALSE(writer_.take(std::move(batch)).any());
         give(1, "Ready", "Running");
     }

@@ -43,21 +43,21 @@ public:
 
 using Change = std::function<void(joint_simulator::JointSimulatorOptions&)>;
 /// What else there is of the simulated arm.
-using MakeFaces =
-    std::function<ArmFaces(joint_simulator::JointSimulator&, const motion::RobotModel&)>;
+using MakeDevices =
+    std::function<ArmDevices(joint_simulator::JointSimulator&, const motion::RobotModel&)>;
 
 /// One simulated arm with all its skills as Programs, and time moved by hand.
 class Bench {
 public:
     explicit Bench(const std::string& robot = "ur5", const Change& change = {},
-                   const MakeFaces& faces = {}, const PositionStreamOptions& stream = {})
+                   const MakeDevices& devices = {}, const PositionStreamOptions& stream = {})
         : model_(modelOf(robot)), executor_(std::make_shared<skill::testing::ManualExecutor>()) {
         auto options = joint_simulator::optionsFor(model_);
         if (change) {
             change(options);
         }
         arm_ = joint_simulator::JointSimulator::create(std::move(options)).value();
-        auto skills = makeArmSkills(faces ? faces(*arm_, model_) : ArmFaces{*arm_}, model_,
+        auto skills = makeArmSkills(devices ? devices(*arm_, model_) : ArmDevices{*arm_}, model_,
                                     executor_->clock(), stream)
                           .value();
         resource_ = skills.resource;
@@ -78,7 +78,7 @@ public:
     const skill::Caller& caller() const { return caller_; }
     StreamReport::Figures streamFigures() const { return stream_report_->figures(); }
     /// The moves' report of how soon they would stand.
-    std::optional<motion::StoppingWay> stoppingWay() const { return stopping_report_->read(); }
+    std::optional<motion::StoppingEstimate> stoppingEstimate() const { return stopping_report_->read(); }
 
     Result<void> write(const std::string& skill, const skill::ValueMap& values) {
         for (const auto& [name, value] : values) {

@@ -5,7 +5,7 @@
 
 #include <ostream>
 
-#include "planned_bench.hpp"
+#include "controller_planned_bench.hpp"
 #include "moves/timetable.hpp"
 
 namespace metier::robot_skills {
@@ -80,7 +80,7 @@ protected:
     }
     double result(const char* name) { return std::get<double>(program().finalResult().at(name)); }
 
-    PlannedBench planned;
+    ControllerPlannedBench planned;
     Bench& bench = planned.bench;
 };
 
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Moves, ChoiceOfPlanner, ::testing::ValuesIn(moves()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(ChoiceOfPlannerByTime, AStartTimeIsKeptToTheCycle) {
-    PlannedBench planned;
+    ControllerPlannedBench planned;
     auto& bench = planned.bench;
     const double start = toSeconds(bench.executor().clock().utcNow()) + 0.2;
     ASSERT_TRUE(bench.start(kJointPtp, with(kTurn, {{"StartTime", start}})));
@@ -134,7 +134,7 @@ TEST(ChoiceOfPlannerByTime, AStartTimeIsKeptToTheCycle) {
 }
 
 TEST(ChoiceOfPlannerByTime, ALongDurationIsTheMotionsLength) {
-    PlannedBench planned;
+    ControllerPlannedBench planned;
     auto& bench = planned.bench;
     ASSERT_TRUE(bench.start(kCartesianLinear, with(kUp, {{"Duration", 50.0}})));
     ASSERT_TRUE(bench.stepUntil(kCartesianLinear, State::ready))

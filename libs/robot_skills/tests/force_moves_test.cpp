@@ -5,7 +5,7 @@
 
 #include "given_sensor.hpp"
 #include "metier/base/testing/allocation_count.hpp"
-#include "planned_bench.hpp"
+#include "controller_planned_bench.hpp"
 
 namespace metier::robot_skills {
 namespace {
@@ -33,29 +33,29 @@ Vector3 vector(const skill::Program& program, const std::string& result) {
 
 // ---- by the controller's own condition ----------------------------------------------------------
 
-class PlannedForceMove : public ::testing::Test {
+class ControllerPlannedForceMove : public ::testing::Test {
 protected:
-    PlannedBench planned;
+    ControllerPlannedBench planned;
     Bench& bench = planned.bench;
     SimulatedPlanner& planner = planned.planner();
     skill::Program& force = bench.program(kForceMove);
 };
 
-TEST_F(PlannedForceMove, EndsAtItsTargetWithoutAContact) {
+TEST_F(ControllerPlannedForceMove, EndsAtItsTargetWithoutAContact) {
     ASSERT_TRUE(bench.start(kForceMove, downUntil(20)));
     ASSERT_TRUE(bench.stepUntil(kForceMove, State::ready));
     EXPECT_EQ(vector(force, "ForcesExceeded"), Vector3{});
     ASSERT_TRUE(planner.asked[0].until);
 }
 
-TEST_F(PlannedForceMove, WatchesTheFlangesAxisThatIsTheBaseFrames) {
+TEST_F(ControllerPlannedForceMove, WatchesTheFlangesAxisThatIsTheBaseFrames) {
     ASSERT_TRUE(bench.start(kForceMove, downUntil(20)));
     const auto& limits = planner.asked[0].until->force;
     EXPECT_FALSE(limits[0] || limits[1]);
     EXPECT_EQ(limits[2], 20.0) << "the tool points down";
 }
 
-TEST_F(PlannedForceMove, EndsAtAContactWithItsForceInTheBaseFrame) {
+TEST_F(ControllerPlannedForceMove, EndsAtAContactWithItsForceInTheBaseFrame) {
     const double from = bench.commandedPose().translation.z();
     planner.behaviour.contact_at = 0.4;
     planner.behaviour.force = {1.0, 0.0, -25.0};
@@ -69,7 +69,7 @@ TEST_F(PlannedForceMove, EndsAtAContactWithItsForceInTheBaseFrame) {
     EXPECT_GT(reached.z, from - 0.09);
 }
 
-TEST_F(PlannedForceMove, IsHaltedByTheForceWhereThatIsAnError) {
+TEST_F(ControllerPlannedForceMove, IsHaltedByTheForceWhereThatIsAnError) {
     planner.behaviour.contact_at = 0.4;
     planner.behaviour.force = {0.0, 0.0, -25.0};
     ASSERT_TRUE(bench.start(kForceMove, downUntil(20, {{"HaltOnForce", true}})));
@@ -80,7 +80,7 @@ TEST_F(PlannedForceMove, IsHaltedByTheForceWhereThatIsAnError) {
     EXPECT_THAT(force.reasonText(), HasSubstr("limit [0.0, 0.0, 20.0] N"));
 }
 
-TEST_F(PlannedForceMove, WithoutASensorIsRefusedWhereNoAxisOfTheFlangeIsTheBaseFrames) {
+TEST_F(ControllerPlannedForceMove, WithoutASensorIsRefusedWhereNoAxisOfTheFlangeIsTheBaseFrames) {
     ASSERT_TRUE(bench.start(kCartesianLinear, {{"TargetPosition", Frame{0, 0, 0, 0, 0.3, 0}},
                                                {"Relative", std::int32_t{1}}}));
     ASSERT_TRUE(bench.stepUntil(kCartesianLinear, State::ready));
@@ -89,7 +89,7 @@ TEST_F(PlannedForceMove, WithoutASensorIsRefusedWhereNoAxisOfTheFlangeIsTheBaseF
     EXPECT_THAT(refused.error().message, HasSubstr("17.2 deg"));
 }
 
-TEST_F(PlannedForceMove, NeedsALimit) {
+TEST_F(ControllerPlannedForceMove, NeedsALimit) {
     EXPECT_THAT(bench.write(kForceMove, {{"MaxForce", Vector3{}}}).error().message,
                 HasSubstr("MaxForce"));
     EXPECT_FALSE(bench.write(kForceMove, {{"MaxForce", Vector3{0, 0, -1}}}));
@@ -102,7 +102,7 @@ class ForceMove : public ::testing::Test {
 protected:
     GivenSensor sensor;
     Bench bench{"ur5", {}, [this](auto& arm, const auto& /*model*/) {
-                    return ArmFaces{arm, nullptr, &sensor};
+                    return ArmDevices{arm, nullptr, &sensor};
                 }};
     skill::Program& force = bench.program(kForceMove);
 
@@ -271,7 +271,7 @@ protected:
     }
 
     GivenSensor sensor;
-    PlannedBench planned{"iiwa7", &sensor};
+    ControllerPlannedBench planned{"iiwa7", &sensor};
     Bench& bench = planned.bench;
     skill::Program& force = bench.program(kForceMove);
 };

@@ -15,7 +15,7 @@ namespace metier::robot_skills {
 namespace {
 
 using motion::JointVector;
-using motion::MotionExecution;
+using motion::MotionRun;
 using motion::Seconds;
 using skill::State;
 
@@ -42,7 +42,7 @@ protected:
     }
 
     /// Streams one set-point and lets the arm make one cycle.
-    void send(MotionExecution& execution) {
+    void send(MotionRun& execution) {
         const auto next = execution.next(Seconds(cycle_)).position;
         sent_.emplace_back(next.begin(), next.end());
         ASSERT_TRUE(program_.write(bench_.caller(), "TargetJointPosition", sent_.back(), {}));
@@ -54,10 +54,10 @@ protected:
 
     /// Stops a move at a share of its duration, and checks that the arm makes just the same motion
     /// a play-out delay later.
-    void expectTheSameMotionLater(double share, const std::function<void(MotionExecution&)>& stop) {
+    void expectTheSameMotionLater(double share, const std::function<void(MotionRun&)>& stop) {
         ASSERT_TRUE(bench_.start(kPositionStream, {}));
         const auto trajectory = plan();
-        MotionExecution execution(trajectory);
+        MotionRun execution(trajectory);
         for (double time = 0; time < share * trajectory.duration().count(); time += cycle_) {
             ASSERT_NO_FATAL_FAILURE(send(execution));
         }
@@ -89,26 +89,26 @@ INSTANTIATE_TEST_SUITE_P(Robots, StoppedMoveOverAStreamOf, testing::Values("ur5"
                          [](const auto& robot) { return robot.param; });
 
 TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsHaltedAtFullSpeed) {
-    expectTheSameMotionLater(0.5, [](MotionExecution& execution) { execution.halt(); });
+    expectTheSameMotionLater(0.5, [](MotionRun& execution) { execution.halt(); });
 }
 
 TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsHaltedWhileItSpeedsUp) {
-    expectTheSameMotionLater(0.2, [](MotionExecution& execution) { execution.halt(); });
+    expectTheSameMotionLater(0.2, [](MotionRun& execution) { execution.halt(); });
 }
 
 TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsHaltedWhileItSlowsDown) {
-    expectTheSameMotionLater(0.8, [](MotionExecution& execution) { execution.halt(); });
+    expectTheSameMotionLater(0.8, [](MotionRun& execution) { execution.halt(); });
 }
 
 TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspended) {
-    expectTheSameMotionLater(0.5, [](MotionExecution& execution) { execution.stop(); });
+    expectTheSameMotionLater(0.5, [](MotionRun& execution) { execution.stop(); });
 }
 
 TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspendedInItsStopTime) {
     const double length = stopTimeFor(plan(), bench_.model(), 0.01);
     ASSERT_GT(length, 0.01);
     expectTheSameMotionLater(
-        0.5, [&](MotionExecution& execution) { execution.stopIn(Seconds(length)); });
+        0.5, [&](MotionRun& execution) { execution.stopIn(Seconds(length)); });
 }
 
 /// How far a joint position is from the straight line of a PTP, in the axis that is farthest off.
@@ -129,7 +129,7 @@ protected:
     /// Streams half of a move, which is at full speed then.
     void streamHalf() {
         ASSERT_TRUE(bench_.start(kPositionStream, {}));
-        MotionExecution execution(trajectory_);
+        MotionRun execution(trajectory_);
         while (execution.remaining() > trajectory_.duration() / 2) {
             ASSERT_NO_FATAL_FAILURE(send(execution));
         }

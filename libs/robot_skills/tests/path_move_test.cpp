@@ -3,7 +3,7 @@
 #include "bench.hpp"
 #include "metier/base/testing/allocation_count.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
-#include "planned_bench.hpp"
+#include "controller_planned_bench.hpp"
 
 namespace metier::robot_skills {
 namespace {
@@ -163,7 +163,7 @@ TEST(CartesianPathMove, DoesNotAllocateInTheCycle) {
 }
 
 TEST(CartesianPathMove, RunsBySetPointsWhereTheControllerPlansTheOtherMoves) {
-    PlannedBench planned;
+    ControllerPlannedBench planned;
     ASSERT_TRUE(planned.bench.start(
         kPath, {{"Poses", std::vector<Frame>{{0, 0, -0.1}}}, {"Relative", std::int32_t{1}}}));
     ASSERT_TRUE(planned.bench.stepUntil(kPath, State::ready));

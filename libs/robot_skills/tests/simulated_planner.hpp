@@ -10,7 +10,7 @@
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/joint_simulator/joint_simulator.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 
 namespace metier::robot_skills {
@@ -31,9 +31,9 @@ public:
         : arm_(arm), model_(model) {}
 
     Behaviour behaviour;
-    std::vector<device::PlannedMotion> asked;
+    std::vector<device::ControllerPlannedMotion> asked;
 
-    Result<void> move(const device::PlannedMotion& motion, Done done) override {
+    Result<void> move(const device::ControllerPlannedMotion& motion, Done done) override {
         asked.push_back(motion);
         if (behaviour.refuses) {
             return fail(*behaviour.refuses);
@@ -52,7 +52,7 @@ private:
     class Run final : public device::SetPointSource {
     public:
         Run(const SimulatedPlanner& planner, const motion::Trajectory& trajectory,
-            device::PlannedMotion motion, Done done)
+            device::ControllerPlannedMotion motion, Done done)
             : behaviour_(planner.behaviour),
               cycle_(planner.arm_.info().cycleSeconds()),
               execution_(trajectory),
@@ -111,18 +111,18 @@ private:
 
         const Behaviour behaviour_;
         const double cycle_;
-        motion::MotionExecution execution_;
-        device::PlannedMotion motion_;
+        motion::MotionRun execution_;
+        device::ControllerPlannedMotion motion_;
         Done done_;
         bool stopped_ = false;
         bool contact_ = false;
         int waited_ = 0;
     };
 
-    motion::Trajectory plan(const device::PlannedMotion& motion) const {
+    motion::Trajectory plan(const device::ControllerPlannedMotion& motion) const {
         const auto start =
             motion::JointVector::from(arm_.state().commanded_position.values()).value();
-        if (motion.path == device::PlannedMotion::Path::line) {
+        if (motion.path == device::ControllerPlannedMotion::Path::line) {
             motion::LinRequest request;
             request.start = start;
             request.target = motion::toPose(*motion.target_flange);

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "planned_bench.hpp"
+#include "controller_planned_bench.hpp"
 
 namespace metier::robot_skills {
 namespace {
@@ -120,7 +120,7 @@ TEST(StallWatch, StopsTheArmAndHaltsWhatRanNamingTheStall) {
 }
 
 TEST(StallWatch, HaltsAMoveOfTheControllersOwnPlannerNamingTheStall) {
-    PlannedBench planned;
+    ControllerPlannedBench planned;
     Watched watched(planned.bench);
     watched.startMove(500);
     ASSERT_TRUE(watched.stall(1200ms));

@@ -8,7 +8,7 @@
 
 #include "bench.hpp"
 #include "conversions.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/robot_skills/move_planning.hpp"
 
 namespace metier::robot_skills {
@@ -93,7 +93,7 @@ TEST(StopTime, IsLongerWhereAnAxisWouldNeedTooMuchForIt) {
     const double length = stopTimeFor(*plan, model, 0.01);
     EXPECT_GT(length, 0.1);
     EXPECT_LT(length, 2 * plan->duration().count());
-    motion::MotionExecution execution(*plan);
+    motion::MotionRun execution(*plan);
     execution.next(plan->duration() / 2);
     execution.stopIn(Seconds(length));
     while (!execution.atRest()) {

@@ -34,7 +34,7 @@ protected:
     double part() { return std::uniform_real_distribution<double>()(random_); }
 
     Bench bench{GetParam()};
-    motion::StoppingWay most_;  ///< of the motion, by Check
+    motion::StoppingEstimate most_;  ///< of the motion, by Check
 
 private:
     const motion::JointVector home_ = bench.commanded();
@@ -44,9 +44,9 @@ private:
 TEST_P(Stopping, TakesNoLongerThanWasTold) {
     const auto cycle = bench.arm().info().cycleSeconds();
     for (int i = 0; i < 30; ++i) {
-        EXPECT_FALSE(bench.stoppingWay()) << "nothing moves";
+        EXPECT_FALSE(bench.stoppingEstimate()) << "nothing moves";
         start();
-        const auto told = bench.stoppingWay();
+        const auto told = bench.stoppingEstimate();
         ASSERT_TRUE(told);
         const auto from = bench.commandedPose();
         ASSERT_TRUE(bench.program(kJointPtp).halt(bench.caller()));
@@ -69,7 +69,7 @@ TEST_P(Stopping, TakesNoLongerThanWasTold) {
 INSTANTIATE_TEST_SUITE_P(Arms, Stopping, ::testing::Values("ur5", "iiwa7", "edo"),
                          [](const auto& arm) { return std::string(arm.param); });
 
-TEST(StoppingWay, OfAMeasuredVelocityIsThatOfTheSlowestAxis) {
+TEST(StoppingEstimate, OfAMeasuredVelocityIsThatOfTheSlowestAxis) {
     const auto model = modelOf("ur5");
     device::ArmState state;
     state.position = device::JointArray(model.axisCount());
@@ -78,15 +78,15 @@ TEST(StoppingWay, OfAMeasuredVelocityIsThatOfTheSlowestAxis) {
     state.velocity[1] = 1e-4;
     state.standstill = false;
     const auto& limits = model.limits(0);
-    const auto way = stoppingWayOf(state, model);
+    const auto way = stoppingEstimateOf(state, model);
     EXPECT_NEAR(way.time.count(), 1.0 / limits.acceleration + limits.acceleration / limits.jerk,
                 1e-12);
     EXPECT_GT(way.distance, 0.0);
     state.velocity[0] = 0.0;
-    EXPECT_NEAR(stoppingWayOf(state, model).time.count(),
+    EXPECT_NEAR(stoppingEstimateOf(state, model).time.count(),
                 2 * std::sqrt(1e-4 / model.limits(1).jerk), 1e-12);
     state.standstill = true;
-    EXPECT_EQ(stoppingWayOf(state, model).time.count(), 0.0);
+    EXPECT_EQ(stoppingEstimateOf(state, model).time.count(), 0.0);
 }
 
 }  // namespace

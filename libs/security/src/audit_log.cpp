@@ -104,14 +104,14 @@ bool AuditLog::write(const std::vector<Entry>& entries, std::uint64_t lost) {
         all.push_back(note("EntriesLost", "count", std::to_string(lost)));
     }
     const auto written = file_->write(all);
-    tell(written ? Health::writing : Health::failing,
+    tell(written ? WriteState::writing : WriteState::failing,
          written ? std::string() : written.error().message);
     return written.has_value();
 }
 
-void AuditLog::tell(Health health, const std::string& why) {
-    if (std::exchange(health_, health) != health && options_.on_health) {
-        options_.on_health(health, why);
+void AuditLog::tell(WriteState write_state, const std::string& why) {
+    if (std::exchange(write_state_, write_state) != write_state && options_.on_write_state) {
+        options_.on_write_state(write_state, why);
     }
 }
 

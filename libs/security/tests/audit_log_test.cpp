@@ -25,7 +25,7 @@ protected:
     AuditFile() { std::filesystem::remove_all(file_.parent_path()); }
 
     std::unique_ptr<AuditLog> open() {
-        return AuditLog::open({.file = file_, .on_health = {}}).value();
+        return AuditLog::open({.file = file_, .on_write_state = {}}).value();
     }
     static Entry entry(const std::string& event) {
         return {std::chrono::system_clock::now(), event, {{"user", "anna"}}};
@@ -156,10 +156,10 @@ TEST_F(AuditFile, DropsALastLineThatIsNotWholeAndSaysSo) {
 TEST_F(AuditFile, IsNotMadeOfAnotherFile) {
     std::filesystem::create_directories(file_.parent_path());
     put("notes\n");
-    EXPECT_EQ(AuditLog::open({.file = file_, .on_health = {}}).error().code,
+    EXPECT_EQ(AuditLog::open({.file = file_, .on_write_state = {}}).error().code,
               Errc::invalid_argument);
     EXPECT_EQ(text(), "notes\n");
-    EXPECT_EQ(AuditLog::open({.file = "/proc/none/audit", .on_health = {}}).error().code,
+    EXPECT_EQ(AuditLog::open({.file = "/proc/none/audit", .on_write_state = {}}).error().code,
               Errc::resource_unavailable);
     EXPECT_EQ(verify("/none").error().code, Errc::not_found);
 }
@@ -184,9 +184,9 @@ TEST_F(AuditFile, LosesNothingWhileTheDiskIsFullAndTellsThatItIs) {
     std::promise<std::string> failing;
     std::promise<void> writing;
     const auto log = AuditLog::open({.file = file_,
-                                     .on_health =
-                                         [&](Health health, const auto& why) {
-                                             if (health == Health::failing) {
+                                     .on_write_state =
+                                         [&](WriteState write_state, const auto& why) {
+                                             if (write_state == WriteState::failing) {
                                                  failing.set_value(why);
                                              } else {
                                                  writing.set_value();

@@ -20,7 +20,7 @@ protected:
     AuditParts() { std::filesystem::remove_all(file_.parent_path()); }
 
     std::unique_ptr<AuditLog> open() const {
-        return AuditLog::open({.file = file_, .on_health = {}, .part_size = 1}).value();
+        return AuditLog::open({.file = file_, .on_write_state = {}, .part_size = 1}).value();
     }
     /// Each in a part of its own.
     void append(const std::vector<std::string>& events) const {
@@ -88,7 +88,7 @@ TEST_F(AuditParts, AreNotOtherFilesOfTheFolder) {
 
 TEST_F(AuditParts, AreOneServersAlone) {
     const auto log = open();
-    const auto second = AuditLog::open({.file = file_, .on_health = {}});
+    const auto second = AuditLog::open({.file = file_, .on_write_state = {}});
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::resource_unavailable);
     EXPECT_THAT(second.error().message, HasSubstr("arm.log is written by another server"));

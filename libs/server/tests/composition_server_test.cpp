@@ -60,7 +60,7 @@ with.Target = { from = "Target" }
         const auto moved = move.run({{"Target", Value(kAway)}}, inAMinute());
         EXPECT_TRUE(moved) << moved.error().message;
     }
-    static std::vector<client::UsedSkill> usesOf(opcua::Client& client,
+    static std::vector<client::SkillUse> usesOf(opcua::Client& client,
                                                        const std::string& skill) {
         const auto address = client::findSkill(client, skill).value();
         const auto reader = client::ReferenceReader::create(client).value();

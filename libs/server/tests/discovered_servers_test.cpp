@@ -61,7 +61,7 @@ TEST(DiscoveredServers, LackWhatNoneOfThemOffers) {
     EXPECT_THAT(assigned.error().message, HasSubstr("uses.grip: no skill of type GraspType"));
 }
 
-TEST(DiscoveredServers, ServeAllUsesOfABondOrNone) {
+TEST(DiscoveredServers, ServeAllUsesOfABindingOrNone) {
     const std::vector uses{use("ptp", "PtpType"), use("line", "LineType")};
     const auto both = chooseAll(uses, server("b", {"Ptp", "Line"}));
     ASSERT_TRUE(both);

@@ -32,7 +32,7 @@ struct MeteredProgram : testing::Test {
 
     std::shared_ptr<skill::testing::ManualExecutor> executor =
         std::make_shared<skill::testing::ManualExecutor>();
-    skill::Execution execution;
+    skill::ExecutionHandle execution;
     skill::Program program{
         {},
         std::make_unique<skill::LambdaSkill>(description(), skill::testing::manualWork(execution)),

@@ -48,7 +48,7 @@ TEST_F(RecordsOfAServer, FailWhereTheirFolderIsNone) {
                             "urn:test:ur5")
             .value();
     const auto failing = [&] {
-        return records->recorder().status().health == records::Health::failing;
+        return records->recorder().status().write_state == records::WriteState::failing;
     };
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     Queue<int> nothing(1);

@@ -22,19 +22,19 @@ SurveyedSkill move(std::optional<double> reach, std::optional<double> payload) {
     return result;
 }
 
-SurveyedSkill composed(const std::string& name, std::vector<client::UsedSkill> uses,
+SurveyedSkill composed(const std::string& name, std::vector<client::SkillUse> uses,
                        std::uint32_t node = 1) {
     auto result = skill(name, "Component", node);
     result.uses = std::move(uses);
     return result;
 }
 
-client::UsedSkill at(const std::string& server, const std::string& name = "PtpSkill",
+client::SkillUse at(const std::string& server, const std::string& name = "PtpSkill",
                            const std::string& controller = "Arm") {
     return {"opc.tcp://" + server, name, controller, {1, 99}};
 }
 
-client::UsedSkill here(std::uint32_t node) {
+client::SkillUse here(std::uint32_t node) {
     return {"", "", "", {1, node}};
 }
 

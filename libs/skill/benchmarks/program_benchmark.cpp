@@ -51,7 +51,7 @@ void writeStartAndFinish(benchmark::State& state) {
     SkillDescription description{
         .parameters = {{.name = "TargetPosition", .type = ValueType::frame}},
         .results = {{.name = "Duration", .type = ValueType::number, .unit = kSecond}}};
-    SkillFunctions functions{.start = [](const ValueMap&, const Execution& execution) {
+    SkillFunctions functions{.start = [](const ValueMap&, const ExecutionHandle& execution) {
         execution.finish({{"Duration", 1.0}});
     }};
     Program program({}, std::make_unique<LambdaSkill>(std::move(description), std::move(functions)),

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "metier/skill/execution.hpp"
+#include "metier/skill/execution_handle.hpp"
 
 namespace metier::skill {
 

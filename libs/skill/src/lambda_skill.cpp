@@ -6,10 +6,10 @@ namespace metier::skill {
 
 namespace {
 
-class LambdaBody final : public Body {
+class LambdaWork final : public ExecutionWork {
 public:
-    /// \param functions must outlive the body
-    LambdaBody(const SkillFunctions& functions, ValueMap parameters)
+    /// \param functions must outlive the work
+    LambdaWork(const SkillFunctions& functions, ValueMap parameters)
         : functions_(functions), parameters_(std::move(parameters)) {}
 
     void start(Execution execution) override {
@@ -48,13 +48,13 @@ LambdaSkill::LambdaSkill(SkillDescription description, SkillFunctions functions)
     description_.suspendable = functions_.suspend && functions_.resume;
 }
 
-Result<std::unique_ptr<Body>> LambdaSkill::prepare(const ValueMap& snapshot) {
+Result<std::unique_ptr<ExecutionWork>> LambdaSkill::prepare(const ValueMap& snapshot) {
     if (functions_.check) {
         if (auto checked = functions_.check(snapshot); !checked) {
             return fail(std::move(checked.error()));
         }
     }
-    return std::make_unique<LambdaBody>(functions_, snapshot);
+    return std::make_unique<LambdaWork>(functions_, snapshot);
 }
 
 Result<void> LambdaSkill::reset() {

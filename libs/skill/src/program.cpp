@@ -7,7 +7,7 @@
 
 #include "execution_core.hpp"
 #include "metier/base/random.hpp"
-#include "program_turn.hpp"
+#include "program_call.hpp"
 
 namespace metier::skill {
 
@@ -106,8 +106,8 @@ Program::~Program() {
         options_.control->detach(*this);
     }
     busy_ = true;
-    if (body_started_ && state_ == State::running) {
-        body_->forceStop();
+    if (work_started_ && state_ == State::running) {
+        work_->forceStop();
     }
     endExecution();
 }
@@ -126,7 +126,7 @@ Result<void> Program::command(Method method, const Caller& caller, Work work) {
         return metier::fail(Errc::invalid_state,
                             fmt::format("{} from inside a notification", toString(method)));
     }
-    const Turn turn(*this);
+    const Call turn(*this);
     recordCall(method, caller);
     auto status = checkAllowed(method, caller);
     if (status) {
@@ -199,11 +199,11 @@ void Program::recordCall(Method method, const Caller& caller) {
     diagnostic_.last_method_inputs = method == Method::start ? parameters_.written() : ValueMap{};
     diagnostic_.last_method_call_time = clock_.utcNow();
     diagnostic_.last_method_status = {};
-    diagnostic_told_ = false;
+    diagnostic_reported_ = false;
 }
 
 void Program::recordStatus(const Result<void>& status) {
-    if (status && diagnostic_told_) {
+    if (status && diagnostic_reported_) {
         return;
     }
     diagnostic_.last_method_status = status;
@@ -269,7 +269,7 @@ void Program::noteInHistory() {
     record->state = state_;
     record->reason = reason_;
     record->reason_text = reason_text_;
-    if (!body_) {
+    if (!work_) {
         record->end_time = diagnostic_.last_transition_time;
     }
     if (reason_ == Reason::finished) {
@@ -283,7 +283,7 @@ void Program::commit(TransitionNumber transition, Cause cause) {
     reason_ = cause.reason;
     reason_text_ = std::move(cause.text);
     diagnostic_.last_transition_time = clock_.utcNow();
-    diagnostic_told_ = true;
+    diagnostic_reported_ = true;
     last_ = TransitionEvent{
         .number = transition,
         .from = fromState(transition),
@@ -297,7 +297,7 @@ void Program::commit(TransitionNumber transition, Cause cause) {
         .severity = severityOf(state_, reason_),
     };
     noteInHistory();
-    if (!body_) {
+    if (!work_) {
         execution_.reset();
         intermediate_ = {};
         step_.clear();

@@ -6,7 +6,7 @@
 
 #include "execution_core.hpp"
 #include "metier/skill/program.hpp"
-#include "program_turn.hpp"
+#include "program_call.hpp"
 
 namespace metier::skill {
 
@@ -84,14 +84,14 @@ Result<void> Program::checkEpoch(const Caller& caller, std::uint64_t epoch) cons
                       : metier::fail(Errc::locked, fmt::format("nobody gave out epoch {}", epoch));
 }
 
-/// Running, with the body that the skill prepares for `snapshot`.
+/// Running, with the work that the skill prepares for `snapshot`.
 Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap> snapshot,
                             Order order) {
-    auto body = guarded([&] { return skill_->prepare(*snapshot); });
-    if (!body) {
-        return metier::fail(std::move(body.error()));
+    auto work = guarded([&] { return skill_->prepare(*snapshot); });
+    if (!work) {
+        return metier::fail(std::move(work.error()));
     }
-    if (!*body) {
+    if (!*work) {
         return metier::fail(Errc::internal, "the skill made no body");
     }
     const bool named = !order.id.empty();
@@ -106,7 +106,7 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
     if (options_.resource) {
         options_.resource->acquire(description_.name);
     }
-    body_ = std::move(*body);
+    work_ = std::move(*work);
     execution_ = std::move(core);
     execution_id_ = execution_->id;
     owner_session_ = caller.session_id;
@@ -120,15 +120,15 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
     commit(TransitionNumber::ready_to_running, {});
     releaseParameters();
     if (name_kept_) {
-        startBody();
+        startWork();
     } else {
         name_timer_ = executor_->after(options_.name_deadline,
-                                       [this] { inTurn([this] { nameDeadlinePassed(); }); });
+                                       [this] { inCall([this] { nameDeadlinePassed(); }); });
     }
     return {};
 }
 
-/// Has the name written. The body starts when it is there: an execution of which nobody knows after
+/// Has the name written. The work starts when it is there: an execution of which nobody knows after
 /// the death of the process has moved nothing.
 Result<void> Program::noteName(const std::shared_ptr<ExecutionCore>& core) {
     const auto noted =
@@ -143,8 +143,8 @@ Result<void> Program::noteName(const std::shared_ptr<ExecutionCore>& core) {
 }
 
 void Program::onNameKept(Result<void> kept) {
-    inTurn([this, kept = std::move(kept)] {
-        if (!body_ || name_kept_) {
+    inCall([this, kept = std::move(kept)] {
+        if (!work_ || name_kept_) {
             return;
         }
         name_timer_.cancel();
@@ -155,13 +155,13 @@ void Program::onNameKept(Result<void> kept) {
         }
         name_kept_ = true;
         if (state_ == State::running) {
-            startBody();
+            startWork();
         }
     });
 }
 
 void Program::nameDeadlinePassed() {
-    if (body_ && !name_kept_) {
+    if (work_ && !name_kept_) {
         halted({Reason::error, fmt::format("the name of the execution is not on disk after {} ms; "
                                            "nothing has moved",
                                            options_.name_deadline.count())});
@@ -179,7 +179,7 @@ CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
         report.first_failing_fraction = 0.0;
     }
     if (!busy_) {
-        const Turn turn(*this);
+        const Call turn(*this);
         notify([&](ProgramObserver& observer) { observer.onCheck(caller, parameters, report); });
     }
     return report;
@@ -201,16 +201,16 @@ Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& para
     return guarded([&] { return skill_->check(*snapshot); });
 }
 
-void Program::startBody() {
-    body_started_ = true;
-    const auto begun = guarded([this] { body_->start(Execution(execution_)); });
+void Program::startWork() {
+    work_started_ = true;
+    const auto begun = guarded([this] { work_->start(ExecutionHandle(execution_)); });
     if (!begun) {
         forceHalted({Reason::error, begun.error().message});
     }
 }
 
 void Program::onFinish(ValueMap result) {
-    inTurn([this, result = std::move(result)]() mutable { finished(std::move(result)); });
+    inCall([this, result = std::move(result)]() mutable { finished(std::move(result)); });
 }
 
 void Program::finished(ValueMap result) {
@@ -253,8 +253,8 @@ Result<void> Program::takeResult(ValueMap& result) {
 }
 
 void Program::onFail(Reason reason, std::string text) {
-    inTurn([this, cause = Cause{faultReason(reason), std::move(text)}]() mutable {
-        if (body_) {
+    inCall([this, cause = Cause{faultReason(reason), std::move(text)}]() mutable {
+        if (work_) {
             cause.text += whyStopping();
             halted(std::move(cause));
         }
@@ -273,22 +273,22 @@ std::string Program::whyStopping() const {
                                                     : std::string();
 }
 
-/// Lets go of body and device; the execution's handles go nowhere from here on.
+/// Lets go of work and device; the execution's handles go nowhere from here on.
 void Program::endExecution() {
     rest_timer_.cancel();
     name_timer_.cancel();
     name_kept_ = true;
-    body_started_ = false;
+    work_started_ = false;
     halting_.reset();
     suspending_.reset();
     finished_while_suspended_.reset();
     if (execution_) {
         execution_->sink = nullptr;
     }
-    if (body_ && options_.resource) {
+    if (work_ && options_.resource) {
         options_.resource->release();
     }
-    body_.reset();
+    work_.reset();
 }
 
 /// Goes where no execution is; device and parameters are free then. Ready becomes Halted if the
@@ -311,8 +311,8 @@ void Program::halted(Cause cause) {
 }
 
 void Program::forceHalted(Cause cause) {
-    if (body_started_) {
-        body_->forceStop();
+    if (work_started_) {
+        work_->forceStop();
     }
     halted(std::move(cause));
 }
@@ -322,12 +322,12 @@ Result<void> Program::suspendNow(Cause cause) {
         return metier::fail(Errc::not_supported,
                             fmt::format("{} cannot be suspended", description_.name));
     }
-    if (!body_started_) {
+    if (!work_started_) {
         commit(TransitionNumber::running_to_suspended, std::move(cause));
         return {};
     }
     ++execution_->stop_request;
-    if (auto asked = guarded([this] { return body_->suspend(); }); !asked) {
+    if (auto asked = guarded([this] { return work_->suspend(); }); !asked) {
         return asked;
     }
     suspending_ = std::move(cause);
@@ -347,7 +347,7 @@ void Program::announceRest(State to, const Cause& cause) {
 }
 
 void Program::onSuspendAsked(std::string why) {
-    inTurn([this, why = std::move(why)]() mutable {
+    inCall([this, why = std::move(why)]() mutable {
         if (sub_state_ != SubState::executing) {
             return;
         }
@@ -365,8 +365,8 @@ Result<void> Program::resumeNow(const Caller& caller) {
         finished(std::move(result));
         return {};
     }
-    if (body_started_) {
-        if (auto resumed = guarded([this] { return body_->resume(); }); !resumed) {
+    if (work_started_) {
+        if (auto resumed = guarded([this] { return work_->resume(); }); !resumed) {
             return resumed;
         }
     }
@@ -374,8 +374,8 @@ Result<void> Program::resumeNow(const Caller& caller) {
         owner_session_ = caller.session_id;
     }
     commit(TransitionNumber::suspended_to_running, {});
-    if (!body_started_ && name_kept_) {
-        startBody();
+    if (!work_started_ && name_kept_) {
+        startWork();
     }
     return {};
 }
@@ -392,9 +392,9 @@ Result<void> Program::haltNow() {
     return {};
 }
 
-/// Has a running body brake; Halted with `cause` follows at standstill.
+/// Has a running work brake; Halted with `cause` follows at standstill.
 void Program::brake(Cause cause) {
-    if (!body_started_) {
+    if (!work_started_) {
         halted(std::move(cause));
         return;
     }
@@ -405,14 +405,14 @@ void Program::brake(Cause cause) {
     }
     announceRest(State::halted, *halting_);
     armRestDeadline();
-    if (const auto asked = guarded([this] { body_->halt(); }); !asked) {
+    if (const auto asked = guarded([this] { work_->halt(); }); !asked) {
         forceHalted({Reason::error, asked.error().message});
     }
 }
 
 void Program::armRestDeadline() {
     rest_timer_ = executor_->after(options_.rest_deadline,
-                                   [this] { inTurn([this] { restDeadlinePassed(); }); });
+                                   [this] { inCall([this] { restDeadlinePassed(); }); });
 }
 
 void Program::restDeadlinePassed() {
@@ -425,8 +425,8 @@ void Program::restDeadlinePassed() {
 }
 
 void Program::onAtRest(std::uint32_t stop_request) {
-    inTurn([this, stop_request] {
-        if (!body_ || sub_state_ != SubState::stopping ||
+    inCall([this, stop_request] {
+        if (!work_ || sub_state_ != SubState::stopping ||
             stop_request != execution_->stop_request) {
             return;
         }
@@ -441,8 +441,8 @@ void Program::onAtRest(std::uint32_t stop_request) {
 }
 
 void Program::giveUpSuspended() {
-    if (body_started_ && !guarded([this] { body_->halt(); })) {
-        body_->forceStop();
+    if (work_started_ && !guarded([this] { work_->halt(); })) {
+        work_->forceStop();
     }
 }
 
@@ -463,19 +463,19 @@ Result<void> Program::resetNow() {
 
 void Program::onControlLost(std::string_view session, OwnerLossAction action,
                             const std::string& text) {
-    inTurn([this, session = std::string(session), action, text] {
+    inCall([this, session = std::string(session), action, text] {
         if (parameters_.isBound() && parameters_.boundSession() == session) {
             endConfiguration();
         }
-        if (body_ && owner_session_ == session) {
+        if (work_ && owner_session_ == session) {
             actOnOwnerLoss(action, text);
         }
     });
 }
 
 void Program::ownerLost(std::string text, OwnerLossAction action) {
-    inTurn([this, action, text = std::move(text)]() mutable {
-        if (body_) {
+    inCall([this, action, text = std::move(text)]() mutable {
+        if (work_) {
             actOnOwnerLoss(action, std::move(text));
         }
     });
@@ -504,8 +504,8 @@ void Program::actOnOwnerLoss(OwnerLossAction action, std::string text) {
 }
 
 void Program::deviceLost(std::string text) {
-    inTurn([this, cause = Cause{Reason::device_lost, std::move(text)}]() mutable {
-        if (body_) {
+    inCall([this, cause = Cause{Reason::device_lost, std::move(text)}]() mutable {
+        if (work_) {
             forceHalted(std::move(cause));
         } else if (state_ == State::ready) {
             end(TransitionNumber::ready_to_halted, std::move(cause));
@@ -519,7 +519,7 @@ void Program::deviceLost(std::string text) {
 }
 
 void Program::deviceStopped(std::string text) {
-    inTurn([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
+    inCall([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
         if (state_ == State::running && !halting_) {
             brake(std::move(cause));
         }
@@ -527,8 +527,8 @@ void Program::deviceStopped(std::string text) {
 }
 
 void Program::deviceNotReady(std::string text) {
-    inTurn([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
-        if (body_) {
+    inCall([this, cause = Cause{Reason::error, std::move(text)}]() mutable {
+        if (work_) {
             not_ready_ = std::move(cause);
         } else if (state_ == State::ready) {
             end(TransitionNumber::ready_to_halted, std::move(cause));
@@ -537,24 +537,24 @@ void Program::deviceNotReady(std::string text) {
 }
 
 void Program::deviceReady() {
-    inTurn([this] { not_ready_.reset(); });
+    inCall([this] { not_ready_.reset(); });
 }
 
 void Program::onProgress(Value intermediate) {
-    inTurn([this, value = std::move(intermediate)]() mutable {
+    inCall([this, value = std::move(intermediate)]() mutable {
         intermediate_ = std::move(value);
         notify([this](ProgramObserver& observer) { observer.onProgress(intermediate_); });
     });
 }
 
 void Program::onStarted(StartedExecution child) {
-    inTurn([this, child = std::move(child)] {
+    inCall([this, child = std::move(child)] {
         notify([&](ProgramObserver& observer) { observer.onStarted(child); });
     });
 }
 
 void Program::onStep(std::string name) {
-    inTurn([this, name = std::move(name)]() mutable {
+    inCall([this, name = std::move(name)]() mutable {
         step_ = std::move(name);
         if (state_ == State::running) {
             setSubState(sub_state_);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "metier/skill/program.hpp"
-#include "program_turn.hpp"
+#include "program_call.hpp"
 
 namespace metier::skill {
 
@@ -26,7 +26,7 @@ Result<void> Program::write(const Caller& caller, std::string_view parameter, Va
         return metier::fail(Errc::invalid_state,
                             fmt::format("{} written from inside a notification", parameter));
     }
-    const Turn turn(*this);
+    const Call turn(*this);
     if (state_ == State::ready) {
         return writeReady(caller, **field, std::move(value));
     }
@@ -65,13 +65,13 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
     if (auto allowed = checkControl(caller); !allowed) {
         return allowed;
     }
-    if (!body_started_) {
+    if (!work_started_) {
         return metier::fail(Errc::invalid_state,
                             "the execution has not begun: its name is not on disk yet");
     }
     auto taken = takeLive(field, live);
     if (!taken) {
-        static_cast<void>(guarded([&] { body_->inputRefused(field.name, taken.error()); }));
+        static_cast<void>(guarded([&] { work_->inputRefused(field.name, taken.error()); }));
         return metier::fail(std::move(taken.error()));
     }
     const Value& held = parameters_.write(field, std::move(*taken));
@@ -79,7 +79,7 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
     return {};
 }
 
-/// \return the value that the body has taken
+/// \return the value that the work has taken
 Result<Value> Program::takeLive(const Field& field, const LiveValue& live) {
     if (auto checked = checkValue(field, live.value); !checked) {
         return metier::fail(std::move(checked.error()));
@@ -89,7 +89,7 @@ Result<Value> Program::takeLive(const Field& field, const LiveValue& live) {
         return used;
     }
     LiveValue given{std::move(*used), live.meant_for};
-    if (auto taken = guarded([&] { return body_->input(field.name, given); }); !taken) {
+    if (auto taken = guarded([&] { return work_->input(field.name, given); }); !taken) {
         return metier::fail(std::move(taken.error()));
     }
     return std::move(given.value);
@@ -97,7 +97,7 @@ Result<Value> Program::takeLive(const Field& field, const LiveValue& live) {
 
 void Program::armConfigurationTimeout(std::chrono::nanoseconds delay) {
     configuration_timer_ =
-        executor_->after(delay, [this] { inTurn([this] { configurationTimedOut(); }); });
+        executor_->after(delay, [this] { inCall([this] { configurationTimedOut(); }); });
 }
 
 void Program::configurationTimedOut() {
@@ -124,11 +124,11 @@ void Program::releaseParameters() {
 }
 
 void Program::sessionClosed(std::string_view session_id) {
-    inTurn([this, session = std::string(session_id)] {
+    inCall([this, session = std::string(session_id)] {
         if (parameters_.isBound() && parameters_.boundSession() == session) {
             endConfiguration();
         }
-        if (body_ && owner_session_ == session) {
+        if (work_ && owner_session_ == session) {
             actOnOwnerLoss(OwnerLossAction::skill_default, "the session of its client has ended");
         }
     });

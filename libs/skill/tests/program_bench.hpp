@@ -16,7 +16,7 @@ namespace metier::skill::testing {
 inline const Caller kAlice{"alice", "Alice's client", "alice"};
 inline const Caller kBob{"bob", "Bob's client", "bob"};
 
-/// What a ScriptedBody does, and what was asked of it; the test holds it, too.
+/// What a ScriptedWork does, and what was asked of it; the test holds it, too.
 struct Script {
     /// What prepare() and reset() say.
     Result<void> prepared{};
@@ -25,9 +25,9 @@ struct Script {
     Result<void> resumed{};
     Result<void> input_taken{};
     /// Called inside start(), if set.
-    std::function<void(const Execution&)> on_start{};
+    std::function<void(const ExecutionHandle&)> on_start{};
     /// Called inside suspend() and halt(), if set; else the test answers.
-    std::function<void(const Execution&)> on_stop{};
+    std::function<void(const ExecutionHandle&)> on_stop{};
 
     std::vector<std::string> calls{};
     std::vector<std::string> refusals{};  ///< of live values
@@ -37,17 +37,17 @@ struct Script {
     int bodies_alive = 0;
 };
 
-class ScriptedBody final : public Body {
+class ScriptedWork final : public ExecutionWork {
 public:
-    explicit ScriptedBody(std::shared_ptr<Script> script) : script_(std::move(script)) {
+    explicit ScriptedWork(std::shared_ptr<Script> script) : script_(std::move(script)) {
         ++script_->bodies_alive;
     }
-    ~ScriptedBody() override {
+    ~ScriptedWork() override {
         --script_->bodies_alive;
         script_->calls.emplace_back("destroyed");
     }
-    ScriptedBody(const ScriptedBody&) = delete;
-    ScriptedBody& operator=(const ScriptedBody&) = delete;
+    ScriptedWork(const ScriptedWork&) = delete;
+    ScriptedWork& operator=(const ScriptedWork&) = delete;
 
     void start(Execution execution) override {
         script_->calls.emplace_back("start");
@@ -83,7 +83,7 @@ private:
         }
     }
 
-    // Shared with the test, which looks at it after the body is gone.
+    // Shared with the test, which looks at it after the work is gone.
     std::shared_ptr<Script> script_;
 };
 
@@ -93,12 +93,12 @@ public:
         : description_(std::move(description)), script_(std::move(script)) {}
 
     const SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) override {
+    Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) override {
         script_->snapshot = snapshot;
         if (!script_->prepared) {
             return metier::fail(script_->prepared.error());
         }
-        return std::make_unique<ScriptedBody>(script_);
+        return std::make_unique<ScriptedWork>(script_);
     }
     Result<void> reset() override {
         script_->calls.emplace_back("reset");
@@ -183,7 +183,7 @@ struct ProgramBench {
         }
         return metier::fail(Errc::internal, "no such method");
     }
-    /// What a body tells takes effect.
+    /// What work tells takes effect.
     void run() const { executor->run(); }
 
     std::shared_ptr<ManualExecutor> executor;

@@ -47,7 +47,7 @@ TEST(Start, RefusedWhileHaltedSaysWhyItHaltedAndWhatToDo) {
 
 TEST(Failure, ThrownByStartStopsTheDeviceAndHalts) {
     ProgramBench bench;
-    bench.script->on_start = [](const Execution&) { throw std::runtime_error("no current"); };
+    bench.script->on_start = [](const ExecutionHandle&) { throw std::runtime_error("no current"); };
     EXPECT_TRUE(bench.program->start(kAlice));
     EXPECT_THAT(bench.observer.transitions(), ElementsAre("ReadyToRunning", "RunningToHalted"));
     EXPECT_EQ(bench.program->subState(), SubState::halted_error);
@@ -58,7 +58,7 @@ TEST(Failure, ThrownByStartStopsTheDeviceAndHalts) {
 TEST(Failure, ThrownByHaltStopsTheDeviceAndHalts) {
     ProgramBench bench;
     bench.enter(State::running);
-    bench.script->on_stop = [](const Execution&) { throw std::runtime_error("brake broken"); };
+    bench.script->on_stop = [](const ExecutionHandle&) { throw std::runtime_error("brake broken"); };
     EXPECT_TRUE(bench.program->halt(kAlice));
     EXPECT_EQ(bench.program->subState(), SubState::halted_error);
     EXPECT_THAT(bench.script->calls, ElementsAre("halt", "forceStop", "destroyed"));
@@ -68,7 +68,7 @@ TEST(Failure, ThrownByHaltStopsTheDeviceAndHalts) {
 TEST(Failure, ThrownBySuspendRefusesIt) {
     ProgramBench bench;
     bench.enter(State::running);
-    bench.script->on_stop = [](const Execution&) { throw 7; };
+    bench.script->on_stop = [](const ExecutionHandle&) { throw 7; };
     const auto refused = bench.program->suspend(kAlice);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::internal);
@@ -78,7 +78,7 @@ TEST(Failure, ThrownBySuspendRefusesIt) {
 TEST(Failure, ThrownWhileGivingUpASuspendedExecutionStopsTheDevice) {
     ProgramBench bench;
     bench.enter(State::suspended);
-    bench.script->on_stop = [](const Execution&) { throw std::runtime_error("brake broken"); };
+    bench.script->on_stop = [](const ExecutionHandle&) { throw std::runtime_error("brake broken"); };
     EXPECT_TRUE(bench.program->halt(kAlice));
     EXPECT_THAT(bench.script->calls, ElementsAre("halt", "forceStop", "destroyed"));
     EXPECT_EQ(bench.program->state(), State::halted);
@@ -433,7 +433,7 @@ public:
 
 TEST(HastyExecutor, StillGetsRunningBeforeReady) {
     const auto script = std::make_shared<Script>();
-    script->on_start = [](const Execution& execution) { execution.finish(); };
+    script->on_start = [](const ExecutionHandle& execution) { execution.finish(); };
     const ManualClock clock;
     Program program({}, std::make_unique<ScriptedSkill>(weldDescription(), script),
                     std::make_shared<HastyExecutor>(), clock);
@@ -446,7 +446,7 @@ TEST(HastyExecutor, StillGetsRunningBeforeReady) {
 
 TEST(HastyExecutor, TakesNothingMoreOnceTheWorkHasEnded) {
     const auto script = std::make_shared<Script>();
-    script->on_start = [](const Execution& execution) {
+    script->on_start = [](const ExecutionHandle& execution) {
         execution.finish({{"Length", 0.4}});
         execution.finish({{"Length", 0.6}});
         execution.fail(Reason::error, "late");
@@ -498,20 +498,20 @@ TEST(Start, WhileItRunsIsRefusedWithTheStateAlone) {
     EXPECT_EQ(bench.program->start(kAlice).error().message, "Start is not possible while Running");
 }
 
-class SkillWithoutABody final : public Skill {
+class SkillWithoutWork final : public Skill {
 public:
     const SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<Body>> prepare(const ValueMap& /*snapshot*/) override {
-        return std::unique_ptr<Body>();
+    Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& /*snapshot*/) override {
+        return std::unique_ptr<ExecutionWork>();
     }
 
 private:
     SkillDescription description_{.name = "EmptySkill"};
 };
 
-TEST(Start, OfASkillThatMakesNoBodyIsRefusedAndLeavesItReady) {
+TEST(Start, OfASkillThatMakesNoWorkIsRefusedAndLeavesItReady) {
     const auto executor = std::make_shared<ManualExecutor>();
-    Program program({}, std::make_unique<SkillWithoutABody>(), executor, executor->clock());
+    Program program({}, std::make_unique<SkillWithoutWork>(), executor, executor->clock());
     EXPECT_EQ(program.start(kAlice).error().code, Errc::internal);
     EXPECT_EQ(program.state(), State::ready);
 }

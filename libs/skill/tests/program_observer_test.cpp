@@ -91,7 +91,7 @@ TEST(Observer, IsNotShownASubStateForAStepThatIsNamedWhileSuspended) {
     EXPECT_EQ(bench.observer.log.at(0), "sub-state Executing at weld");
 }
 
-TEST(Execution, IsRecordedFromStartToEnd) {
+TEST(ExecutionHandle, IsRecordedFromStartToEnd) {
     ProgramBench bench;
     ASSERT_TRUE(bench.program->startWith(kAlice, {.execution_id = "seam 7"}));
     EXPECT_EQ(bench.program->execution("seam 7")->state, State::running);
@@ -114,7 +114,7 @@ TEST(Execution, IsRecordedFromStartToEnd) {
     EXPECT_THAT(record->result, IsEmpty()) << "it did not finish";
 }
 
-TEST(Execution, OfAnUnknownNameIsRefusedWithThatName) {
+TEST(ExecutionHandle, OfAnUnknownNameIsRefusedWithThatName) {
     const ProgramBench bench;
     const auto unknown = bench.program->execution("seam 8");
     ASSERT_FALSE(unknown);

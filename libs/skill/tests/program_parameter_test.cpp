@@ -181,7 +181,7 @@ TEST(RequiredParameter, IsMissedAtStartByName) {
     EXPECT_EQ(bench.script->snapshot.at("Note"), Value{});
 }
 
-TEST(LiveParameter, GoesToTheRunningBodyAndIsChecked) {
+TEST(LiveParameter, GoesToTheRunningWorkAndIsChecked) {
     ProgramBench bench;
     bench.enter(State::running);
     ASSERT_TRUE(bench.program->write(kAlice, "Offset", 0.05));
@@ -191,7 +191,7 @@ TEST(LiveParameter, GoesToTheRunningBodyAndIsChecked) {
     EXPECT_EQ(bench.program->read("Offset"), Value(0.05));
 }
 
-TEST(LiveParameter, OfNullIsTheDefaultForTheBody) {
+TEST(LiveParameter, OfNullIsTheDefaultForTheWork) {
     ProgramBench bench;
     bench.enter(State::running);
     ASSERT_TRUE(bench.program->write(kAlice, "Offset", Value{}));
@@ -205,7 +205,7 @@ TEST(LiveParameter, IsTakenOnlyFromTheSessionThatStarted) {
     EXPECT_THAT(bench.script->calls, IsEmpty());
 }
 
-TEST(LiveParameter, IsRefusedByTheBodyWithItsReason) {
+TEST(LiveParameter, IsRefusedByTheWorkWithItsReason) {
     ProgramBench bench;
     bench.enter(State::running);
     bench.script->input_taken = metier::fail(Errc::out_of_range, "jump of 0.08 m");
@@ -315,7 +315,7 @@ TEST(LiveParameter, IsNotTakenWhileAnotherClientHasControl) {
     EXPECT_THAT(bench.script->calls, IsEmpty());
 }
 
-TEST(LiveParameter, ThatIsRefusedIsToldToTheBodyAsWell) {
+TEST(LiveParameter, ThatIsRefusedIsToldToTheWorkAsWell) {
     ProgramBench bench;
     bench.enter(State::running);
     EXPECT_FALSE(bench.program->write(kAlice, "Offset", 0.2));

@@ -15,16 +15,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A body with a thread of its own, like a device's cycle thread, that reports what it is asked.
-class ThreadedBody final : public Body {
+/// Work with a thread of its own, like a device's cycle thread, that reports what it is asked.
+class ThreadedWork final : public ExecutionWork {
 public:
-    explicit ThreadedBody(std::thread::id owner) : owner_(owner) {}
-    ~ThreadedBody() override {
+    explicit ThreadedWork(std::thread::id owner) : owner_(owner) {}
+    ~ThreadedWork() override {
         EXPECT_EQ(std::this_thread::get_id(), owner_);
         asked_.close();
     }
-    ThreadedBody(const ThreadedBody&) = delete;
-    ThreadedBody& operator=(const ThreadedBody&) = delete;
+    ThreadedWork(const ThreadedWork&) = delete;
+    ThreadedWork& operator=(const ThreadedWork&) = delete;
 
     void start(Execution execution) override {
         worker_ =
@@ -40,7 +40,7 @@ private:
         asked_.tryPush(0);
         return {};
     }
-    void work(const std::stop_token& stop, const Execution& execution) {
+    void work(const std::stop_token& stop, const ExecutionHandle& execution) {
         int cycle = 0;
         while (!stop.stop_requested()) {
             execution.progress(static_cast<double>(++cycle));
@@ -62,8 +62,8 @@ private:
 class ThreadedSkill final : public Skill {
 public:
     const SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<Body>> prepare(const ValueMap& /*snapshot*/) override {
-        return std::make_unique<ThreadedBody>(std::this_thread::get_id());
+    Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& /*snapshot*/) override {
+        return std::make_unique<ThreadedWork>(std::this_thread::get_id());
     }
 
 private:
@@ -105,7 +105,7 @@ TEST(Race, BetweenWorkersAndCommandsLosesAndReordersNoEvent) {
 }
 
 /// Every thread tells an end; returns when all have.
-void endFromManyThreads(const Execution& execution) {
+void endFromManyThreads(const ExecutionHandle& execution) {
     const auto end = [&execution] {
         execution.step("race");
         execution.finish({{"Length", 1.0}});

@@ -80,7 +80,7 @@ TEST(ComingToRest, TakesAnAnswerToSuspendForTheHaltThatOvertookIt) {
     EXPECT_THAT(bench.observer.transitions(), ElementsAre("RunningToHalted"));
 }
 
-TEST(ComingToRest, AcceptsASecondHaltWithoutAskingTheBodyAgain) {
+TEST(ComingToRest, AcceptsASecondHaltWithoutAskingTheWorkAgain) {
     ProgramBench bench;
     bench.enter(State::running);
     ASSERT_TRUE(bench.program->halt(kAlice));
@@ -94,7 +94,7 @@ TEST(ComingToRest, AcceptsASecondHaltWithoutAskingTheBodyAgain) {
 TEST(ComingToRest, MayBeAnsweredInsideTheRequest) {
     ProgramBench bench;
     bench.enter(State::running);
-    bench.script->on_stop = [](const Execution& execution) { execution.atRest(); };
+    bench.script->on_stop = [](const ExecutionHandle& execution) { execution.atRest(); };
     ASSERT_TRUE(bench.program->suspend(kAlice));
     EXPECT_EQ(bench.program->state(), State::running);
     bench.run();

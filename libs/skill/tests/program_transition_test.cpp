@@ -43,18 +43,18 @@ TEST(Transition, OneWaitsUntilTheDeviceAgreesAndSaysWhyNot) {
     EXPECT_EQ(bench.program->reasonText(), "");
 }
 
-TEST(Transition, TwoIsCommittedBeforeTheBodyStarts) {
+TEST(Transition, TwoIsCommittedBeforeTheWorkStarts) {
     ProgramBench bench;
-    bench.script->on_start = [&](const Execution&) { bench.observer.log.emplace_back("body"); };
+    bench.script->on_start = [&](const ExecutionHandle&) { bench.observer.log.emplace_back("body"); };
     ASSERT_TRUE(bench.program->start(kAlice));
     EXPECT_THAT(bench.observer.log, ElementsAre("sub-state Executing", "reason ByClient",
                                                 "diagnostic Start", "ReadyToRunning", "body"));
     EXPECT_EQ(bench.observer.events[0].number, TransitionNumber{2});
 }
 
-TEST(Transition, TwoComesBeforeFourAlsoIfTheBodyFinishesInsideItsStart) {
+TEST(Transition, TwoComesBeforeFourAlsoIfTheWorkFinishesInsideItsStart) {
     ProgramBench bench;
-    bench.script->on_start = [](const Execution& execution) { execution.finish(); };
+    bench.script->on_start = [](const ExecutionHandle& execution) { execution.finish(); };
     ASSERT_TRUE(bench.program->start(kAlice));
     EXPECT_EQ(bench.program->state(), State::running);
     bench.run();
@@ -76,7 +76,7 @@ TEST(Transition, ThreeFollowsHaltAtStandstill) {
     EXPECT_THAT(bench.script->calls, ElementsAre("halt", "destroyed"));
 }
 
-TEST(Transition, ThreeFollowsAnErrorOfTheBodyWithItsReason) {
+TEST(Transition, ThreeFollowsAnErrorOfTheWorkWithItsReason) {
     const std::array<std::pair<Reason, SubState>, 5> cases{{
         {Reason::error, SubState::halted_error},
         {Reason::force_exceeded, SubState::halted_force},
@@ -146,7 +146,7 @@ TEST(Transition, FiveFollowsSuspendAtStandstill) {
     EXPECT_EQ(bench.script->bodies_alive, 1);
 }
 
-TEST(Transition, SixFollowsResumeOfTheSameBody) {
+TEST(Transition, SixFollowsResumeOfTheSameWork) {
     ProgramBench bench;
     bench.enter(State::suspended);
     ASSERT_TRUE(bench.program->resume(kAlice));
@@ -167,7 +167,7 @@ TEST(Transition, SixIsRefusedWithTheDistanceIfTheArmWasMoved) {
     EXPECT_THAT(bench.observer.events, IsEmpty());
 }
 
-TEST(Transition, SevenFollowsHaltAtOnceAndTellsTheBody) {
+TEST(Transition, SevenFollowsHaltAtOnceAndTellsTheWork) {
     ProgramBench bench;
     bench.enter(State::suspended);
     ASSERT_TRUE(bench.program->halt(kAlice));
@@ -185,7 +185,7 @@ TEST(Transition, SevenFollowsAnError) {
     EXPECT_EQ(bench.program->subState(), SubState::halted_error);
 }
 
-TEST(Transition, EightFollowsResetAndTellsTheBody) {
+TEST(Transition, EightFollowsResetAndTellsTheWork) {
     ProgramBench bench;
     bench.enter(State::suspended);
     ASSERT_TRUE(bench.program->reset(kAlice));
@@ -267,7 +267,7 @@ TEST(TransitionEvent, CarriesNoExecutionWhereThereIsNone) {
 
 TEST(ExecutionId, IsTheSameFromStartToEndAndNewForTheNextStart) {
     ProgramBench bench;
-    bench.script->on_start = [](const Execution& execution) { execution.finish(); };
+    bench.script->on_start = [](const ExecutionHandle& execution) { execution.finish(); };
     for (int i = 0; i < 2; ++i) {
         ASSERT_TRUE(bench.program->start(kAlice));
         bench.run();

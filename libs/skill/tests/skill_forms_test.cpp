@@ -50,7 +50,7 @@ TEST(LambdaSkill, WithoutFunctionsFinishesAtOnceAndCannotBeSuspended) {
 }
 
 TEST(LambdaSkill, PassesParametersAndResult) {
-    Bench bench(lambdaSkill({.start = [](const ValueMap& parameters, const Execution& execution) {
+    Bench bench(lambdaSkill({.start = [](const ValueMap& parameters, const ExecutionHandle& execution) {
         execution.finish({{"Blinked", parameters.at("Times")}});
     }}));
     ASSERT_TRUE(bench.program.write(kClient, "Times", 7));
@@ -67,7 +67,7 @@ TEST(LambdaSkill, IsRefusedByItsCheck) {
 }
 
 TEST(LambdaSkill, WithoutHaltIsAtRestWheneverItIsAsked) {
-    Bench bench(lambdaSkill({.start = [](const ValueMap&, const Execution&) {}}));
+    Bench bench(lambdaSkill({.start = [](const ValueMap&, const ExecutionHandle&) {}}));
     ASSERT_TRUE(bench.program.start(kClient));
     ASSERT_TRUE(bench.program.halt(kClient));
     bench.executor->run();
@@ -77,18 +77,18 @@ TEST(LambdaSkill, WithoutHaltIsAtRestWheneverItIsAsked) {
 TEST(LambdaSkill, IsAskedForEveryStepOfItsLife) {
     std::vector<std::string> calls;
     Bench bench(lambdaSkill({
-        .start = [&](const ValueMap&, const Execution&) { calls.emplace_back("start"); },
-        .suspend = [&](const Execution& execution) -> Result<void> {
+        .start = [&](const ValueMap&, const ExecutionHandle&) { calls.emplace_back("start"); },
+        .suspend = [&](const ExecutionHandle& execution) -> Result<void> {
             calls.emplace_back("suspend");
             execution.atRest();
             return {};
         },
-        .resume = [&](const Execution&) -> Result<void> {
+        .resume = [&](const ExecutionHandle&) -> Result<void> {
             calls.emplace_back("resume");
             return {};
         },
         .halt =
-            [&](const Execution& execution) {
+            [&](const ExecutionHandle& execution) {
                 calls.emplace_back("halt");
                 execution.atRest();
             },
@@ -130,17 +130,17 @@ public:
               FieldList<Drilled>().add(&Drilled::depth, {.name = "Depth", .unit = kMetre})) {}
 
 protected:
-    Result<std::unique_ptr<Body>> plan(const Drill& parameters) override {
+    Result<std::unique_ptr<ExecutionWork>> plan(const Drill& parameters) override {
         if (parameters.depth > 0.08 && !parameters.speed) {
             return metier::fail(Errc::out_of_range, "Depth over 0.08 m needs Speed");
         }
-        return std::make_unique<DrillBody>(*this, parameters);
+        return std::make_unique<DrillWork>(*this, parameters);
     }
 
 private:
-    class DrillBody final : public Body {
+    class DrillWork final : public ExecutionWork {
     public:
-        DrillBody(const DrillSkill& skill, const Drill& parameters)
+        DrillWork(const DrillSkill& skill, const Drill& parameters)
             : skill_(skill), parameters_(parameters) {}
         void start(Execution execution) override {
             execution.finish(skill_.results().write({.depth = parameters_.depth}));
@@ -187,22 +187,22 @@ TEST(TypedSkill, ChecksASnapshotThatDidNotComeThroughAProgram) {
     EXPECT_TRUE(skill.prepare({{"Depth", 0.02}}));
 }
 
-TEST(Body, TakesNoLiveInputUnlessItSaysSo) {
+TEST(ExecutionWork, TakesNoLiveInputUnlessItSaysSo) {
     DrillSkill skill;
-    const auto body = skill.prepare({{"Depth", 0.02}});
-    ASSERT_TRUE(body);
-    EXPECT_EQ((*body)->input("Depth", {0.03}).error().code, Errc::not_supported);
+    const auto work = skill.prepare({{"Depth", 0.02}});
+    ASSERT_TRUE(work);
+    EXPECT_EQ((*work)->input("Depth", {0.03}).error().code, Errc::not_supported);
 }
 
 TEST(LambdaSkill, CanBeSuspendedOnlyIfItCanBeResumed) {
-    const auto suspend = [](const Execution&) { return Result<void>(); };
+    const auto suspend = [](const ExecutionHandle&) { return Result<void>(); };
     EXPECT_FALSE(lambdaSkill({.suspend = suspend})->description().suspendable);
     EXPECT_FALSE(lambdaSkill({.resume = suspend})->description().suspendable);
     EXPECT_TRUE(lambdaSkill({.suspend = suspend, .resume = suspend})->description().suspendable);
 }
 
 TEST(LambdaSkill, WithoutAStopOfTheDeviceIsHaltedByItsLossAllTheSame) {
-    Bench bench(lambdaSkill({.start = [](const ValueMap&, const Execution&) {}}));
+    Bench bench(lambdaSkill({.start = [](const ValueMap&, const ExecutionHandle&) {}}));
     ASSERT_TRUE(bench.program.start(kClient));
     bench.program.deviceLost("gone");
     EXPECT_EQ(bench.program.state(), State::halted);

@@ -59,7 +59,7 @@ Siege::Siege(Cable& cable, const opcua::ServerLimits& limits, HaltBounds bounds)
         description.name = fmt::format("Disturbed{}", i);
         description.type = "PositionStreamSkillType";
         skill::SkillFunctions functions;
-        functions.start = [](const skill::ValueMap&, const skill::Execution&) {};
+        functions.start = [](const skill::ValueMap&, const skill::ExecutionHandle&) {};
         const auto name = description.name;
         server_.addSkill(std::move(description), std::move(functions));
         skills_.push_back(std::get<std::string>(server_.node(name).identifier()));

@@ -369,7 +369,7 @@ std::filesystem::path recordedCell() {
     options.url = (folder / "cell.db").string();
     options.server = "urn:test:iiwa";
     const auto recorder = records::Recorder::create(std::move(options)).value();
-    records::Execution execution;
+    records::ExecutionRow execution;
     execution.id = "move-of-this-cell";
     recorder->begin(std::move(execution));
     return folder / "cell.toml";

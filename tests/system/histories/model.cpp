@@ -136,7 +136,7 @@ bool Model::isFree(Session session) const {
 
 bool Model::isBusy() const {
     return std::any_of(skills_.begin(), skills_.end(),
-                       [](const SkillModel& skill) { return skill.hasBody(); });
+                       [](const SkillModel& skill) { return skill.hasWork(); });
 }
 
 std::string Model::refusalOfWrite(const SkillModel& skill, Session session) const {
@@ -311,7 +311,7 @@ void Model::begin(SkillModel& skill, Session session, std::uint32_t name, double
 }
 
 void Model::go(SkillModel& skill, State to, Reason reason) {
-    const bool in_execution = skill.hasBody() || to == State::running;
+    const bool in_execution = skill.hasWork() || to == State::running;
     const auto name = !in_execution ? "-" : skill.name == 0 ? "?" : std::to_string(skill.name);
     skill.events.push_back(eventLine(skill.state, to, reason, name));
     if (in_execution && skill.name != 0) {

@@ -82,7 +82,7 @@ private:
         std::map<std::uint32_t, Record> records{};
         std::vector<std::string> events{};
 
-        bool hasBody() const {
+        bool hasWork() const {
             return state == skill::State::running || state == skill::State::suspended;
         }
         bool isFirst = true;

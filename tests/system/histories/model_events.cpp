@@ -96,7 +96,7 @@ void Model::happen(SkillModel& skill, const Step& step) {
         case Act::finish:
             return finish(skill);
         case Act::force_exceeded:
-            if (skill.hasBody()) {
+            if (skill.hasWork()) {
                 go(skill, State::halted, Reason::force_exceeded);
             }
             return;
@@ -150,7 +150,7 @@ void Model::closeSession(std::size_t client) {
         if (skill.bound == session) {
             endConfiguration(skill);
         }
-        if (skill.hasBody() && skill.owner == session) {
+        if (skill.hasWork() && skill.owner == session) {
             loseOwner(skill, OwnerLossAction::skill_default);
         }
     }
@@ -162,7 +162,7 @@ void Model::loseLease() {
         if (skill.bound == session) {
             endConfiguration(skill);
         }
-        if (skill.hasBody() && skill.owner == session) {
+        if (skill.hasWork() && skill.owner == session) {
             loseOwner(skill, lease_action_);
         }
     }

@@ -34,9 +34,9 @@ enum class Act : std::uint8_t {
     get_execution,   ///< value: its name
     close_session,   ///< and a new one
     cut_connection,  ///< carol's, whose session stays until its time-out; and a new one
-    at_rest,         ///< the body stands still
-    finish,          ///< the body has done its work
-    force_exceeded,  ///< the body fails
+    at_rest,         ///< the work stands still
+    finish,          ///< the work has done its work
+    force_exceeded,  ///< the work fails
     device_lost,
     fault_stays,    ///< from now on Reset is refused
     fault_is_gone,  ///< and from now on it is not

@@ -108,15 +108,15 @@ World::~World() {
 
 skill::SkillFunctions World::functionsOf(Side& side, bool may_be_suspended) {
     skill::SkillFunctions functions;
-    functions.start = [&side](const skill::ValueMap& given, const skill::Execution& execution) {
+    functions.start = [&side](const skill::ValueMap& given, const skill::ExecutionHandle& execution) {
         side.execution = execution;
         side.speed = std::get<double>(given.at("SpeedOverride"));
     };
     if (may_be_suspended) {
-        functions.suspend = [](const skill::Execution&) { return Result<void>(); };
-        functions.resume = [](const skill::Execution&) { return Result<void>(); };
+        functions.suspend = [](const skill::ExecutionHandle&) { return Result<void>(); };
+        functions.resume = [](const skill::ExecutionHandle&) { return Result<void>(); };
     }
-    functions.halt = [](const skill::Execution&) {};
+    functions.halt = [](const skill::ExecutionHandle&) {};
     functions.reset = [&side]() -> Result<void> {
         return side.fault_stays ? fail(Errc::device_fault, "the button is pressed")
                                 : Result<void>();

@@ -19,7 +19,7 @@
 namespace metier::system_tests {
 
 /// A server with two skills, three clients that command it, carol through a Relay, and one that
-/// looks on. Time stands until a step moves it. The bodies of the skills do what steps say.
+/// looks on. Time stands until a step moves it. The work of the skills do what steps say.
 ///
 /// Threading: one thread takes steps.
 class World final : public Taker {
@@ -42,11 +42,11 @@ private:
             get_execution;
     };
     class Emitted;
-    /// One skill: what its body holds on the server's thread, and what the onlooker heard.
+    /// One skill: what its work holds on the server's thread, and what the onlooker heard.
     struct Side {
         Nodes nodes;
         skill::Program* program = nullptr;
-        skill::Execution execution;
+        skill::ExecutionHandle execution;
         double speed = 0;
         std::atomic<bool> fault_stays{false};
         std::unique_ptr<Emitted> emitted;

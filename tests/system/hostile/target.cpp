@@ -16,9 +16,9 @@ using namespace metier::system_tests;
 
 skill::SkillFunctions suspendable() {
     skill::SkillFunctions functions;
-    functions.start = [](const skill::ValueMap&, const skill::Execution&) {};
-    functions.suspend = [](const skill::Execution&) { return Result<void>(); };
-    functions.resume = [](const skill::Execution&) { return Result<void>(); };
+    functions.start = [](const skill::ValueMap&, const skill::ExecutionHandle&) {};
+    functions.suspend = [](const skill::ExecutionHandle&) { return Result<void>(); };
+    functions.resume = [](const skill::ExecutionHandle&) { return Result<void>(); };
     return functions;
 }
 

@@ -189,10 +189,10 @@ void JointSimulator::tellSafety() {
     std::vector<SafetyCallback> callbacks;
     {
         const std::lock_guard lock(mutex_);
-        if (now.state == told_safety_) {
+        if (now.state == published_safety_) {
             return;
         }
-        told_safety_ = now.state;
+        published_safety_ = now.state;
         for (const auto& [id, callback] : callbacks_) {
             callbacks.push_back(callback);
         }

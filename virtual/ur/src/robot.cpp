@@ -50,7 +50,7 @@ void Robot::begin() {
     arm_.reset(options_.arm.start);
     arm_.setTool(motion::Pose::identity());
     modes_.emplace(options_.times, options_.power);
-    told_safety_ = modes_->safetyMode();
+    published_safety_ = modes_->safetyMode();
     script_robot_.emplace(ScriptRobot::Parts{
         arm_, state_, sockets_, options_.arm.cycle,
         [this](const std::string& text) { tellText(text); },
@@ -105,8 +105,8 @@ void Robot::doAsked() {
 }
 
 void Robot::watchSafety() {
-    if (const auto mode = modes_->safetyMode(); mode != told_safety_) {
-        told_safety_ = mode;
+    if (const auto mode = modes_->safetyMode(); mode != published_safety_) {
+        published_safety_ = mode;
         around_.tell(safetyModeMessage(now(), mode));
     }
 }

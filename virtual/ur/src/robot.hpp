@@ -109,7 +109,7 @@ private:
     std::optional<RobotModes> modes_;
     std::optional<ScriptRobot> script_robot_;
     std::optional<ProgramRunner> programs_;
-    SafetyMode told_safety_ = SafetyMode::normal;
+    SafetyMode published_safety_ = SafetyMode::normal;
 };
 
 }  // namespace metier::virtual_ur

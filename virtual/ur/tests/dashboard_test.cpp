@@ -208,7 +208,7 @@ TEST(Dashboard, AnArmInLocalControlAnswersButDoesNothing) {
 TEST(Dashboard, TakesTextForPopupAndLog) {
     Desk desk("ur5e");
     EXPECT_EQ(desk.ask("popup hello there"), "showing popup");
-    EXPECT_TRUE(desk.table.wasTold(2, "hello there"));
+    EXPECT_TRUE(desk.table.wasReported(2, "hello there"));
     EXPECT_EQ(desk.ask("close popup"), "closing popup");
     EXPECT_EQ(desk.ask("addToLog it works"), "Added log message");
     EXPECT_EQ(desk.logged, "it works");

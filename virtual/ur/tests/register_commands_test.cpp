@@ -221,7 +221,7 @@ TEST_F(RegisterCommands, RunUntilTheyAreEnded) {
     EXPECT_NEAR(toldSix()[0], 0.002, 1e-9);
     EXPECT_TRUE(command(255));
     EXPECT_TRUE(table_.runtimeBecomes(RuntimeState::stopped));
-    EXPECT_FALSE(table_.wasTold(10, ""));  // a runtime exception
+    EXPECT_FALSE(table_.wasReported(10, ""));  // a runtime exception
 }
 
 TEST_F(RegisterCommands, ServocDrivesTheToolToAPoseThatChanges) {
@@ -297,7 +297,7 @@ TEST_F(RegisterCommands, AProtectiveStopThatTheProgramAsksForPausesIt) {
     EXPECT_EQ(state().safety_mode, SafetyMode::protective_stop);
     ASSERT_TRUE(table_.runtimeBecomes(RuntimeState::paused));
     EXPECT_THAT(state().target_qd, Each(0.0));
-    EXPECT_TRUE(table_.wasTold(6, "Protective stop: the program asked for it"));
+    EXPECT_TRUE(table_.wasReported(6, "Protective stop: the program asked for it"));
 }
 
 TEST(SecondaryProgram, MayAskForAProtectiveStop) {
@@ -327,7 +327,7 @@ TEST(Powerdown, EndsTheProgramThatAsksForIt) {
     RobotOnTable table;
     table.robot.takeScript("def p():\n  powerdown()\n  while True:\n    sync()\n  end\nend\n");
     table.cycles(1);
-    EXPECT_TRUE(table.wasTold(7, "PROGRAM_XXX_STOPPEDp"));
+    EXPECT_TRUE(table.wasReported(7, "PROGRAM_XXX_STOPPEDp"));
     ASSERT_TRUE(
         table.until([&] { return table.robot.state().robot_mode == RobotMode::power_off; }, 1.0));
     EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::stopped);

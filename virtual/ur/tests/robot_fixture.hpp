@@ -58,7 +58,7 @@ public:
         return until([&] { return robot.state().runtime_state == state; });
     }
     /// Whether a message of that kind (its tenth byte after the head) with that text was told.
-    bool wasTold(int kind, const std::string& text) const {
+    bool wasReported(int kind, const std::string& text) const {
         return std::any_of(told.begin(), told.end(), [&](const Bytes& message) {
             const std::string all(reinterpret_cast<const char*>(message.data()), message.size());
             return message.size() > 14 && static_cast<int>(message[14]) == kind &&

@@ -97,7 +97,7 @@ TEST(Robot, AStreamOfSetPointsInRegistersIsFollowed) {
     table.cycles(2);
     EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::playing);
     EXPECT_EQ(table.robot.state().robot_status_bits, 3U);
-    EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STARTEDfollow"));
+    EXPECT_TRUE(table.wasReported(kKey, "PROGRAM_XXX_STARTEDfollow"));
     Vector6 q = start;
     for (int i = 1; i <= 250; ++i) {
         q[0] = start[0] + 0.1 * (1.0 - std::cos(i * 0.008 * M_PI));
@@ -111,7 +111,7 @@ TEST(Robot, AStreamOfSetPointsInRegistersIsFollowed) {
 
     place(table, q, 0);
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::stopped));
-    EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STOPPEDfollow"));
+    EXPECT_TRUE(table.wasReported(kKey, "PROGRAM_XXX_STOPPEDfollow"));
 }
 
 TEST(Robot, ASetPointFarAwayCausesAProtectiveStopThatCanBeUnlockedLater) {
@@ -125,8 +125,8 @@ TEST(Robot, ASetPointFarAwayCausesAProtectiveStopThatCanBeUnlockedLater) {
     place(table, far, 1);
     ASSERT_TRUE(table.until(
         [&] { return table.robot.state().safety_mode == SafetyMode::protective_stop; }, 1.0));
-    EXPECT_TRUE(table.wasTold(kError, "axis 2"));
-    EXPECT_TRUE(table.wasTold(kSafety, ""));
+    EXPECT_TRUE(table.wasReported(kError, "axis 2"));
+    EXPECT_TRUE(table.wasReported(kSafety, ""));
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::paused));
     EXPECT_NEAR(table.robot.state().target_q[1], start[1], 0.1);
     EXPECT_FALSE(table.robot.unlock());
@@ -200,8 +200,8 @@ TEST(Robot, ANewProgramReplacesTheRunningOne) {
     table.cycles(3);
     table.robot.takeScript("def two():\n  while True:\n    sync()\n  end\nend\n");
     table.cycles(1);
-    EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STOPPEDone"));
-    EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STARTEDtwo"));
+    EXPECT_TRUE(table.wasReported(kKey, "PROGRAM_XXX_STOPPEDone"));
+    EXPECT_TRUE(table.wasReported(kKey, "PROGRAM_XXX_STARTEDtwo"));
     EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::playing);
 }
 
@@ -221,13 +221,13 @@ TEST(Robot, ASecondaryProgramRunsBesideThePrimaryOne) {
 TEST(Robot, AScriptWithAnErrorIsToldWithItsPlace) {
     RobotOnTable table;
     table.robot.takeScript("def bad():\n  txtmsg(1)\nend\n");
-    ASSERT_TRUE(table.wasTold(kException, ""));
+    ASSERT_TRUE(table.wasReported(kException, ""));
     const auto message = table.told.back();
     EXPECT_EQ(static_cast<int>(message[18]), 2);  // line
     EXPECT_EQ(static_cast<int>(message[22]), 3);  // column
     // As URCL's test_program_execution_reports_exception expects it.
     EXPECT_EQ(textFrom(message, 23), "compile_error_name_not_found:txtmsg:");
-    EXPECT_TRUE(table.wasTold(kText, "line 2, column 3: function 'txtmsg' is not defined"));
+    EXPECT_TRUE(table.wasReported(kText, "line 2, column 3: function 'txtmsg' is not defined"));
     table.robot.takeScript("def late():\n  sync()\n  x = [1, 2]\n  y = x[7]\nend\n");
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::playing));
     ASSERT_TRUE(table.runtimeBecomes(RuntimeState::stopped));
@@ -238,7 +238,7 @@ TEST(Robot, AScriptWithAnErrorIsToldWithItsPlace) {
         EXPECT_EQ(timeOf(exception) / 1'000'000, 64U);
     }
     EXPECT_EQ(timeOf(late) - timeOf(message), 16'000U);
-    EXPECT_TRUE(table.wasTold(kKey, "PROGRAM_XXX_STOPPEDlate"));
+    EXPECT_TRUE(table.wasReported(kKey, "PROGRAM_XXX_STOPPEDlate"));
 }
 
 TEST(Robot, AScriptThatIsNoneIsToldWithTheLineInTheMakersWords) {
@@ -256,7 +256,7 @@ TEST(Robot, AScriptThatIsNoneIsToldWithTheLineInTheMakersWords) {
     const std::string spaces(1000, ' ');
     EXPECT_EQ(told("def u():\n" + spaces + "break\nend\n"),
               "syntax_error_on_line:2:" + spaces.substr(0, 200) + ":");
-    EXPECT_TRUE(table.wasTold(kText, "line 2, column 1001: 'break' outside of a loop"));
+    EXPECT_TRUE(table.wasReported(kText, "line 2, column 1001: 'break' outside of a loop"));
 }
 
 TEST(Robot, TextMessagesAndPopupsGoToThePrimaryPort) {
@@ -264,8 +264,8 @@ TEST(Robot, TextMessagesAndPopupsGoToThePrimaryPort) {
     table.robot.takeScript(
         "def p():\n  textmsg(\"hello \", 5)\n  popup(\"look\", \"here\")\nend\n");
     table.cycles(2);
-    EXPECT_TRUE(table.wasTold(kText, "hello 5"));
-    EXPECT_TRUE(table.wasTold(2, "look"));
+    EXPECT_TRUE(table.wasReported(kText, "hello 5"));
+    EXPECT_TRUE(table.wasReported(2, "look"));
 }
 
 TEST(Robot, AnArmWithoutPowerRunsNoProgram) {
@@ -273,7 +273,7 @@ TEST(Robot, AnArmWithoutPowerRunsNoProgram) {
     table.robot.takeScript("def p():\n  sync()\nend\n");
     table.cycles(2);
     EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::stopped);
-    EXPECT_TRUE(table.wasTold(kText, "POWER_OFF"));
+    EXPECT_TRUE(table.wasReported(kText, "POWER_OFF"));
     // As URCL's primary client switches it on.
     table.robot.takeScript("power on\n");
     table.seconds(1.1);
@@ -291,7 +291,7 @@ TEST(Robot, AnArmInLocalControlTakesNoScript) {
     table.robot.takeScript("def p():\n  while True:\n    sync()\n  end\nend\n");
     table.cycles(2);
     EXPECT_EQ(table.robot.state().runtime_state, RuntimeState::stopped);
-    ASSERT_TRUE(table.wasTold(kError, "local control"));
+    ASSERT_TRUE(table.wasReported(kError, "local control"));
     EXPECT_EQ(static_cast<int>(table.told.back()[18]), 210);
 }
 
@@ -378,7 +378,7 @@ TEST(Robot, AJointBeyondItsLimitIsAViolation) {
     table.robot.exceedLimit(2);
     table.cycles(1);
     EXPECT_EQ(table.robot.state().safety_mode, SafetyMode::protective_stop);
-    EXPECT_TRUE(table.wasTold(kError, "axis 3: position"));
+    EXPECT_TRUE(table.wasReported(kError, "axis 3: position"));
 }
 
 TEST(Robot, AnOpenSafeguardPausesTheProgramAndAViolationEndsIt) {
@@ -404,7 +404,7 @@ TEST(Robot, AMoveToUnreachablePoseIsARuntimeException) {
     RobotOnTable table;
     table.robot.takeScript("def p():\n  movel(p[3, 0, 0, 0, 0, 0])\nend\n");
     table.cycles(2);
-    EXPECT_TRUE(table.wasTold(kException, ""));
+    EXPECT_TRUE(table.wasReported(kException, ""));
     EXPECT_EQ(table.robot.state().safety_mode, SafetyMode::normal);
 }
 

@@ -153,7 +153,7 @@ private:
                                 fmt::join(reasons, ", ")));
         candidates_.push_back({{"url", server.url},
                                {"server", server.name},
-                               {"told_by", server.told_by},
+                               {"told_by", server.reported_by},
                                {"controller", skill.address.controllerName()},
                                {"skill", skill.address.name},
                                {"types", skill.types},

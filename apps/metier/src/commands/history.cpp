@@ -22,7 +22,7 @@
 namespace metier::app {
 namespace {
 
-using records::Execution;
+using records::ExecutionRow;
 using records::Store;
 
 constexpr auto kLook = std::chrono::milliseconds(250);

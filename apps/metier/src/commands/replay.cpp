@@ -24,7 +24,7 @@ struct ReplayOptions {
 };
 
 /// Where the execution's server is now.
-Result<std::string> addressOf(const records::Execution& execution, const ReplayOptions& options) {
+Result<std::string> addressOf(const records::ExecutionRow& execution, const ReplayOptions& options) {
     if (!options.url.empty()) {
         return options.url;
     }
@@ -46,7 +46,7 @@ Result<std::string> addressOf(const records::Execution& execution, const ReplayO
 }
 
 /// The parameters as they were then, as far as the skill still has them.
-Result<skill::ValueMap> parametersOf(const records::Execution& execution,
+Result<skill::ValueMap> parametersOf(const records::ExecutionRow& execution,
                                      const client::SkillHandle& skill) {
     const auto json = nlohmann::json::parse(execution.parameters, nullptr, false);
     if (!json.is_object()) {
@@ -76,7 +76,7 @@ Exit runAgain(const ReplayOptions& options, const CommandIdentity& identity) {
     const link::StopSignal signal;
     const auto store = openRecords(options.drawing.records);
     const auto execution = store ? (*store)->find(options.drawing.id)
-                                 : Result<records::Execution>(fail(store.error()));
+                                 : Result<records::ExecutionRow>(fail(store.error()));
     if (!execution) {
         return report(execution.error());
     }

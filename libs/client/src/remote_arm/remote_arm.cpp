@@ -8,13 +8,13 @@ namespace metier::client {
 
 Result<std::unique_ptr<RemoteArm>> RemoteArm::connect(RemoteArmOptions options) {
     // Shared by the thread that waits and the sessions that ring, also late.
-    auto bell = std::make_shared<Doorbell>();
-    auto session = StreamSession::open(options, bell);
+    auto wake_up = std::make_shared<WakeUp>();
+    auto session = StreamSession::open(options, wake_up);
     if (!session) {
         return fail(session.error());
     }
     auto worker =
-        std::make_unique<Worker>(std::move(options), std::move(bell), std::move(*session));
+        std::make_unique<Worker>(std::move(options), std::move(wake_up), std::move(*session));
     return std::unique_ptr<RemoteArm>(new RemoteArm(std::move(worker)));
 }
 

@@ -66,7 +66,7 @@ bool isOfTheRobot(const skill::TransitionEvent& event) {
 }  // namespace
 
 Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOptions& remote,
-                                                           std::shared_ptr<Doorbell> bell) {
+                                                           std::shared_ptr<WakeUp> wake_up) {
     opcua::ClientOptions options;
     options.application_name = "metier move component";
     options.connect_timeout = kConnectTimeout;
@@ -99,7 +99,7 @@ Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOption
     }
     std::unique_ptr<StreamSession> session(new StreamSession(std::move(*client), std::move(*nodes),
                                                              std::move(*kinematics),
-                                                             std::move(*stream), std::move(bell)));
+                                                             std::move(*stream), std::move(wake_up)));
     if (auto subscribed = session->subscribe(); !subscribed) {
         return fail(subscribed.error());
     }
@@ -109,13 +109,13 @@ Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOption
 StreamSession::StreamSession(std::unique_ptr<opcua::Client> client,
                              client::KinematicsNodes nodes,
                              opcua_skill::KinematicsData kinematics,
-                             client::SkillHandle stream, std::shared_ptr<Doorbell> bell)
+                             client::SkillHandle stream, std::shared_ptr<WakeUp> wake_up)
     : client_(std::move(client)),
       nodes_(std::move(nodes)),
       kinematics_(std::move(kinematics)),
       stream_(std::move(stream)),
       takes_end_(hasParameter(stream_, kEndOfStream)) {
-    notes_->bell = std::move(bell);
+    notes_->wake_up = std::move(wake_up);
 }
 
 void StreamSession::Notes::notePosition(const device::JointArray& position) {

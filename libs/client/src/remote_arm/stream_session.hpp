@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "remote_arm/doorbell.hpp"
+#include "remote_arm/wake_up.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/opcua/client.hpp"
@@ -20,7 +20,7 @@ namespace metier::client {
 
 /// One connection to the server of an arm, for as long as it holds.
 ///
-/// Threading: one owner; what comes in is noted by the client's thread, which rings the bell.
+/// Threading: one owner; what comes in is noted by the client's thread, which rings the wake_up.
 class StreamSession {
 public:
     /// What the server told last.
@@ -38,9 +38,9 @@ public:
         std::string broken;   ///< why nothing more will come
     };
 
-    /// \param bell rung after each change of what is observed; shared with late answers
+    /// \param wake_up notified after each change of what is observed; shared with late answers
     static Result<std::unique_ptr<StreamSession>> open(const RemoteArmOptions& remote,
-                                                       std::shared_ptr<Doorbell> bell);
+                                                       std::shared_ptr<WakeUp> wake_up);
 
     const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }
     const std::string& deviceName() const noexcept { return nodes_.device_name; }
@@ -61,12 +61,12 @@ public:
 private:
     StreamSession(std::unique_ptr<opcua::Client> client, client::KinematicsNodes nodes,
                   opcua_skill::KinematicsData kinematics, client::SkillHandle stream,
-                  std::shared_ptr<Doorbell> bell);
+                  std::shared_ptr<WakeUp> wake_up);
     // Shared with callbacks and answers that are still under way when the session ends.
     struct Notes {
         std::mutex mutex;
         Observed observed;
-        std::shared_ptr<Doorbell> bell;
+        std::shared_ptr<WakeUp> wake_up;
 
         template <typename Change>
         void note(Change change) {
@@ -74,7 +74,7 @@ private:
                 const std::lock_guard lock(mutex);
                 change(observed);
             }
-            bell->ring();
+            wake_up->notify();
         }
         void notePosition(const device::JointArray& position);
         void noteBroken(const std::string& why);

@@ -45,10 +45,10 @@ device::ArmInfo infoOf(const StreamSession& session) {
 
 }  // namespace
 
-RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> bell,
+RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake_up,
                           std::unique_ptr<StreamSession> session)
     : options_(std::move(options)),
-      bell_(std::move(bell)),
+      wake_up_(std::move(wake_up)),
       session_(std::move(session)),
       kinematics_(session_->kinematics()),
       info_(infoOf(*session_)) {
@@ -59,7 +59,7 @@ RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> be
 
 RemoteArm::Worker::~Worker() {
     thread_.request_stop();
-    bell_->ring();
+    wake_up_->notify();
     thread_ = {};
 }
 
@@ -86,7 +86,7 @@ Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> s
         stop_asked_ = false;
         pending_ = std::move(source);
     }
-    bell_->ring();
+    wake_up_->notify();
     return {};
 }
 
@@ -106,7 +106,7 @@ void RemoteArm::Worker::stop() noexcept {
         const std::lock_guard lock(mutex_);
         stop_asked_ = taken_;
     }
-    bell_->ring();
+    wake_up_->notify();
 }
 
 Result<void> RemoteArm::Worker::resetFault() {
@@ -120,7 +120,7 @@ Result<void> RemoteArm::Worker::resetFault() {
     if (auto outcome = resets_.ask()) {
         return std::move(*outcome);
     }
-    bell_->ring();
+    wake_up_->notify();
     return fail(Errc::timeout, fmt::format("{}: the reset goes on at {}, ask again ({})",
                                            info_.name, options_.url, now.text));
 }
@@ -149,23 +149,23 @@ void RemoteArm::Worker::run(const std::stop_token& stop) {
         }
         publish();
         if (session_ != nullptr) {
-            bell_->wait(stop, nextWake());
+            wake_up_->wait(stop, nextWake());
         }
     }
     letGo(EndCause::disconnected);
 }
 
 void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
-    auto session = StreamSession::open(options_, bell_);
+    auto session = StreamSession::open(options_, wake_up_);
     if (!session) {
-        bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
+        wake_up_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
         return;
     }
     if (const auto change = changeIn(**session); !change.empty()) {
         session->reset();  // without its stream nothing of it moves
         noteAbsence(Absence{absence_->since, true});
         enter({SafetyState::disconnected, fmt::format("{}: {}", info_.name, change)});
-        bell_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
+        wake_up_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
         return;
     }
     noteAbsence({});

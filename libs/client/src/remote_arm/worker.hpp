@@ -7,9 +7,9 @@
 #include <stop_token>
 #include <thread>
 
-#include "remote_arm/doorbell.hpp"
+#include "remote_arm/wake_up.hpp"
 #include "metier/device/arm.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "metier/device/reset_slot.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/client/remote_arm.hpp"
 #include "remote_arm/stream_session.hpp"
@@ -19,7 +19,7 @@ namespace metier::client {
 /// The thread of a RemoteArm: keeps the connection, and is the cycle while something moves.
 class RemoteArm::Worker {
 public:
-    Worker(RemoteArmOptions options, std::shared_ptr<Doorbell> bell,
+    Worker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake_up,
            std::unique_ptr<StreamSession> session);
     ~Worker();
     Worker(const Worker&) = delete;
@@ -74,13 +74,13 @@ private:
     UtcTime meantFor() const;
 
     const RemoteArmOptions options_;
-    const std::shared_ptr<Doorbell> bell_;  // rung by the session's late answers, too
+    const std::shared_ptr<WakeUp> wake_up_;  // notified by the session's late answers, too
     std::unique_ptr<StreamSession> session_;
     const opcua_skill::KinematicsData kinematics_;
     const device::ArmInfo info_;
     device::SharedValue<device::ArmState> published_;
 
-    device::ResetDesk resets_;
+    device::ResetSlot resets_;
     mutable std::mutex mutex_;
     std::string owner_;  // ApplicationUri of the server whose motions these are
     bool stop_asked_ = false;

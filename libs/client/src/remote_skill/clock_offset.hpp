@@ -1,7 +1,7 @@
 #pragma once
 
 #include "metier/base/error.hpp"
-#include "metier/composition/child.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "metier/opcua/client.hpp"
 
 namespace metier::client {

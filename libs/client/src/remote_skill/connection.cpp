@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "remote_skill/remote_child.hpp"
+#include "remote_skill/remote_used_skill.hpp"
 
 namespace metier::client {
 
 using client::AsyncSkill;
 using client::SkillAddress;
 
-void ChildLink::post(std::function<void(RemoteChild&)> work) {
+void UsedSkillLink::post(std::function<void(RemoteUsedSkill&)> work) {
     executor_->post([self = shared_from_this(), work = std::move(work)] {
-        if (self->child_ != nullptr) {
-            work(*self->child_);
+        if (self->used_ != nullptr) {
+            work(*self->used_);
         }
     });
 }
@@ -50,7 +50,7 @@ void Connection::watch(opcua::Client& client) {
 }
 
 Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
-                                                    const std::shared_ptr<ChildLink>& link) {
+                                                    const std::shared_ptr<UsedSkillLink>& link) {
     const auto client = present();
     auto skill = AsyncSkill::open(*client, address, watchFor(*client, link));
     if (!skill) {
@@ -68,16 +68,16 @@ Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
 }
 
 AsyncSkill::Watch Connection::watchFor(const opcua::Client& client,
-                                       const std::shared_ptr<ChildLink>& link) {
+                                       const std::shared_ptr<UsedSkillLink>& link) {
     return {.on_transition =
                 [link](const skill::TransitionEvent& event) {
-                    link->post([event](RemoteChild& child) { child.onTransition(event); });
+                    link->post([event](RemoteUsedSkill& used) { used.onTransition(event); });
                 },
             .on_stopping =
                 [link](const skill::StoppingEvent& event) {
-                    link->post([event](RemoteChild& child) { child.onStopping(event); });
+                    link->post([event](RemoteUsedSkill& used) { used.onStopping(event); });
                 },
-            .on_missed = [link] { link->post([](RemoteChild& child) { child.onMissed(); }); },
+            .on_missed = [link] { link->post([](RemoteUsedSkill& used) { used.onMissed(); }); },
             .on_ended = [this, &client](const std::string& why) { noteLoss(client, why); }};
 }
 
@@ -152,14 +152,14 @@ void Connection::warn(std::string& last, std::string text) const {
 }
 
 void Connection::lose(const std::string& why) {
-    warn(told_loss_, why + "; connecting again");
+    warn(reported_loss_, why + "; connecting again");
     std::vector<Use> uses;
     {
         const std::lock_guard lock(mutex_);
         uses = uses_;
     }
     for (const auto& use : uses) {
-        use.link->post([why](RemoteChild& child) { child.lost(why); });
+        use.link->post([why](RemoteUsedSkill& used) { used.lost(why); });
     }
 }
 
@@ -169,19 +169,19 @@ std::function<void()> Connection::adoptionOf(const Use& use) {
                          : Result<std::shared_ptr<OpenSkill>>(fail(address.error()));
     const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
     if (!skill || !now) {
-        warn(told_attempt_, fmt::format("{} is not there yet: {}", use.skill,
+        warn(reported_attempt_, fmt::format("{} is not there yet: {}", use.skill,
                                         skill ? now.error().message : skill.error().message));
         return nullptr;
     }
     return [link = use.link, skill = std::move(*skill), now = *now] {
-        link->post([skill, now](RemoteChild& child) { child.adopt(skill, now); });
+        link->post([skill, now](RemoteUsedSkill& used) { used.adopt(skill, now); });
     };
 }
 
 bool Connection::reconnect() {
     auto client = connect(options_);
     if (!client) {
-        warn(told_attempt_, client.error().message);
+        warn(reported_attempt_, client.error().message);
         return false;
     }
     std::shared_ptr<opcua::Client> former = std::move(*client);
@@ -195,7 +195,7 @@ bool Connection::reconnect() {
     }
     watch(*present());
     former.reset();  // without the lock: its thread may still tell of a loss
-    // All or none: a child that was told would begin, and be told again in the next attempt.
+    // All or none: a used skill that was told would begin, and be told again in the next attempt.
     std::vector<std::function<void()>> adoptions;
     for (const auto& use : uses) {
         adoptions.push_back(adoptionOf(use));
@@ -207,8 +207,8 @@ bool Connection::reconnect() {
         adopt();
     }
     spdlog::warn("{}: connected again", options_.url);  // heard by whoever heard of the loss
-    told_loss_.clear();
-    told_attempt_.clear();
+    reported_loss_.clear();
+    reported_attempt_.clear();
     const std::lock_guard lock(mutex_);
     if (lost_.empty()) {
         away_since_.reset();

@@ -16,7 +16,7 @@
 
 namespace metier::client {
 
-class RemoteChild;
+class RemoteUsedSkill;
 
 /// A skill together with the client that leads to it, which ends after it.
 struct OpenSkill {
@@ -24,20 +24,20 @@ struct OpenSkill {
     client::AsyncSkill skill;
 };
 
-/// The way to a child on the owner's thread, for as long as both are there.
-class ChildLink : public std::enable_shared_from_this<ChildLink> {
+/// The way to a used skill on the owner's thread, for as long as both are there.
+class UsedSkillLink : public std::enable_shared_from_this<UsedSkillLink> {
 public:
-    explicit ChildLink(std::shared_ptr<skill::Executor> executor)
+    explicit UsedSkillLink(std::shared_ptr<skill::Executor> executor)
         : executor_(std::move(executor)) {}
 
-    /// Runs `work` with the child, on the owner's thread. Any thread.
-    void post(std::function<void(RemoteChild&)> work);
+    /// Runs `work` with the used skill, on the owner's thread. Any thread.
+    void post(std::function<void(RemoteUsedSkill&)> work);
     /// The owner's thread.
-    void attach(RemoteChild* child) { child_ = child; }
+    void attach(RemoteUsedSkill* used) { used_ = used; }
 
 private:
     std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
-    RemoteChild* child_ = nullptr;
+    RemoteUsedSkill* used_ = nullptr;
 };
 
 /// The thread that waits for the other server: connects again, reads, and ends what takes time.
@@ -46,7 +46,7 @@ public:
     /// A skill that is opened again with each session.
     struct Use {
         std::string skill;  ///< "Controller/Name"
-        std::shared_ptr<ChildLink> link;
+        std::shared_ptr<UsedSkillLink> link;
     };
 
     Connection(RemoteServerOptions options, std::shared_ptr<opcua::Client> client);
@@ -58,7 +58,7 @@ public:
     opcua::Client& client() { return *client_; }
     /// Opens a skill of the present session, and of each one to come.
     Result<std::shared_ptr<OpenSkill>> open(const client::SkillAddress& address,
-                                            const std::shared_ptr<ChildLink>& link);
+                                            const std::shared_ptr<UsedSkillLink>& link);
     /// Runs `job` on this thread; jobs may wait.
     void run(std::function<void()> job);
     /// Has the thread connect again, as after a loss. Any thread.
@@ -74,11 +74,11 @@ private:
     void work(const std::stop_token& stop);
     void watch(opcua::Client& client);
     client::AsyncSkill::Watch watchFor(const opcua::Client& client,
-                                             const std::shared_ptr<ChildLink>& link);
+                                             const std::shared_ptr<UsedSkillLink>& link);
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();
-    /// Has the child of a use go on with the present session; nothing if its skill is not there.
+    /// Has the used skill of a use go on with the present session; nothing if its skill is not there.
     std::function<void()> adoptionOf(const Use& use);
     /// Warns of a reason that is not the last one of its kind; the log of what comes again and
     /// again is for those who look for it.
@@ -97,8 +97,8 @@ private:
     std::string lost_;         // why; empty while connected
     bool loss_noted_ = false;  // of client_; guarded by mutex_
     // Of the thread: what the log has been told of since the connection was there.
-    std::string told_loss_;
-    std::string told_attempt_;
+    std::string reported_loss_;
+    std::string reported_attempt_;
     std::jthread thread_;
 };
 

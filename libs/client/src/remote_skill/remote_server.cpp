@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "remote_skill/connection.hpp"
-#include "remote_skill/remote_child.hpp"
+#include "remote_skill/remote_used_skill.hpp"
 
 namespace metier::client {
 
@@ -59,15 +59,15 @@ Result<std::vector<client::SkillAddress>> RemoteServer::skills() {
                  : fail(found.error());
 }
 
-Result<std::unique_ptr<composition::Child>> RemoteServer::use(
+Result<std::unique_ptr<composition::UsedSkill>> RemoteServer::use(
     const client::SkillAddress& skill, std::string origin) {
     auto opened = open(skill, std::move(origin));
-    return opened ? child(std::move(*opened))
-                  : Result<std::unique_ptr<composition::Child>>(fail(std::move(opened.error())));
+    return opened ? used(std::move(*opened))
+                  : Result<std::unique_ptr<composition::UsedSkill>>(fail(std::move(opened.error())));
 }
 
 Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::string origin) {
-    const auto link = std::make_shared<ChildLink>(worker_->executor);
+    const auto link = std::make_shared<UsedSkillLink>(worker_->executor);
     auto open = worker_->connection.open(skill, link);
     if (!open) {
         return fail(std::move(open.error()));
@@ -84,17 +84,17 @@ Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::st
                       std::move(origin)};
 }
 
-std::unique_ptr<composition::Child> RemoteServer::child(PendingUse use) {
-    auto child = std::make_unique<RemoteChild>(worker_->connection, use.link, std::move(use.name),
+std::unique_ptr<composition::UsedSkill> RemoteServer::used(PendingUse use) {
+    auto used = std::make_unique<RemoteUsedSkill>(worker_->connection, use.link, std::move(use.name),
                                                std::move(use.origin));
-    child->adopt(use.skill, use.now);
-    // What happened since it was opened has reached no child.
+    used->adopt(use.skill, use.now);
+    // What happened since it was opened has reached no used skill.
     worker_->connection.run([skill = std::move(use.skill), link = std::move(use.link)] {
         if (const auto now = skill->skill.now()) {
-            link->post([now = *now](RemoteChild& other) { other.refresh(now); });
+            link->post([now = *now](RemoteUsedSkill& other) { other.refresh(now); });
         }
     });
-    return child;
+    return used;
 }
 
 }  // namespace metier::client

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "synchronized/synchronized_body.hpp"
+#include "synchronized/synchronized_work.hpp"
 #include "synchronized/synchronized_fields.hpp"
 
 namespace metier::composition {
@@ -57,14 +57,14 @@ Result<void> checkReachable(const Arm& arm) {
 }  // namespace
 
 /// A Reset that nobody waits for: what it leads to shows at the next Start.
-class SynchronizedMoveSkill::Unheard final : public composition::ChildListener {
+class SynchronizedMoveSkill::Unheard final : public composition::UsedSkillListener {
 public:
     void onReset(const Result<void>& /*outcome*/) override {}
     void onSuspended() override {}
     void onResumed() override {}
     void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
-    void onEnd(composition::ChildEnd /*end*/) override {}
+    void onEnd(composition::UsedSkillEnd /*end*/) override {}
 };
 
 SynchronizedMoveSkill::SynchronizedMoveSkill(std::vector<Arm> arms, Options options)
@@ -85,11 +85,11 @@ Result<Arm*> SynchronizedMoveSkill::find(const std::string& name) {
     return &*found;
 }
 
-Result<std::unique_ptr<skill::Body>> SynchronizedMoveSkill::plan(const Parameters& parameters) {
+Result<std::unique_ptr<skill::ExecutionWork>> SynchronizedMoveSkill::plan(const Parameters& parameters) {
     if (auto counted = checkCounts(parameters); !counted) {
         return fail(std::move(counted.error()));
     }
-    SynchronizedBody::Setup setup{options_, {}, parameters.duration};
+    SynchronizedWork::Setup setup{options_, {}, parameters.duration};
     std::set<std::string> taken;
     for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
         const auto arm = find(parameters.arms[i]);
@@ -107,7 +107,7 @@ Result<std::unique_ptr<skill::Body>> SynchronizedMoveSkill::plan(const Parameter
             {**arm, parameters.target_poses[i],
              parameters.tool_frames.empty() ? std::string() : parameters.tool_frames[i]});
     }
-    return std::make_unique<SynchronizedBody>(std::move(setup));
+    return std::make_unique<SynchronizedWork>(std::move(setup));
 }
 
 Result<void> SynchronizedMoveSkill::reset() {

@@ -122,7 +122,7 @@ private:
         now_ += std::chrono::milliseconds(10);
         static_cast<void>(session_.tick(now_, robot_));
         core_.dispatch();
-        session_.gripperDesk().dispatch();
+        session_.gripperSlot().dispatch();
         for (const double position : core_.state().commanded_position) {
             if (!std::isfinite(position)) {
                 std::abort();

@@ -62,7 +62,7 @@ EdoConnection::EdoConnection(EdoOptions options)
       session_(options_, core_),
       notifier_([this] {
           core_.dispatch();
-          session_.gripperDesk().dispatch();
+          session_.gripperSlot().dispatch();
       }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -73,7 +73,7 @@ EdoConnection::~EdoConnection() {
 
 Result<void> EdoConnection::attach(std::shared_ptr<device::SetPointSource> source) {
     const std::lock_guard lock(turn_);
-    if (session_.gripperDesk().busy()) {
+    if (session_.gripperSlot().busy()) {
         return fail(Errc::resource_unavailable, options_.name + ": the gripper moves");
     }
     return core_.attach(std::move(source));
@@ -93,7 +93,7 @@ Result<void> EdoConnection::moveJaws(GripperTask::Kind kind, const device::Gripp
     if (core_.active() != nullptr) {
         return fail(Errc::resource_unavailable, options_.name + " gripper: the arm moves");
     }
-    return session_.gripperDesk().ask(*task, std::move(done));
+    return session_.gripperSlot().ask(*task, std::move(done));
 }
 
 device::GripperState EdoConnection::gripperState() const noexcept {
@@ -110,7 +110,7 @@ Result<void> EdoConnection::resetFault() {
     if (safety.state == SafetyState::disconnected) {
         return fail(Errc::connection_lost, safety.text);
     }
-    const auto outcome = session_.resetDesk().ask();
+    const auto outcome = session_.resetSlot().ask();
     if (!outcome) {
         return fail(Errc::timeout, fmt::format("{}: the reset goes on, ask again ({})",
                                                options_.name, core_.safety().text));
@@ -173,7 +173,7 @@ void EdoConnection::close(WebSocketLink& link, LinkWire& wire) {
 }
 
 void EdoConnection::tell() noexcept {
-    if (core_.toTell() || session_.gripperDesk().toTell()) {
+    if (core_.toTell() || session_.gripperSlot().toTell()) {
         notifier_.signal();
     }
 }

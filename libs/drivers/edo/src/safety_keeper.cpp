@@ -88,8 +88,8 @@ void SafetyKeeper::tell() {
     if (!now.text.empty()) {
         now.text = options_.name + ": " + now.text;
     }
-    if (now.state != told_.state || now.text != told_.text) {
-        told_ = now;
+    if (now.state != reported_.state || now.text != reported_.text) {
+        reported_ = now;
         core_.setSafety(std::move(now));
     }
 }

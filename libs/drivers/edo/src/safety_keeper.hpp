@@ -60,7 +60,7 @@ private:
     SteadyTime joints_heard_{};
     std::string fault_;
     Limit limit_ = Limit::kept;
-    device::Safety told_{device::SafetyState::disconnected, {}, false};
+    device::Safety reported_{device::SafetyState::disconnected, {}, false};
 };
 
 }  // namespace metier::edo_driver

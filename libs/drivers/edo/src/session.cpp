@@ -49,7 +49,7 @@ Session::Session(const EdoOptions& options, device::ArmCore& core)
       safety_(options, core),
       arm_(options, core, safety_),
       gripper_(options),
-      recovery_(options_.layout, options.reset) {}
+      start_up_(options_.layout, options.reset) {}
 
 void Session::linkUp(SteadyTime now, Wire& wire) {
     phase_ = Phase::asking;
@@ -186,7 +186,7 @@ Result<void> Session::tick(SteadyTime now, Wire& wire) {
     arm_.tick(now);
     tickReset(now, wire);
     tickGripper(now, wire);
-    const bool elsewhere = closing_ || reset_ != Reset::none || gripper_desk_.hasTask();
+    const bool elsewhere = closing_ || reset_ != Reset::none || gripper_slot_.hasTask();
     arm_.setWanted(elsewhere ? ArmDrive::Wanted::elsewhere : ArmDrive::Wanted::for_sources);
     return {};
 }
@@ -205,7 +205,7 @@ void Session::startReset() {
 }
 
 void Session::tickReset(SteadyTime now, Wire& wire) {
-    if (reset_desk_.taken()) {
+    if (reset_slot_.taken()) {
         startReset();
     }
     if (reset_ == Reset::none) {
@@ -223,17 +223,17 @@ void Session::tickReset(SteadyTime now, Wire& wire) {
     }
     if (reset_ == Reset::giving_back && arm_.free()) {
         reset_ = Reset::recovering;
-        recovery_.start(now);
+        start_up_.start(now);
     }
     if (reset_ == Reset::recovering && safety_.machine()) {
-        if (auto outcome = recovery_.tick(*safety_.machine(), now, wire)) {
+        if (auto outcome = start_up_.tick(*safety_.machine(), now, wire)) {
             endReset(std::move(*outcome));
         }
     }
 }
 
 void Session::endReset(Result<void> outcome) {
-    recovery_.cancel();
+    start_up_.cancel();
     reset_ = Reset::none;
     if (outcome) {
         safety_.clearFault();
@@ -243,13 +243,13 @@ void Session::endReset(Result<void> outcome) {
     } else if (outcome.error().code == Errc::device_fault) {
         outcome = fail(Errc::device_fault, options_.name + ": " + outcome.error().message);
     }
-    reset_desk_.answer(std::move(outcome));
+    reset_slot_.answer(std::move(outcome));
 }
 
 // ---- gripper -----------------------------------------------------------------------------------
 
 void Session::tickGripper(SteadyTime now, Wire& wire) {
-    if (!gripper_desk_.busy()) {
+    if (!gripper_slot_.busy()) {
         return;
     }
     if (core_.safetyState() != SafetyState::normal) {
@@ -257,12 +257,12 @@ void Session::tickGripper(SteadyTime now, Wire& wire) {
                                                                      : Errc::device_fault);
         return;
     }
-    const bool stop = gripper_desk_.stopWanted();
-    if (gripper_desk_.hasTask()) {
+    const bool stop = gripper_slot_.stopWanted();
+    if (gripper_slot_.hasTask()) {
         if (stop) {
-            gripper_desk_.finish(fail(Errc::cancelled, options_.name + " gripper: stopped"));
+            gripper_slot_.finish(fail(Errc::cancelled, options_.name + " gripper: stopped"));
         } else if (arm_.free()) {
-            gripper_.start(gripper_desk_.take(), arm_.holding(), now, wire);
+            gripper_.start(gripper_slot_.take(), arm_.holding(), now, wire);
         }
         return;
     }
@@ -271,13 +271,13 @@ void Session::tickGripper(SteadyTime now, Wire& wire) {
     }
     if (auto outcome = gripper_.tick(*safety_.machine(), now, wire)) {
         publishGripper(now);  // first: whoever hears of the end sees the jaws at rest
-        gripper_desk_.finish(std::move(*outcome));
+        gripper_slot_.finish(std::move(*outcome));
     }
 }
 
 void Session::loseGripper(Errc code) {
     gripper_.abandon();
-    gripper_desk_.finish(fail(code, core_.safety().text));
+    gripper_slot_.finish(fail(code, core_.safety().text));
 }
 
 void Session::publishGripper(SteadyTime now) noexcept {

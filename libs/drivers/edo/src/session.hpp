@@ -5,16 +5,16 @@
 #include <string_view>
 
 #include "arm_drive.hpp"
-#include "gripper_desk.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "gripper_slot.hpp"
+#include "metier/device/reset_slot.hpp"
 #include "metier/device/shared_value.hpp"
-#include "recovery.hpp"
+#include "start_up.hpp"
 
 namespace metier::edo_driver {
 
 /// The dialogue with one robot, without socket and thread: texts and time go in, texts come out.
 ///
-/// Threading: the cycle thread, but for the desks and gripperState().
+/// Threading: the cycle thread, but for the slots and gripperState().
 class Session {
 public:
     /// Both must outlive this.
@@ -36,8 +36,8 @@ public:
     /// Whether control is with the robot.
     bool closed() const noexcept { return arm_.free(); }
 
-    device::ResetDesk& resetDesk() noexcept { return reset_desk_; }
-    GripperDesk& gripperDesk() noexcept { return gripper_desk_; }
+    device::ResetSlot& resetSlot() noexcept { return reset_slot_; }
+    GripperSlot& gripperSlot() noexcept { return gripper_slot_; }
     device::GripperState gripperState() const noexcept { return gripper_state_.read(); }
 
 private:
@@ -66,9 +66,9 @@ private:
     SafetyKeeper safety_;
     ArmDrive arm_;
     GripperDrive gripper_;
-    Recovery recovery_;
-    device::ResetDesk reset_desk_;
-    GripperDesk gripper_desk_;
+    StartUp start_up_;
+    device::ResetSlot reset_slot_;
+    GripperSlot gripper_slot_;
     device::SharedValue<device::GripperState> gripper_state_;
 
     Phase phase_ = Phase::down;

@@ -75,7 +75,7 @@ public:
         ticked = session.tick(now, *this);
         deliver();
         core.dispatch();
-        session.gripperDesk().dispatch();
+        session.gripperSlot().dispatch();
     }
     void run(int milliseconds) {
         for (int i = 0; i < milliseconds / 10; ++i) {
@@ -92,13 +92,13 @@ public:
     }
     /// Asks for a reset, runs cycles until it has ended, and asks how it ended.
     Result<void> reset() {
-        auto& desk = session.resetDesk();
-        auto answer = desk.ask();
-        runUntil([&] { return !desk.underWay(); });
+        auto& slot = session.resetSlot();
+        auto answer = slot.ask();
+        runUntil([&] { return !slot.underWay(); });
         if (!answer && safety() == device::SafetyState::normal) {
             return {};
         }
-        answer = answer ? answer : desk.ask();
+        answer = answer ? answer : slot.ask();
         return answer ? *answer : fail(Errc::timeout, "the reset has not ended");
     }
 

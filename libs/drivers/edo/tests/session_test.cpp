@@ -398,12 +398,12 @@ TEST(Session, WhoAsksAgainForAResetHearsItsEnd) {
     bench.robot.brake(1U << 6U);
     bench.robot.faults.drop_reset = true;
     bench.run(200);
-    auto& desk = bench.session.resetDesk();
-    EXPECT_FALSE(desk.ask());
-    EXPECT_FALSE(desk.ask());
+    auto& slot = bench.session.resetSlot();
+    EXPECT_FALSE(slot.ask());
+    EXPECT_FALSE(slot.ask());
     bench.run(3000);
-    EXPECT_THAT(desk.ask().value().error().message, HasSubstr("dropped the reset"));
-    EXPECT_FALSE(desk.ask()) << "a new one";
+    EXPECT_THAT(slot.ask().value().error().message, HasSubstr("dropped the reset"));
+    EXPECT_FALSE(slot.ask()) << "a new one";
     EXPECT_EQ(bench.robot.count("/bridge_jnt_reset\",\"msg"), 1);
     bench.cycle();
     EXPECT_EQ(bench.robot.count("/bridge_jnt_reset\",\"msg"), 2);

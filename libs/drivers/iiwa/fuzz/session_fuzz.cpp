@@ -13,7 +13,7 @@
 #include "input.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "pilot.hpp"
+#include "motion_commander.hpp"
 
 namespace {
 
@@ -29,9 +29,9 @@ const motion::RobotModel& iiwa7() {
     return model;
 }
 
-class Turn final : public device::SetPointSource {
+class TurningSource final : public device::SetPointSource {
 public:
-    explicit Turn(double step) : step_(step) {}
+    explicit TurningSource(double step) : step_(step) {}
     Next next(const device::ArmState& /*state*/, device::JointArray& set_point) noexcept override {
         set_point[0] += step_;
         return Next::set_point;
@@ -52,7 +52,7 @@ public:
         state_.ready = true;
         state_.executed = true;
         place();
-        pilot_.connected(state_, now_);
+        commander_.connected(state_, now_);
     }
 
     void step(Input& input) {
@@ -60,19 +60,19 @@ public:
         if (choice % 8 == 0) {
             ask(input);
         }
-        const auto command = pilot_.command();
+        const auto command = commander_.command();
         static_cast<void>(encode(command, Precision::float32));
         follow(command, input, choice);
         now_ += std::chrono::milliseconds(choice % 16 == 1 ? input.next() : 10);
-        pilot_.take(command, state_, now_);
-        pilot_.dispatch();
+        commander_.take(command, state_, now_);
+        commander_.dispatch();
         check(command);
     }
 
     void end() {
-        pilot_.lost("over");
-        pilot_.dispatch();
-        if (asked_ != told_) {
+        commander_.lost("over");
+        commander_.dispatch();
+        if (asked_ != reported_) {
             std::abort();
         }
     }
@@ -80,13 +80,13 @@ public:
 private:
     void ask(Input& input) {
         if (input.next() % 2 == 0) {
-            static_cast<void>(pilot_.attach(std::make_shared<Turn>(input.number(0.01))));
+            static_cast<void>(commander_.attach(std::make_shared<TurningSource>(input.number(0.01))));
             return;
         }
-        device::PlannedMotion motion;
+        device::ControllerPlannedMotion motion;
         motion.target_joints = state_.position;
         motion.target_joints[input.next() % kAxes] = input.number(1.0);
-        if (pilot_.move(motion, [this](const auto&) { ++told_; })) {
+        if (commander_.move(motion, [this](const auto&) { ++reported_; })) {
             ++asked_;
         }
     }
@@ -122,7 +122,7 @@ private:
                 std::abort();
             }
         }
-        for (const double position : pilot_.core().state().commanded_position) {
+        for (const double position : commander_.core().state().commanded_position) {
             if (!std::isfinite(position)) {
                 std::abort();
             }
@@ -132,8 +132,8 @@ private:
     SteadyTime now_{std::chrono::seconds(1000)};
     CabinetState state_;
     int asked_ = 0;
-    int told_ = 0;
-    Pilot pilot_{
+    int reported_ = 0;
+    MotionCommander commander_{
         {"iiwa", std::vector<std::string>(kAxes, "A"), std::chrono::milliseconds(10)}, iiwa7(), {}};
 };
 

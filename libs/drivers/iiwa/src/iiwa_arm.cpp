@@ -48,10 +48,10 @@ Result<void> check(const IiwaOptions& options, const motion::RobotModel& model) 
 class IiwaArm::Machine {
 public:
     Machine(const IiwaOptions& options, const motion::RobotModel& model, Session::Links links)
-        : pilot_(infoOf(options, model), model, {options.force_tolerance, options.tool}),
-          force_(pilot_.core(), longestSilence(options)),
-          notifier_([this] { pilot_.dispatch(); }),
-          session_(std::move(links), {pilot_, force_, [this] { notifier_.signal(); }},
+        : commander_(infoOf(options, model), model, {options.force_tolerance, options.tool}),
+          force_(commander_.core(), longestSilence(options)),
+          notifier_([this] { commander_.dispatch(); }),
+          session_(std::move(links), {commander_, force_, [this] { notifier_.signal(); }},
                    {options.precision, options.cycle, options.answer_timeout}),
           thread_([this](const std::stop_token& stop) { session_.run(stop); }) {}
 
@@ -59,18 +59,18 @@ public:
         thread_.request_stop();
         session_.shutdown();
         thread_.join();
-        pilot_.lost(pilot_.core().info().name + ": the driver was shut down");
+        commander_.lost(commander_.core().info().name + ": the driver was shut down");
         notifier_.signal();
     }
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;
 
-    Pilot& pilot() noexcept { return pilot_; }
+    MotionCommander& commander() noexcept { return commander_; }
     FlangeForce& force() noexcept { return force_; }
     std::uint16_t port() const { return session_.port(); }
 
 private:
-    Pilot pilot_;
+    MotionCommander commander_;
     FlangeForce force_;
     device::Notifier notifier_;
     Session session_;
@@ -107,44 +107,44 @@ device::ForceTorqueSensor& IiwaArm::flangeForce() noexcept {
 }
 
 const device::ArmInfo& IiwaArm::info() const noexcept {
-    return machine_->pilot().core().info();
+    return machine_->commander().core().info();
 }
 
 device::ArmState IiwaArm::state() const noexcept {
-    return machine_->pilot().core().state();
+    return machine_->commander().core().state();
 }
 
 const TimeHistogram* IiwaArm::cycleJitter() const noexcept {
-    return machine_->pilot().core().cycleJitter();
+    return machine_->commander().core().cycleJitter();
 }
 
 device::Safety IiwaArm::safety() const {
-    return machine_->pilot().core().safety();
+    return machine_->commander().core().safety();
 }
 
 Result<void> IiwaArm::attach(std::shared_ptr<device::SetPointSource> source) {
-    return machine_->pilot().attach(std::move(source));
+    return machine_->commander().attach(std::move(source));
 }
 
 void IiwaArm::stop() noexcept {
-    machine_->pilot().core().stop();
-    machine_->pilot().stopMotion();
+    machine_->commander().core().stop();
+    machine_->commander().stopMotion();
 }
 
 Result<void> IiwaArm::resetFault() {
-    return machine_->pilot().resetFault();
+    return machine_->commander().resetFault();
 }
 
 device::Registration IiwaArm::onSafetyChange(SafetyCallback callback) {
-    return machine_->pilot().core().onSafetyChange(std::move(callback));
+    return machine_->commander().core().onSafetyChange(std::move(callback));
 }
 
-Result<void> IiwaArm::move(const device::PlannedMotion& motion, Done done) {
-    return machine_->pilot().move(motion, std::move(done));
+Result<void> IiwaArm::move(const device::ControllerPlannedMotion& motion, Done done) {
+    return machine_->commander().move(motion, std::move(done));
 }
 
 void IiwaArm::stopMotion() noexcept {
-    machine_->pilot().stopMotion();
+    machine_->commander().stopMotion();
 }
 
 }  // namespace metier::iiwa_driver

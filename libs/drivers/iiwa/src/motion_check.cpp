@@ -76,8 +76,8 @@ Result<void> checkFlange(const motion::RobotModel& model, const Frame& target) {
 
 }  // namespace
 
-Result<void> checkMotion(const motion::RobotModel& model, const device::PlannedMotion& motion) {
-    if (motion.path == device::PlannedMotion::Path::line && !motion.target_flange) {
+Result<void> checkMotion(const motion::RobotModel& model, const device::ControllerPlannedMotion& motion) {
+    if (motion.path == device::ControllerPlannedMotion::Path::line && !motion.target_flange) {
         return fail(Errc::invalid_argument, "a line needs a pose as its target");
     }
     const auto target = motion.target_flange ? checkFlange(model, *motion.target_flange)

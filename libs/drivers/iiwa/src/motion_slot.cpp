@@ -21,7 +21,7 @@ bool MotionSlot::occupied() const {
     return job_ != nullptr;
 }
 
-bool MotionSlot::post(const device::PlannedMotion& motion, Done done) {
+bool MotionSlot::post(const device::ControllerPlannedMotion& motion, Done done) {
     const std::lock_guard lock(mutex_);
     if (job_) {
         return false;

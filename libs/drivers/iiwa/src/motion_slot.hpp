@@ -6,7 +6,7 @@
 #include <string>
 
 #include "metier/device/motion_planner.hpp"
-#include "planned_run.hpp"
+#include "controller_planned_run.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -18,12 +18,12 @@ public:
     // ---- any thread ----
     bool occupied() const;
     /// False if it is occupied.
-    bool post(const device::PlannedMotion& motion, Done done);
+    bool post(const device::ControllerPlannedMotion& motion, Done done);
     void stop() noexcept { stop_target_.store(posted_.load()); }
 
     // ---- the cycle thread; neither lock nor allocate ----
     /// The motion that is to be done; nullptr if none is.
-    const device::PlannedMotion* posted() const noexcept { return posted_.load(); }
+    const device::ControllerPlannedMotion* posted() const noexcept { return posted_.load(); }
     /// Whether the posted motion is to be stopped. True until its end().
     bool stopRequested() noexcept;
     void end(const RunEnd& end) noexcept;
@@ -37,12 +37,12 @@ public:
 
 private:
     struct Job {
-        device::PlannedMotion motion;
+        device::ControllerPlannedMotion motion;
         Done done;
     };
 
-    std::atomic<const device::PlannedMotion*> posted_{nullptr};
-    std::atomic<const device::PlannedMotion*> stop_target_{nullptr};
+    std::atomic<const device::ControllerPlannedMotion*> posted_{nullptr};
+    std::atomic<const device::ControllerPlannedMotion*> stop_target_{nullptr};
     std::atomic<bool> ended_{false};
     RunEnd end_;             // of the cycle thread until ended_
     bool stopping_ = false;  // of the cycle thread

@@ -1,6 +1,6 @@
 #include "readiness.hpp"
 
-#include "planned_run.hpp"
+#include "controller_planned_run.hpp"
 
 namespace metier::iiwa_driver {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "commands.hpp"
-#include "planned_run.hpp"
+#include "controller_planned_run.hpp"
 
 namespace metier::iiwa_driver {
 

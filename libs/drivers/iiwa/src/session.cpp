@@ -47,31 +47,31 @@ void Session::serve(link::TcpLink& link, const std::stop_token& stop) {
         return;
     }
     const auto* hint = answered_ ? "" : " before its first state: does it use another precision?";
-    clients_.pilot.lost(fmt::format("{}: cabinet {}{}", clients_.pilot.core().info().name,
+    clients_.commander.lost(fmt::format("{}: cabinet {}{}", clients_.commander.core().info().name,
                                     served.error().message, hint));
     clients_.signal();
     pause(stop);
 }
 
 Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
-    auto& pilot = clients_.pilot;
+    auto& commander = clients_.commander;
     METIER_ASSIGN(auto first, exchange(link, askState(), kFirstTimeout));
     answered_ = true;
-    pilot.connected(first, steady_clock::now());
+    commander.connected(first, steady_clock::now());
     auto scheduled = steady_clock::now();
     while (!stop.stop_requested()) {
         METIER_TRY(keepGuard(link));
-        const auto command = pilot.command();
+        const auto command = commander.command();
         METIER_ASSIGN(
             const auto answer,
-            exchange(link, command, pilot.settlingIn() ? kFirstTimeout : options_.answer_timeout));
+            exchange(link, command, commander.settlingIn() ? kFirstTimeout : options_.answer_timeout));
         const auto now = steady_clock::now();
         clients_.force.take(answer, now);
-        pilot.take(command, answer, now);
-        if (pilot.toTell()) {
+        commander.take(command, answer, now);
+        if (commander.toTell()) {
             clients_.signal();
         }
-        if (pilot.hurried()) {
+        if (commander.hurried()) {
             scheduled = now;
         } else {
             awaitCycle(scheduled);
@@ -84,7 +84,7 @@ Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
 /// has to hang up if none comes. What it is told first may take longer than that.
 Result<void> Session::keepGuard(link::TcpLink& link) {
     links_.guard.alive();
-    if (guarded_ || clients_.pilot.settlingIn()) {
+    if (guarded_ || clients_.commander.settlingIn()) {
         return {};
     }
     guarded_ = true;
@@ -118,7 +118,7 @@ void Session::awaitCycle(SteadyTime& scheduled) {
     const auto now = steady_clock::now();
     if (now > scheduled) {
         const auto late = (now - scheduled) / options_.cycle;
-        clients_.pilot.missedCycles(static_cast<std::uint64_t>(late));
+        clients_.commander.missedCycles(static_cast<std::uint64_t>(late));
         scheduled += late * options_.cycle;
         return;
     }

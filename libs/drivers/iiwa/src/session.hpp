@@ -11,7 +11,7 @@
 #include "metier/iiwa_driver/wire.hpp"
 #include "metier/link/link_guard.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "pilot.hpp"
+#include "motion_commander.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -29,7 +29,7 @@ class Session {
 public:
     /// What the session serves; all must outlive it.
     struct Clients {
-        Pilot& pilot;
+        MotionCommander& commander;
         FlangeForce& force;
         std::function<void()> signal;  ///< there is something to tell; neither locks nor allocates
     };

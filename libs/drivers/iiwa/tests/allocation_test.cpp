@@ -2,7 +2,7 @@
 
 #include "metier/base/testing/allocation_count.hpp"
 #include "metier/motion/frame.hpp"
-#include "pilot.hpp"
+#include "motion_commander.hpp"
 #include "scripted_cabinet.hpp"
 
 namespace metier::iiwa_driver {
@@ -35,7 +35,7 @@ private:
     CabinetState state_;
 };
 
-class Turn final : public device::SetPointSource {
+class TurningSource final : public device::SetPointSource {
 public:
     Next next(const device::ArmState& /*state*/, device::JointArray& set_point) noexcept override {
         set_point[0] += 1e-3;
@@ -44,12 +44,12 @@ public:
     void ended(device::EndCause /*cause*/, const device::Safety& /*safety*/) override {}
 };
 
-class CycleOfThePilot : public ::testing::Test {
+class CycleOfTheMotionCommander : public ::testing::Test {
 protected:
-    CycleOfThePilot() {
-        pilot.connected(echo.answer({}, model), now);
+    CycleOfTheMotionCommander() {
+        commander.connected(echo.answer({}, model), now);
         cycles(10);
-        EXPECT_EQ(pilot.core().safetyState(), device::SafetyState::normal);
+        EXPECT_EQ(commander.core().safetyState(), device::SafetyState::normal);
     }
 
     /// \return the allocations of so many cycles
@@ -57,41 +57,41 @@ protected:
         const auto before = allocationCount();
         for (int i = 0; i < count; ++i) {
             now += 10ms;
-            const auto command = pilot.command();
+            const auto command = commander.command();
             const auto bytes = encode(command, Precision::float32);
             static_cast<void>(bytes);
-            pilot.take(command, echo.answer(command, model), now);
+            commander.take(command, echo.answer(command, model), now);
         }
         return allocationCount() - before;
     }
 
     const motion::RobotModel model = iiwa7();
-    Pilot pilot{{"iiwa", std::vector<std::string>(kAxes, "A"), 10ms}, model, {}};
+    MotionCommander commander{{"iiwa", std::vector<std::string>(kAxes, "A"), 10ms}, model, {}};
     Echo echo;
     SteadyTime now{};
 };
 
-TEST_F(CycleOfThePilot, DoesNotAllocateWhileItStreams) {
-    ASSERT_TRUE(pilot.attach(std::make_shared<Turn>()));
+TEST_F(CycleOfTheMotionCommander, DoesNotAllocateWhileItStreams) {
+    ASSERT_TRUE(commander.attach(std::make_shared<TurningSource>()));
     EXPECT_EQ(cycles(1000), 0U);
-    EXPECT_NEAR(pilot.core().state().position[0], 1.0, 0.1);
-    pilot.core().stop();
+    EXPECT_NEAR(commander.core().state().position[0], 1.0, 0.1);
+    commander.core().stop();
     EXPECT_EQ(cycles(20), 0U);
-    EXPECT_TRUE(pilot.toTell());
+    EXPECT_TRUE(commander.toTell());
 }
 
-TEST_F(CycleOfThePilot, DoesNotAllocateWhileItIdles) {
+TEST_F(CycleOfTheMotionCommander, DoesNotAllocateWhileItIdles) {
     EXPECT_EQ(cycles(1000), 0U);
 }
 
-TEST_F(CycleOfThePilot, DoesNotAllocateDuringAPlannedMotion) {
-    device::PlannedMotion motion;
+TEST_F(CycleOfTheMotionCommander, DoesNotAllocateDuringAPlannedMotion) {
+    device::ControllerPlannedMotion motion;
     motion.target_joints = device::JointArray(std::span(ScriptedCabinet::kHome));
     motion.target_joints[1] = 0.9;
     bool done = false;
-    ASSERT_TRUE(pilot.move(motion, [&](const auto& outcome) { done = outcome.has_value(); }));
+    ASSERT_TRUE(commander.move(motion, [&](const auto& outcome) { done = outcome.has_value(); }));
     EXPECT_EQ(cycles(100), 0U);
-    pilot.dispatch();
+    commander.dispatch();
     EXPECT_TRUE(done);
 }
 

@@ -120,8 +120,8 @@ public:
     }
     bool ready() { return becomes(device::SafetyState::normal); }
 
-    static device::PlannedMotion toJoints(double first_axis) {
-        device::PlannedMotion motion;
+    static device::ControllerPlannedMotion toJoints(double first_axis) {
+        device::ControllerPlannedMotion motion;
         motion.target_joints = device::JointArray(std::span(ScriptedCabinet::kHome));
         motion.target_joints[0] = first_axis;
         return motion;

@@ -16,7 +16,7 @@
 namespace metier::iiwa_driver {
 namespace {
 
-using device::PlannedMotion;
+using device::ControllerPlannedMotion;
 using device::SafetyState;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -160,7 +160,7 @@ protected:
     }
 
     const motion::RobotModel model = iiwa7();
-    PlannedMotion motion = ArmBench::toJoints(0.1);
+    ControllerPlannedMotion motion = ArmBench::toJoints(0.1);
 };
 
 TEST_F(MotionCheckTest, SharesAreOverZeroUpToOne) {

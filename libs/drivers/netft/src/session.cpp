@@ -121,8 +121,8 @@ Result<std::string> NetftSensor::Session::readPage() const {
     return page;
 }
 
-void NetftSensor::Session::setSilence(std::optional<double> told_rate) noexcept {
-    const double rate = options_.rate ? *options_.rate : told_rate.value_or(kUsualRate);
+void NetftSensor::Session::setSilence(std::optional<double> reported_rate) noexcept {
+    const double rate = options_.rate ? *options_.rate : reported_rate.value_or(kUsualRate);
     silence_.store(options_.silence ? *options_.silence : silenceAt(rate));
 }
 

@@ -46,7 +46,7 @@ private:
     /// From the settings or the sensor's page, which also tells the rate of the records.
     Result<Calibration> calibration();
     Result<std::string> readPage() const;
-    void setSilence(std::optional<double> told_rate) noexcept;
+    void setSilence(std::optional<double> reported_rate) noexcept;
     /// Asks for records until the first comes.
     Result<void> begin(const std::stop_token& stop, link::UdpLink& link, RecordStream& stream);
     Result<void> follow(const std::stop_token& stop, link::UdpLink& link, RecordStream& stream);

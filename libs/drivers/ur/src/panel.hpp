@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "metier/base/queue.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "metier/device/reset_slot.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "recovery.hpp"
 #include "servoj_script.hpp"
@@ -31,7 +31,7 @@ public:
     /// \param newest  what the controller told last
     struct Parts {
         PanelJobs& jobs;
-        device::ResetDesk& resets;
+        device::ResetSlot& resets;
         SafetyReporter& reporter;
         std::function<void(std::int32_t token)> refused;
         std::function<Observation()> newest;

@@ -7,7 +7,7 @@
 
 #include "metier/device/arm_core.hpp"
 #include "metier/device/notifier.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "metier/device/reset_slot.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "panel.hpp"
@@ -80,7 +80,7 @@ private:
     ControllerDescription description_;  // of the primary monitor's thread
     ControllerDescription compared_;     // of the primary monitor's thread
 
-    device::ResetDesk resets_;
+    device::ResetSlot resets_;
 
     // Ended in this order from below: who signals before who is signalled.
     device::Notifier notifier_;

@@ -247,15 +247,15 @@ protected:
     }
 
     SteadyTime now_{std::chrono::hours(1)};
-    int told_ = 0;
+    int reported_ = 0;
     device::ArmCore core_{{"arm", {"1", "2", "3", "4", "5", "6"}, 8ms}};
-    SafetyReporter reporter_{core_, [this] { ++told_; }};
+    SafetyReporter reporter_{core_, [this] { ++reported_; }};
 };
 
 TEST_F(ReporterTest, TellsOnlyChanges) {
     observe(SafetyMode::normal);
     observe(SafetyMode::normal);
-    EXPECT_EQ(told_, 1);
+    EXPECT_EQ(reported_, 1);
     EXPECT_EQ(core_.safety().state, SafetyState::normal);
     EXPECT_EQ(core_.safety().text, "");
 }
@@ -302,7 +302,7 @@ TEST_F(ReporterTest, AddsASafetyMessageWithACodeButNoText) {
     observe(SafetyMode::normal);
     reporter_.report({Kind::safety, Level::violation, 4, 7, "protective stop"}, now_);
     reporter_.report({Kind::text, Level::fault, 0, 0, "hello"}, now_);
-    EXPECT_EQ(told_, 1) << "nothing changed";
+    EXPECT_EQ(reported_, 1) << "nothing changed";
     observe(SafetyMode::protective_stop);
     EXPECT_THAT(core_.safety().text, HasSubstr("(the controller says: C4A7: protective stop)"));
     reporter_.disconnected("gone", now_);
@@ -326,11 +326,11 @@ TEST_F(ReporterTest, RemembersWhenTheStateChanged) {
 TEST_F(ReporterTest, TellsALatchAndANoteOnce) {
     observe(SafetyMode::normal);
     reporter_.latch("first", now_);
-    const int told = told_;
+    const int told = reported_;
     reporter_.latch("second", now_);
     reporter_.note("calibration");
     reporter_.note("calibration");
-    EXPECT_EQ(told_, told + 1);
+    EXPECT_EQ(reported_, told + 1);
 }
 
 TEST_F(ReporterTest, DoesNotAddWhatWasSaidLongBeforeOrDoesNotMatter) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "arm_fixture.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "metier/device/reset_slot.hpp"
 
 namespace metier::ur_driver {
 namespace {

@@ -38,7 +38,7 @@ Wsg50Gripper::Session::Session(Wsg50Options options)
       safety_({SafetyState::disconnected, named("not connected yet"), false}),
       notifier_([this] {
           safety_.dispatch();
-          desk_.dispatch();
+          slot_.dispatch();
       }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -62,7 +62,7 @@ Result<void> Wsg50Gripper::Session::ask(MotionKind kind, const device::GripperRe
     }
     const auto motion = motionFor(kind, request, options_, known_.read());
     const auto asked =
-        motion.and_then([&](const Motion& checked) { return desk_.ask(checked, std::move(done)); });
+        motion.and_then([&](const Motion& checked) { return slot_.ask(checked, std::move(done)); });
     return asked ? asked : fail(asked.error().code, named(asked.error().message));
 }
 
@@ -150,12 +150,12 @@ Result<void> Wsg50Gripper::Session::atPeer(const Error& error) const {
 }
 
 void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
-    const bool stop = desk_.takeStop();
-    const auto motion = desk_.takeMotion();
+    const bool stop = slot_.takeStop();
+    const auto motion = slot_.takeMotion();
     if (motion && stop) {
         onMotionEnd(fail(Errc::cancelled, "stopped before it began"));
     } else if (motion && !conversation.ready()) {
-        desk_.endMotion(fail(Errc::device_fault, safety_.safety().text));
+        slot_.endMotion(fail(Errc::device_fault, safety_.safety().text));
         notifier_.signal();
     } else if (motion) {
         conversation.begin(*motion, now());
@@ -169,7 +169,7 @@ void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
 
 /// So that the gripper does not take the end of the connection for a failure.
 void Wsg50Gripper::Session::takeLeave() {
-    if (desk_.occupied()) {
+    if (slot_.occupied()) {
         send(Command(CommandId::stop));
     }
     send(Command(CommandId::disconnect));
@@ -178,9 +178,9 @@ void Wsg50Gripper::Session::takeLeave() {
 /// The connection is gone, and with it whatever was under way.
 void Wsg50Gripper::Session::lost(const Error& why) {
     const auto text = named(why.message);
-    desk_.close({Errc::connection_lost, why.message});
+    slot_.close({Errc::connection_lost, why.message});
     setSafety({SafetyState::disconnected, text, false});
-    desk_.endMotion(fail(Errc::connection_lost, text));
+    slot_.endMotion(fail(Errc::connection_lost, text));
     resets_.answer(fail(Errc::connection_lost, text));
     notifier_.signal();
 }
@@ -219,17 +219,17 @@ void Wsg50Gripper::Session::onState(const device::GripperState& state) {
 
 void Wsg50Gripper::Session::onSafety(device::Safety safety) {
     if (safety.state == SafetyState::normal) {
-        desk_.open();
+        slot_.open();
         setSafety({});
     } else {
-        desk_.close({Errc::device_fault, safety.text});
+        slot_.close({Errc::device_fault, safety.text});
         setSafety({safety.state, named(safety.text), safety.limit_violated});
     }
     notifier_.signal();
 }
 
 void Wsg50Gripper::Session::onMotionEnd(Result<device::GripperOutcome> outcome) {
-    desk_.endMotion(outcome ? std::move(outcome)
+    slot_.endMotion(outcome ? std::move(outcome)
                             : fail(outcome.error().code, named(outcome.error().message)));
     notifier_.signal();
 }

@@ -4,11 +4,11 @@
 #include <thread>
 
 #include "metier/device/notifier.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "metier/device/reset_slot.hpp"
 #include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "order_desk.hpp"
+#include "order_slot.hpp"
 #include "requests.hpp"
 #include "wsg50_gripper.hpp"
 
@@ -27,7 +27,7 @@ public:
     device::GripperState state() const noexcept { return state_.read(); }
     device::Safety safety() const { return safety_.safety(); }
     Result<void> ask(MotionKind kind, const device::GripperRequest& request, Done done);
-    void stop() noexcept { desk_.askStop(); }
+    void stop() noexcept { slot_.askStop(); }
     Result<void> resetFault();
     device::Registration onSafetyChange(SafetyCallback callback) {
         return safety_.onChange(std::move(callback));
@@ -62,8 +62,8 @@ private:
     device::SharedValue<Known> known_;
     device::SharedValue<device::GripperState> state_;
     device::SafetyPublisher safety_;
-    OrderDesk desk_;
-    device::ResetDesk resets_;
+    OrderSlot slot_;
+    device::ResetSlot resets_;
 
     link::TcpLink* link_ = nullptr;  // during a connection
     Result<void> sent_;              // the first failure of this connection

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "fake_gripper.hpp"
-#include "metier/device/reset_desk.hpp"
+#include "metier/device/reset_slot.hpp"
 #include "wsg50_gripper.hpp"
 
 namespace metier::wsg50_driver::testing {

@@ -97,7 +97,7 @@ Client::~Client() {
 
 Answer<std::unique_ptr<Client>> Client::connect(const std::string& url, ClientOptions options) {
     METIER_TRY(checkOptions(url, options));
-    auto core = std::make_shared<ClientCore>(std::move(options), ClientPurpose::session);
+    auto core = std::make_shared<ClientCore>(std::move(options), ConnectionKind::session);
     METIER_TRY(core->connect(url));
     return std::unique_ptr<Client>(new Client(std::move(core)));
 }

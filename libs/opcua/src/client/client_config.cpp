@@ -62,7 +62,7 @@ void ClientComplaints::log(void* context, UA_LogLevel level, UA_LogCategory /*ca
     static_cast<ClientComplaints*>(context)->last_ = sanitise(text.data());
 }
 
-Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
+Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ConnectionKind kind,
                                          ClientPlugins plugins) {
     UA_ClientConfig config{};
     config.eventLoop = plugins.loop;
@@ -74,7 +74,7 @@ Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPur
     toNative(uri, config.clientDescription.applicationUri);
     toNative(options.application_name, config.clientDescription.applicationName.text);
     toNative(options.application_name, config.sessionName);
-    config.noSession = purpose == ClientPurpose::discovery;
+    config.noSession = kind == ConnectionKind::discovery;
     config.noNewSession = true;
     setTimes(options, config);
     if (options.user) {
@@ -89,7 +89,7 @@ Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPur
     }
     toNative(kNoSecurity, config.securityPolicyUri);
     config.securityMode = UA_MESSAGESECURITYMODE_NONE;
-    if (purpose == ClientPurpose::discovery) {
+    if (kind == ConnectionKind::discovery) {
         setDiscoveryEndpoint(plugins.url, config);
     }
     checkAllocated(UA_ClientConfig_setDefault(&config));

@@ -31,7 +31,7 @@ private:
 };
 
 /// What a connection is for.
-enum class ClientPurpose {
+enum class ConnectionKind {
     session,    ///< everything a Client offers
     discovery,  ///< services that need no session
 };
@@ -46,7 +46,7 @@ struct ClientPlugins {
 /// The stack's configuration for one client. Who calls owns it, until it is handed to
 /// UA_Client_newWithConfig().
 /// Errors: invalid_argument (the own certificate).
-Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ClientPurpose purpose,
+Result<UA_ClientConfig> makeClientConfig(const ClientOptions& options, ConnectionKind kind,
                                          ClientPlugins plugins);
 
 }  // namespace metier::opcua

@@ -69,12 +69,12 @@ ClientOptions withPresentIdentity(ClientOptions options) {
 
 }  // namespace
 
-ClientCore::ClientCore(ClientOptions options, ClientPurpose purpose)
+ClientCore::ClientCore(ClientOptions options, ConnectionKind kind)
     : options_(withPresentIdentity(std::move(options))),
-      purpose_(purpose),
+      kind_(kind),
       loop_(loopOptions(options_, complaints_.logger())),
       subscriptions_(*this) {
-    if (options_.reconnect && purpose_ == ClientPurpose::session) {
+    if (options_.reconnect && kind_ == ConnectionKind::session) {
         schedule_.emplace(*options_.reconnect);
     }
 }
@@ -213,7 +213,7 @@ void ClientCore::connectNow() {
         auto* loop = loop_.handle();
         loop->start(loop);  // a client of the stack stops it when it ends
         auto config =
-            makeClientConfig(options_, purpose_, {loop, complaints_.logger(), peers_.get(), url_});
+            makeClientConfig(options_, kind_, {loop, complaints_.logger(), peers_.get(), url_});
         if (!config) {
             settle(failed(status::kBadInvalidArgument, config.error().message));
             return;
@@ -227,7 +227,7 @@ void ClientCore::connectNow() {
     channel_ = UA_SECURECHANNELSTATE_CLOSED;
     attempts_ = 0;
     identifying_ = false;
-    const StatusCode status(purpose_ == ClientPurpose::session
+    const StatusCode status(kind_ == ConnectionKind::session
                                 ? UA_Client_connectAsync(client_.get(), url_.c_str())
                                 : UA_Client_connectSecureChannelAsync(client_.get(), url_.c_str()));
     if (status.isBad()) {
@@ -392,7 +392,7 @@ void ClientCore::stateChanged(UA_SecureChannelState channel, UA_SessionState ses
         connectingChanged(channel, session, status);
     } else if (status.isBad()) {
         lose(status);
-    } else if (purpose_ == ClientPurpose::session && session != UA_SESSIONSTATE_ACTIVATED) {
+    } else if (kind_ == ConnectionKind::session && session != UA_SESSIONSTATE_ACTIVATED) {
         lose(status::kBadConnectionClosed);
     }
 }

@@ -46,7 +46,7 @@ struct DeleteClient {
 /// subscribed; any failure leads back to `waiting`, and `over` is the end.
 class ClientCore {
 public:
-    ClientCore(ClientOptions options, ClientPurpose purpose);
+    ClientCore(ClientOptions options, ConnectionKind kind);
     /// Closes.
     ~ClientCore();
     ClientCore(const ClientCore&) = delete;
@@ -135,7 +135,7 @@ private:
     static void onInactivity(UA_Client* client);
 
     const ClientOptions options_;
-    const ClientPurpose purpose_;
+    const ConnectionKind kind_;
     std::atomic<Client::State> state_ = Client::State::connected;
     std::atomic<std::uint64_t> boot_ = 1;
     std::atomic<std::uint64_t> connection_ = 1;  // of requests; one more with each connection

@@ -57,7 +57,7 @@ public:
           deadline_(Deadline::in(options.connect_timeout)),
           fill_(std::move(fill)),
           convert_(std::move(convert)),
-          core_(std::move(options), ClientPurpose::discovery) {}
+          core_(std::move(options), ConnectionKind::discovery) {}
 
     Answer<T> ask() {
         core_.whenOpen([this] { send(); });

@@ -47,7 +47,7 @@ public:
     Browse& operator=(const Browse&) = delete;
 
     Result<std::vector<FoundServer>> take(std::chrono::steady_clock::time_point deadline) {
-        while (browser_ != nullptr && session_.problem().empty() && (!told_all_ || open_ > 0) &&
+        while (browser_ != nullptr && session_.problem().empty() && (!reported_all_ || open_ > 0) &&
                std::chrono::steady_clock::now() < deadline) {
             session_.iterate(kTurnMs);
         }
@@ -70,7 +70,7 @@ private:
                 AvahiLookupFlags{}, resolved, context);
             self.open_ += resolver != nullptr ? 1 : 0;
         } else if (event == AVAHI_BROWSER_ALL_FOR_NOW || event == AVAHI_BROWSER_FAILURE) {
-            self.told_all_ = true;
+            self.reported_all_ = true;
         }
     }
 
@@ -94,7 +94,7 @@ private:
 
     std::vector<FoundServer> servers_;
     std::size_t open_ = 0;  // resolvers at work
-    bool told_all_ = false;
+    bool reported_all_ = false;
     AvahiServiceBrowser* browser_ = nullptr;  // the session's
     AvahiSession session_;
 };

@@ -31,7 +31,7 @@ std::optional<std::string> usableUrl(const opcua::ServerDescription& server) {
     return std::nullopt;
 }
 
-std::vector<FoundServer> fromAnswer(const std::string& told_by,
+std::vector<FoundServer> fromAnswer(const std::string& reported_by,
                                     const std::vector<opcua::ServerDescription>& answer) {
     std::vector<FoundServer> servers;
     for (const auto& server : answer) {
@@ -39,7 +39,7 @@ std::vector<FoundServer> fromAnswer(const std::string& told_by,
         if (url && server.type != opcua::ApplicationType::discovery_server &&
             server.type != opcua::ApplicationType::client && servers.size() < kMostServers) {
             servers.push_back(
-                {std::move(*url), opcua::sanitise(server.application_name.text), told_by});
+                {std::move(*url), opcua::sanitise(server.application_name.text), reported_by});
         }
     }
     return servers;

@@ -12,7 +12,7 @@
 #include "message_counter.hpp"
 #include "response_gate.hpp"
 #include "send_queue.hpp"
-#include "turns.hpp"
+#include "fair_queue.hpp"
 
 namespace metier::opcua {
 

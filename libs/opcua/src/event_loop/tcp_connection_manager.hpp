@@ -10,7 +10,7 @@
 #include "listener.hpp"
 #include "publisher.hpp"
 #include "reactor.hpp"
-#include "turns.hpp"
+#include "fair_queue.hpp"
 
 namespace metier::opcua {
 
@@ -114,7 +114,7 @@ private:
     std::unordered_map<ConnectionId, std::unique_ptr<Connection>> connections_;
     std::unordered_map<ConnectionId, std::unique_ptr<Listener>> listeners_;
     std::vector<ConnectionId> leftovers_;
-    Turns turns_;
+    FairQueue turns_;
     std::optional<std::chrono::nanoseconds> turn_began_;  // in the thread's own time
     std::size_t closing_ = 0;                             // connections
     std::minstd_rand chance_;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "grip/gripper_body.hpp"
+#include "grip/gripper_work.hpp"
 #include "metier/skill/typed_skill.hpp"
 
 namespace metier::robot_skills {
@@ -100,7 +100,7 @@ public:
     }
 
 protected:
-    Result<std::unique_ptr<skill::Body>> plan(const GripperParameters& parameters) override {
+    Result<std::unique_ptr<skill::ExecutionWork>> plan(const GripperParameters& parameters) override {
         device::GripperRequest request;
         request.force = unlessZero(parameters.force);
         request.width = needs_width_ ? parameters.width : unlessZero(parameters.width);
@@ -109,7 +109,7 @@ protected:
         if (!possible) {
             return fail(possible.error());
         }
-        return std::make_unique<GripperBody>(
+        return std::make_unique<GripperWork>(
             gripper_,
             [ask = ask_, request](Gripper& gripper, Gripper::Done done) {
                 return (gripper.*ask)(request, std::move(done));
@@ -127,7 +127,7 @@ private:
     Ask ask_;
     Result<void> (*check_)(const GripperOutcome&);
     bool needs_width_;
-    GripperBody::Moving moving_ = std::make_shared<std::atomic<bool>>(false);
+    GripperWork::Moving moving_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 Field forceField(std::string description) {

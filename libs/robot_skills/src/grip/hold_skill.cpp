@@ -37,12 +37,12 @@ Result<void> checkHeld(const Gripper& gripper) {
     return {};
 }
 
-class HoldBody final : public skill::Body {
+class HoldWork final : public skill::ExecutionWork {
 public:
-    HoldBody(const Gripper& gripper, std::shared_ptr<skill::Executor> executor)
+    HoldWork(const Gripper& gripper, std::shared_ptr<skill::Executor> executor)
         : gripper_(gripper), executor_(std::move(executor)) {}
 
-    void start(skill::Execution execution) override {
+    void start(skill::ExecutionHandle execution) override {
         execution_ = std::move(execution);
         watch();
     }
@@ -72,7 +72,7 @@ private:
 
     const Gripper& gripper_;
     std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
-    skill::Execution execution_;
+    skill::ExecutionHandle execution_;
     skill::Timer timer_;
 };
 
@@ -82,9 +82,9 @@ public:
         : gripper_(gripper), executor_(std::move(executor)) {}
 
     const skill::SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<skill::Body>> prepare(const skill::ValueMap& /*none*/) override {
-        return checkHeld(gripper_).map([this]() -> std::unique_ptr<skill::Body> {
-            return std::make_unique<HoldBody>(gripper_, executor_);
+    Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& /*none*/) override {
+        return checkHeld(gripper_).map([this]() -> std::unique_ptr<skill::ExecutionWork> {
+            return std::make_unique<HoldWork>(gripper_, executor_);
         });
     }
     Result<void> reset() override { return {}; }

@@ -4,7 +4,7 @@
 
 #include "moves/force_move_skill.hpp"
 #include "moves/move_skills.hpp"
-#include "moves/planned_move_skills.hpp"
+#include "moves/controller_planned_move_skills.hpp"
 
 namespace metier::robot_skills {
 
@@ -33,32 +33,32 @@ Result<Skills> streamedMoves(const StreamedArm& arm) {
     return moves;
 }
 
-Result<Skills> makeMoves(const ArmFaces& faces, const StreamedArm& streamed) {
+Result<Skills> makeMoves(const ArmDevices& devices, const StreamedArm& streamed) {
     const auto& [arm, model, clock, stopping] = streamed;
-    if (faces.planner == nullptr) {
+    if (devices.planner == nullptr) {
         auto moves = streamedMoves(streamed);
-        if (moves && faces.sensor != nullptr) {
+        if (moves && devices.sensor != nullptr) {
             moves = with(std::move(*moves),
-                         makeForceMoveSkill({arm, *faces.sensor, model, clock, stopping}));
+                         makeForceMoveSkill({arm, *devices.sensor, model, clock, stopping}));
         }
         return moves;
     }
-    const PlanningArm planning{arm, *faces.planner, model, clock, faces.sensor, stopping};
-    auto moves = makePlannedMoveSkills(planning);
+    const PlanningArm planning{arm, *devices.planner, model, clock, devices.sensor, stopping};
+    auto moves = makeControllerPlannedMoveSkills(planning);
     if (!moves) {
         return moves;
     }
-    return with(std::move(*moves), makePlannedForceMoveSkill(planning));
+    return with(std::move(*moves), makeControllerPlannedForceMoveSkill(planning));
 }
 
 }  // namespace
 
-Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel& model,
+Result<ArmSkills> makeArmSkills(const ArmDevices& devices, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream) {
     ArmSkills skills;
-    skills.resource = std::make_shared<skill::Resource>("arm " + faces.arm.info().name);
-    const StreamedArm streamed{faces.arm, model, clock};
-    auto moves = makeMoves(faces, streamed);
+    skills.resource = std::make_shared<skill::Resource>("arm " + devices.arm.info().name);
+    const StreamedArm streamed{devices.arm, model, clock};
+    auto moves = makeMoves(devices, streamed);
     if (moves) {
         moves = with(std::move(*moves), makeCartesianPathMoveSkill(streamed));
     }
@@ -66,7 +66,7 @@ Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel&
         return fail(std::move(moves.error()));
     }
     skills.moves = std::move(*moves);
-    auto position_stream = makePositionStreamSkill(faces.arm, model, clock, stream);
+    auto position_stream = makePositionStreamSkill(devices.arm, model, clock, stream);
     if (!position_stream) {
         return fail(std::move(position_stream.error()));
     }
@@ -78,7 +78,7 @@ Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel&
 
 Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream) {
-    return makeArmSkills(ArmFaces{arm}, model, clock, stream);
+    return makeArmSkills(ArmDevices{arm}, model, clock, stream);
 }
 
 }  // namespace metier::robot_skills

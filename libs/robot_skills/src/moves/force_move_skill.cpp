@@ -8,8 +8,8 @@
 #include "moves/force_report.hpp"
 #include "metier/motion/force_limit.hpp"
 #include "moves/move_skill.hpp"
-#include "moves/planned_body.hpp"
-#include "moves/planned_motion.hpp"
+#include "moves/controller_planned_work.hpp"
+#include "moves/controller_planned_motion.hpp"
 #include "moves/sensor_failure.hpp"
 #include "moves/streamed_move.hpp"
 
@@ -75,7 +75,7 @@ public:
         return met_.exceeded;
     }
 
-    void tell(const skill::Execution& tell, const MoveResults& results) override {
+    void tell(const skill::ExecutionHandle& tell, const MoveResults& results) override {
         const bool broken =
             excess_ && excess_->quantity == motion::ForceExcess::Quantity::not_finite;
         if (failure_.kept() || broken) {
@@ -96,7 +96,7 @@ private:
     MetForce met_;
 };
 
-Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
+Result<std::unique_ptr<skill::ExecutionWork>> feelingWork(const FeelingArm& arm,
                                                  const Trajectory& trajectory,
                                                  const ForceMoveParameters& parameters) {
     if (arm.sensor.sample().health != SafetyState::normal) {
@@ -109,7 +109,7 @@ Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
     if (!limit) {
         return fail(std::move(limit.error()));
     }
-    return makeStreamedBody(
+    return makeStreamedWork(
         {arm.arm, arm.model, arm.clock, arm.stopping},
         {trajectory, Path::cartesian_line, parameters.start_time, parameters.stop_time,
          std::make_unique<SensorWatch>(arm, parameters, *limit)});
@@ -118,10 +118,10 @@ Result<std::unique_ptr<skill::Body>> feelingBody(const FeelingArm& arm,
 // ---- by either --------------------------------------------------------------------------------
 
 /// What the controller is asked for. Errors: not_supported, where it cannot do just this.
-Result<device::PlannedMotion> plannedForceMotion(const RobotModel& model,
+Result<device::ControllerPlannedMotion> plannedForceMotion(const RobotModel& model,
                                                  const Trajectory& trajectory,
                                                  const ForceMoveParameters& parameters) {
-    auto motion = plannedMotion({model, trajectory, Path::cartesian_line, parameters});
+    auto motion = controllerPlannedMotion({model, trajectory, Path::cartesian_line, parameters});
     if (!motion) {
         return motion;
     }
@@ -133,41 +133,41 @@ Result<device::PlannedMotion> plannedForceMotion(const RobotModel& model,
     return motion;
 }
 
-Result<std::unique_ptr<skill::Body>> plannedForceBody(const PlanningArm& arm,
+Result<std::unique_ptr<skill::ExecutionWork>> plannedForceWork(const PlanningArm& arm,
                                                       const Trajectory& trajectory,
                                                       const ForceMoveParameters& parameters) {
     auto motion = plannedForceMotion(arm.model, trajectory, parameters);
     if (!motion && arm.sensor != nullptr) {
-        return feelingBody({arm.arm, *arm.sensor, arm.model, arm.clock}, trajectory, parameters);
+        return feelingWork({arm.arm, *arm.sensor, arm.model, arm.clock}, trajectory, parameters);
     }
     if (!motion) {
         return fail(std::move(motion.error()));
     }
-    const auto tell = [&model = arm.model, parameters](const skill::Execution& execution,
+    const auto tell = [&model = arm.model, parameters](const skill::ExecutionHandle& execution,
                                                        const MoveResults& results,
                                                        const MotionOutcome& outcome) {
         tellForceMove(execution, parameters, results, metForce(model, results, outcome));
     };
-    auto move = std::make_shared<PlannedMove>(PlannedMove::Setup{
+    auto move = std::make_shared<ControllerPlannedMove>(ControllerPlannedMove::Setup{
         arm.arm, arm.clock, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
-    return std::make_unique<PlannedBody>(PlannedBody::Faces{arm.arm, arm.planner},
+    return std::make_unique<ControllerPlannedWork>(ControllerPlannedWork::Devices{arm.arm, arm.planner},
                                          std::move(*motion), std::move(move),
                                          toolDistance(trajectory));
 }
 
 }  // namespace
 
-Result<std::unique_ptr<skill::Skill>> makePlannedForceMoveSkill(const PlanningArm& arm) {
+Result<std::unique_ptr<skill::Skill>> makeControllerPlannedForceMoveSkill(const PlanningArm& arm) {
     return makeForceSkill({arm.arm, arm.model, arm.clock,
                            [arm](const Trajectory& trajectory, const ForceMoveParameters& given) {
-                               return plannedForceBody(arm, trajectory, given);
+                               return plannedForceWork(arm, trajectory, given);
                            }});
 }
 
 Result<std::unique_ptr<skill::Skill>> makeForceMoveSkill(const FeelingArm& arm) {
     return makeForceSkill({arm.arm, arm.model, arm.clock,
                            [arm](const Trajectory& trajectory, const ForceMoveParameters& given) {
-                               return feelingBody(arm, trajectory, given);
+                               return feelingWork(arm, trajectory, given);
                            }});
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "metier/device/force_torque_sensor.hpp"
-#include "moves/planned_move_skills.hpp"
+#include "moves/controller_planned_move_skills.hpp"
 
 namespace metier::robot_skills {
 
@@ -19,9 +19,9 @@ namespace metier::robot_skills {
 ///
 /// A controller watches the axes of the flange: each axis of the base frame that has a limit must
 /// be one of the flange's, within 1 degree, for the whole motion. ForcesMax is then measured along
-/// the flange's axes, too. What else it cannot do: makePlannedMoveSkills(). Without a sensor Start
+/// the flange's axes, too. What else it cannot do: makeControllerPlannedMoveSkills(). Without a sensor Start
 /// refuses with not_supported what the controller cannot do.
-Result<std::unique_ptr<skill::Skill>> makePlannedForceMoveSkill(const PlanningArm& arm);
+Result<std::unique_ptr<skill::Skill>> makeControllerPlannedForceMoveSkill(const PlanningArm& arm);
 
 /// An arm and what measures the force at its flange; all must outlive the skill.
 struct FeelingArm {

@@ -16,7 +16,7 @@ std::string textOf(const skill::Vector3& force) {
 
 }  // namespace
 
-void tellForceMove(const skill::Execution& tell, const ForceMoveParameters& parameters,
+void tellForceMove(const skill::ExecutionHandle& tell, const ForceMoveParameters& parameters,
                    const MoveResults& results, const MetForce& met) {
     ForceMoveResults all;
     static_cast<MoveResults&>(all) = results;

@@ -5,7 +5,7 @@
 #include "metier/motion/pose.hpp"
 #include "metier/motion/twist.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
-#include "metier/skill/execution.hpp"
+#include "metier/skill/execution_handle.hpp"
 
 namespace metier::robot_skills {
 
@@ -17,7 +17,7 @@ struct MetForce {
 };
 
 /// Tells the end of a force move: finished, or failed if a force over its limit is an error.
-void tellForceMove(const skill::Execution& tell, const ForceMoveParameters& parameters,
+void tellForceMove(const skill::ExecutionHandle& tell, const ForceMoveParameters& parameters,
                    const MoveResults& results, const MetForce& met);
 
 }  // namespace metier::robot_skills

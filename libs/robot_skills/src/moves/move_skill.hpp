@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "moves/arm_body.hpp"
+#include "moves/arm_work.hpp"
 #include "moves/arm_skill.hpp"
 #include "conversions.hpp"
 #include "metier/skill/typed_skill.hpp"
@@ -16,7 +16,7 @@ namespace metier::robot_skills {
 /// Makes the execution of a planned motion; nothing moves.
 /// Errors: why this arm cannot do it.
 template <typename Parameters>
-using MakeBody = std::function<Result<std::unique_ptr<skill::Body>>(const motion::Trajectory&,
+using MakeWork = std::function<Result<std::unique_ptr<skill::ExecutionWork>>(const motion::Trajectory&,
                                                                     const Parameters&)>;
 
 /// How far the tool frame of `trajectory` is from one joint position to another.
@@ -26,7 +26,7 @@ ToolDistance toolDistance(const motion::Trajectory& trajectory);
 skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan);
 
 /// A move: planned by metier at Start, which refuses what cannot be run to its end, then executed
-/// by whatever body is made for the plan.
+/// by whatever work is made for the plan.
 template <typename Parameters, typename Results = MoveResults>
 class MoveSkill final : public skill::TypedSkill<Parameters, Results> {
 public:
@@ -34,7 +34,7 @@ public:
         device::Arm& arm;
         const motion::RobotModel& model;
         const Clock& clock;
-        MakeBody<Parameters> make_body;
+        MakeWork<Parameters> make_work;
     };
 
     MoveSkill(Setup setup, MoveVariant<Parameters> variant, skill::FieldList<Results> results)
@@ -46,7 +46,7 @@ public:
     Result<void> reset() override { return resetArm(setup_.arm); }
 
 protected:
-    Result<std::unique_ptr<skill::Body>> plan(const Parameters& parameters) override {
+    Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override {
         if (auto ready = checkCanStart(parameters); !ready) {
             return fail(std::move(ready.error()));
         }
@@ -54,7 +54,7 @@ protected:
         if (!trajectory) {
             return fail(std::move(trajectory.error().error));
         }
-        return setup_.make_body(*trajectory, parameters);
+        return setup_.make_work(*trajectory, parameters);
     }
 
     Result<skill::CheckReport> assess(const Parameters& parameters) override {
@@ -63,8 +63,8 @@ protected:
         }
         const auto trajectory = planFromHere(parameters);
         if (trajectory) {
-            if (const auto body = setup_.make_body(*trajectory, parameters); !body) {
-                return fail(body.error());
+            if (const auto work = setup_.make_work(*trajectory, parameters); !work) {
+                return fail(work.error());
             }
         }
         return reportOf(trajectory);

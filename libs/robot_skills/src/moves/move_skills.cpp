@@ -15,14 +15,14 @@ namespace {
 template <typename Parameters>
 Result<std::unique_ptr<skill::Skill>> makeStreamed(const StreamedArm& streamed,
                                                    MoveVariant<Parameters> variant) {
-    const auto make_body =
+    const auto make_work =
         [streamed, path = variant.path](
             const Trajectory& trajectory,
-            const Parameters& parameters) -> Result<std::unique_ptr<skill::Body>> {
-        return makeStreamedBody(streamed,
+            const Parameters& parameters) -> Result<std::unique_ptr<skill::ExecutionWork>> {
+        return makeStreamedWork(streamed,
                                 {trajectory, path, parameters.start_time, parameters.stop_time});
     };
-    return makeMove<Parameters>({streamed.arm, streamed.model, streamed.clock, make_body},
+    return makeMove<Parameters>({streamed.arm, streamed.model, streamed.clock, make_work},
                                 std::move(variant));
 }
 

@@ -12,7 +12,7 @@ namespace metier::robot_skills {
 
 namespace {
 
-// How long the way back to the path takes after a rest [s]. kMovedTolerance (arm_body.hpp) in this
+// How long the way back to the path takes after a rest [s]. kMovedTolerance (arm_work.hpp) in this
 // time is at most 0.02 rad/s and 0.3 rad/s2, which every arm can.
 constexpr double kWayBack = 0.2;
 
@@ -74,7 +74,7 @@ device::SetPointSource::Next MoveSource::next(const device::ArmState& state,
     const double step = timetable_.step(cycle_);
     in_motion_ += step;
     set_point = toArray(execution_.next(motion::Seconds(step)).position);
-    stopping_->note(execution_.stoppingWay());
+    stopping_->note(execution_.stoppingEstimate());
     return Next::set_point;
 }
 
@@ -152,7 +152,7 @@ void MoveSource::released() noexcept {
     stopping_->clear();
 }
 
-void MoveSource::tellDone(const skill::Execution& tell) {
+void MoveSource::tellDone(const skill::ExecutionHandle& tell) {
     switch (outcome_) {
         case Outcome::in_contact:
             contact_->tell(tell, results());

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "moves/execution_source.hpp"
-#include "metier/motion/execution.hpp"
+#include "moves/motion_run_source.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/robot_skills/stopping_report.hpp"
 #include "moves/path_deviation.hpp"
@@ -20,11 +20,11 @@ public:
     /// Whether the motion must end now. Cycle thread, each cycle: must not allocate, lock or throw.
     virtual bool mustEnd(const device::ArmState& state) noexcept = 0;
     /// The arm stands, at its target or where it came to rest after mustEnd(). Notifying thread.
-    virtual void tell(const skill::Execution& tell, const MoveResults& results) = 0;
+    virtual void tell(const skill::ExecutionHandle& tell, const MoveResults& results) = 0;
 };
 
 /// Gives an arm the set-points of one planned motion, from rest to rest.
-class MoveSource final : public ExecutionSource {
+class MoveSource final : public MotionRunSource {
 public:
     struct Setup {
         device::ArmInfo info;
@@ -47,7 +47,7 @@ private:
 
     void goOnFrom(const device::JointArray& from) override;
     void released() noexcept override;
-    void tellDone(const skill::Execution& tell) override;
+    void tellDone(const skill::ExecutionHandle& tell) override;
 
     void obey() noexcept;
     void watchContact(const device::ArmState& state) noexcept;
@@ -59,7 +59,7 @@ private:
     const std::string arm_;
     const double cycle_;      ///< [s]
     const double stop_time_;  ///< [s]
-    motion::MotionExecution execution_;
+    motion::MotionRun execution_;
     const std::shared_ptr<StoppingReport> stopping_;
     Timetable timetable_;
     PathDeviationMeter deviation_;

@@ -29,7 +29,7 @@ Settling::Status Settling::take(const device::ArmState& state, const device::Joi
     return waited_ > kLongest || rested_ > kLongestRest ? Status::off_target : Status::waiting;
 }
 
-void Settling::tellOffTarget(const skill::Execution& execution) const {
+void Settling::tellOffTarget(const skill::ExecutionHandle& execution) const {
     execution.fail(skill::Reason::error,
                    fmt::format("the arm {} {:.4f} rad off its set-point {:.1f} s after the motion, "
                                "limit {} rad",

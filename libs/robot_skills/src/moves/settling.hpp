@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "metier/device/arm.hpp"
-#include "metier/skill/execution.hpp"
+#include "metier/skill/execution_handle.hpp"
 
 namespace metier::robot_skills {
 
@@ -32,7 +32,7 @@ public:
     }
 
     /// Fails `execution` with how far off the arm is.
-    void tellOffTarget(const skill::Execution& execution) const;
+    void tellOffTarget(const skill::ExecutionHandle& execution) const;
 
 private:
     double waited_ = 0.0;     ///< [s]

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 
 namespace metier::robot_skills {
 
-using motion::MotionExecution;
+using motion::MotionRun;
 using motion::RobotModel;
 using motion::Seconds;
 using motion::Trajectory;
@@ -37,7 +37,7 @@ bool canFollow(const RobotModel& model, const motion::SetPoint& from, const moti
 }
 
 bool canStop(const Trajectory& trajectory, const RobotModel& model, double begin, double length) {
-    MotionExecution execution(trajectory);
+    MotionRun execution(trajectory);
     auto before = execution.next(Seconds(begin));
     execution.stopIn(Seconds(length));
     const double step = length / kSteps;

@@ -7,8 +7,8 @@
 
 namespace metier::robot_skills {
 
-motion::StoppingWay stoppingWayOf(const device::ArmState& state, const motion::RobotModel& model) {
-    motion::StoppingWay way;
+motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state, const motion::RobotModel& model) {
+    motion::StoppingEstimate way;
     if (state.standstill || state.velocity.size() != model.axisCount() ||
         state.position.size() != model.axisCount()) {
         return way;

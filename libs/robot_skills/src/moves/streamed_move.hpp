@@ -20,6 +20,6 @@ struct StreamedMove {
 };
 
 /// The execution of that move; nothing moves yet. \param arm must outlive it
-std::unique_ptr<skill::Body> makeStreamedBody(const StreamedArm& arm, StreamedMove move);
+std::unique_ptr<skill::ExecutionWork> makeStreamedWork(const StreamedArm& arm, StreamedMove move);
 
 }  // namespace metier::robot_skills

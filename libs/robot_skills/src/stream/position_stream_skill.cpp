@@ -8,7 +8,7 @@
 #include "conversions.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/typed_skill.hpp"
-#include "moves/source_body.hpp"
+#include "moves/source_work.hpp"
 #include "stream/stream_input.hpp"
 #include "stream/stream_source.hpp"
 
@@ -38,7 +38,7 @@ Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double
 }
 
 /// A stream as an execution of its skill.
-class StreamBody final : public SourceBody {
+class StreamWork final : public SourceWork {
 public:
     /// Whom the set-points come from and where they go.
     struct Stream {
@@ -48,10 +48,10 @@ public:
         std::shared_ptr<StreamReport> report;  // shared with whoever shows it
     };
 
-    StreamBody(device::Arm& arm, Stream stream, ToolDistance tool_distance)
-        : SourceBody(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
+    StreamWork(device::Arm& arm, Stream stream, ToolDistance tool_distance)
+        : SourceWork(arm, stream.source, std::move(tool_distance)), stream_(std::move(stream)) {}
 
-    void start(skill::Execution execution) override {
+    void start(skill::ExecutionHandle execution) override {
         stream_.report->restart();
         stream_.times.restart();
         const auto begun = stream_.first ? push(*stream_.first, {}) : Result<void>{};
@@ -59,12 +59,12 @@ public:
             execution.fail(skill::Reason::error, begun.error().message);
             return;
         }
-        SourceBody::start(std::move(execution));
+        SourceWork::start(std::move(execution));
     }
 
     Result<void> resume() override {
         stream_.times.restart();
-        return SourceBody::resume();
+        return SourceWork::resume();
     }
 
     Result<void> input(std::string_view parameter, const skill::LiveValue& live) override {
@@ -74,7 +74,7 @@ public:
         }
         const auto* values = std::get_if<std::vector<double>>(&live.value);
         if (parameter != kTarget || values == nullptr) {
-            return Body::input(parameter, live);
+            return ExecutionWork::input(parameter, live);
         }
         return push(*values, live.meant_for);
     }
@@ -129,7 +129,7 @@ public:
     Result<void> reset() override { return resetArm(arm_); }
 
 protected:
-    Result<std::unique_ptr<skill::Body>> plan(const PositionStreamParameters& given) override {
+    Result<std::unique_ptr<skill::ExecutionWork>> plan(const PositionStreamParameters& given) override {
         if (auto ready = checkReady(arm_); !ready) {
             return fail(std::move(ready.error()));
         }
@@ -143,9 +143,9 @@ protected:
         if (auto begins = checkBegins(**source, given); !begins) {
             return fail(std::move(begins.error()));
         }
-        return std::make_unique<StreamBody>(
+        return std::make_unique<StreamWork>(
             arm_,
-            StreamBody::Stream{std::move(*source),
+            StreamWork::Stream{std::move(*source),
                                StreamTimes(clock_, arm_.info().cycle, arrivalsFor(given)),
                                given.target_joint_position, options_.report},
             toolDistance());

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "conversions.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 
 namespace metier::robot_skills {
 
@@ -59,7 +59,7 @@ motion::StreamOptions StreamSource::followerOptions(const Setup& setup) noexcept
     options.extrapolated_cycles = late;
     options.standing_speed = kStanding;
     options.jerk_factor = kJerkFactor;
-    options.braking_factor = motion::MotionExecution::kHaltFactor;
+    options.braking_factor = motion::MotionRun::kHaltFactor;
     options.stale_cycles = std::numeric_limits<int>::max();  // silence is judged here
     return options;
 }
@@ -272,7 +272,7 @@ std::string StreamSource::reported() const {
     return text;
 }
 
-void StreamSource::tellDone(const skill::Execution& tell) {
+void StreamSource::tellDone(const skill::ExecutionHandle& tell) {
     const auto counted = results();
     tell.progress(counted.set_points);
     switch (end_) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "moves/execution_source.hpp"
+#include "moves/motion_run_source.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "metier/robot_skills/position_stream_skill.hpp"
 #include "metier/robot_skills/stream_report.hpp"
@@ -15,7 +15,7 @@
 namespace metier::robot_skills {
 
 /// Gives an arm the set-points of a stream, as the stream follower allows them.
-class StreamSource final : public ExecutionSource {
+class StreamSource final : public MotionRunSource {
 public:
     struct Setup {
         double cycle = 0.0;         ///< of the arm [s]
@@ -64,7 +64,7 @@ private:
     };
 
     void goOnFrom(const device::JointArray& from) override;
-    void tellDone(const skill::Execution& tell) override;
+    void tellDone(const skill::ExecutionHandle& tell) override;
 
     void takeSetPoints() noexcept;
     void dropAllButNewest() noexcept;

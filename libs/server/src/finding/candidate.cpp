@@ -84,7 +84,7 @@ private:
         }
     }
 
-    void follow(const client::UsedSkill& use, std::size_t user) {
+    void follow(const client::SkillUse& use, std::size_t user) {
         const auto server = use.endpoint_url.empty() ? user : serverAt(use.endpoint_url);
         if (server == servers_.size()) {
             loseSight(fmt::format("{} was not asked", use.endpoint_url));
@@ -111,7 +111,7 @@ private:
         return static_cast<std::size_t>(found - servers_.begin());
     }
 
-    std::size_t skillOf(std::size_t server, const client::UsedSkill& use) const {
+    std::size_t skillOf(std::size_t server, const client::SkillUse& use) const {
         const auto& skills = *servers_[server].skills;
         const auto found = std::find_if(skills.begin(), skills.end(), [&](const auto& skill) {
             return use.endpoint_url.empty()

@@ -34,13 +34,13 @@ public:
 
     opcua::Answer<SurveyedSkill> ask(client::SkillAddress address) {
         auto own = references_.read(address.node);
-        const auto purpose = own ? purposeOf(address) : tl::unexpected(own.error());
-        if (!purpose) {
-            return tl::unexpected(purpose.error());
+        const auto type_terms = own ? typeTermsOf(address) : tl::unexpected(own.error());
+        if (!type_terms) {
+            return tl::unexpected(type_terms.error());
         }
-        SurveyedSkill skill{std::move(address), (*purpose)->types, std::move(own->terms),
+        SurveyedSkill skill{std::move(address), (*type_terms)->types, std::move(own->terms),
                             std::move(own->uses)};
-        append(skill.terms, (*purpose)->terms);
+        append(skill.terms, (*type_terms)->terms);
         if (const auto* controller = skill.address.controller()) {
             const auto [arm, is_new] = arms_.try_emplace(controller->node);
             if (is_new) {
@@ -53,7 +53,7 @@ public:
 
 private:
     /// Names and terms of a type and of all that it is derived from.
-    struct Purpose {
+    struct TypeTerms {
         std::vector<std::string> types;
         std::vector<std::string> terms;
     };
@@ -64,10 +64,10 @@ private:
         });
     }
 
-    opcua::Answer<const Purpose*> purposeOf(const client::SkillAddress& address) {
-        const auto [purpose, is_new] = purposes_.try_emplace(address.type);
+    opcua::Answer<const TypeTerms*> typeTermsOf(const client::SkillAddress& address) {
+        const auto [type_terms, is_new] = type_terms_.try_emplace(address.type);
         if (!is_new) {
-            return &purpose->second;
+            return &type_terms->second;
         }
         const auto types = client::typeChain(client_, address);
         if (!types) {
@@ -78,15 +78,15 @@ private:
             if (!references) {
                 return tl::unexpected(references.error());
             }
-            purpose->second.types.push_back(type.name);
-            append(purpose->second.terms, references->terms);
+            type_terms->second.types.push_back(type.name);
+            append(type_terms->second.terms, references->terms);
         }
-        return &purpose->second;
+        return &type_terms->second;
     }
 
     opcua::Client& client_;
     const client::ReferenceReader& references_;
-    std::map<opcua::NodeId, Purpose> purposes_;  // by type
+    std::map<opcua::NodeId, TypeTerms> type_terms_;  // by type
     std::map<opcua::NodeId, ArmFigures> arms_;   // by controller
 };
 

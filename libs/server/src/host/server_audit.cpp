@@ -50,7 +50,7 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const cell::ServerConfig&
     auto log = security::AuditLog::open(
         {.file = config.state_folder / "audit" /
                  fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
-         .on_health = [&audit = *audit](security::Health health, const std::string& why) {
+         .on_write_state = [&audit = *audit](security::WriteState state, const std::string& why) {
              audit.tell(health, why);
          }});
     if (!log) {
@@ -97,8 +97,8 @@ Result<void> ServerAudit::publishAnchor(opcua::AddressSpace& nodes) {
                     .write = {}});
 }
 
-void ServerAudit::tell(security::Health health, const std::string& why) {
-    if (health == security::Health::failing) {
+void ServerAudit::tell(security::WriteState state, const std::string& why) {
+    if (state == security::WriteState::failing) {
         alarm_.tell(
             ServerAlarm::Kind::begins,
             fmt::format("the audit log cannot be written: {}; up to 10000 entries wait", why));

@@ -37,7 +37,7 @@ private:
     explicit ServerAudit(const std::string& name) : alarm_(name, "AuditLog") {}
     Result<void> publishAnchor(opcua::AddressSpace& nodes);
     /// On the log's thread.
-    void tell(security::Health health, const std::string& why);
+    void tell(security::WriteState state, const std::string& why);
 
     ServerAlarm alarm_;
     std::unique_ptr<security::AuditLog> log_;  // ends first, and its thread

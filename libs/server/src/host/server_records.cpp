@@ -25,8 +25,8 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
         {.url = config.records.url,
          .server = server,
          .keep = retentionOf(config.records),
-         .on_health = [&alarm = made->alarm_](const records::HealthReport& report) {
-             alarm.tell(report.health == records::Health::failing ? ServerAlarm::Kind::begins
+         .on_write_state = [&alarm = made->alarm_](const records::WriteReport& report) {
+             alarm.tell(report.write_state == records::WriteState::failing ? ServerAlarm::Kind::begins
                                                                   : ServerAlarm::Kind::over,
                         report.text);
          }});

@@ -69,7 +69,7 @@ opcua_skill::ArmFigures figuresOf(const ShownArm& shown, const Clock& clock) {
             return std::nullopt;
         }
         const auto planned = report ? report->read() : std::nullopt;
-        const auto way = planned ? *planned : robot_skills::stoppingWayOf(state, model);
+        const auto way = planned ? *planned : robot_skills::stoppingEstimateOf(state, model);
         return opcua_skill::StoppingFigures{way.time.count(), way.distance};
     };
     if (const auto* jitter = arm.cycleJitter()) {

@@ -11,7 +11,7 @@
 #include "finding/skill_matching.hpp"
 #include "kinds/composition_files.hpp"
 #include "metier/composition/composition.hpp"
-#include "metier/composition/local_child.hpp"
+#include "metier/composition/local_used_skill.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
@@ -35,7 +35,7 @@ std::string namesOf(const std::vector<composition::Use>& uses) {
 
 }  // namespace
 
-/// Finds the children of one definition and what to publish of them.
+/// Finds the used_skills of one definition and what to publish of them.
 class CompositionServer::Roles {
 public:
     Roles(CompositionServer& server, const Definition& definition)
@@ -60,23 +60,23 @@ public:
     }
 
     /// Hands over what discovery has found, to be kept bound.
-    void keepBonds(composition::SequenceSkill& skill, const opcua::NodeId& node) {
-        for (auto& bond : bonds_) {
-            bond.skill = &skill;
-            bond.node = node;
-            server_.bonds_.push_back(std::move(bond));
+    void keepBindings(composition::SequenceSkill& skill, const opcua::NodeId& node) {
+        for (auto& binding : bindings_) {
+            binding.skill = &skill;
+            binding.node = node;
+            server_.bindings_.push_back(std::move(binding));
         }
     }
 
     composition::Descriptions descriptions() const {
         composition::Descriptions result;
-        for (const auto& [alias, child] : children_) {
-            result.emplace(alias, child->description());
+        for (const auto& [alias, used] : used_skills_) {
+            result.emplace(alias, used->description());
         }
         return result;
     }
-    std::map<std::string, std::unique_ptr<composition::Child>> takeChildren() {
-        return std::move(children_);
+    std::map<std::string, std::unique_ptr<composition::UsedSkill>> takeUsedSkills() {
+        return std::move(used_skills_);
     }
 
     Result<void> publish(const opcua::NodeId& skills, const std::string& name) {
@@ -115,7 +115,7 @@ private:
 
     void useLocal(const composition::Use& use, skill::Program& program) {
         const auto& name = definition_.name;
-        children_.emplace(use.alias, std::make_unique<composition::LocalChild>(
+        used_skills_.emplace(use.alias, std::make_unique<composition::LocalUsedSkill>(
                                          program, server_.host_->skills().executor(),
                                          skill::Caller{.session_id = "composition " + name,
                                                        .client_name = name,
@@ -136,11 +136,11 @@ private:
             return fail(std::move(offered.error()));
         }
         auto& remote = *server_.servers_[offered->index];
-        auto child = remote.use(offered->address, origin_);
-        if (!child) {
-            return fail(std::move(child.error()));
+        auto used = remote.use(offered->address, origin_);
+        if (!used) {
+            return fail(std::move(used.error()));
         }
-        children_.emplace(use.alias, std::move(*child));
+        used_skills_.emplace(use.alias, std::move(*used));
         note(use.alias, remote, offered->address);
         return {};
     }
@@ -183,15 +183,15 @@ private:
                 return fail(std::move(remote.error()));
             }
             for (const auto& [alias, skill] : *chosen) {
-                auto child = (*remote)->use(skill.address, origin_);
-                if (!child) {
-                    return fail(std::move(child.error()));
+                auto used = (*remote)->use(skill.address, origin_);
+                if (!used) {
+                    return fail(std::move(used.error()));
                 }
-                children_.emplace(alias, std::move(*child));
+                used_skills_.emplace(alias, std::move(*used));
                 note(alias, **remote, skill.address);
             }
             spdlog::info("{} uses {} ({})", definition_.name, (*remote)->name(), (*remote)->url());
-            bonds_.push_back({definition_.name, nullptr, {}, origin_, uses, *remote});
+            bindings_.push_back({definition_.name, nullptr, {}, origin_, uses, *remote});
         }
         return {};
     }
@@ -199,11 +199,11 @@ private:
     CompositionServer& server_;
     const Definition& definition_;
     std::string origin_;
-    std::map<std::string, std::unique_ptr<composition::Child>> children_;
+    std::map<std::string, std::unique_ptr<composition::UsedSkill>> used_skills_;
     std::vector<opcua_skill::RemoteSkill> remote_;
     std::vector<std::string> local_;        // names of used skills of this server
     std::vector<composition::Use> sought_;  // that no server of the list offers
-    std::vector<Bond> bonds_;
+    std::vector<SkillBinding> bindings_;
 };
 
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
@@ -249,7 +249,7 @@ CompositionServer::~CompositionServer() {
 }
 
 void CompositionServer::keepBound() {
-    if (bonds_.empty()) {
+    if (bindings_.empty()) {
         return;
     }
     rebinder_ = std::make_unique<Rebinder>(
@@ -261,7 +261,7 @@ void CompositionServer::keepBound() {
                         .rebind_after = std::chrono::duration<double>(config_.rebind_after),
                         .executor = host_->skills().executor(),
                         .nodes = host_->nodes()},
-        std::move(bonds_));
+        std::move(bindings_));
 }
 
 Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
@@ -338,7 +338,7 @@ Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& pla
                                         .names = host_->names(),
                                         .rest_deadline = composition::restDeadlineOf(definition)};
     auto sequence = std::make_unique<composition::SequenceSkill>(
-        std::move(*composed), roles.takeChildren(), host_->skills().executor(), host_->clock(),
+        std::move(*composed), roles.takeUsedSkills(), host_->skills().executor(), host_->clock(),
         roles.origin() + "~" + life_);
     auto& skill = *sequence;
     const auto published = host_->skills().publish(place.skills, std::move(sequence), options);
@@ -349,7 +349,7 @@ Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& pla
     if (!node) {
         return fail(node.error());
     }
-    roles.keepBonds(skill, *node);
+    roles.keepBindings(skill, *node);
     return roles.publish(place.skills, name);
 }
 

@@ -23,7 +23,7 @@ class CompositionServer final : public Server {
 public:
     /// \param composition of `config`
     /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
-    /// Errors: what is wrong with the files; a used server that cannot be reached; a used skill
+    /// Errors: what is wrong with the files; a used skill server that cannot be reached; a used skill
     ///         that nobody or, unless discovered, more than one server offers; the port; cancelled
     ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
@@ -57,7 +57,7 @@ private:
     std::vector<OfferedSkill> offered_;  // of all of them
     // Those that were found, shared by the skills that use them.
     std::vector<std::shared_ptr<client::RemoteServer>> found_;
-    std::vector<Bond> bonds_;
+    std::vector<SkillBinding> bindings_;
     std::unique_ptr<Rebinder> rebinder_;
     std::unique_ptr<SkillHost> host_;  // ends before the servers that its skills use
 };

@@ -163,14 +163,14 @@ Result<void> MoveServer::exchange(const std::string& robot_url) {
                  robot_url == robot_url_ ? "another arm, or other limits, at the same address"
                                          : robot_url_ + " is away");
     robot_url_ = robot_url;
-    told_.clear();
+    reported_.clear();
     return {};
 }
 
 void MoveServer::tell(const Error& error) {
-    if (error.message != told_) {
+    if (error.message != reported_) {
         spdlog::warn("{}: {} cannot be exchanged: {}", config_.name, robot_url_, error.message);
-        told_ = error.message;
+        reported_ = error.message;
     }
 }
 

@@ -71,7 +71,7 @@ private:
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs of each robot
     std::string robot_url_;                         // of the present robot, or the last one
     SteadyTime next_try_{};
-    std::string told_;  // the last complaint, which is not repeated
+    std::string reported_;  // the last complaint, which is not repeated
 
     std::mutex mutex_;  // for the wait
     std::condition_variable_any wake_;

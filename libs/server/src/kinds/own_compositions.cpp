@@ -10,7 +10,7 @@
 #include "finding/skill_matching.hpp"
 #include "kinds/composition_files.hpp"
 #include "metier/composition/composition.hpp"
-#include "metier/composition/local_child.hpp"
+#include "metier/composition/local_used_skill.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 

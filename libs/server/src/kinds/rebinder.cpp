@@ -13,7 +13,7 @@
 namespace metier::server {
 namespace {
 
-using Children = std::map<std::string, std::unique_ptr<composition::Child>>;
+using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>>;
 using namespace std::chrono_literals;
 
 constexpr auto kLookEvery = 500ms;
@@ -22,10 +22,10 @@ constexpr auto kLongestTurn = 5s;  // until the executor gets to something
 
 }  // namespace
 
-/// A server that was given up, with the children that watch what still runs there.
+/// A server that was given up, with the used_skills that watch what still runs there.
 struct Rebinder::Former {
     std::shared_ptr<client::RemoteServer> server;
-    std::shared_ptr<Children> children;
+    std::shared_ptr<UsedSkills> used_skills;
 };
 
 /// An exchange of servers, for the executor's thread and back.
@@ -33,12 +33,12 @@ struct Rebinder::Exchange {
     std::shared_ptr<client::RemoteServer> server;
     std::map<std::string, OfferedSkill> chosen;
     std::map<std::string, client::PendingUse> pending{};
-    std::shared_ptr<Children> children = std::make_shared<Children>();
+    std::shared_ptr<UsedSkills> used_skills = std::make_shared<UsedSkills>();
 };
 
-Rebinder::Rebinder(Setup setup, std::vector<Bond> bonds)
+Rebinder::Rebinder(Setup setup, std::vector<SkillBinding> bindings)
     : setup_(std::move(setup)),
-      bonds_(std::move(bonds)),
+      bindings_(std::move(bindings)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Rebinder::~Rebinder() {
@@ -49,8 +49,8 @@ void Rebinder::stop() {
     thread_.request_stop();
     thread_ = {};
     for (auto& former : formers_) {
-        static_cast<void>(onExecutor([children = former.children]() -> Result<void> {
-            children->clear();
+        static_cast<void>(onExecutor([used_skills = former.used_skills]() -> Result<void> {
+            used_skills->clear();
             return {};
         }));
     }
@@ -63,42 +63,42 @@ void Rebinder::run(const std::stop_token& stop) {
             std::unique_lock lock(mutex_);
             wake_.wait_for(lock, stop, kLookEvery, [] { return false; });
         }
-        for (auto& bond : bonds_) {
-            const auto since = bond.server->awaySince();
+        for (auto& binding : bindings_) {
+            const auto since = binding.server->awaySince();
             const auto now = std::chrono::steady_clock::now();
-            const bool due = since && now - *since > setup_.rebind_after && now >= bond.next_try;
+            const bool due = since && now - *since > setup_.rebind_after && now >= binding.next_try;
             if (due && !stop.stop_requested()) {
-                renew(bond);
+                renew(binding);
             }
         }
         forget();
     }
 }
 
-void Rebinder::renew(Bond& bond) {
-    const auto idle = onExecutor([&bond]() -> Result<void> {
-        return bond.skill->underWay() ? fail(Errc::invalid_state, "it runs") : Result<void>{};
+void Rebinder::renew(SkillBinding& binding) {
+    const auto idle = onExecutor([&binding]() -> Result<void> {
+        return binding.skill->underWay() ? fail(Errc::invalid_state, "it runs") : Result<void>{};
     });
     if (!idle) {
         return;  // in the middle of an execution nothing changes
     }
     const auto servers =
-        discoverServers(setup_.discovery, setup_.identity, {setup_.own_url, bond.server->url()});
+        discoverServers(setup_.discovery, setup_.identity, {setup_.own_url, binding.server->url()});
     Result<void> moved = fail(Errc::not_found, "nobody else is found");
     for (const auto& server : servers) {
-        moved = moveTo(server, bond);
+        moved = moveTo(server, binding);
         if (moved || moved.error().code == Errc::invalid_state) {
             break;  // it has begun to run, or the server is back
         }
     }
     if (!moved) {
-        bond.next_try = std::chrono::steady_clock::now() + kPause;
-        tell(bond, moved.error());
+        binding.next_try = std::chrono::steady_clock::now() + kPause;
+        tell(binding, moved.error());
     }
 }
 
-Result<void> Rebinder::moveTo(const DiscoveredServer& other, Bond& bond) {
-    auto chosen = chooseAll(bond.uses, other);
+Result<void> Rebinder::moveTo(const DiscoveredServer& other, SkillBinding& binding) {
+    auto chosen = chooseAll(binding.uses, other);
     if (!chosen) {
         return fail(std::move(chosen.error()));
     }
@@ -113,55 +113,55 @@ Result<void> Rebinder::moveTo(const DiscoveredServer& other, Bond& bond) {
     }
     Exchange parts{.server = std::move(*server), .chosen = std::move(*chosen)};
     for (const auto& [alias, skill] : parts.chosen) {
-        auto opened = parts.server->open(skill.address, bond.origin);
+        auto opened = parts.server->open(skill.address, binding.origin);
         if (!opened) {
             return fail(std::move(opened.error()));
         }
         parts.pending.emplace(alias, std::move(*opened));
     }
-    return exchange(parts, bond);
+    return exchange(parts, binding);
 }
 
-/// On the executor's thread: the children are made, and change places with those of before.
-Result<void> Rebinder::exchange(Exchange& parts, Bond& bond) {
-    const auto former = bond.server;
-    auto done = onExecutor([this, &parts, &bond]() -> Result<void> {
-        auto& children = *parts.children;
+/// On the executor's thread: the used_skills are made, and change places with those of before.
+Result<void> Rebinder::exchange(Exchange& parts, SkillBinding& binding) {
+    const auto former = binding.server;
+    auto done = onExecutor([this, &parts, &binding]() -> Result<void> {
+        auto& used_skills = *parts.used_skills;
         for (auto& [alias, use] : parts.pending) {
-            children.emplace(alias, parts.server->child(std::move(use)));
+            used_skills.emplace(alias, parts.server->skill(std::move(use)));
         }
         // A server that came back in the meantime stays.
-        auto rebound = bond.server->awaySince()
-                           ? bond.skill->rebind(children)
-                           : fail(Errc::invalid_state, bond.server->url() + " is back");
+        auto rebound = binding.server->awaySince()
+                           ? binding.skill->rebind(used_skills)
+                           : fail(Errc::invalid_state, binding.server->url() + " is back");
         if (!rebound) {
-            children.clear();
+            used_skills.clear();
             return rebound;
         }
-        show(parts, bond);
+        show(parts, binding);
         return {};
     });
     if (!done) {
         return done;
     }
-    bond.server = parts.server;
-    formers_.push_back({former, parts.children});
-    told_.clear();
+    binding.server = parts.server;
+    formers_.push_back({former, parts.used_skills});
+    reported_.clear();
     spdlog::warn("{} uses {} ({}) from its next execution on, since {} ({}) is away",
-                 bond.skill_name, bond.server->name(), bond.server->url(), former->name(),
+                 binding.skill_name, binding.server->name(), binding.server->url(), former->name(),
                  former->url());
     return {};
 }
 
 /// In the address space, on the executor's thread.
-void Rebinder::show(const Exchange& parts, const Bond& bond) {
+void Rebinder::show(const Exchange& parts, const SkillBinding& binding) {
     for (const auto& [alias, skill] : parts.chosen) {
         const auto told =
-            opcua_skill::updateUse(setup_.nodes, bond.node,
+            opcua_skill::updateUse(setup_.nodes, binding.node,
                                    {alias, parts.server->url(), skill.address.name,
                                     skill.address.type_name, skill.address.controllerName()});
         if (!told) {
-            spdlog::error("{}: {}", bond.skill_name, told.error().message);
+            spdlog::error("{}: {}", binding.skill_name, told.error().message);
         }
     }
 }
@@ -172,8 +172,8 @@ void Rebinder::forget() {
         if (former.server->awaySince()) {
             return false;
         }
-        return onExecutor([children = former.children]() -> Result<void> {
-                   children->clear();
+        return onExecutor([used_skills = former.used_skills]() -> Result<void> {
+                   used_skills->clear();
                    return {};
                })
             .has_value();
@@ -202,12 +202,12 @@ Result<void> Rebinder::onExecutor(std::function<Result<void>()> work) {
     }
 }
 
-void Rebinder::tell(const Bond& bond, const Error& error) {
-    auto text = fmt::format("{}: {} ({}) is away; no other: {}", bond.skill_name,
-                            bond.server->name(), bond.server->url(), error.message);
-    if (text != told_) {
+void Rebinder::tell(const SkillBinding& binding, const Error& error) {
+    auto text = fmt::format("{}: {} ({}) is away; no other: {}", binding.skill_name,
+                            binding.server->name(), binding.server->url(), error.message);
+    if (text != reported_) {
         spdlog::warn("{}", text);
-        told_ = std::move(text);
+        reported_ = std::move(text);
     }
 }
 

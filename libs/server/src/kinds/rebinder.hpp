@@ -21,13 +21,13 @@
 namespace metier::server {
 
 /// Uses of one composed skill that one server serves, which was found.
-struct Bond {
+struct SkillBinding {
     std::string skill_name;
     composition::SequenceSkill* skill = nullptr;  ///< for the executor's thread
     opcua::NodeId node;                           ///< of the composed skill
     std::string origin;                           ///< as RemoteServer::use() takes it
     std::vector<composition::Use> uses;           ///< they move together
-    /// Shared by the bonds to one server.
+    /// Shared by the bindings to one server.
     std::shared_ptr<client::RemoteServer> server;
     SteadyTime next_try{};
 };
@@ -50,7 +50,7 @@ public:
         opcua::AddressSpace& nodes;                  ///< of the component
     };
 
-    Rebinder(Setup setup, std::vector<Bond> bonds);
+    Rebinder(Setup setup, std::vector<SkillBinding> bindings);
     /// Stops. After the composed skills, which use its servers.
     ~Rebinder();
     Rebinder(const Rebinder&) = delete;
@@ -64,18 +64,18 @@ private:
     struct Exchange;
 
     void run(const std::stop_token& stop);
-    void renew(Bond& bond);
-    Result<void> moveTo(const DiscoveredServer& other, Bond& bond);
-    Result<void> exchange(Exchange& parts, Bond& bond);
-    void show(const Exchange& parts, const Bond& bond);
+    void renew(SkillBinding& binding);
+    Result<void> moveTo(const DiscoveredServer& other, SkillBinding& binding);
+    Result<void> exchange(Exchange& parts, SkillBinding& binding);
+    void show(const Exchange& parts, const SkillBinding& binding);
     void forget();
     Result<void> onExecutor(std::function<Result<void>()> work);
-    void tell(const Bond& bond, const Error& error);
+    void tell(const SkillBinding& binding, const Error& error);
 
     const Setup setup_;
-    std::vector<Bond> bonds_;
+    std::vector<SkillBinding> bindings_;
     std::vector<Former> formers_;
-    std::string told_;  // the last complaint, which is not repeated
+    std::string reported_;  // the last complaint, which is not repeated
     std::mutex mutex_;  // for the wait
     std::condition_variable_any wake_;
     std::jthread thread_;

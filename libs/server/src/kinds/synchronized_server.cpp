@@ -42,7 +42,7 @@ Result<std::unique_ptr<SynchronizedServer>> SynchronizedServer::start(
     return server;
 }
 
-Result<std::unique_ptr<composition::Child>> SynchronizedServer::use(
+Result<std::unique_ptr<composition::UsedSkill>> SynchronizedServer::use(
     client::RemoteServer& server, const std::string& type, const std::string& component) {
     auto skills = server.skills();
     if (!skills) {

@@ -20,7 +20,7 @@ namespace metier::server {
 class SynchronizedServer final : public Server {
 public:
     /// \param arms of `config`
-    /// Errors: a used server that cannot be reached, or has no arm, or several, whose moves take a
+    /// Errors: a used skill server that cannot be reached, or has no arm, or several, whose moves take a
     ///         start time; the port.
     static Result<std::unique_ptr<SynchronizedServer>> start(
         const cell::ServerConfig& config, const cell::SynchronizedServer& arms,
@@ -34,7 +34,7 @@ private:
     Result<void> offer(const std::string& name, const cell::SynchronizedServer& config);
     Result<composition::Arm> connect(const cell::UsedServer& used,
                                            const std::string& component);
-    Result<std::unique_ptr<composition::Child>> use(client::RemoteServer& server,
+    Result<std::unique_ptr<composition::UsedSkill>> use(client::RemoteServer& server,
                                                     const std::string& type,
                                                     const std::string& component);
 

@@ -86,7 +86,7 @@ ServerHealth ServerMetrics::health() const {
                                    watched_.gripper->info().name)};
     }
     const bool failing = watched_.recorder != nullptr &&
-                         watched_.recorder->status().health == records::Health::failing;
+                         watched_.recorder->status().write_state == records::WriteState::failing;
     return {true, failing ? "ok, but nothing can be recorded" : "ok"};
 }
 
@@ -195,7 +195,7 @@ void ServerMetrics::addRecords(TextPage& page) const {
     }
     const auto status = watched_.recorder->status();
     page.family("metier_records_failing", MetricKind::gauge, "1 while nothing can be recorded.");
-    page.add({}, std::uint64_t{status.health == records::Health::failing});
+    page.add({}, std::uint64_t{status.write_state == records::WriteState::failing});
     page.family("metier_records_written_total", MetricKind::counter,
                 "Executions that were recorded.");
     page.add({}, status.written);

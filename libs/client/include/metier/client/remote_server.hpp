@@ -8,7 +8,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/composition/child.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "metier/opcua/security.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/client/async_skill.hpp"
@@ -30,11 +30,11 @@ struct RemoteServerOptions {
 };
 
 struct OpenSkill;
-class ChildLink;
+class UsedSkillLink;
 
-/// A skill that was opened and has no child yet.
+/// A skill that was opened and has no used skill yet.
 struct PendingUse {
-    std::shared_ptr<ChildLink> link;   // shared with what is on its way to the child
+    std::shared_ptr<UsedSkillLink> link;   // shared with what is on its way to the used skill
     std::shared_ptr<OpenSkill> skill;  // shared with the work that waits for the server
     client::AsyncSkill::Now now;
     std::string name;
@@ -49,11 +49,11 @@ struct PendingUse {
 /// executor's; a thread of its own connects again.
 class RemoteServer {
 public:
-    /// \param executor the thread that owns the children
+    /// \param executor the thread that owns the used_skills
     /// Errors: connection_lost, timeout, access_denied, with the address.
     static Result<std::unique_ptr<RemoteServer>> connect(RemoteServerOptions options,
                                                          std::shared_ptr<skill::Executor> executor);
-    /// After its children.
+    /// After its used_skills.
     ~RemoteServer();
 
     const std::string& url() const noexcept;
@@ -66,17 +66,17 @@ public:
     opcua::Client& client();
     /// Every skill there is.
     Result<std::vector<client::SkillAddress>> skills();
-    /// \param origin as the executions begin that the child's user starts, up to a '~' or '/':
+    /// \param origin as the executions begin that the used skill's user starts, up to a '~' or '/':
     ///               "pick.PickPlaceSkill"
-    /// \return a child, for the executor's thread; must end before this
+    /// \return a used skill, for the executor's thread; must end before this
     /// Errors: not_supported, if it lacks StartWith or GetExecution; the server's.
-    Result<std::unique_ptr<composition::Child>> use(const client::SkillAddress& skill,
+    Result<std::unique_ptr<composition::UsedSkill>> use(const client::SkillAddress& skill,
                                                     std::string origin);
 
     /// The same in two parts, for an executor that is at work: open() waits, on any thread but the
-    /// executor's; child() does not, on the executor's thread and nowhere else.
+    /// executor's; used() does not, on the executor's thread and nowhere else.
     Result<PendingUse> open(const client::SkillAddress& skill, std::string origin);
-    std::unique_ptr<composition::Child> child(PendingUse use);
+    std::unique_ptr<composition::UsedSkill> used(PendingUse use);
 
 private:
     class Worker;

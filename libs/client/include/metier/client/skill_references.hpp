@@ -10,7 +10,7 @@
 namespace metier::client {
 
 /// A skill that another one runs, as the other one's server tells.
-struct UsedSkill {
+struct SkillUse {
     std::string endpoint_url;  ///< of its server; empty: the server that tells
     std::string name;          ///< BrowseName; empty in the server that tells
     std::string controller;    ///< BrowseName of its controller; empty: none, or not told
@@ -22,7 +22,7 @@ struct SkillReferences {
     /// What it is for: BrowseNames of the entries to which HasDictionaryEntry leads, which are
     /// their identifiers (OPC 10000-19).
     std::vector<std::string> terms;
-    std::vector<UsedSkill> uses;  ///< to which UsesSkill leads, the first 100
+    std::vector<SkillUse> uses;  ///< to which UsesSkill leads, the first 100
 };
 
 /// Reads references of skills and types of one server. Text is as the server says it.
@@ -39,7 +39,7 @@ public:
 private:
     ReferenceReader(opcua::Client& client, std::optional<std::uint16_t> metier);
 
-    opcua::Answer<UsedSkill> readUse(const opcua::ReferenceDescription& used) const;
+    opcua::Answer<SkillUse> readUse(const opcua::ReferenceDescription& used) const;
 
     opcua::Client* client_;
     std::optional<std::uint16_t> metier_;  // index of the Metier namespace; without it no uses

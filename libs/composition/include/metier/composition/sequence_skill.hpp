@@ -5,7 +5,7 @@
 #include <string>
 
 #include "metier/base/clock.hpp"
-#include "metier/composition/child.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "metier/composition/composition.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/skill.hpp"
@@ -13,15 +13,15 @@
 namespace metier::composition {
 
 /// A used skill, and what the composed skill knows of its last dealings with it.
-struct UsedSkill {
-    std::unique_ptr<Child> child;
+struct BoundSkill {
+    std::unique_ptr<UsedSkill> skill;
     bool may_reset = false;  ///< in any case; else only if the composed skill halted it
     bool halted_by_us = false;
 
-    bool mayReset() const noexcept { return may_reset || halted_by_us || child->leftOver(); }
+    bool mayReset() const noexcept { return may_reset || halted_by_us || skill->leftOver(); }
 };
 
-using UsedSkills = std::map<std::string, UsedSkill, std::less<>>;
+using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 
 /// A skill whose work is to run other skills, as a file says.
 ///
@@ -31,11 +31,11 @@ using UsedSkills = std::map<std::string, UsedSkill, std::less<>>;
 /// Threading: the owner's thread, which all used skills report to.
 class SequenceSkill final : public skill::Skill {
 public:
-    /// \param children one for each alias of the composition
+    /// \param used_skills one for each alias of the composition
     /// \param origin   names the component, the skill, and the life of the component, so that no
     ///                 id comes twice: "pick-server.PickPlaceSkill~3f09a2"
     /// \param clock    must outlive this
-    SequenceSkill(Composition composition, std::map<std::string, std::unique_ptr<Child>> children,
+    SequenceSkill(Composition composition, std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                   std::shared_ptr<skill::Executor> executor, const Clock& clock,
                   std::string origin);
     ~SequenceSkill() override;
@@ -44,13 +44,13 @@ public:
     const Definition& definition() const noexcept { return composition_.definition; }
     /// Errors: invalid_state, connection_lost, naming a used skill that is certainly needed and
     ///         cannot begin.
-    Result<std::unique_ptr<skill::Body>> prepare(const skill::ValueMap& snapshot) override;
-    bool underWay() const noexcept { return body_count_.use_count() > 1; }
+    Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& snapshot) override;
+    bool underWay() const noexcept { return work_count_.use_count() > 1; }
     /// Uses other skills from the next execution on.
-    /// \param children by alias; those that were used so far, once this has succeeded
+    /// \param used_skills by alias; those that were used so far, once this has succeeded
     /// Errors: invalid_state (an execution is under way), invalid_argument (a binding does not fit
     ///         them), not_found (an alias); then nothing has changed.
-    Result<void> rebind(std::map<std::string, std::unique_ptr<Child>>& children);
+    Result<void> rebind(std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills);
     /// Resets the used skills that are Halted, as far as they may be.
     /// Errors: what a skill of the same process refuses with. Of others, the next Start tells.
     Result<void> reset() override;
@@ -59,17 +59,17 @@ private:
     class Unheard;
     Result<void> checkUsable(const std::string& alias) const;
     Descriptions descriptionsWith(
-        const std::map<std::string, std::unique_ptr<Child>>& children) const;
+        const std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills) const;
 
     Composition composition_;
-    UsedSkills used_;
+    BoundSkills used_;
     std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
     const Clock& clock_;
     std::string origin_;
     std::vector<std::string> needed_;                          // aliases that every execution runs
     std::map<std::string, std::unique_ptr<Unheard>> unheard_;  // by alias
-    // Shared by the bodies: as many as there are of these, one more than there are bodies.
-    std::shared_ptr<const char> body_count_ = std::make_shared<const char>();
+    // Shared by the work: as many as there are of these, one more than there are work.
+    std::shared_ptr<const char> work_count_ = std::make_shared<const char>();
 };
 
 /// The deadline to come to rest that a Program of this skill needs: its used skills have theirs

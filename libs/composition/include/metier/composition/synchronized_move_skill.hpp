@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "metier/base/clock.hpp"
-#include "metier/composition/child.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/typed_skill.hpp"
 
@@ -16,9 +16,9 @@ namespace metier::composition {
 struct Arm {
     std::string name{};
     /// CartesianPtpMoveSkill: asked for the joints of a pose, never started.
-    std::unique_ptr<composition::Child> pose_move{};
+    std::unique_ptr<composition::UsedSkill> pose_move{};
     /// JointPtpMoveSkill: moves the arm.
-    std::unique_ptr<composition::Child> joint_move{};
+    std::unique_ptr<composition::UsedSkill> joint_move{};
     bool halted_by_us = false;  ///< the last execution was halted here
 
     /// Only what was halted here is reset here.
@@ -81,7 +81,7 @@ public:
 protected:
     /// Errors: invalid_argument (unknown arm, or one twice; counts that differ), connection_lost,
     ///         naming the arm. What state the arms are in, they are asked.
-    Result<std::unique_ptr<skill::Body>> plan(const Parameters& parameters) override;
+    Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override;
 
 private:
     class Unheard;

@@ -27,7 +27,7 @@ public:
 };
 
 /// A motion for the controller's own planner: the same path kinds as metier plans itself.
-struct PlannedMotion {
+struct ControllerPlannedMotion {
     enum class Path : std::uint8_t { joint, line };
 
     Path path = Path::joint;
@@ -68,7 +68,7 @@ public:
     virtual ~MotionPlanner() = default;
 
     /// Begins a motion. Errors: resource_unavailable, device_fault, connection_lost, out_of_range.
-    virtual Result<void> move(const PlannedMotion& motion, Done done) = 0;
+    virtual Result<void> move(const ControllerPlannedMotion& motion, Done done) = 0;
     /// Brakes on the path; the motion is done as `stopped`. Nothing happens if none runs.
     virtual void stopMotion() noexcept = 0;
 };

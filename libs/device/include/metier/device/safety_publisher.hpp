@@ -43,7 +43,7 @@ private:
     std::atomic<bool> changed_{false};
     mutable std::mutex mutex_;
     Safety known_;
-    SafetyState told_;
+    SafetyState reported_;
     // Shared with the registrations, which take themselves off it.
     const std::shared_ptr<Listeners> listeners_ = std::make_shared<Listeners>();
 };

@@ -30,7 +30,7 @@ struct ForceExcess {
 Error toError(const ForceExcess& excess);
 
 /// Watches the wrench of a force-limited motion; what to do about an excess is up to the caller:
-/// MotionExecution::halt() in the same cycle.
+/// MotionRun::halt() in the same cycle.
 ///
 /// The wrench passes a low-pass of first order with 20 Hz, which starts at the first value: a
 /// steady wrench below a limit never is an excess, one above it is within a few cycles. A value

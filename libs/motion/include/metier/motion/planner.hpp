@@ -10,7 +10,7 @@
 
 #include "metier/base/error.hpp"
 #include "metier/motion/pose.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/motion/trajectory.hpp"
 
@@ -153,7 +153,7 @@ void synchronise(std::vector<Trajectory>& trajectories);
 struct Feasibility {
     std::optional<Refusal> refusal;    ///< none: it can start
     Seconds duration{0};               ///< of the motion, if it can start
-    StoppingWay longest_stop{};        ///< most that halt() would need of each, at any time of it
+    StoppingEstimate longest_stop{};        ///< most that halt() would need of each, at any time of it
     std::vector<JointVector> preview;  ///< joint positions along the path, ends included
 };
 

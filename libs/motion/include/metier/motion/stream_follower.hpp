@@ -33,7 +33,7 @@ struct StreamOptions {
     /// limit to the full is followed exactly only with room above it.
     double jerk_factor = 1.0;
     /// Acceleration that following may use while an axis brakes, as a multiple of its limit; >= 1.
-    /// A motion that is halted is followed on its path with MotionExecution::kHaltFactor.
+    /// A motion that is halted is followed on its path with MotionRun::kHaltFactor.
     double braking_factor = 1.0;
 };
 

@@ -41,7 +41,7 @@ public:
     std::size_t axisCount() const noexcept;
     /// The exact set-point at `time` after the start; before it the first, after the end the last.
     SetPoint sample(Seconds time) const noexcept;
-    /// Set-point for a state of the clock along the path (see MotionExecution).
+    /// Set-point for a state of the clock along the path (see MotionRun).
     SetPoint sampleAt(const ScalarState& clock) const noexcept;
     /// Path parameter at a clock position, 0 start to 1 end; its derivatives by time.
     ScalarState pathParameter(const ScalarState& clock) const noexcept;

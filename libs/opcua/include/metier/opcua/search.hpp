@@ -12,7 +12,7 @@ namespace metier::opcua {
 struct FoundServer {
     std::string url;      ///< "opc.tcp://host:port"
     std::string name;     ///< of the application, printable; may be empty
-    std::string told_by;  ///< address of a discovery server, or "mDNS"
+    std::string reported_by;  ///< address of a discovery server, or "mDNS"
 };
 
 struct Sighting {

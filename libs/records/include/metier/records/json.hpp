@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 #include "metier/records/store.hpp"
 
 namespace metier::records {
@@ -16,12 +16,12 @@ std::string timeText(UtcTime time);
 /// A JSON object without line breaks, in UTF-8: the fields of Execution by their names, times as
 /// timeText() gives them (`ended` null while it is under way), `parameters`, `check` and `result`
 /// as JSON, and its `duration` [s], null while it is under way.
-std::string toJson(const Execution& execution);
+std::string toJson(const ExecutionRow& execution);
 
 /// All that is known of one execution.
 struct Details {
     Execution execution{};
-    std::vector<Execution> children{};
+    std::vector<ExecutionRow> children{};
     std::vector<Transition> transitions{};
     std::vector<Intermediate> intermediates{};
     std::vector<PathSample> path{};

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 
 namespace metier::records {
 
@@ -29,7 +29,7 @@ struct Member {
 /// Calls visit(const Member&, T& member) for each member, in their order. T is std::string,
 /// UtcTime, std::int64_t (the number in the store) or std::uint64_t, const if `execution` is.
 template <typename E, typename Visit>
-requires std::same_as<std::remove_const_t<E>, Execution>
+requires std::same_as<std::remove_const_t<E>, ExecutionRow>
 void visitMembers(E& execution, Visit visit) {
     using enum Table;
     const auto column = [](std::string_view name) { return Member{.name = name}; };

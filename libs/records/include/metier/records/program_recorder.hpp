@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 #include "metier/records/path_sampler.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/skill/program.hpp"

@@ -9,7 +9,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 #include "metier/records/store.hpp"
 
 namespace metier::records {
@@ -31,14 +31,14 @@ struct Dropped {
 };
 
 /// Whether records are written.
-enum class Health {
+enum class WriteState {
     writing,
     failing,  ///< nothing can be written, or it takes too long: something is or may get lost
 };
 
 /// Alarm for the server's clients: once when recording fails, once when it works again.
-struct HealthReport {
-    Health health = Health::writing;
+struct WriteReport {
+    WriteState write_state = WriteState::writing;
     std::string text{};  ///< for a person: the reason and what was lost, "records work again: ..."
     Dropped dropped{};   ///< since the recorder was made
 };
@@ -62,8 +62,8 @@ public:
         std::string url{};     ///< as Store::open() takes it
         std::string server{};  ///< ApplicationUri; nobody else records under it
         Retention keep{};
-        /// On a thread of the recorder, at each change of its health. May be empty.
-        std::function<void(const HealthReport&)> on_health{};
+        /// On a thread of the recorder, at each change of its write_state. May be empty.
+        std::function<void(const WriteReport&)> on_write_state{};
         std::size_t most_waiting = 50'000'000;      ///< executions and events [byte]
         std::size_t most_waiting_samples = 16'384;  ///< about 230 byte each
         /// Longest time without a write, because the disk hangs or others keep the store locked,
@@ -73,7 +73,7 @@ public:
 
     /// Figures for metrics.
     struct Status {
-        Health health = Health::writing;
+        WriteState write_state = WriteState::writing;
         std::size_t waiting = 0;          ///< executions and events that are not written yet
         std::size_t waiting_samples = 0;  ///< as well
         std::uint64_t written = 0;        ///< executions that began and are in the store

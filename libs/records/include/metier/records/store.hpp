@@ -10,7 +10,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/records/execution.hpp"
+#include "metier/records/execution_row.hpp"
 
 namespace metier::records {
 
@@ -39,13 +39,13 @@ struct Page {
 
 /// Executions, newest start first.
 struct Listing {
-    std::vector<Execution> executions{};
+    std::vector<ExecutionRow> executions{};
     bool more = false;  ///< older ones fit, too
 };
 
 /// Executions that came or changed.
 struct Changes {
-    std::vector<Execution> executions{};  ///< as they are now, in the order of their last change
+    std::vector<ExecutionRow> executions{};  ///< as they are now, in the order of their last change
     std::int64_t revision = 0;            ///< to go on from
 };
 
@@ -85,11 +85,11 @@ public:
 
     /// \param number_or_id a number, or else an id; the newest one that has it
     /// Errors: not_found.
-    Result<Execution> find(std::string_view number_or_id);
+    Result<ExecutionRow> find(std::string_view number_or_id);
     /// An unknown Page::before gives nothing.
     Result<Listing> list(const Filter& filter, const Page& page);
     /// Executions that the execution started, on whichever server, oldest first.
-    Result<std::vector<Execution>> children(std::int64_t number);
+    Result<std::vector<ExecutionRow>> children(std::int64_t number);
     /// In the order of their times; nothing for an unknown number. The same for the next two.
     Result<std::vector<Transition>> transitions(std::int64_t number);
     Result<std::vector<Intermediate>> intermediates(std::int64_t number);

@@ -30,7 +30,7 @@ struct ArmSkills {
 };
 
 /// What there is of an arm; all must outlive its skills.
-struct ArmFaces {
+struct ArmDevices {
     device::Arm& arm;
     /// Runs those moves that it can run as they were asked for, if there is one; all others are
     /// set-points of metier's planner.
@@ -42,7 +42,7 @@ struct ArmFaces {
 
 /// \param model, clock must outlive the skills
 /// Errors: invalid_argument if arm and model differ in their number of axes.
-Result<ArmSkills> makeArmSkills(const ArmFaces& faces, const motion::RobotModel& model,
+Result<ArmSkills> makeArmSkills(const ArmDevices& devices, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream = {});
 
 /// All moves by set-points, no force move. \param arm must outlive the skills

@@ -4,7 +4,7 @@
 
 #include "metier/device/arm.hpp"
 #include "metier/device/shared_value.hpp"
-#include "metier/motion/execution.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::robot_skills {
@@ -17,23 +17,23 @@ namespace metier::robot_skills {
 class StoppingReport {
 public:
     /// The stop of the motion that metier plans and runs now; nothing without one.
-    std::optional<motion::StoppingWay> read() const noexcept {
+    std::optional<motion::StoppingEstimate> read() const noexcept {
         const auto now = newest_.read();
         return now.known ? std::optional(now.way) : std::nullopt;
     }
-    void note(const motion::StoppingWay& way) noexcept { newest_.write({true, way}); }
+    void note(const motion::StoppingEstimate& way) noexcept { newest_.write({true, way}); }
     void clear() noexcept { newest_.write({}); }
 
 private:
     struct Newest {
         bool known = false;
-        motion::StoppingWay way{};
+        motion::StoppingEstimate way{};
     };
     device::SharedValue<Newest> newest_;
 };
 
 /// The same for an arm whose motion somebody else plans, from its measured velocity: each axis
 /// brakes with its own limits. The way is that of the flange.
-motion::StoppingWay stoppingWayOf(const device::ArmState& state, const motion::RobotModel& model);
+motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state, const motion::RobotModel& model);
 
 }  // namespace metier::robot_skills

@@ -30,7 +30,7 @@ struct Entry {
 };
 
 /// What the file of a log can be in.
-enum class Health {
+enum class WriteState {
     writing,
     failing,  ///< nothing can be written: entries are kept, and some may be lost
 };
@@ -49,7 +49,7 @@ public:
     struct Options {
         std::filesystem::path file;
         /// On the log's thread, at each change; with the reason. May be empty.
-        std::function<void(Health, const std::string& why)> on_health;
+        std::function<void(WriteState, const std::string& why)> on_write_state;
         std::uintmax_t part_size = std::uintmax_t{64} << 20U;  ///< [byte] about
     };
 
@@ -79,11 +79,11 @@ private:
     AuditLog(Options options, std::unique_ptr<File> file);
     void run(const std::stop_token& stop);
     bool write(const std::vector<Entry>& entries, std::uint64_t lost);
-    void tell(Health health, const std::string& why);
+    void tell(WriteState write_state, const std::string& why);
 
     const Options options_;
     std::unique_ptr<File> file_;  // of the thread
-    Health health_ = Health::writing;
+    WriteState write_state_ = WriteState::writing;
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     std::deque<Entry> waiting_;

@@ -25,7 +25,7 @@ struct SurveyedSkill {
     std::vector<std::string> types;  ///< its own, and those that it is derived from
     /// Purposes: identifiers of dictionary entries, its own, then those of its types.
     std::vector<std::string> terms{};
-    std::vector<client::UsedSkill> uses{};
+    std::vector<client::SkillUse> uses{};
     ArmFigures arm{};  ///< of what it moves; of nothing that it uses
 };
 

@@ -47,7 +47,7 @@ enum class Place : std::uint8_t {
 /// When a parameter is taken.
 enum class Input : std::uint8_t {
     snapshot,  ///< once, at Start
-    live,      ///< at Start, and every write while Running goes to the body
+    live,      ///< at Start, and every write while Running goes to the work
 };
 
 /// How many elements a list (or characters a text) may have.

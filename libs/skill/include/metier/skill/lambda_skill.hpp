@@ -13,12 +13,12 @@ struct SkillFunctions {
     /// Further checks of Start. Left out: none.
     std::function<Result<void>(const ValueMap& parameters)> check{};
     /// Begins the work. Left out: it is finished at once.
-    std::function<void(const ValueMap& parameters, const Execution&)> start{};
+    std::function<void(const ValueMap& parameters, const ExecutionHandle&)> start{};
     /// Left out, or without resume: the skill cannot be suspended.
-    std::function<Result<void>(const Execution&)> suspend{};
-    std::function<Result<void>(const Execution&)> resume{};
+    std::function<Result<void>(const ExecutionHandle&)> suspend{};
+    std::function<Result<void>(const ExecutionHandle&)> resume{};
     /// Brakes. Left out: the work is at rest whenever it is asked.
-    std::function<void(const Execution&)> halt{};
+    std::function<void(const ExecutionHandle&)> halt{};
     /// The device's own stop. Left out: nothing.
     std::function<void()> force_stop{};
     /// Left out: every fault is gone.
@@ -32,7 +32,7 @@ public:
     LambdaSkill(SkillDescription description, SkillFunctions functions);
 
     const SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) override;
+    Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) override;
     Result<void> reset() override;
 
 private:

@@ -34,7 +34,7 @@ struct ProgramOptions {
     std::shared_ptr<ExecutionNames> names{};
     /// How long a session may leave a written parameter set without Start.
     std::chrono::milliseconds configuration_timeout{10'000};
-    /// How long a body may take to come to rest before the device's own stop is used.
+    /// How long work may take to come to rest before the device's own stop is used.
     std::chrono::milliseconds rest_deadline{5'000};
     /// How long the name of an execution may take to be on disk before the execution is given up.
     std::chrono::milliseconds name_deadline{1'000};
@@ -56,7 +56,7 @@ struct StartRequest {
 /// The state machine of one skill, and the only one that changes its state.
 ///
 /// It begins Ready. Halted and Suspended mean that the device stands still: Halt and Suspend of a
-/// running body return at once, and the transition follows when the body is at rest.
+/// running work return at once, and the transition follows when the work is at rest.
 /// Errors of every method: invalid_state if the current state does not allow it (nothing changes).
 /// Threading: every call on the owner's thread, which is the Executor's. Nothing blocks.
 class Program final : private ExecutionSink, private Control::Listener {
@@ -65,8 +65,8 @@ public:
     /// \param clock    must outlive the Program
     Program(ProgramOptions options, std::unique_ptr<Skill> skill,
             std::shared_ptr<Executor> executor, const Clock& clock);
-    /// Stops the device by Body::forceStop() if the Program is Running. No transition is told.
-    /// Not from inside a call of its own to a body or an observer.
+    /// Stops the device by ExecutionWork::forceStop() if the Program is Running. No transition is told.
+    /// Not from inside a call of its own to work or an observer.
     ~Program() override;
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
@@ -108,10 +108,10 @@ public:
         return history_.recent(back);
     }
 
-    /// Errors: not_supported; whatever Body::suspend() says.
+    /// Errors: not_supported; whatever ExecutionWork::suspend() says.
     Result<void> suspend(const Caller& caller);
     /// If the execution's owner is gone, the caller owns it from here on.
-    /// Errors: whatever Body::resume() says; the Program stays Suspended.
+    /// Errors: whatever ExecutionWork::resume() says; the Program stays Suspended.
     Result<void> resume(const Caller& caller);
     /// Allowed to any caller. A second Halt while the first is under way is accepted, too.
     Result<void> halt(const Caller& caller);
@@ -159,7 +159,7 @@ public:
     const ValueMap& parameters() const noexcept { return parameters_.values(); }
 
 private:
-    class Turn;
+    class Call;
     struct Cause {
         Reason reason = Reason::by_client;
         std::string text{};
@@ -181,7 +181,7 @@ private:
     Result<void> command(Method method, const Caller& caller, Work work);
     /// Does `work` now, or right after the call that is under way.
     template <typename Work>
-    void inTurn(Work work);
+    void inCall(Work work);
     template <typename Tell>
     void notify(Tell tell);
 
@@ -207,7 +207,7 @@ private:
     };
     Result<void> begin(const Caller& caller, std::shared_ptr<const ValueMap> snapshot, Order order);
     Result<void> noteName(const std::shared_ptr<ExecutionCore>& core);
-    void startBody();
+    void startWork();
     void nameDeadlinePassed();
     Result<CheckReport> checkNow(const Caller& caller, const ValueMap& parameters);
     Result<void> suspendNow(Cause cause);
@@ -264,11 +264,11 @@ private:
     std::string owner_session_;
     OwnerLossAction on_owner_loss_ = OwnerLossAction::skill_default;
     Value intermediate_;
-    // Shared with the body's handles; the Program takes itself out when the execution ends.
+    // Shared with the work's handles; the Program takes itself out when the execution ends.
     std::shared_ptr<ExecutionCore> execution_;
-    std::unique_ptr<Body> body_;
-    bool name_kept_ = true;      ///< of the execution under way: its body may start
-    bool body_started_ = false;  ///< nothing moves before
+    std::unique_ptr<ExecutionWork> work_;
+    bool name_kept_ = true;      ///< of the execution under way: its work may start
+    bool work_started_ = false;  ///< nothing moves before
     std::optional<Cause> halting_;
     std::optional<Cause> suspending_;
     std::optional<Cause> not_ready_;  ///< why the device needs a Reset, once the execution is over
@@ -279,7 +279,7 @@ private:
     Timer rest_timer_;
     Timer name_timer_;
     bool busy_ = false;
-    bool diagnostic_told_ = true;
+    bool diagnostic_reported_ = true;
     std::vector<std::function<void()>> deferred_;
 };
 

@@ -8,7 +8,7 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
-#include "metier/skill/execution.hpp"
+#include "metier/skill/execution_handle.hpp"
 #include "metier/skill/field.hpp"
 #include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
@@ -52,24 +52,24 @@ struct LiveValue {
 /// One execution of a skill, made by Skill::prepare().
 ///
 /// The Program destroys it once the execution has ended; the destructor lets go of the device,
-/// which then stands still (or has been stopped by forceStop()), and waits for the body's own
+/// which then stands still (or has been stopped by forceStop()), and waits for the work's own
 /// threads. Threading: all calls come from the owner's thread and must not block; none from inside
 /// another.
-class Body {
+class ExecutionWork {
 public:
-    virtual ~Body() = default;
+    virtual ~ExecutionWork() = default;
     /// Begins the work. Running has been committed before. `execution` tells its outcome, also from
     /// inside this call.
     virtual void start(Execution execution) = 0;
-    /// Asks to come to rest on the path; answered by Execution::atRest(), finish() or fail().
+    /// Asks to come to rest on the path; answered by ExecutionHandle::atRest(), finish() or fail().
     /// Errors: nothing is stopped then, and the client gets the error.
     virtual Result<void> suspend() = 0;
     /// Goes on from rest, on the same path.
     /// Errors: nothing moves then; if the arm was moved meanwhile, with the distance.
     virtual Result<void> resume() = 0;
-    /// Brakes; answered by Execution::atRest(), finish() or fail(). May follow suspend() before its
+    /// Brakes; answered by ExecutionHandle::atRest(), finish() or fail(). May follow suspend() before its
     /// answer: then one answer is enough. Also called when a suspended execution is given up; then
-    /// no answer is needed and the body is destroyed next.
+    /// no answer is needed and the work is destroyed next.
     virtual void halt() = 0;
     /// The device's own stop: the deadline to come to rest has passed, the device was lost, or the
     /// Program is destroyed while it runs.
@@ -99,12 +99,12 @@ public:
     /// \param snapshot a value for every parameter, each checked; Null only for optional ones.
     ///                 Valid during the call.
     /// Errors: Start is refused with it, and nothing has changed.
-    virtual Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) = 0;
+    virtual Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) = 0;
     /// What prepare() would say to `snapshot`, without any effect.
     /// Errors: as the report that it is not possible.
     virtual Result<CheckReport> check(const ValueMap& snapshot) {
-        const auto body = prepare(snapshot);
-        return body ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(body.error()));
+        const auto work = prepare(snapshot);
+        return work ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(work.error()));
     }
     /// Clears a fault, as far as the device agrees that it is gone. Does not wait for the device.
     /// Errors: timeout: the device has begun and is not done, the next call gives its outcome; else

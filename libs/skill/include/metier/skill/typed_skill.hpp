@@ -28,7 +28,7 @@ public:
 
     const SkillDescription& description() const final { return description_; }
 
-    Result<std::unique_ptr<Body>> prepare(const ValueMap& snapshot) final {
+    Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) final {
         auto parameters = parameters_.read(snapshot);
         if (!parameters) {
             return fail(std::move(parameters.error()));
@@ -44,17 +44,17 @@ public:
         return assess(*parameters);
     }
 
-    /// For a body: `execution.finish(skill.results().write(result))`. Lives as long as the skill.
+    /// For work: `execution.finish(skill.results().write(result))`. Lives as long as the skill.
     const FieldList<Results>& results() const noexcept { return results_; }
 
 protected:
     /// As Skill::prepare().
-    virtual Result<std::unique_ptr<Body>> plan(const Parameters& parameters) = 0;
+    virtual Result<std::unique_ptr<ExecutionWork>> plan(const Parameters& parameters) = 0;
 
     /// As Skill::check(); unless overridden it says no more than whether plan() succeeds.
     virtual Result<CheckReport> assess(const Parameters& parameters) {
-        const auto body = plan(parameters);
-        return body ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(body.error()));
+        const auto work = plan(parameters);
+        return work ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(work.error()));
     }
 
 private:

@@ -141,7 +141,7 @@ private:
     std::string external_text_;
     std::vector<std::pair<std::uint64_t, SafetyCallback>> callbacks_;
     std::uint64_t next_callback_ = 1;
-    device::SafetyState told_safety_ = device::SafetyState::normal;
+    device::SafetyState published_safety_ = device::SafetyState::normal;
     std::uint64_t steps_ = 0;
 };
 

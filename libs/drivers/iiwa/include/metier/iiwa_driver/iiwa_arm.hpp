@@ -60,7 +60,7 @@ public:
     Result<void> resetFault() override;
     device::Registration onSafetyChange(SafetyCallback callback) override;
 
-    Result<void> move(const device::PlannedMotion& motion, Done done) override;
+    Result<void> move(const device::ControllerPlannedMotion& motion, Done done) override;
     void stopMotion() noexcept override;
 
 private:

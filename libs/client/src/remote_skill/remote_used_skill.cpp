@@ -1,0 +1,421 @@
+#include "remote_skill/remote_used_skill.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "remote_skill/clock_offset.hpp"
+
+namespace metier::client {
+
+using composition::UsedSkillListener;
+using skill::Method;
+using skill::Reason;
+using skill::State;
+using skill::TransitionNumber;
+using client::AsyncSkill;
+
+RemoteUsedSkill::RemoteUsedSkill(Connection& connection, std::shared_ptr<UsedSkillLink> link, std::string name,
+                         std::string origin)
+    : connection_(connection),
+      link_(std::move(link)),
+      name_(std::move(name)),
+      origin_(std::move(origin)) {
+    link_->attach(this);
+}
+
+RemoteUsedSkill::~RemoteUsedSkill() {
+    link_->attach(nullptr);
+    drop();
+}
+
+/// To end a subscription, or a client, takes time: that is for the connection's thread.
+void RemoteUsedSkill::drop() {
+    if (skill_) {
+        connection_.run([skill = std::move(skill_)]() mutable { skill.reset(); });
+    }
+}
+
+Result<void> RemoteUsedSkill::available() const {
+    return skill_ ? Result<void>{} : fail(Errc::connection_lost, lost_);
+}
+
+bool RemoteUsedSkill::isOurs(const std::string& execution) const {
+    return execution.starts_with(origin_ + "/") || execution.starts_with(origin_ + "~");
+}
+
+void RemoteUsedSkill::adopt(std::shared_ptr<OpenSkill> skill, const AsyncSkill::Now& now) {
+    drop();
+    skill_ = std::move(skill);
+    description_ = skill_->skill.description();
+    state_ = now.state;
+    reason_text_ = now.reason_text;
+    const bool runs = state_ == State::running || state_ == State::suspended;
+    if (runs && isOurs(now.execution_id)) {
+        spdlog::warn("{}: execution {} is {} and nobody waits for it: it is halted", name_,
+                     now.execution_id, toString(state_));
+        left_over_ = true;
+        static_cast<void>(command(Method::halt));
+    }
+}
+
+/// What was read while nothing runs from here; all else is told by events.
+void RemoteUsedSkill::refresh(const AsyncSkill::Now& now) {
+    if (skill_ && execution_.empty() && !reset_ && !left_over_) {
+        state_ = now.state;
+        reason_text_ = now.reason_text;
+    }
+}
+
+void RemoteUsedSkill::lost(const std::string& why) {
+    drop();
+    lost_ = why;
+    if (reset_) {
+        tellReset(fail(Errc::connection_lost, why));
+    }
+    if (!execution_.empty()) {
+        end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, why});
+    }
+}
+
+void RemoteUsedSkill::check(const skill::ValueMap& parameters,
+                        std::function<void(Result<skill::CheckReport>)> done) {
+    using Report = Result<skill::CheckReport>;
+    const auto told = [link = link_, done = std::move(done)](Report report) {
+        link->post([done, report = std::move(report)](RemoteUsedSkill& /*used*/) { done(report); });
+    };
+    const auto sent =
+        skill_ ? skill_->skill.check(parameters,
+                                     [told](const opcua::Answer<skill::CheckReport>& report) {
+                                         told(report ? Report(*report) : fail(report.error()));
+                                     })
+               : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
+    if (!sent) {
+        told(fail(sent.error()));
+    }
+}
+
+void RemoteUsedSkill::compareClocks(std::function<void(Result<composition::ClockOffset>)> done) {
+    connection_.run([skill = skill_, link = link_, lost = lost_, done = std::move(done)] {
+        auto offset = skill ? clockOffsetOf(*skill->client)
+                            : Result<composition::ClockOffset>(fail(Errc::connection_lost, lost));
+        link->post([done, offset = std::move(offset)](RemoteUsedSkill& /*used*/) { done(offset); });
+    });
+}
+
+void RemoteUsedSkill::begin(skill::StartRequest request, UsedSkillListener& listener) {
+    listener_ = &listener;
+    execution_ = request.execution_id;
+    request.parent.server = connection_.options().own_server;
+    started_ = halt_wanted_ = suspend_wanted_ = left_over_ = missed_ = false;
+    const auto sent =
+        skill_
+            ? skill_->skill.startWith(
+                  request,
+                  [link = link_, id = execution_](const opcua::Answer<std::string>& answer) {
+                      link->post([id, answer](RemoteUsedSkill& used) { used.started(id, answer); });
+                  })
+            : opcua::failed(opcua::status::kBadConnectionClosed, lost_);
+    if (!sent) {
+        link_->post([id = execution_, text = sent.error().message](RemoteUsedSkill& used) {
+            if (used.execution_ == id) {
+                used.end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, text});
+            }
+        });
+    }
+}
+
+void RemoteUsedSkill::started(const std::string& id, const opcua::Answer<std::string>& answer) {
+    if (id != execution_) {
+        return;
+    }
+    if (answer) {
+        started_ = true;
+        if (halt_wanted_) {
+            static_cast<void>(command(Method::halt));
+        } else if (suspend_wanted_) {
+            static_cast<void>(command(Method::suspend));
+        }
+        if (std::exchange(missed_, false)) {
+            onMissed();
+        }
+        return;
+    }
+    const auto& failure = answer.error();
+    if (failure.delivery != opcua::Failure::Delivery::answered) {
+        haltIfRuns(id);
+        end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, failure.message});
+        return;
+    }
+    withReason(failure.message, [id](RemoteUsedSkill& used, const AsyncSkill::Now& now) {
+        if (used.execution_ == id) {
+            used.end({UsedSkillEnd::Kind::refused, {}, Reason::error, now.reason_text});
+        }
+    });
+}
+
+/// What was sent may have been carried out, though nobody has heard of it.
+void RemoteUsedSkill::haltIfRuns(const std::string& id) {
+    if (!skill_) {
+        return;
+    }
+    const auto sent = skill_->skill.execution(
+        id, [link = link_, id](const opcua::Answer<skill::ExecutionRecord>& record) {
+            if (record && (record->state == State::running || record->state == State::suspended)) {
+                link->post([id](RemoteUsedSkill& used) { used.haltLeftOver(id); });
+            }
+        });
+    static_cast<void>(sent);  // nothing can be done about a server that does not hear
+}
+
+/// Halt names no execution: one that was begun meanwhile must not be hit.
+void RemoteUsedSkill::haltLeftOver(const std::string& id) {
+    if (!execution_.empty()) {
+        unsure_ = id;
+        return;
+    }
+    left_over_ = true;
+    static_cast<void>(command(Method::halt));
+}
+
+void RemoteUsedSkill::withReason(std::string otherwise,
+                             std::function<void(RemoteUsedSkill&, const AsyncSkill::Now&)> then) {
+    connection_.run(
+        [skill = skill_, link = link_, otherwise = std::move(otherwise), then = std::move(then)] {
+            auto read = skill ? skill->skill.now() : opcua::Answer<AsyncSkill::Now>();
+            auto now = read ? std::move(*read) : AsyncSkill::Now();
+            if (now.reason_text.empty()) {
+                now.reason_text = otherwise;
+            }
+            link->post([then, now = std::move(now)](RemoteUsedSkill& used) { then(used, now); });
+        });
+}
+
+void RemoteUsedSkill::onTransition(const skill::TransitionEvent& event) {
+    state_ = event.to;
+    reason_text_ = event.reason_text;
+    if (execution_.empty() || event.execution_id != execution_) {
+        return;
+    }
+    switch (event.number) {
+        case TransitionNumber::ready_to_running:
+            return;
+        case TransitionNumber::running_to_suspended:
+            if (listener_ != nullptr) {
+                listener_->onSuspended();
+            }
+            return;
+        case TransitionNumber::suspended_to_running:
+            if (listener_ != nullptr) {
+                listener_->onResumed();
+            }
+            return;
+        case TransitionNumber::running_to_ready:
+            return finished();
+        case TransitionNumber::suspended_to_ready:
+            return end(
+                {UsedSkillEnd::Kind::halted, {}, event.reason, "it was reset while it was suspended"});
+        default:
+            return end({UsedSkillEnd::Kind::halted, {}, event.reason, event.reason_text});
+    }
+}
+
+void RemoteUsedSkill::onStopping(const skill::StoppingEvent& event) {
+    if (listener_ != nullptr && !execution_.empty() && event.execution_id == execution_) {
+        listener_->onStopping({event.to, event.reason, event.reason_text});
+    }
+}
+
+/// Asks what has become of the skill, or of its execution that was begun here.
+void RemoteUsedSkill::onMissed() {
+    if (!skill_) {
+        return;  // once it is back, it is looked at
+    }
+    if (execution_.empty()) {
+        withReason({}, [](RemoteUsedSkill& used, const AsyncSkill::Now& now) { used.refresh(now); });
+    } else if (!started_) {
+        missed_ = true;
+    } else {
+        const auto sent = skill_->skill.execution(
+            execution_, [link = link_, id = execution_](const auto& record) {
+                link->post([id, record](RemoteUsedSkill& used) { used.caughtUp(id, record); });
+            });
+        if (!sent) {
+            end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, sent.error().message});
+        }
+    }
+}
+
+void RemoteUsedSkill::caughtUp(const std::string& id,
+                           const opcua::Answer<skill::ExecutionRecord>& record) {
+    if (execution_ != id) {
+        return;
+    }
+    if (!record) {
+        haltIfRuns(id);
+        end({UsedSkillEnd::Kind::lost,
+             {},
+             Reason::device_lost,
+             "what became of it: " + record.error().message});
+        return;
+    }
+    tellMissed(*record);
+}
+
+/// Reports the state that missed events would have reported.
+void RemoteUsedSkill::tellMissed(const skill::ExecutionRecord& record) {
+    const auto before = std::exchange(state_, record.state);
+    switch (record.state) {
+        case State::suspended:
+            if (before != State::suspended && listener_ != nullptr) {
+                listener_->onSuspended();
+            }
+            return;
+        case State::running:
+            if (before == State::suspended && listener_ != nullptr) {
+                listener_->onResumed();
+            }
+            return;
+        case State::ready:
+            if (record.reason == Reason::finished) {
+                return end({UsedSkillEnd::Kind::finished, record.result});
+            }
+            return end(
+                {UsedSkillEnd::Kind::halted, {}, record.reason, "it was reset while it was suspended"});
+        case State::halted:
+            reason_text_ = record.reason_text;
+            return end({UsedSkillEnd::Kind::halted, {}, record.reason, record.reason_text});
+    }
+}
+
+/// Fetches the result, if there is any.
+void RemoteUsedSkill::finished() {
+    if (description_.results.empty() || !skill_) {
+        end({});
+        return;
+    }
+    const auto sent = skill_->skill.execution(
+        execution_,
+        [link = link_, id = execution_](const opcua::Answer<skill::ExecutionRecord>& record) {
+            link->post([id, record](RemoteUsedSkill& used) {
+                if (used.execution_ != id) {
+                    return;
+                }
+                used.end(record ? UsedSkillEnd{UsedSkillEnd::Kind::finished, record->result}
+                                 : UsedSkillEnd{UsedSkillEnd::Kind::lost,
+                                            {},
+                                            Reason::device_lost,
+                                            "its result: " + record.error().message});
+            });
+        });
+    if (!sent) {
+        end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, sent.error().message});
+    }
+}
+
+void RemoteUsedSkill::end(UsedSkillEnd end) {
+    execution_.clear();
+    if (const auto unsure = std::exchange(unsure_, {}); !unsure.empty()) {
+        haltIfRuns(unsure);
+    }
+    if (auto* listener = std::exchange(listener_, nullptr)) {
+        listener->onEnd(std::move(end));
+    }
+}
+
+void RemoteUsedSkill::release() {
+    listener_ = nullptr;
+    reset_.reset();
+}
+
+Result<void> RemoteUsedSkill::command(Method method) {
+    if (!skill_) {
+        return fail(Errc::connection_lost, lost_);
+    }
+    auto sent = skill_->skill.call(
+        method, [link = link_, method, id = execution_](const opcua::Answer<>& answer) {
+            if (!answer) {
+                link->post([method, id, failure = answer.error()](RemoteUsedSkill& used) {
+                    used.refused(method, id, failure);
+                });
+            }
+        });
+    return sent ? Result<void>{} : fail(sent.error());
+}
+
+void RemoteUsedSkill::refused(Method method, const std::string& id, const opcua::Failure& failure) {
+    withReason(failure.message,
+               [method, id, code = failure.code](RemoteUsedSkill& used, const AsyncSkill::Now& now) {
+                   if (used.listener_ != nullptr && !id.empty() && used.execution_ == id) {
+                       used.listener_->onRefused(method, {code, now.reason_text});
+                   }
+               });
+}
+
+Result<void> RemoteUsedSkill::suspend() {
+    if (!execution_.empty() && !started_) {
+        suspend_wanted_ = true;
+        return {};
+    }
+    return command(Method::suspend);
+}
+
+Result<void> RemoteUsedSkill::resume() {
+    return command(Method::resume);
+}
+
+void RemoteUsedSkill::halt() {
+    if (!execution_.empty() && !started_) {
+        halt_wanted_ = true;
+        return;
+    }
+    static_cast<void>(command(Method::halt));  // a server that is lost is told by lost()
+}
+
+/// Each is sent, also while the answer to another is awaited: that may be a refusal.
+Result<void> RemoteUsedSkill::reset(UsedSkillListener& listener) {
+    listener_ = &listener;
+    if (!skill_) {
+        return fail(Errc::connection_lost, lost_);
+    }
+    const auto call = ++reset_count_;
+    const auto sent =
+        skill_->skill.call(Method::reset, [link = link_, call](const opcua::Answer<>& answer) {
+            link->post([call, answer](RemoteUsedSkill& used) { used.wasReset(call, answer); });
+        });
+    if (!sent) {
+        return fail(sent.error());
+    }
+    reset_ = call;
+    return {};
+}
+
+void RemoteUsedSkill::wasReset(std::uint64_t call, const opcua::Answer<>& answer) {
+    if (reset_ != call) {
+        return;
+    }
+    if (answer) {
+        state_ = State::ready;
+        tellReset({});
+        return;
+    }
+    withReason(answer.error().message,
+               [call, code = answer.error().code](RemoteUsedSkill& used, const AsyncSkill::Now& now) {
+                   if (used.reset_ != call) {
+                       return;
+                   }
+                   const bool ready = now.state == State::ready;  // somebody else was quicker
+                   used.state_ = ready ? now.state : used.state_;
+                   used.tellReset(ready ? Result<void>{} : fail(code, now.reason_text));
+               });
+}
+
+void RemoteUsedSkill::tellReset(const Result<void>& outcome) {
+    reset_.reset();
+    if (listener_ != nullptr && execution_.empty()) {
+        listener_->onReset(outcome);
+    }
+}
+
+}  // namespace metier::client

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "remote_skill/connection.hpp"
+#include "metier/composition/used_skill.hpp"
+
+namespace metier::client {
+
+/// A skill of another server, by asynchronous requests and events.
+///
+/// Threading: the owner's thread.
+class RemoteUsedSkill final : public composition::UsedSkill {
+public:
+    /// \param connection must outlive this
+    /// \param name       for texts
+    /// \param origin     as the ids of executions begin that are begun here
+    RemoteUsedSkill(Connection& connection, std::shared_ptr<UsedSkillLink> link, std::string name,
+                std::string origin);
+    ~RemoteUsedSkill() override;
+    RemoteUsedSkill(const RemoteUsedSkill&) = delete;
+    RemoteUsedSkill& operator=(const RemoteUsedSkill&) = delete;
+
+    const std::string& name() const override { return name_; }
+    const skill::SkillDescription& description() const override { return description_; }
+    std::string serverUrl() const override { return connection_.options().url; }
+    Result<void> available() const override;
+    skill::State state() const override { return state_; }
+    std::string reasonText() const override { return reason_text_; }
+    bool leftOver() const override { return left_over_; }
+    Result<void> reset(composition::UsedSkillListener& listener) override;
+    void check(const skill::ValueMap& parameters,
+               std::function<void(Result<skill::CheckReport>)> done) override;
+    void compareClocks(std::function<void(Result<composition::ClockOffset>)> done) override;
+    void begin(skill::StartRequest request, composition::UsedSkillListener& listener) override;
+    Result<void> suspend() override;
+    Result<void> resume() override;
+    void halt() override;
+    void release() override;
+
+    // What the connection tells.
+    void adopt(std::shared_ptr<OpenSkill> skill, const client::AsyncSkill::Now& now);
+    void refresh(const client::AsyncSkill::Now& now);
+    void lost(const std::string& why);
+    void onTransition(const skill::TransitionEvent& event);
+    void onStopping(const skill::StoppingEvent& event);
+    /// Transitions may have been missed.
+    void onMissed();
+
+private:
+    using UsedSkillEnd = composition::UsedSkillEnd;
+
+    bool isOurs(const std::string& execution) const;
+    void started(const std::string& id, const opcua::Answer<std::string>& answer);
+    void finished();
+    void caughtUp(const std::string& id, const opcua::Answer<skill::ExecutionRecord>& record);
+    void tellMissed(const skill::ExecutionRecord& record);
+    void end(UsedSkillEnd end);
+    /// \param call the Reset that is answered
+    void wasReset(std::uint64_t call, const opcua::Answer<>& answer);
+    void tellReset(const Result<void>& outcome);
+    /// Sends a command and tells the listener if it is refused.
+    Result<void> command(skill::Method method);
+    /// \param id of the execution that it was meant for
+    void refused(skill::Method method, const std::string& id, const opcua::Failure& failure);
+    void haltIfRuns(const std::string& id);
+    void haltLeftOver(const std::string& id);
+    /// Has `then` called with the skill's state and the server's reason for the last refusal, or
+    /// else with `otherwise`, and Halted.
+    void withReason(std::string otherwise,
+                    std::function<void(RemoteUsedSkill&, const client::AsyncSkill::Now&)> then);
+    void drop();
+
+    Connection& connection_;
+    std::shared_ptr<UsedSkillLink> link_;  // with whatever is on its way here
+    std::string name_;
+    std::string origin_;
+    skill::SkillDescription description_;
+    std::shared_ptr<OpenSkill> skill_;  // with the work that waits for the server; null: lost
+    std::string lost_;                  // why there is none
+    skill::State state_ = skill::State::halted;
+    std::string reason_text_;
+    bool left_over_ = false;
+    // The Reset whose answer is awaited; nothing if none is. Earlier ones have lower numbers.
+    std::optional<std::uint64_t> reset_;
+    std::uint64_t reset_count_ = 0;
+
+    composition::UsedSkillListener* listener_ = nullptr;
+    std::string execution_;  // begun here and not over
+    std::string unsure_;     // maybe runs, to be asked for once execution_ is over
+    bool started_ = false;   // the server has said so
+    bool missed_ = false;    // transitions may have been missed before it said so
+    bool halt_wanted_ = false;
+    bool suspend_wanted_ = false;
+};
+
+}  // namespace metier::client

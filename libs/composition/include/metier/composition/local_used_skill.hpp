@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "metier/composition/used_skill.hpp"
+#include "metier/skill/executor.hpp"
+#include "metier/skill/program_observer.hpp"
+
+namespace metier::composition {
+
+/// A skill of the same process.
+///
+/// Threading: the owner's thread, which is the Program's.
+class LocalUsedSkill final : public UsedSkill, private skill::ProgramObserver {
+public:
+    /// \param program must outlive this
+    /// \param caller  as whom the composed skill commands it
+    LocalUsedSkill(skill::Program& program, std::shared_ptr<skill::Executor> executor,
+               skill::Caller caller);
+    ~LocalUsedSkill() override;
+    LocalUsedSkill(const LocalUsedSkill&) = delete;
+    LocalUsedSkill& operator=(const LocalUsedSkill&) = delete;
+
+    const std::string& name() const override { return program_.description().name; }
+    const skill::SkillDescription& description() const override { return program_.description(); }
+    Result<void> available() const override { return {}; }
+    skill::State state() const override { return program_.state(); }
+    std::string reasonText() const override { return program_.reasonText(); }
+    Result<void> reset(UsedSkillListener& listener) override;
+    void check(const skill::ValueMap& parameters,
+               std::function<void(Result<skill::CheckReport>)> done) override;
+    void compareClocks(std::function<void(Result<ClockOffset>)> done) override;
+    void begin(skill::StartRequest request, UsedSkillListener& listener) override;
+    Result<void> suspend() override;
+    Result<void> resume() override;
+    void halt() override;
+    void release() override { link_->listener = nullptr; }
+
+private:
+    /// What posted work reaches, as long as both ends are there.
+    struct Link {
+        UsedSkillListener* listener = nullptr;
+    };
+
+    void onTransition(const skill::TransitionEvent& event) override;
+    void onStopping(const skill::StoppingEvent& event) override;
+    void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
+    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
+    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
+    void onResult(const skill::ValueMap& /*result*/) override {}
+    void onProgress(const skill::Value& intermediate) override;
+    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
+
+    /// Has `tell` called with the listener, outside of the call that is under way.
+    template <typename Tell>
+    void post(Tell tell);
+    /// Has `done` called with `answer`, outside of the call that is under way.
+    template <typename Answer>
+    void answer(std::function<void(Result<Answer>)> done, Answer answer);
+    void end(UsedSkillEnd end);
+    UsedSkillEnd endOf(const skill::TransitionEvent& event) const;
+
+    skill::Program& program_;
+    std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
+    skill::Caller caller_;
+    std::string execution_;  // that was begun here and has not ended
+    // Shared with posted work, which may come after this; a new one for each listener.
+    std::shared_ptr<Link> link_ = std::make_shared<Link>();
+    // Posted answers ask it whether this is still there.
+    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
+};
+
+}  // namespace metier::composition

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+
+#include "cabinet_settings.hpp"
+#include "metier/device/motion_planner.hpp"
+#include "metier/motion/pose.hpp"
+#include "metier/iiwa_driver/wire.hpp"
+
+namespace metier::iiwa_driver {
+
+/// The arm stands when no axis is faster [rad/s]: over the noise of the cabinet's differences.
+inline constexpr double kStandstillSpeed = 5e-3;
+bool stands(const CabinetState& state) noexcept;
+
+/// How far something is from where it should be.
+struct Miss {
+    enum class Quantity : std::uint8_t { axis, position, rotation };
+    Quantity quantity = Quantity::axis;
+    std::size_t axis = 0;   ///< from 0, for an axis
+    double distance = 0.0;  ///< [rad]; [m] for a position
+    double limit = 0.0;     ///< the same unit
+    bool within() const noexcept { return distance <= limit; }
+};
+/// As "axis 2 0.0135 rad from its target, limit 0.0020 rad".
+std::string toString(const Miss& miss);
+
+/// How a motion of the cabinet's planner ended.
+struct RunEnd {
+    enum class Cause : std::uint8_t {
+        at_target,
+        stopped,
+        force,
+        refused,     ///< the cabinet did not execute `command`
+        not_ready,   ///< the cabinet is not ready to move
+        off_target,  ///< it ended elsewhere
+        stalled,     ///< it neither moved nor ended
+        disconnected,
+    };
+    Cause cause = Cause::at_target;
+    Command command{};  ///< that was refused
+    Miss miss{};
+    int error = 0;  ///< code that the cabinet noted during the motion, 0 if none
+    device::MotionOutcome outcome{};
+};
+
+/// One motion of the cabinet's own planner, from its settings to standstill.
+///
+/// Trusts no acknowledgement: the cabinet replaces values that it does not accept in silence, so
+/// the end is judged by where the arm is.
+/// Threading: one thread, the cycle. Nothing allocates, locks or throws.
+class ControllerPlannedRun {
+public:
+    struct Request {
+        const device::ControllerPlannedMotion& motion;
+        motion::Pose flange_from_tool;  ///< what the cabinet adds to the flange in its poses
+        double force_tolerance = 10.0;    ///< of the cabinet's estimate [N]
+    };
+
+    /// \param now the newest state, in which no motion is under way
+    void begin(const Request& request, const CabinetState& now,
+               const CabinetSettings& settings) noexcept;
+    /// Brakes; the motion ends as `cause`.
+    void stop(RunEnd::Cause cause) noexcept;
+
+    /// What to send now.
+    Command command() const noexcept;
+    /// Takes the answer to it. \return whether the motion is over
+    /// \param step since the answer before [s]
+    bool take(const Command& sent, const CabinetState& answer, double step,
+              CabinetSettings& settings) noexcept;
+
+    /// There is more to tell before the motion begins: it should not wait for the next cycle.
+    bool hurried() const noexcept { return phase_ == Phase::telling; }
+    const RunEnd& end() const noexcept { return end_; }
+
+private:
+    enum class Phase : std::uint8_t { telling, under_way, stopping };
+
+    Command moveCommand(const Request& request) noexcept;
+    void requireSettings(const Request& request, const CabinetSettings& settings) noexcept;
+    bool told(const Command& sent, const CabinetState& answer, CabinetSettings& settings) noexcept;
+    bool watch(const CabinetState& answer, double step) noexcept;
+    bool stalls(const CabinetState& answer, double step) noexcept;
+    bool brake(const CabinetState& answer, double step) noexcept;
+    void note(const CabinetState& answer) noexcept;
+    bool overAs(RunEnd::Cause cause) noexcept;
+    Miss missOf(const CabinetState& state) const noexcept;
+
+    Phase phase_ = Phase::telling;
+    CommandList list_;
+    bool by_joints_ = true;
+    device::JointArray target_joints_;
+    motion::Pose target_;  ///< of the cabinet's tool
+    device::JointArray start_;
+    int error_before_ = 0;
+    bool started_ = false;         ///< seen to move
+    bool condition_new_ = false;   ///< a force condition that is met belongs to this motion
+    double idle_ = 0.0;            ///< without a motion [s]
+    device::JointArray progress_;  ///< where the arm was when it last got on [rad]
+    double stalled_ = 0.0;         ///< with a motion, since then [s]
+    double braking_ = 0.0;         ///< [s]
+    double since_cancel_ = 0.0;    ///< [s]
+    bool cancelled_ = false;
+    RunEnd::Cause stop_cause_ = RunEnd::Cause::stopped;
+    RunEnd end_;
+};
+
+}  // namespace metier::iiwa_driver

@@ -1,0 +1,278 @@
+#include "node_role.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+namespace metier::opcua_skill {
+
+namespace {
+
+constexpr std::uint8_t detailOf(skill::Method method) {
+    return static_cast<std::uint8_t>(method);
+}
+constexpr std::uint8_t detailOf(skill::State state) {
+    return static_cast<std::uint8_t>(state);
+}
+constexpr std::uint8_t detailOf(Part part) {
+    return static_cast<std::uint8_t>(part);
+}
+constexpr std::uint8_t detailOf(DiagnosticItem item) {
+    return static_cast<std::uint8_t>(item);
+}
+
+struct FixedPath {
+    std::string_view path;
+    NodeKind kind;
+    std::uint8_t detail = 0;
+};
+
+constexpr std::array kFixedPaths{
+    FixedPath{"Start", NodeKind::method, detailOf(skill::Method::start)},
+    FixedPath{"Suspend", NodeKind::method, detailOf(skill::Method::suspend)},
+    FixedPath{"Resume", NodeKind::method, detailOf(skill::Method::resume)},
+    FixedPath{"Halt", NodeKind::method, detailOf(skill::Method::halt)},
+    FixedPath{"Reset", NodeKind::method, detailOf(skill::Method::reset)},
+    FixedPath{"StartWith", NodeKind::method, detailOf(skill::Method::start_with)},
+    FixedPath{"Check", NodeKind::check},
+    FixedPath{"GetExecution", NodeKind::get_execution},
+    FixedPath{"CurrentState", NodeKind::state},
+    FixedPath{"CurrentState/Id", NodeKind::state_id},
+    FixedPath{"CurrentState/Number", NodeKind::state_number},
+    FixedPath{"LastTransition", NodeKind::transition},
+    FixedPath{"LastTransition/Id", NodeKind::transition_id},
+    FixedPath{"LastTransition/Number", NodeKind::transition_number},
+    FixedPath{"LastTransition/TransitionTime", NodeKind::transition_time},
+    FixedPath{"ReasonText", NodeKind::reason_text},
+    FixedPath{"ExecutionId", NodeKind::execution_id},
+    FixedPath{"Steps", NodeKind::steps},
+    FixedPath{"CurrentStep", NodeKind::current_step},
+    FixedPath{"Progress", NodeKind::progress},
+    FixedPath{"ReadySubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::ready)},
+    FixedPath{"ReadySubStates/CurrentState/Id", NodeKind::sub_state_id, detailOf(skill::State::ready)},
+    FixedPath{"ReadySubStates/CurrentState/Number", NodeKind::sub_state_number,
+              detailOf(skill::State::ready)},
+    FixedPath{"RunningSubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::running)},
+    FixedPath{"RunningSubStates/CurrentState/Id", NodeKind::sub_state_id,
+              detailOf(skill::State::running)},
+    FixedPath{"RunningSubStates/CurrentState/Number", NodeKind::sub_state_number,
+              detailOf(skill::State::running)},
+    FixedPath{"HaltedSubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::halted)},
+    FixedPath{"HaltedSubStates/CurrentState/Id", NodeKind::sub_state_id,
+              detailOf(skill::State::halted)},
+    FixedPath{"HaltedSubStates/CurrentState/Number", NodeKind::sub_state_number,
+              detailOf(skill::State::halted)},
+    FixedPath{"ProgramDiagnostic", NodeKind::diagnostic, detailOf(DiagnosticItem::whole)},
+    FixedPath{"ProgramDiagnostic/CreateSessionId", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::create_session_id)},
+    FixedPath{"ProgramDiagnostic/CreateClientName", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::create_client_name)},
+    FixedPath{"ProgramDiagnostic/InvocationCreationTime", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::invocation_creation_time)},
+    FixedPath{"ProgramDiagnostic/LastTransitionTime", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_transition_time)},
+    FixedPath{"ProgramDiagnostic/LastMethodCall", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_call)},
+    FixedPath{"ProgramDiagnostic/LastMethodSessionId", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_session_id)},
+    FixedPath{"ProgramDiagnostic/LastMethodInputArguments", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_input_arguments)},
+    FixedPath{"ProgramDiagnostic/LastMethodOutputArguments", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_output_arguments)},
+    FixedPath{"ProgramDiagnostic/LastMethodInputValues", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_input_values)},
+    FixedPath{"ProgramDiagnostic/LastMethodOutputValues", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_output_values)},
+    FixedPath{"ProgramDiagnostic/LastMethodCallTime", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_call_time)},
+    FixedPath{"ProgramDiagnostic/LastMethodReturnStatus", NodeKind::diagnostic,
+              detailOf(DiagnosticItem::last_method_return_status)},
+};
+
+struct PartPath {
+    std::string_view path;
+    Part part;
+};
+
+constexpr std::array kPartPaths{
+    PartPath{"", Part::whole},
+    PartPath{"CartesianCoordinates", Part::position},
+    PartPath{"CartesianCoordinates/X", Part::x},
+    PartPath{"CartesianCoordinates/Y", Part::y},
+    PartPath{"CartesianCoordinates/Z", Part::z},
+    PartPath{"Orientation", Part::orientation},
+    PartPath{"Orientation/A", Part::a},
+    PartPath{"Orientation/B", Part::b},
+    PartPath{"Orientation/C", Part::c},
+    PartPath{"X", Part::x},
+    PartPath{"Y", Part::y},
+    PartPath{"Z", Part::z},
+};
+
+std::optional<NodeRole> fixedRole(std::string_view path) {
+    const auto* found = std::find_if(kFixedPaths.begin(), kFixedPaths.end(),
+                                     [&](const FixedPath& fixed) { return fixed.path == path; });
+    if (found == kFixedPaths.end()) {
+        return std::nullopt;
+    }
+    return NodeRole{found->kind, found->detail, 0};
+}
+
+std::optional<NodeRole> partRole(NodeKind kind, std::string_view below) {
+    const auto* found = std::find_if(kPartPaths.begin(), kPartPaths.end(),
+                                     [&](const PartPath& part) { return part.path == below; });
+    if (found == kPartPaths.end()) {
+        return std::nullopt;
+    }
+    return NodeRole{kind, detailOf(found->part), 0};
+}
+
+/// Where the fields of one place hang, and what their nodes are for.
+struct FieldGroup {
+    std::string_view folder;
+    skill::Place place;
+    NodeKind value;
+    NodeKind unit;
+    NodeKind range;
+};
+
+constexpr std::array kGroups{
+    FieldGroup{"ParameterSet/", skill::Place::parameter_set, NodeKind::parameter, NodeKind::parameter_unit,
+               NodeKind::parameter_range},
+    FieldGroup{"Options/", skill::Place::options, NodeKind::parameter, NodeKind::parameter_unit,
+               NodeKind::parameter_range},
+    FieldGroup{"FinalResultData/", skill::Place::final_result, NodeKind::result, NodeKind::result_unit,
+               NodeKind::result_range},
+};
+
+/// Nothing for a unit or range that the field does not give: the type's own holds.
+std::optional<NodeRole> fieldRole(const FieldGroup& group, const skill::Field& field,
+                                    std::string_view below) {
+    if (below == "EngineeringUnits") {
+        return field.unit == skill::kOne ? std::nullopt : std::optional(NodeRole{group.unit, 0, 0});
+    }
+    if (below == "EURange") {
+        return field.range ? std::optional(NodeRole{group.range, 0, 0}) : std::nullopt;
+    }
+    return partRole(group.value, below);
+}
+
+/// Assigns one description's fields and remembers which of them were met.
+class Assignment {
+public:
+    explicit Assignment(const skill::SkillDescription& description)
+        : description_(description),
+          parameter_met_(description.parameters.size()),
+          result_met_(description.results.size()) {}
+
+    std::optional<NodeRole> nodeRoleOf(std::string_view path) {
+        if (const auto fixed = fixedRole(path)) {
+            return fixed;
+        }
+        for (const auto& group : kGroups) {
+            if (path.substr(0, group.folder.size()) == group.folder) {
+                return inGroup(group, path.substr(group.folder.size()));
+            }
+        }
+        return std::nullopt;
+    }
+
+    struct Missing {
+        std::string path;
+        bool needed = true;  ///< a parameter that has to be given
+    };
+    std::vector<Missing> missing() const {
+        std::vector<Missing> fields;
+        for (std::size_t i = 0; i < parameter_met_.size(); ++i) {
+            const auto& field = description_.parameters[i];
+            if (!parameter_met_[i]) {
+                const auto* folder =
+                    field.place == skill::Place::options ? "Options/" : "ParameterSet/";
+                fields.push_back(
+                    {folder + field.name, !field.optional && skill::isNull(field.default_value)});
+            }
+        }
+        for (std::size_t i = 0; i < result_met_.size(); ++i) {
+            if (!result_met_[i]) {
+                fields.push_back({"FinalResultData/" + description_.results[i].name, false});
+            }
+        }
+        return fields;
+    }
+
+private:
+    std::optional<NodeRole> inGroup(const FieldGroup& group, std::string_view rest) {
+        const auto slash = rest.find('/');
+        const auto name = rest.substr(0, slash);
+        const auto below =
+            slash == std::string_view::npos ? std::string_view() : rest.substr(slash + 1);
+        const bool is_result = group.place == skill::Place::final_result;
+        const auto& fields = is_result ? description_.results : description_.parameters;
+        const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
+            return candidate.name == name && (is_result || candidate.place == group.place);
+        });
+        if (field == fields.end()) {
+            return std::nullopt;
+        }
+        auto node_role = fieldRole(group, *field, below);
+        if (node_role) {
+            node_role->field = static_cast<std::uint16_t>(field - fields.begin());
+            (is_result ? result_met_ : parameter_met_)[node_role->field] = true;
+        }
+        return node_role;
+    }
+
+    const skill::SkillDescription& description_;
+    std::vector<bool> parameter_met_;
+    std::vector<bool> result_met_;
+};
+
+const LayoutNode* findNode(const SkillLayout& layout, std::string_view path) {
+    const auto found = std::find_if(layout.begin(), layout.end(),
+                                    [&](const LayoutNode& node) { return node.path == path; });
+    return found == layout.end() ? nullptr : &*found;
+}
+
+/// Whether an instance may lack the node: it is declared as Optional, or hangs below such a one
+/// that the instance lacks, too.
+bool isOptional(const SkillLayout& declared, const SkillLayout& instance, std::string_view path) {
+    for (const auto* node = findNode(declared, path);
+         node != nullptr && findNode(instance, node->path) == nullptr;
+         node = node->parent == LayoutNode::kSkill ? nullptr : &declared[node->parent]) {
+        if (node->rule == LayoutNode::Rule::optional) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+Result<std::vector<UsedNode>> assignNodeRoles(const SkillLayout& layout,
+                                             const skill::SkillDescription& description,
+                                             const SkillLayout& declared) {
+    Assignment assignment(description);
+    std::vector<UsedNode> used;
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+        if (const auto node_role = assignment.nodeRoleOf(layout[i].path)) {
+            used.push_back({i, *node_role});
+        }
+    }
+    std::vector<std::string> missing;
+    for (auto& field : assignment.missing()) {
+        if (field.needed || !isOptional(declared, layout, field.path)) {
+            missing.push_back(std::move(field.path));
+        }
+    }
+    if (!missing.empty()) {
+        return fail(Errc::not_found, fmt::format("{} has no node for {}", description.type,
+                                                 fmt::join(missing, ", ")));
+    }
+    return used;
+}
+
+}  // namespace metier::opcua_skill

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metier/skill/skill.hpp"
+#include "skill_layout.hpp"
+
+namespace metier::opcua_skill {
+
+/// What a node below a skill tells or takes.
+enum class NodeKind : std::uint8_t {
+    method,  ///< detail: skill::Method
+    check,
+    get_execution,
+    state,
+    state_id,
+    state_number,
+    transition,
+    transition_id,
+    transition_number,
+    transition_time,
+    sub_state,  ///< detail, also of the next two: the skill::State that it belongs to
+    sub_state_id,
+    sub_state_number,
+    parameter,       ///< detail: Part
+    parameter_unit,  ///< detail: Part
+    parameter_range,
+    result,  ///< detail: Part
+    result_unit,
+    result_range,
+    diagnostic,  ///< detail: DiagnosticItem
+    reason_text,
+    execution_id,
+    steps,  ///< of a sequence
+    current_step,
+    progress,
+};
+
+/// Which part of a value a Variable holds.
+enum class Part : std::uint8_t { whole, position, orientation, x, y, z, a, b, c };
+
+enum class DiagnosticItem : std::uint8_t {
+    whole,
+    create_session_id,
+    create_client_name,
+    invocation_creation_time,
+    last_transition_time,
+    last_method_call,
+    last_method_session_id,
+    last_method_input_arguments,
+    last_method_output_arguments,
+    last_method_input_values,
+    last_method_output_values,
+    last_method_call_time,
+    last_method_return_status,
+};
+
+struct NodeRole {
+    NodeKind kind = NodeKind::method;
+    std::uint8_t detail = 0;
+    std::uint16_t field = 0;  ///< index in the skill's parameters or results
+
+    bool operator==(const NodeRole&) const = default;
+};
+
+/// A node of a layout that a skill uses.
+struct UsedNode {
+    std::size_t index = 0;  ///< in the layout
+    NodeRole node_role;
+};
+
+/// The nodes that a skill of that description uses, in the order of the layout.
+/// \param declared what the type of an instance declares. Fields that it declares as Optional may
+/// be
+///                 missing: results, and parameters that nobody need give. Empty: none may be
+/// Errors: not_found, naming every other field that the layout lacks.
+Result<std::vector<UsedNode>> assignNodeRoles(const SkillLayout& layout,
+                                             const skill::SkillDescription& description,
+                                             const SkillLayout& declared = {});
+
+}  // namespace metier::opcua_skill

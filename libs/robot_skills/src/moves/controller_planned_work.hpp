@@ -1,0 +1,103 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "moves/arm_work.hpp"
+#include "metier/base/clock.hpp"
+#include "metier/device/motion_planner.hpp"
+#include "metier/motion/trajectory.hpp"
+#include "metier/robot_skills/move_parameters.hpp"
+#include "moves/move_variant.hpp"
+
+namespace metier::robot_skills {
+
+/// Tells an execution of a motion that its controller has ended at the target or by a force.
+using TellMove =
+    std::function<void(const skill::ExecutionHandle&, const MoveResults&, const device::MotionOutcome&)>;
+
+/// tell.finish(): for moves that know no force.
+void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results,
+                  const device::MotionOutcome& outcome);
+
+/// One motion of a controller's own planner: what its caller and its controller share.
+///
+/// Threading: measured by the arm's cycle thread and ended by its notifying thread while it is in
+/// motion; else the owner's thread has it.
+class ControllerPlannedMove final : public device::MotionObserver {
+public:
+    struct Setup {
+        device::Arm& arm;
+        const Clock& clock;
+        motion::Trajectory trajectory;
+        PathDeviationMeter::Path path;
+        MoveEnd end;
+        TellMove tell;
+    };
+
+    explicit ControllerPlannedMove(Setup setup);
+
+    /// Owner's thread, before the controller is asked to move.
+    void begin(const skill::ExecutionHandle& execution);
+    /// Owner's thread, instead of ended(): the controller did not begin.
+    void abandon() noexcept { in_motion_.store(false); }
+    /// Any thread.
+    bool inMotion() const noexcept { return in_motion_.load(); }
+    /// Whoever stops the motion says so before; what stops else is an error.
+    void stopAsked() noexcept { stop_asked_.store(true); }
+    /// Owner's thread while not in motion: where it came to rest [rad].
+    const device::JointArray& restingPlace() const noexcept { return rest_; }
+
+    void observe(const device::ArmState& state) noexcept override;
+    /// Notifying thread.
+    void ended(const Result<device::MotionOutcome>& outcome);
+
+private:
+    MoveResults results(const device::JointArray& reached) const;
+    void tellArrived(const device::MotionOutcome& outcome);
+    void tellStopped();
+
+    Setup setup_;
+    PathDeviationMeter deviation_;
+    std::atomic<bool> in_motion_{false};
+    std::atomic<bool> stop_asked_{false};
+    skill::ExecutionHandle tell_;
+    device::JointArray rest_;
+    SteadyTime begun_{};
+    double first_begun_ = 0.0;                  ///< [s since 1970-01-01 UTC]
+    double last_ended_ = 0.0;                   ///< as first_begun_
+    std::chrono::duration<double> moved_{0.0};  ///< before the last begin()
+};
+
+/// An execution that lets the arm's controller plan and run the motion.
+class ControllerPlannedWork final : public ArmWork {
+public:
+    struct Devices {
+        device::Arm& arm;  ///< both must outlive the work
+        device::MotionPlanner& planner;
+    };
+
+    /// \param motion what `move` stands for
+    ControllerPlannedWork(Devices devices, device::ControllerPlannedMotion motion, std::shared_ptr<ControllerPlannedMove> move,
+                ToolDistance tool_distance);
+    /// Stops the motion if it still runs.
+    ~ControllerPlannedWork() override;
+    ControllerPlannedWork(const ControllerPlannedWork&) = delete;
+    ControllerPlannedWork& operator=(const ControllerPlannedWork&) = delete;
+
+    void start(skill::ExecutionHandle execution) override;
+    Result<void> suspend() override;
+    Result<void> resume() override;
+    void halt() override;
+    void forceStop() noexcept override;
+
+private:
+    Result<void> move();
+
+    device::MotionPlanner& planner_;
+    device::ControllerPlannedMotion motion_;
+    std::shared_ptr<ControllerPlannedMove> move_;  // shared with the controller while it moves
+};
+
+}  // namespace metier::robot_skills
