@@ -65,7 +65,9 @@ opcua_skill::KinematicsState stateOf(const device::Arm& arm) {
     const auto state = arm.state();
     opcua_skill::KinematicsState result;
     result.joint_position.assign(state.position.begin(), state.position.end());
-    result.safety_state = state.safety == device::SafetyState::normal ? 1 : 3;
+    result.safety_state = state.safety == device::SafetyState::normal
+                              ? opcua_skill::SafetyStateKind::normal
+                              : opcua_skill::SafetyStateKind::protective_stop;
     result.missed_cycles = state.missed_cycles;
     return result;
 }

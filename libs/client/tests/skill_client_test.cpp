@@ -133,7 +133,7 @@ protected:
     static opcua_skill::KinematicsState armState() {
         opcua_skill::KinematicsState state;
         state.joint_position = {0.1, -0.2};
-        state.safety_state = 1;
+        state.safety_state = opcua_skill::SafetyStateKind::normal;
         state.missed_cycles = 7;
         return state;
     }

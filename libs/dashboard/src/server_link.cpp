@@ -6,6 +6,7 @@
 
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
+#include "metier/opcua_skill/safety_state_kind.hpp"
 #include "survey.hpp"
 
 namespace metier::dashboard {
@@ -18,14 +19,6 @@ using opcua::DataValue;
 constexpr auto kJoints = 33ms;  // 30 Hz
 constexpr auto kStates = 100ms;
 constexpr auto kSlow = 500ms;
-
-/// SafetyStateKind of the Metier NodeSet.
-std::string safetyName(std::int32_t kind) {
-    constexpr std::array kNames{"Unknown",        "Normal",        "Reduced",
-                                "ProtectiveStop", "EmergencyStop", "Fault"};
-    const auto index = static_cast<std::size_t>(kind);
-    return index < kNames.size() ? kNames[index] : "Unknown";
-}
 
 }  // namespace
 
@@ -118,7 +111,7 @@ void ServerLink::showCycles(const Arm& arm) {
     const auto& key = arm.key;
     subscribeLive<std::int32_t>(arm.nodes.safety_state, kStates,
                                 [key](LiveValues& live, std::int32_t kind, UtcTime /*time*/) {
-                                    live.setOfArm(key, "safety", safetyName(kind));
+                                    live.setOfArm(key, "safety", std::string(nameOf(opcua_skill::SafetyStateKind(kind))));
                                 });
     subscribeLive<double>(arm.nodes.cycle_jitter, kStates,
                           [key](LiveValues& live, double seconds, UtcTime /*time*/) {

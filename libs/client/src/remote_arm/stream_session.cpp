@@ -40,21 +40,22 @@ bool hasParameter(const client::SkillHandle& skill, std::string_view name) {
                        [&](const skill::Field& field) { return field.name == name; });
 }
 
-/// SafetyStateKind of the Metier NodeSet.
-SafetyState safetyFrom(std::int32_t kind) {
+SafetyState safetyFrom(opcua_skill::SafetyStateKind kind) {
+    using Kind = opcua_skill::SafetyStateKind;
     switch (kind) {
-        case 1:
-        case 2:
+        case Kind::normal:
+        case Kind::reduced:
             return SafetyState::normal;
-        case 3:
+        case Kind::protective_stop:
             return SafetyState::protective_stop;
-        case 4:
+        case Kind::emergency_stop:
             return SafetyState::emergency_stop;
-        case 5:
+        case Kind::fault:
             return SafetyState::fault;
-        default:
-            return SafetyState::disconnected;
+        case Kind::unknown:
+            break;
     }
+    return SafetyState::disconnected;
 }
 
 /// Whether the skill was halted for what is wrong with its device.
@@ -212,7 +213,7 @@ Result<void> StreamSession::subscribeState() {
                 return;
             }
             const auto kind = value.value.as<std::int32_t>();
-            notes->noteSafety(kind ? safetyFrom(*kind) : SafetyState::disconnected);
+            notes->noteSafety(kind ? safetyFrom(opcua_skill::SafetyStateKind(*kind)) : SafetyState::disconnected);
         });
     if (!safety) {
         return fail(safety.error());

@@ -63,11 +63,6 @@ RemoteArm::Worker::~Worker() {
     thread_ = {};
 }
 
-Safety RemoteArm::Worker::safety() const {
-    const std::lock_guard lock(mutex_);
-    return safety_;
-}
-
 std::optional<RemoteArm::Absence> RemoteArm::Worker::absence() const {
     const std::lock_guard lock(mutex_);
     return absence_;
@@ -76,8 +71,8 @@ std::optional<RemoteArm::Absence> RemoteArm::Worker::absence() const {
 Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> source) {
     {
         const std::lock_guard lock(mutex_);
-        if (safety_.state != SafetyState::normal) {
-            return fail(Errc::device_fault, safety_.text);
+        if (const auto now = safety(); now.state != SafetyState::normal) {
+            return fail(Errc::device_fault, now.text);
         }
         if (taken_) {
             return fail(Errc::resource_unavailable, info_.name + ": something moves it already");
@@ -123,16 +118,6 @@ Result<void> RemoteArm::Worker::resetFault() {
     wake_up_->notify();
     return fail(Errc::timeout, fmt::format("{}: the reset goes on at {}, ask again ({})",
                                            info_.name, options_.url, now.text));
-}
-
-device::Registration RemoteArm::Worker::onSafetyChange(device::Arm::SafetyCallback callback) {
-    const auto listeners = listeners_;
-    const std::lock_guard lock(listeners->first);
-    listeners->second.push_back({std::move(callback)});
-    return device::Registration([listeners, entry = std::prev(listeners->second.end())] {
-        const std::lock_guard erase_lock(listeners->first);
-        listeners->second.erase(entry);
-    });
 }
 
 void RemoteArm::Worker::run(const std::stop_token& stop) {
@@ -289,26 +274,9 @@ bool RemoteArm::Worker::awaitsWords(const StreamSession::Observed& seen) const {
 }
 
 void RemoteArm::Worker::enter(Safety safety) {
-    bool changed = false;
-    {
-        const std::lock_guard lock(mutex_);
-        changed = safety_.state != safety.state || safety_.text != safety.text;
-        safety_ = safety;
-    }
     state_.safety = safety.state;
-    if (!changed) {
-        return;
-    }
-    std::vector<device::Arm::SafetyCallback> callbacks;
-    {
-        const std::lock_guard lock(listeners_->first);
-        for (const auto& listener : listeners_->second) {
-            callbacks.push_back(listener.callback);
-        }
-    }
-    for (const auto& callback : callbacks) {
-        callback(safety);
-    }
+    safety_.set(std::move(safety));
+    safety_.dispatch();
 }
 
 void RemoteArm::Worker::publish() {

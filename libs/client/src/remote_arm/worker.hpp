@@ -1,15 +1,16 @@
 #pragma once
 
-#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
 #include <thread>
+#include <utility>
 
 #include "remote_arm/wake_up.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/device/reset_slot.hpp"
+#include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/client/remote_arm.hpp"
 #include "remote_arm/stream_session.hpp"
@@ -28,13 +29,15 @@ public:
     const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }
     const device::ArmInfo& info() const noexcept { return info_; }
     device::ArmState state() const noexcept { return published_.read(); }
-    device::Safety safety() const;
+    device::Safety safety() const { return safety_.safety(); }
     std::optional<Absence> absence() const;
     void nameOwner(std::string application_uri);
     Result<void> attach(std::shared_ptr<device::SetPointSource> source);
     void stop() noexcept;
     Result<void> resetFault();
-    device::Registration onSafetyChange(device::Arm::SafetyCallback callback);
+    device::Registration onSafetyChange(device::Arm::SafetyCallback callback) {
+        return safety_.onChange(std::move(callback));
+    }
 
 private:
     enum class Stream {
@@ -79,6 +82,7 @@ private:
     const opcua_skill::KinematicsData kinematics_;
     const device::ArmInfo info_;
     device::SharedValue<device::ArmState> published_;
+    device::SafetyPublisher safety_{device::Safety()};
 
     device::ResetSlot resets_;
     mutable std::mutex mutex_;
@@ -86,14 +90,7 @@ private:
     bool stop_asked_ = false;
     bool taken_ = false;  // a source is attached or about to be
     std::shared_ptr<device::SetPointSource> pending_;
-    device::Safety safety_;
     std::optional<Absence> absence_;
-    struct Listener {
-        device::Arm::SafetyCallback callback;
-    };
-    // Shared with the registrations, which may outlive this.
-    std::shared_ptr<std::pair<std::mutex, std::list<Listener>>> listeners_ =
-        std::make_shared<std::pair<std::mutex, std::list<Listener>>>();
 
     // Of the thread alone.
     device::ArmState state_;

@@ -73,7 +73,7 @@ EdoConnection::~EdoConnection() {
 
 Result<void> EdoConnection::attach(std::shared_ptr<device::SetPointSource> source) {
     const std::lock_guard lock(turn_);
-    if (session_.gripperSlot().busy()) {
+    if (session_.gripperSlot().occupied()) {
         return fail(Errc::resource_unavailable, options_.name + ": the gripper moves");
     }
     return core_.attach(std::move(source));
@@ -93,7 +93,7 @@ Result<void> EdoConnection::moveJaws(GripperTask::Kind kind, const device::Gripp
     if (core_.active() != nullptr) {
         return fail(Errc::resource_unavailable, options_.name + " gripper: the arm moves");
     }
-    return session_.gripperSlot().ask(*task, std::move(done));
+    return session_.gripperSlot().post(*task, std::move(done));
 }
 
 device::GripperState EdoConnection::gripperState() const noexcept {

@@ -35,7 +35,7 @@ public:
     /// Begins a motion of the jaws, as device::Gripper does.
     Result<void> moveJaws(GripperTask::Kind kind, const device::GripperRequest& request,
                           device::Gripper::Done done);
-    void stopJaws() noexcept { session_.gripperSlot().askToStop(); }
+    void stopJaws() noexcept { session_.gripperSlot().stop(); }
     device::GripperState gripperState() const noexcept;
 
     /// As device::Arm::resetFault().

@@ -186,7 +186,7 @@ Result<void> Session::tick(SteadyTime now, Wire& wire) {
     arm_.tick(now);
     tickReset(now, wire);
     tickGripper(now, wire);
-    const bool elsewhere = closing_ || reset_ != Reset::none || gripper_slot_.hasTask();
+    const bool elsewhere = closing_ || reset_ != Reset::none || gripper_slot_.waiting();
     arm_.setWanted(elsewhere ? ArmDrive::Wanted::elsewhere : ArmDrive::Wanted::for_sources);
     return {};
 }
@@ -249,7 +249,7 @@ void Session::endReset(Result<void> outcome) {
 // ---- gripper -----------------------------------------------------------------------------------
 
 void Session::tickGripper(SteadyTime now, Wire& wire) {
-    if (!gripper_slot_.busy()) {
+    if (gripper_slot_.posted() == nullptr) {
         return;
     }
     if (core_.safetyState() != SafetyState::normal) {
@@ -257,12 +257,12 @@ void Session::tickGripper(SteadyTime now, Wire& wire) {
                                                                      : Errc::device_fault);
         return;
     }
-    const bool stop = gripper_slot_.stopWanted();
-    if (gripper_slot_.hasTask()) {
+    const bool stop = gripper_slot_.takeStop();
+    if (gripper_slot_.waiting()) {
         if (stop) {
-            gripper_slot_.finish(fail(Errc::cancelled, options_.name + " gripper: stopped"));
+            gripper_slot_.end(fail(Errc::cancelled, options_.name + " gripper: stopped"));
         } else if (arm_.free()) {
-            gripper_.start(gripper_slot_.take(), arm_.holding(), now, wire);
+            gripper_.start(*gripper_slot_.take(), arm_.holding(), now, wire);
         }
         return;
     }
@@ -271,13 +271,13 @@ void Session::tickGripper(SteadyTime now, Wire& wire) {
     }
     if (auto outcome = gripper_.tick(*safety_.machine(), now, wire)) {
         publishGripper(now);  // first: whoever hears of the end sees the jaws at rest
-        gripper_slot_.finish(std::move(*outcome));
+        gripper_slot_.end(std::move(*outcome));
     }
 }
 
 void Session::loseGripper(Errc code) {
     gripper_.abandon();
-    gripper_slot_.finish(fail(code, core_.safety().text));
+    gripper_slot_.end(fail(code, core_.safety().text));
 }
 
 void Session::publishGripper(SteadyTime now) noexcept {

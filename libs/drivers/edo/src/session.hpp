@@ -5,7 +5,8 @@
 #include <string_view>
 
 #include "arm_drive.hpp"
-#include "gripper_slot.hpp"
+#include "gripper_drive.hpp"
+#include "metier/device/request_slot.hpp"
 #include "metier/device/reset_slot.hpp"
 #include "metier/device/shared_value.hpp"
 #include "start_up.hpp"
@@ -37,6 +38,7 @@ public:
     bool closed() const noexcept { return arm_.free(); }
 
     device::ResetSlot& resetSlot() noexcept { return reset_slot_; }
+    using GripperSlot = device::RequestSlot<GripperTask, Result<device::GripperOutcome>>;
     GripperSlot& gripperSlot() noexcept { return gripper_slot_; }
     device::GripperState gripperState() const noexcept { return gripper_state_.read(); }
 

@@ -20,7 +20,7 @@ protected:
         outcome_.reset();
         const auto task = taskFor(kind, request, bench_.options.gripper);
         ASSERT_TRUE(task) << task.error().message;
-        ASSERT_TRUE(bench_.session.gripperSlot().ask(
+        ASSERT_TRUE(bench_.session.gripperSlot().post(
             *task, [this](Result<GripperOutcome> outcome) { outcome_ = std::move(outcome); }));
     }
     /// How the motion ended, within 20 s of the robot.
@@ -184,7 +184,7 @@ TEST_F(GripperTest, StopBeforeTheArmGaveControlBackMovesNothing) {
     const auto source = bench_.attach(0.001, 20);
     ASSERT_TRUE(bench_.runUntil([&] { return !source->ends.empty(); }));
     ask(Kind::release);
-    bench_.session.gripperSlot().askToStop();
+    bench_.session.gripperSlot().stop();
     const auto outcome = ended();
     ASSERT_FALSE(outcome);
     EXPECT_EQ(outcome.error().code, Errc::cancelled);
@@ -196,9 +196,9 @@ TEST_F(GripperTest, StopCancelsOnce) {
     bench_.robot.jaw_speed = 4.0;
     ask(Kind::release);
     bench_.run(300);
-    bench_.session.gripperSlot().askToStop();
+    bench_.session.gripperSlot().stop();
     bench_.run(50);
-    bench_.session.gripperSlot().askToStop();
+    bench_.session.gripperSlot().stop();
     EXPECT_EQ(ended().error().code, Errc::cancelled);
     EXPECT_EQ(bench_.robot.count("\"move_command\":67"), 1);
 }
@@ -208,7 +208,7 @@ TEST_F(GripperTest, TellsThatTheJawsDoNotStop) {
     bench_.robot.faults.drop_cancels = true;
     ask(Kind::release);
     bench_.run(300);
-    bench_.session.gripperSlot().askToStop();
+    bench_.session.gripperSlot().stop();
     bench_.run(1900);
     EXPECT_FALSE(outcome_);
     const auto outcome = ended();
@@ -256,7 +256,7 @@ TEST_F(GripperTest, StopsAMotion) {
     bench_.robot.jaw_speed = 4.0;
     ask(Kind::release);
     bench_.run(300);
-    bench_.session.gripperSlot().askToStop();
+    bench_.session.gripperSlot().stop();
     const auto outcome = ended();
     ASSERT_FALSE(outcome);
     EXPECT_EQ(outcome.error().code, Errc::cancelled);
@@ -285,7 +285,7 @@ TEST_F(GripperTest, ABlockedReleaseIsAFault) {
 
 TEST_F(GripperTest, OneMotionAtATime) {
     ask(Kind::release);
-    const auto second = bench_.session.gripperSlot().ask({}, [](auto) {});
+    const auto second = bench_.session.gripperSlot().post({}, [](auto) {});
     EXPECT_EQ(second.error().code, Errc::resource_unavailable);
     EXPECT_TRUE(ended());
 }

@@ -130,7 +130,7 @@ Command MotionCommander::command() noexcept {
         beginWhatIsAsked();
     }
     if (mode_ == Mode::planned) {
-        if (slot_.stopRequested()) {
+        if (slot_.takeStop()) {
             planned_.stop(RunEnd::Cause::stopped);
         }
         return planned_.command();

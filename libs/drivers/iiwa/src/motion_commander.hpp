@@ -8,8 +8,8 @@
 
 #include "metier/device/arm_core.hpp"
 #include "metier/device/motion_planner.hpp"
+#include "metier/device/request_slot.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "motion_slot.hpp"
 #include "controller_planned_run.hpp"
 #include "readiness.hpp"
 #include "servo_run.hpp"
@@ -54,7 +54,7 @@ public:
 
     // ---- any thread ----
     Result<void> attach(std::shared_ptr<device::SetPointSource> source);
-    Result<void> move(const device::ControllerPlannedMotion& motion, MotionSlot::Done done);
+    Result<void> move(const device::ControllerPlannedMotion& motion, device::MotionPlanner::Done done);
     void stopMotion() noexcept { slot_.stop(); }
     Result<void> resetFault();
     /// The notifier's thread alone.
@@ -81,11 +81,12 @@ private:
     void latch(const ServoFault& fault);
     void judge();
     void change(Condition condition, std::string text);
+    std::string lostText();
 
     device::ArmCore core_;
     const motion::RobotModel& model_;
     const MotionCommanderOptions options_;
-    MotionSlot slot_;
+    device::RequestSlot<device::ControllerPlannedMotion, RunEnd> slot_;
     std::mutex admission_;  ///< one of attach() and move()
 
     // Of the cycle thread.

@@ -4,6 +4,7 @@
 
 #include "motion_check.hpp"
 #include "motion_commander.hpp"
+#include "run_outcome.hpp"
 
 // What is asked of the commander by any thread.
 
@@ -20,7 +21,7 @@ Result<void> MotionCommander::attach(std::shared_ptr<device::SetPointSource> sou
     return core_.attach(std::move(source));
 }
 
-Result<void> MotionCommander::move(const device::ControllerPlannedMotion& motion, MotionSlot::Done done) {
+Result<void> MotionCommander::move(const device::ControllerPlannedMotion& motion, device::MotionPlanner::Done done) {
     const std::lock_guard lock(admission_);
     const auto safety = core_.safety();
     if (safety.state != SafetyState::normal) {
@@ -29,7 +30,10 @@ Result<void> MotionCommander::move(const device::ControllerPlannedMotion& motion
                     fmt::format("{} ({})", safety.text, device::toString(safety.state)));
     }
     METIER_TRY(checkMotion(model_, motion));
-    if (core_.active() != nullptr || !slot_.post(motion, std::move(done))) {
+    auto ended = [this, done = std::move(done)](const RunEnd& end) {
+        done(outcomeOf(end, core_.info().name, lostText()));
+    };
+    if (core_.active() != nullptr || !slot_.post(motion, std::move(ended))) {
         return fail(Errc::resource_unavailable, core_.info().name + ": another motion runs");
     }
     return {};
@@ -56,12 +60,12 @@ Result<void> MotionCommander::resetFault() {
 
 void MotionCommander::dispatch() {
     core_.dispatch();
-    std::string lost;
-    {
-        const std::lock_guard lock(lost_mutex_);
-        lost = lost_text_;
-    }
-    slot_.dispatch(core_.info().name, lost);
+    slot_.dispatch();
+}
+
+std::string MotionCommander::lostText() {
+    const std::lock_guard lock(lost_mutex_);
+    return lost_text_;
 }
 
 }  // namespace metier::iiwa_driver

@@ -10,7 +10,7 @@
 #include "flange_force.hpp"
 #include "metier/motion/frame.hpp"
 #include "motion_check.hpp"
-#include "motion_slot.hpp"
+#include "run_outcome.hpp"
 #include "readiness.hpp"
 
 namespace metier::iiwa_driver {
@@ -244,43 +244,7 @@ TEST(SameFlange, MayBeTwoMillimetresAndTenMilliradiansOff) {
                 HasSubstr("0.0000 m and 0.0101 rad from"));
 }
 
-// ---- how a motion is asked for and ends ----
-
-TEST(MotionSlotOfTheCabinet, StopsOnlyTheMotionThatWasThere) {
-    MotionSlot slot;
-    slot.stop();
-    EXPECT_FALSE(slot.stopRequested());
-    int told = 0;
-    const auto done = [&told](const auto&) { ++told; };
-    ASSERT_TRUE(slot.post(ArmBench::toJoints(0.1), done));
-    EXPECT_FALSE(slot.post(ArmBench::toJoints(0.2), done));
-    EXPECT_TRUE(slot.occupied());
-    EXPECT_FALSE(slot.stopRequested());
-    slot.stop();
-    EXPECT_TRUE(slot.stopRequested());
-    EXPECT_TRUE(slot.stopRequested()) << "until it ends";
-    slot.end({});
-    EXPECT_EQ(slot.posted(), nullptr);
-    EXPECT_TRUE(slot.occupied()) << "until its end is told";
-    EXPECT_TRUE(slot.toTell());
-    slot.end({});
-    slot.dispatch("iiwa", "");
-    slot.dispatch("iiwa", "");
-    EXPECT_EQ(told, 1);
-    EXPECT_FALSE(slot.toTell());
-    ASSERT_TRUE(slot.post(ArmBench::toJoints(0.2), done));
-    EXPECT_FALSE(slot.stopRequested()) << "the stop was for the one before";
-}
-
-TEST(MotionSlotOfTheCabinet, ForgetsAStopThatCameBetweenTwoMotions) {
-    MotionSlot slot;
-    ASSERT_TRUE(slot.post(ArmBench::toJoints(0.1), [](const auto&) {}));
-    slot.stop();
-    slot.end({});
-    slot.dispatch("iiwa", "");
-    ASSERT_TRUE(slot.post(ArmBench::toJoints(0.2), [](const auto&) {}));
-    EXPECT_FALSE(slot.stopRequested());
-}
+// ---- how a motion ends ----
 
 TEST(OutcomeOfAMotion, TellsWhyItFailed) {
     using Cause = RunEnd::Cause;

@@ -62,7 +62,7 @@ Result<void> Wsg50Gripper::Session::ask(MotionKind kind, const device::GripperRe
     }
     const auto motion = motionFor(kind, request, options_, known_.read());
     const auto asked =
-        motion.and_then([&](const Motion& checked) { return slot_.ask(checked, std::move(done)); });
+        motion.and_then([&](const Motion& checked) { return slot_.post(checked, std::move(done)); });
     return asked ? asked : fail(asked.error().code, named(asked.error().message));
 }
 
@@ -151,13 +151,13 @@ Result<void> Wsg50Gripper::Session::atPeer(const Error& error) const {
 
 void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
     const bool stop = slot_.takeStop();
-    const auto motion = slot_.takeMotion();
-    if (motion && stop) {
+    const auto* motion = slot_.take();
+    if (motion != nullptr && stop) {
         onMotionEnd(fail(Errc::cancelled, "stopped before it began"));
-    } else if (motion && !conversation.ready()) {
-        slot_.endMotion(fail(Errc::device_fault, safety_.safety().text));
+    } else if (motion != nullptr && !conversation.ready()) {
+        slot_.end(fail(Errc::device_fault, safety_.safety().text));
         notifier_.signal();
-    } else if (motion) {
+    } else if (motion != nullptr) {
         conversation.begin(*motion, now());
     } else if (stop) {
         conversation.stop(now());
@@ -169,7 +169,7 @@ void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
 
 /// So that the gripper does not take the end of the connection for a failure.
 void Wsg50Gripper::Session::takeLeave() {
-    if (slot_.occupied()) {
+    if (slot_.posted() != nullptr) {
         send(Command(CommandId::stop));
     }
     send(Command(CommandId::disconnect));
@@ -180,7 +180,7 @@ void Wsg50Gripper::Session::lost(const Error& why) {
     const auto text = named(why.message);
     slot_.close({Errc::connection_lost, why.message});
     setSafety({SafetyState::disconnected, text, false});
-    slot_.endMotion(fail(Errc::connection_lost, text));
+    slot_.end(fail(Errc::connection_lost, text));
     resets_.answer(fail(Errc::connection_lost, text));
     notifier_.signal();
 }
@@ -229,7 +229,7 @@ void Wsg50Gripper::Session::onSafety(device::Safety safety) {
 }
 
 void Wsg50Gripper::Session::onMotionEnd(Result<device::GripperOutcome> outcome) {
-    slot_.endMotion(outcome ? std::move(outcome)
+    slot_.end(outcome ? std::move(outcome)
                             : fail(outcome.error().code, named(outcome.error().message)));
     notifier_.signal();
 }

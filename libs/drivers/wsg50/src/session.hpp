@@ -4,11 +4,12 @@
 #include <thread>
 
 #include "metier/device/notifier.hpp"
+#include "metier/device/request_slot.hpp"
 #include "metier/device/reset_slot.hpp"
 #include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
 #include "metier/link/tcp_link.hpp"
-#include "order_slot.hpp"
+#include "motion_task.hpp"
 #include "requests.hpp"
 #include "wsg50_gripper.hpp"
 
@@ -27,7 +28,7 @@ public:
     device::GripperState state() const noexcept { return state_.read(); }
     device::Safety safety() const { return safety_.safety(); }
     Result<void> ask(MotionKind kind, const device::GripperRequest& request, Done done);
-    void stop() noexcept { slot_.askStop(); }
+    void stop() noexcept { slot_.stop(); }
     Result<void> resetFault();
     device::Registration onSafetyChange(SafetyCallback callback) {
         return safety_.onChange(std::move(callback));
@@ -62,7 +63,7 @@ private:
     device::SharedValue<Known> known_;
     device::SharedValue<device::GripperState> state_;
     device::SafetyPublisher safety_;
-    OrderSlot slot_;
+    device::RequestSlot<Motion, Result<device::GripperOutcome>> slot_;
     device::ResetSlot resets_;
 
     link::TcpLink* link_ = nullptr;  // during a connection

@@ -10,21 +10,21 @@
 namespace metier::server {
 namespace {
 
-/// SafetyStateKind of the Metier NodeSet.
-std::int32_t safetyKind(device::SafetyState state) {
+opcua_skill::SafetyStateKind kindOf(device::SafetyState state) {
+    using Kind = opcua_skill::SafetyStateKind;
     switch (state) {
         case device::SafetyState::normal:
-            return 1;
+            return Kind::normal;
         case device::SafetyState::protective_stop:
-            return 3;
+            return Kind::protective_stop;
         case device::SafetyState::emergency_stop:
-            return 4;
+            return Kind::emergency_stop;
         case device::SafetyState::fault:
-            return 5;
+            return Kind::fault;
         case device::SafetyState::disconnected:
-            return 0;
+            return Kind::unknown;
     }
-    return 0;
+    return Kind::unknown;
 }
 
 opcua_skill::StreamFigures toStreamFigures(const robot_skills::StreamReport& report) {
@@ -42,7 +42,7 @@ opcua_skill::KinematicsState stateOf(const ShownArm& shown) {
         joints && joints->size() == shown.model.axisCount()) {
         result.pose = motion::toFrame(shown.model.kinematics().forward(*joints));
     }
-    result.safety_state = safetyKind(state.safety);
+    result.safety_state = kindOf(state.safety);
     result.missed_cycles = state.missed_cycles;
     return result;
 }

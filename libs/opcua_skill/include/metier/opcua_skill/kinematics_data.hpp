@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "metier/opcua/types.hpp"
+#include "metier/opcua_skill/safety_state_kind.hpp"
 
 namespace metier::opcua_skill {
 
@@ -37,8 +38,8 @@ struct KinematicsData {
 struct KinematicsState {
     std::vector<double> joint_position;  ///< measured [rad]
     opcua::ThreeDFrame pose;             ///< measured, base from flange [m, rad]
-    std::int32_t safety_state = 0;       ///< SafetyStateKind of the Metier NodeSet
-    std::uint64_t missed_cycles = 0;     ///< since the server started
+    SafetyStateKind safety_state = SafetyStateKind::unknown;
+    std::uint64_t missed_cycles = 0;  ///< since the server started
 };
 
 }  // namespace metier::opcua_skill
