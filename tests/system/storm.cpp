@@ -59,12 +59,6 @@ public:
         stream_.add(static_cast<std::uint32_t>(event.number), event.execution_id);
         ++total_;
     }
-    void onSubState(skill::SubState, std::string_view) override {}
-    void onReason(skill::Reason, std::string_view) override {}
-    void onParameter(std::string_view, const skill::Value&) override {}
-    void onResult(const skill::ValueMap&) override {}
-    void onProgress(const skill::Value&) override {}
-    void onDiagnostic(const skill::Diagnostic&) override {}
 
     /// The server's thread.
     const Stream& stream() const { return stream_; }

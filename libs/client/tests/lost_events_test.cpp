@@ -19,11 +19,6 @@ const skill::Caller kPanel{"session", "panel", "user"};
 
 class Listener final : public composition::ChildListener {
 public:
-    void onReset(const Result<void>& /*outcome*/) override {}
-    void onSuspended() override {}
-    void onResumed() override {}
-    void onProgress(const skill::Value& /*intermediate*/) override {}
-    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
     void onEnd(ChildEnd told) override { end = std::move(told); }
 
     std::optional<ChildEnd> end;

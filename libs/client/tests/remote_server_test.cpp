@@ -31,7 +31,6 @@ public:
     void onStopping(const composition::UsedSkillStop& stop) override { stops.push_back(stop); }
     void onSuspended() override { suspended = true; }
     void onResumed() override { suspended = false; }
-    void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method method, const Error& error) override {
         refusal = std::string(toString(method)) + ": " + error.message;
     }

@@ -44,12 +44,6 @@ public:
 private:
     bool awaitRunning(bool wanted);
     void onTransition(const skill::TransitionEvent& event) override;
-    void onSubState(skill::SubState, std::string_view) override {}
-    void onReason(skill::Reason, std::string_view) override {}
-    void onParameter(std::string_view, const skill::Value&) override {}
-    void onResult(const skill::ValueMap&) override {}
-    void onProgress(const skill::Value&) override {}
-    void onDiagnostic(const skill::Diagnostic&) override {}
 
     SystemClock clock_;
     motion::RobotModel model_;

@@ -36,11 +36,6 @@ public:
             }
         });
     }
-    void onSuspended() override {}
-    void onResumed() override {}
-    void onProgress(const skill::Value& /*intermediate*/) override {}
-    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
-    void onEnd(UsedSkillEnd /*end*/) override {}
 
 private:
     /// A device that takes longer than its server waits for it is asked again.

@@ -59,11 +59,6 @@ public:
     void onReset(const Result<void>& outcome) override {
         used_.halted_by_us = used_.halted_by_us && !outcome;
     }
-    void onSuspended() override {}
-    void onResumed() override {}
-    void onProgress(const skill::Value& /*intermediate*/) override {}
-    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
-    void onEnd(UsedSkillEnd /*end*/) override {}
 
 private:
     BoundSkill& used_;

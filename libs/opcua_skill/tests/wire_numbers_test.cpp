@@ -5,7 +5,7 @@
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/safety_state_kind.hpp"
-#include "metier/skill/skill.hpp"
+#include "metier/skill/state.hpp"
 
 namespace metier::opcua_skill::testing {
 namespace {
@@ -29,7 +29,7 @@ protected:
         std::vector<std::string> names;
         const auto value = client_->read({index_, enum_strings});
         EXPECT_TRUE(value);
-        const auto texts = value->value.as<std::vector<opcua::LocalizedText>>();
+        const auto texts = value->as<std::vector<opcua::LocalizedText>>();
         EXPECT_TRUE(texts);
         for (const auto& text : *texts) {
             names.push_back(text.text);

@@ -30,12 +30,6 @@ public:
             told(event);
         }
     }
-    void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
-    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
-    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
-    void onResult(const skill::ValueMap& /*result*/) override {}
-    void onProgress(const skill::Value& /*intermediate*/) override {}
-    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
 
     std::vector<skill::State> seen;
     std::function<void(const skill::TransitionEvent&)> told;

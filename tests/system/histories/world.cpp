@@ -58,12 +58,6 @@ opcua::ServerLimits limits() {
 class World::Emitted final : public skill::ProgramObserver {
 public:
     void onTransition(const skill::TransitionEvent&) override { ++count; }
-    void onSubState(skill::SubState, std::string_view) override {}
-    void onReason(Reason, std::string_view) override {}
-    void onParameter(std::string_view, const skill::Value&) override {}
-    void onResult(const skill::ValueMap&) override {}
-    void onProgress(const skill::Value&) override {}
-    void onDiagnostic(const skill::Diagnostic&) override {}
 
     std::atomic<std::size_t> count{0};
 };

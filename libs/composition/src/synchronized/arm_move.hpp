@@ -101,7 +101,6 @@ public:
     void onStopping(const composition::UsedSkillStop& stop) override;
     void onSuspended() override;
     void onResumed() override;
-    void onProgress(const skill::Value& /*intermediate*/) override {}
     void onRefused(skill::Method method, const Error& error) override;
     void onEnd(composition::UsedSkillEnd end) override;
 

@@ -59,12 +59,6 @@ Result<void> checkReachable(const Arm& arm) {
 /// A Reset that nobody waits for: what it leads to shows at the next Start.
 class SynchronizedMoveSkill::Unheard final : public composition::UsedSkillListener {
 public:
-    void onReset(const Result<void>& /*outcome*/) override {}
-    void onSuspended() override {}
-    void onResumed() override {}
-    void onProgress(const skill::Value& /*intermediate*/) override {}
-    void onRefused(skill::Method /*method*/, const Error& /*error*/) override {}
-    void onEnd(composition::UsedSkillEnd /*end*/) override {}
 };
 
 SynchronizedMoveSkill::SynchronizedMoveSkill(std::vector<Arm> arms, Options options)

@@ -46,12 +46,7 @@ private:
 
     void onTransition(const skill::TransitionEvent& event) override;
     void onStopping(const skill::StoppingEvent& event) override;
-    void onSubState(skill::SubState /*sub_state*/, std::string_view /*step*/) override {}
-    void onReason(skill::Reason /*reason*/, std::string_view /*text*/) override {}
-    void onParameter(std::string_view /*name*/, const skill::Value& /*value*/) override {}
-    void onResult(const skill::ValueMap& /*result*/) override {}
     void onProgress(const skill::Value& intermediate) override;
-    void onDiagnostic(const skill::Diagnostic& /*diagnostic*/) override {}
 
     /// Has `tell` called with the listener, outside of the call that is under way.
     template <typename Tell>

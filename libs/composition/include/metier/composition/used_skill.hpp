@@ -39,25 +39,25 @@ struct ClockOffset {
     std::chrono::nanoseconds uncertainty{0};  ///< it may be wrong by that much either way
 };
 
-/// Who hears of the execution of a used skill.
+/// Observer of an execution of a used skill; each function does nothing unless it is overridden.
 ///
 /// Threading: the owner's thread; never from inside a call to the UsedSkill.
 class UsedSkillListener {
 public:
     virtual ~UsedSkillListener() = default;
     /// Answers UsedSkill::reset().
-    virtual void onReset(const Result<void>& outcome) = 0;
+    virtual void onReset(const Result<void>& /*outcome*/) {}
     /// It begins to come to rest, also at a request from here; onSuspended() or onEnd() follows.
     /// Not called by servers that do not say so.
     virtual void onStopping(const UsedSkillStop& /*stop*/) {}
     /// It came to rest; at whoever's request.
-    virtual void onSuspended() = 0;
-    virtual void onResumed() = 0;
-    virtual void onProgress(const skill::Value& intermediate) = 0;
+    virtual void onSuspended() {}
+    virtual void onResumed() {}
+    virtual void onProgress(const skill::Value& /*intermediate*/) {}
     /// A suspend(), resume() or halt() was refused; all goes on as before.
-    virtual void onRefused(skill::Method method, const Error& error) = 0;
+    virtual void onRefused(skill::Method /*method*/, const Error& /*error*/) {}
     /// Once for each begin().
-    virtual void onEnd(UsedSkillEnd end) = 0;
+    virtual void onEnd(UsedSkillEnd /*end*/) {}
 };
 
 /// A skill that a composed skill uses, in the same process or elsewhere.

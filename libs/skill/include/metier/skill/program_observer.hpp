@@ -53,7 +53,7 @@ struct Diagnostic {
     Result<void> last_method_status{};  ///< refused calls count too
 };
 
-/// Who is told what changes in a Program.
+/// Observer of a Program; each function does nothing unless it is overridden.
 ///
 /// One transition is told in one go, and its event last: onResult (if the work finished),
 /// onSubState, onReason, onDiagnostic, onTransition. Parameters that fall back follow.
@@ -63,17 +63,17 @@ class ProgramObserver {
 public:
     virtual ~ProgramObserver() = default;
     /// State variables are to be set and the event raised.
-    virtual void onTransition(const TransitionEvent& event) = 0;
+    virtual void onTransition(const TransitionEvent& /*event*/) {}
     /// \param step of a sequence; empty if it has none
-    virtual void onSubState(SubState sub_state, std::string_view step) = 0;
+    virtual void onSubState(SubState /*sub_state*/, std::string_view /*step*/) {}
     /// Why the Program is where it is, or why a Reset was refused.
-    virtual void onReason(Reason reason, std::string_view text) = 0;
+    virtual void onReason(Reason /*reason*/, std::string_view /*text*/) {}
     /// A value was written, or fell back to its default.
-    virtual void onParameter(std::string_view name, const Value& value) = 0;
+    virtual void onParameter(std::string_view /*name*/, const Value& /*value*/) {}
     /// The result of an execution that finished: every declared field.
-    virtual void onResult(const ValueMap& result) = 0;
-    virtual void onProgress(const Value& intermediate) = 0;
-    virtual void onDiagnostic(const Diagnostic& diagnostic) = 0;
+    virtual void onResult(const ValueMap& /*result*/) {}
+    virtual void onProgress(const Value& /*intermediate*/) {}
+    virtual void onDiagnostic(const Diagnostic& /*diagnostic*/) {}
     /// The work begins to come to rest. Again, if a Halt follows a Suspend before standstill.
     virtual void onStopping(const StoppingEvent& /*event*/) {}
     /// An execution begins; its transition to Running follows.
