@@ -126,7 +126,7 @@ Result<void> Program::command(Method method, const Caller& caller, Work work) {
         return metier::fail(Errc::invalid_state,
                             fmt::format("{} from inside a notification", toString(method)));
     }
-    const Call turn(*this);
+    const Call call(*this);
     recordCall(method, caller);
     auto status = checkAllowed(method, caller);
     if (status) {

@@ -59,7 +59,7 @@ void Program::inCall(Work work) {
         deferred_.emplace_back(std::move(work));
         return;
     }
-    const Call turn(*this);
+    const Call call(*this);
     work();
 }
 

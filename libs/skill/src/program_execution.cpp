@@ -179,7 +179,7 @@ CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
         report.first_failing_fraction = 0.0;
     }
     if (!busy_) {
-        const Call turn(*this);
+        const Call call(*this);
         notify([&](ProgramObserver& observer) { observer.onCheck(caller, parameters, report); });
     }
     return report;

@@ -26,7 +26,7 @@ Result<void> Program::write(const Caller& caller, std::string_view parameter, Va
         return metier::fail(Errc::invalid_state,
                             fmt::format("{} written from inside a notification", parameter));
     }
-    const Call turn(*this);
+    const Call call(*this);
     if (state_ == State::ready) {
         return writeReady(caller, **field, std::move(value));
     }
