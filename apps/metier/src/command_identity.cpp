@@ -50,9 +50,7 @@ Result<void> CommandIdentity::secure(opcua::ClientOptions& options, const std::s
         return fail(open ? openServer(security_, url) : open.error());
     }
     const std::lock_guard lock(mutex_);
-    if (auto ready = prepare(); !ready) {
-        return ready;
-    }
+    METIER_TRY(prepare());
     options.security = credentials_;
     options.user = login_;
     return {};
@@ -60,21 +58,16 @@ Result<void> CommandIdentity::secure(opcua::ClientOptions& options, const std::s
 
 Result<void> CommandIdentity::prepare() const {
     if (!credentials_) {
-        auto made = security_.credentials(
-            "command", {.application_name = "metier command",
-                        .application_uri = fmt::format("urn:{}:metier:command", server::hostName()),
-                        .hosts = {server::hostName()}});
-        if (!made) {
-            return fail(made.error());
-        }
-        credentials_ = std::move(*made);
+        METIER_ASSIGN(auto made, security_.credentials(
+                                     "command", {.application_name = "metier command",
+                                                 .application_uri = fmt::format(
+                                                     "urn:{}:metier:command", server::hostName()),
+                                                 .hosts = {server::hostName()}}));
+        credentials_ = std::move(made);
     }
     if (!user_.empty() && !login_) {
-        auto password = readPassword(user_);
-        if (!password) {
-            return fail(password.error());
-        }
-        login_ = opcua::UserName{user_, std::move(*password)};
+        METIER_ASSIGN(auto password, readPassword(user_));
+        login_ = opcua::UserName{user_, std::move(password)};
     }
     return {};
 }

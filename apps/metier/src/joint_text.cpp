@@ -56,11 +56,9 @@ Result<std::vector<double>> parseNumbers(std::span<const std::string> words,
     for (std::string_view rest : words) {
         for (;;) {
             const auto comma = rest.find(',');
-            const auto value = parseNumber(rest.substr(0, comma), what, values.size() + 1);
-            if (!value) {
-                return fail(value.error());
-            }
-            values.push_back(*value);
+            METIER_ASSIGN(const auto value,
+                          parseNumber(rest.substr(0, comma), what, values.size() + 1));
+            values.push_back(value);
             if (comma == std::string_view::npos) {
                 break;
             }
@@ -72,24 +70,18 @@ Result<std::vector<double>> parseNumbers(std::span<const std::string> words,
 
 Result<JointVector> parseJoints(const motion::RobotModel& model, std::span<const std::string> words,
                                 std::string_view what) {
-    const auto values = parseNumbers(words, what);
-    if (!values) {
-        return fail(values.error());
-    }
-    if (values->size() != model.axisCount()) {
+    METIER_ASSIGN(const auto values, parseNumbers(words, what));
+    if (values.size() != model.axisCount()) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: {} values given, {} has {} axes: one value for each, rad",
-                                what, values->size(), model.name(), model.axisCount()));
+                                what, values.size(), model.name(), model.axisCount()));
     }
-    return JointVector::from(*values);
+    return JointVector::from(values);
 }
 
 Result<motion::Pose> parsePose(std::span<const std::string> words, std::string_view what) {
-    const auto values = parseNumbers(words, what);
-    if (!values) {
-        return fail(values.error());
-    }
-    const auto& v = *values;
+    METIER_ASSIGN(const auto values, parseNumbers(words, what));
+    const auto& v = values;
     if (v.size() != 6) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: {} values given, a pose has 6: x y z in m, a b c in rad", what,

@@ -46,21 +46,15 @@ Result<std::vector<Component>> findComponents(const CommandIdentity& identity,
         if (!client) {
             return fail(client.error());
         }
-        const auto skills = client::findSkills(**client);
-        if (!skills) {
-            return fail(skills.error());
-        }
-        const auto skill = std::find_if(skills->begin(), skills->end(), [](const auto& address) {
+        METIER_ASSIGN(const auto skills, client::findSkills(**client));
+        const auto skill = std::find_if(skills.begin(), skills.end(), [](const auto& address) {
             return address.type_name == kType;
         });
-        if (skill == skills->end()) {
+        if (skill == skills.end()) {
             continue;
         }
-        auto handle = SkillHandle::open(**client, *skill);
-        if (!handle) {
-            return fail(handle.error());
-        }
-        found.push_back({skill->controllerName(), url, std::move(*client), std::move(*handle)});
+        METIER_ASSIGN(auto handle, SkillHandle::open(**client, *skill));
+        found.push_back({skill->controllerName(), url, std::move(*client), std::move(handle)});
     }
     if (found.empty()) {
         return fail(Errc::not_found, fmt::format("no skill of type {} found", kType));

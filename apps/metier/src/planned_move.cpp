@@ -55,11 +55,8 @@ Result<void> readCommon(const MoveOptions& options, const RobotModel& model,
         return fail(velocity ? acceleration.error() : velocity.error());
     }
     if (!options.arm_angle.empty()) {
-        const auto angle = parseNumbers({{options.arm_angle}}, "arm angle");
-        if (!angle) {
-            return fail(angle.error());
-        }
-        parameters.redundancy_angle = angle->front();
+        METIER_ASSIGN(const auto angle, parseNumbers({{options.arm_angle}}, "arm angle"));
+        parameters.redundancy_angle = angle.front();
     }
     parameters.tool_frame = options.tool;
     parameters.max_velocity = std::move(*velocity);
@@ -90,14 +87,9 @@ Planned<Trajectory> checkAndPlan(const skill::FieldList<Parameters>& fields,
 Result<PlannedMove> planToJoints(const RobotModel& model, const JointVector& start,
                                  const MoveOptions& options) {
     JointMoveParameters parameters;
-    const auto target = parseJoints(model, {{options.to_joints}}, "target");
-    if (!target) {
-        return fail(target.error());
-    }
-    if (auto read = readCommon(options, model, parameters); !read) {
-        return fail(read.error());
-    }
-    parameters.target_joint_position.assign(target->begin(), target->end());
+    METIER_ASSIGN(const auto target, parseJoints(model, {{options.to_joints}}, "target"));
+    METIER_TRY(readCommon(options, model, parameters));
+    parameters.target_joint_position.assign(target.begin(), target.end());
     const auto& plan = options.linear ? robot_skills::planJointLinear : robot_skills::planJointPtp;
     return PlannedMove{
         options.linear ? "JointLinearMoveSkill" : "JointPtpMoveSkill", start,
@@ -108,34 +100,23 @@ Result<PlannedMove> planToJoints(const RobotModel& model, const JointVector& sta
 Result<CartesianMoveParameters> poseParameters(const RobotModel& model, const MoveOptions& options,
                                                const std::string& pose) {
     CartesianMoveParameters parameters;
-    const auto target = parsePose({{pose}}, "target");
-    if (!target) {
-        return fail(target.error());
-    }
-    if (auto read = readCommon(options, model, parameters); !read) {
-        return fail(read.error());
-    }
-    const auto frame = motion::toFrame(*target);
+    METIER_ASSIGN(const auto target, parsePose({{pose}}, "target"));
+    METIER_TRY(readCommon(options, model, parameters));
+    const auto frame = motion::toFrame(target);
     parameters.target_position = {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
-    const auto bounds = parseValue(skill::ValueType::ranges, options.axis_bounds);
-    if (!bounds) {
-        return fail(bounds.error());
-    }
-    parameters.axis_bounds = std::get<std::vector<skill::Range>>(*bounds);
+    METIER_ASSIGN(const auto bounds, parseValue(skill::ValueType::ranges, options.axis_bounds));
+    parameters.axis_bounds = std::get<std::vector<skill::Range>>(bounds);
     return parameters;
 }
 
 Result<PlannedMove> planToPose(const RobotModel& model, const JointVector& start,
                                const MoveOptions& options) {
-    const auto parameters = poseParameters(model, options, options.to_poses.front());
-    if (!parameters) {
-        return fail(parameters.error());
-    }
+    METIER_ASSIGN(const auto parameters, poseParameters(model, options, options.to_poses.front()));
     const auto& plan =
         options.linear ? robot_skills::planCartesianLinear : robot_skills::planCartesianPtp;
     return PlannedMove{
         options.linear ? "CartesianLinearMoveSkill" : "CartesianPtpMoveSkill", start,
-        checkAndPlan(robot_skills::cartesianMoveFields(model, kindOf(options)), *parameters,
+        checkAndPlan(robot_skills::cartesianMoveFields(model, kindOf(options)), parameters,
                      [&](const auto& taken) { return plan(model, start, taken); })};
 }
 
@@ -147,19 +128,14 @@ Result<PlannedMove> planAlongPoses(const RobotModel& model, const JointVector& s
     }
     std::vector<motion::PathWaypoint> waypoints;
     for (const auto& text : options.to_poses) {
-        const auto pose = parsePose({{text}}, fmt::format("target {}", waypoints.size() + 1));
-        if (!pose) {
-            return fail(pose.error());
-        }
-        waypoints.push_back({*pose, options.blend_radius});
+        METIER_ASSIGN(const auto pose,
+                      parsePose({{text}}, fmt::format("target {}", waypoints.size() + 1)));
+        waypoints.push_back({pose, options.blend_radius});
     }
-    const auto parameters = poseParameters(model, options, options.to_poses.back());
-    if (!parameters) {
-        return fail(parameters.error());
-    }
+    METIER_ASSIGN(const auto parameters, poseParameters(model, options, options.to_poses.back()));
     return PlannedMove{"CartesianPathMoveSkill", start,
                        checkAndPlan(robot_skills::cartesianMoveFields(model, MoveKind::linear),
-                                    *parameters, [&](const auto& taken) {
+                                    parameters, [&](const auto& taken) {
                                         return motion::Planner(model).path(
                                             {robot_skills::linRequest(start, taken), waypoints});
                                     })};
@@ -222,16 +198,14 @@ Result<PlannedMove> planMove(const RobotModel& model, const MoveOptions& options
     if (!hasTarget(options)) {
         return fail(Errc::invalid_argument, "name a target with --to-pose or --to-joints");
     }
-    const auto start = options.from.empty() ? Result<JointVector>(model.home())
-                                            : parseJoints(model, {{options.from}}, "start");
-    if (!start) {
-        return fail(start.error());
-    }
+    METIER_ASSIGN(const auto start, options.from.empty()
+                                        ? Result<JointVector>(model.home())
+                                        : parseJoints(model, {{options.from}}, "start"));
     if (!options.to_joints.empty()) {
-        return planToJoints(model, *start, options);
+        return planToJoints(model, start, options);
     }
-    return options.to_poses.size() == 1 ? planToPose(model, *start, options)
-                                        : planAlongPoses(model, *start, options);
+    return options.to_poses.size() == 1 ? planToPose(model, start, options)
+                                        : planAlongPoses(model, start, options);
 }
 
 }  // namespace metier::app

@@ -41,7 +41,8 @@ Result<std::unique_ptr<records::Store>> openRecords(const std::string& url) {
     return records::Store::open(url);
 }
 
-Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution, const std::string& named) {
+Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution,
+                                   const std::string& named) {
     if (!named.empty()) {
         return loadRobot(named);
     }
@@ -67,12 +68,9 @@ Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution, const
 
 Result<path_evaluation::MotionRecord> pathOf(records::Store& store,
                                              const records::ExecutionRow& execution) {
-    const auto samples = store.path(execution.number);
-    if (!samples) {
-        return fail(samples.error());
-    }
+    METIER_ASSIGN(const auto samples, store.path(execution.number));
     path_evaluation::MotionRecord record;
-    for (const auto& sample : *samples) {
+    for (const auto& sample : samples) {
         const auto values = sample.actual.values();
         const auto position = motion::JointVector::from(values);
         // Two samples of one instant say no more than one.

@@ -76,11 +76,8 @@ Result<motion::RobotModel> loadRobot(const std::string& robot) {
 Result<std::vector<motion::RobotModel>> loadAllRobots() {
     std::vector<motion::RobotModel> models;
     for (const auto& name : namesIn(modelsFolder())) {
-        auto model = loadRobot(name);
-        if (!model) {
-            return fail(model.error());
-        }
-        models.push_back(std::move(*model));
+        METIER_ASSIGN(auto model, loadRobot(name));
+        models.push_back(std::move(model));
     }
     return models;
 }

@@ -15,11 +15,8 @@ constexpr std::chrono::milliseconds kBetweenResets{200};
 Result<void> resetUntilReady(client::SkillHandle& skill, std::chrono::milliseconds longest) {
     const auto deadline = std::chrono::steady_clock::now() + longest;
     for (;;) {
-        const auto state = skill.state();
-        if (!state) {
-            return fail(state.error());
-        }
-        if (*state != skill::State::halted) {
+        METIER_ASSIGN(const auto state, skill.state());
+        if (state != skill::State::halted) {
             return {};
         }
         const auto reset = skill.reset();

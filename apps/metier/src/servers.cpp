@@ -16,11 +16,8 @@ void addServerChoice(CLI::App& command, ServerChoice& choice) {
 Result<std::vector<std::string>> addressesOf(const ServerChoice& choice) {
     auto urls = choice.urls;
     if (!choice.cell.empty()) {
-        const auto cell = cell::loadCell(choice.cell);
-        if (!cell) {
-            return fail(cell.error());
-        }
-        for (const auto& server : cell->servers) {
+        METIER_ASSIGN(const auto cell, cell::loadCell(choice.cell));
+        for (const auto& server : cell.servers) {
             urls.push_back(fmt::format("opc.tcp://{}:{}", server.address, server.port));
         }
     }
@@ -91,15 +88,9 @@ Result<OpenSkill> openSkill(const CommandIdentity& identity, const SkillChoice& 
     if (!client) {
         return fail(client.error());
     }
-    auto address = client::findSkill(**client, choice.skill);
-    if (!address) {
-        return fail(address.error());
-    }
-    auto skill = client::SkillHandle::open(**client, std::move(*address));
-    if (!skill) {
-        return fail(skill.error());
-    }
-    return OpenSkill{std::move(*client), std::move(*skill)};
+    METIER_ASSIGN(auto address, client::findSkill(**client, choice.skill));
+    METIER_ASSIGN(auto skill, client::SkillHandle::open(**client, std::move(address)));
+    return OpenSkill{std::move(*client), std::move(skill)};
 }
 
 }  // namespace metier::app

@@ -20,8 +20,8 @@ using client::SkillHandle;
 
 void printResult(const skill::ValueMap& result, bool as_json) {
     if (as_json) {
-        fmt::print("{}\n", skill::toJson(result).dump(
-                               2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", skill::toJson(result).dump(2, ' ', false,
+                                                      nlohmann::json::error_handler_t::replace));
         return;
     }
     fmt::print("done\n");
@@ -33,8 +33,7 @@ void printResult(const skill::ValueMap& result, bool as_json) {
 /// Ctrl-C halts the skill; the run then ends with the Halted that follows.
 class HaltOnSignal {
 public:
-    HaltOnSignal(const link::StopSignal& signal, opcua::Client& client,
-                 client::SkillAddress skill)
+    HaltOnSignal(const link::StopSignal& signal, opcua::Client& client, client::SkillAddress skill)
         : thread_([&signal, &client, skill = std::move(skill)](const std::stop_token& stop) {
               while (!stop.stop_requested()) {
                   if (signal.waitUntil(std::chrono::steady_clock::now() + kLook)) {
@@ -85,13 +84,11 @@ opcua::Answer<skill::ValueMap> runOwned(SkillHandle& skill, opcua::Client& clien
     std::optional<client::ControlHandle> control;
     if (run.owner.lease_ms != 0) {
         const auto* controller = skill.address().controller();
-        auto taken = client::ControlHandle::acquire(
-            client, controller == nullptr ? opcua::NodeId() : controller->node,
-            {.lease = run.owner.lease(), .on_loss = run.owner.action()});
-        if (!taken) {
-            return tl::unexpected(taken.error());
-        }
-        control = std::move(*taken);
+        METIER_ASSIGN(auto taken,
+                      client::ControlHandle::acquire(
+                          client, controller == nullptr ? opcua::NodeId() : controller->node,
+                          {.lease = run.owner.lease(), .on_loss = run.owner.action()}));
+        control = std::move(taken);
     }
     if (!control && run.owner.action() == skill::OwnerLossAction::skill_default &&
         !skill.knowsExecutions()) {

@@ -7,21 +7,21 @@
 #include <mutex>
 #include <utility>
 
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/motion/kinematics.hpp"
 #include "metier/path_evaluation/placement.hpp"
 #include "metier/server/kinematics_conversion.hpp"
-#include "metier/client/kinematics_reader.hpp"
-#include "metier/client/skill_handle.hpp"
 #include "second_try.hpp"
 
 namespace metier::app {
 namespace {
 
-using path_evaluation::kCorners;
-using path_evaluation::Square;
 using client::SkillAddress;
 using client::SkillHandle;
+using path_evaluation::kCorners;
+using path_evaluation::Square;
 
 constexpr const char* kPtpType = "CartesianPtpMoveSkillType";
 constexpr const char* kLinearType = "CartesianLinearMoveSkillType";
@@ -71,26 +71,17 @@ public:
         : client_(client), arm_(arm), settings_(settings), progress_(progress) {}
 
     Result<SquareResult> run() {
-        if (auto prepared = prepare(); !prepared) {
-            return fail(prepared.error());
-        }
+        METIER_TRY(prepare());
         progress_(0.0, "to the first corner");
-        if (auto moved = move(*ptp_, 0); !moved) {
-            return fail(moved.error());
-        }
+        METIER_TRY(move(*ptp_, 0));
         return goAround();
     }
 
 private:
     Result<void> prepare() {
-        auto nodes = client::findKinematics(client_, arm_.linear);
-        if (!nodes) {
-            return fail(nodes.error());
-        }
-        nodes_ = std::move(*nodes);
-        if (auto placed = place(); !placed) {
-            return placed;
-        }
+        METIER_ASSIGN(auto nodes, client::findKinematics(client_, arm_.linear));
+        nodes_ = std::move(nodes);
+        METIER_TRY(place());
         auto ptp = SkillHandle::open(client_, arm_.ptp);
         auto linear = SkillHandle::open(client_, arm_.linear);
         if (!ptp || !linear) {
@@ -103,36 +94,22 @@ private:
 
     /// Knows nothing of the robot but what its server publishes.
     Result<void> place() {
-        const auto data = client::readKinematics(client_, nodes_);
-        if (!data) {
-            return fail(data.error());
-        }
-        const auto joints = client::readJointPosition(client_, nodes_);
-        if (!joints) {
-            return fail(joints.error());
-        }
-        const auto chain = server::toChain(*data, *joints);
-        if (!chain) {
-            return fail(chain.error());
-        }
-        const auto square = path_evaluation::placeSquare(*chain, chain->home, settings_.side);
-        if (!square) {
-            return fail(square.error());
-        }
-        square_ = *square;
+        METIER_ASSIGN(const auto data, client::readKinematics(client_, nodes_));
+        METIER_ASSIGN(const auto joints, client::readJointPosition(client_, nodes_));
+        METIER_ASSIGN(const auto chain, server::toChain(data, joints));
+        METIER_ASSIGN(const auto square,
+                      path_evaluation::placeSquare(chain, chain.home, settings_.side));
+        square_ = square;
         // Shared with the subscription's callback.
-        recorder_ = std::make_shared<PathRecorder>(*chain);
+        recorder_ = std::make_shared<PathRecorder>(chain);
         return {};
     }
 
     Result<void> move(SkillHandle& skill, std::size_t corner) {
         const skill::ValueMap target{{"TargetPosition", motion::toFrame(square_.corner(corner))}};
-        const auto result = tryToRun(skill, target);
-        if (!result) {
-            return fail(result.error());
-        }
-        const auto deviation = result->find("LargestPathDeviation");
-        if (&skill == &*linear_ && deviation != result->end()) {
+        METIER_ASSIGN(const auto result, tryToRun(skill, target));
+        const auto deviation = result.find("LargestPathDeviation");
+        if (&skill == &*linear_ && deviation != result.end()) {
             if (const auto* value = std::get_if<double>(&deviation->second)) {
                 reported_deviation_ = std::max(reported_deviation_, *value);
             }
@@ -147,9 +124,7 @@ private:
             if (result || result.error().code == Errc::cancelled || tries_left <= 0) {
                 return result ? Result<skill::ValueMap>(std::move(*result)) : fail(result.error());
             }
-            if (const auto ready = resetUntilReady(skill, kLongestReset); !ready) {
-                return fail(ready.error());
-            }
+            METIER_TRY(resetUntilReady(skill, kLongestReset));
         }
     }
 
@@ -161,32 +136,21 @@ private:
         if (!subscription || !missed_before) {
             return fail(subscription ? missed_before.error() : subscription.error());
         }
-        if (auto noted = noteNow(); !noted) {
-            return fail(noted.error());
-        }
+        METIER_TRY(noteNow());
         const auto start = std::chrono::steady_clock::now();
         for (int lap = 0; lap < settings_.laps; ++lap) {
-            if (auto done = goOneLap(lap); !done) {
-                return fail(done.error());
-            }
+            METIER_TRY(goOneLap(lap));
         }
         const auto time = std::chrono::steady_clock::now() - start;
-        if (auto noted = noteNow(); !noted) {
-            return fail(noted.error());
-        }
-        const auto missed = client::readMissedCycles(client_, nodes_);
-        if (!missed) {
-            return fail(missed.error());
-        }
-        return result(time, *missed - *missed_before);
+        METIER_TRY(noteNow());
+        METIER_ASSIGN(const auto missed, client::readMissedCycles(client_, nodes_));
+        return result(time, missed - *missed_before);
     }
 
     Result<void> goOneLap(int lap) {
         for (std::size_t side = 1; side <= kCorners; ++side) {
             const auto sides_done = static_cast<double>(lap) * kCorners + static_cast<double>(side);
-            if (auto moved = move(*linear_, side); !moved) {
-                return moved;
-            }
+            METIER_TRY(move(*linear_, side));
             progress_(sides_done / (kCorners * static_cast<double>(settings_.laps)),
                       fmt::format("lap {} of {}, side {} of {}", lap + 1, settings_.laps, side,
                                   kCorners));
@@ -196,12 +160,9 @@ private:
 
     /// Takes the arm's place at a standstill into the recorded path.
     Result<void> noteNow() {
-        const auto joints = client::readJointPosition(client_, nodes_);
-        if (!joints) {
-            return fail(joints.error());
-        }
+        METIER_ASSIGN(const auto joints, client::readJointPosition(client_, nodes_));
         recorder_->begin();
-        recorder_->add(*joints);
+        recorder_->add(joints);
         return {};
     }
 
@@ -233,12 +194,9 @@ private:
 }  // namespace
 
 Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url) {
-    const auto skills = client::findSkills(client);
-    if (!skills) {
-        return fail(skills.error());
-    }
+    METIER_ASSIGN(const auto skills, client::findSkills(client));
     std::map<std::string, SquareArm> by_controller;
-    for (const auto& skill : *skills) {
+    for (const auto& skill : skills) {
         auto& arm = by_controller[skill.controllerName()];
         if (skill.type_name == kPtpType) {
             arm.ptp = skill;
@@ -251,11 +209,8 @@ Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::
         if (arm.ptp.name.empty() || arm.linear.name.empty()) {
             continue;
         }
-        const auto nodes = client::findKinematics(client, arm.linear);
-        if (!nodes) {
-            return fail(nodes.error());
-        }
-        arm.name = nodes->device_name;
+        METIER_ASSIGN(const auto nodes, client::findKinematics(client, arm.linear));
+        arm.name = nodes.device_name;
         arm.url = url;
         arms.push_back(std::move(arm));
     }

@@ -27,11 +27,8 @@ Result<std::vector<ConnectedArm>> findArms(const CommandIdentity& identity,
         if (!client) {
             return fail(client.error());
         }
-        auto arms = findSquareArms(**client, url);
-        if (!arms) {
-            return fail(arms.error());
-        }
-        for (auto& arm : *arms) {
+        METIER_ASSIGN(auto arms, findSquareArms(**client, url));
+        for (auto& arm : arms) {
             if (*client == nullptr) {
                 client = connectTo(identity, url);  // a connection for each arm
                 if (!client) {

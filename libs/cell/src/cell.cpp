@@ -253,9 +253,7 @@ Result<CellConfig> readCell(const TomlFile& toml, const std::filesystem::path& f
     }
     checkReferences(cell, tables);
     checkVirtual(cell, virtual_tables);
-    if (auto checked = toml.finish(); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(toml.finish());
     return cell;
 }
 

@@ -424,9 +424,7 @@ Result<TomlFile> TomlFile::load(const std::filesystem::path& path) {
 }
 
 Result<TomlFile> TomlFile::parse(std::string_view text, std::string name) {
-    if (auto right = checkLines(text, name); !right) {
-        return fail(std::move(right.error()));
-    }
+    METIER_TRY(checkLines(text, name));
     try {
         return TomlFile(std::make_unique<Impl>(name, toml::parse(text)));
     } catch (const toml::parse_error& problem) {

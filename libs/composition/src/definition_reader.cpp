@@ -243,9 +243,7 @@ Result<Definition> checkedDefinition(Result<TomlFile> file, std::string name) {
     for (const auto& problem : checkDefinition(definition)) {
         file->note(problem.line, problem.key, problem.why);
     }
-    if (auto right = file->finish(); !right) {
-        return fail(std::move(right.error()));
-    }
+    METIER_TRY(file->finish());
     return definition;
 }
 

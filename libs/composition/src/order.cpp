@@ -28,9 +28,7 @@ public:
             }
         }
         for (std::size_t i = 0; i < given_.size(); ++i) {
-            if (auto taken = take(i); !taken) {
-                return fail(std::move(taken.error()));
-            }
+            METIER_TRY(take(i));
         }
         return std::move(sorted_);
     }
@@ -41,7 +39,8 @@ private:
             return {};
         }
         const auto& definition = given_[index];
-        const bool around = std::find(joint_path_.begin(), joint_path_.end(), definition.type) != joint_path_.end();
+        const bool around =
+            std::find(joint_path_.begin(), joint_path_.end(), definition.type) != joint_path_.end();
         joint_path_.push_back(definition.type);
         if (around) {
             return fail(Errc::invalid_argument,
@@ -53,9 +52,7 @@ private:
                 if (given_[other].type != use.type) {
                     continue;
                 }
-                if (auto taken = take(other); !taken) {
-                    return taken;
-                }
+                METIER_TRY(take(other));
             }
         }
         joint_path_.pop_back();

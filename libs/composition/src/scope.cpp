@@ -144,11 +144,8 @@ Result<std::vector<double>> Scope::numbersOf(const std::vector<Term>& terms) con
             numbers.push_back(term.constant);
             continue;
         }
-        const auto value = read(*term.from);
-        if (!value) {
-            return fail(value.error());
-        }
-        numbers.push_back(term.factor * asNumber(*value).value_or(0.0));
+        METIER_ASSIGN(const auto value, read(*term.from));
+        numbers.push_back(term.factor * asNumber(value).value_or(0.0));
     }
     return numbers;
 }
@@ -175,11 +172,8 @@ Result<Value> Scope::evaluate(const Binding& binding, ValueType type) const {
 }
 
 Result<double> Scope::number(const Binding& binding) const {
-    const auto value = evaluate(binding, ValueType::number);
-    if (!value) {
-        return fail(value.error());
-    }
-    const auto number = asNumber(*value);
+    METIER_ASSIGN(const auto value, evaluate(binding, ValueType::number));
+    const auto number = asNumber(value);
     return number ? Result<double>(*number)
                   : at(binding, Result<double>(fail(Errc::invalid_argument, "is no number")));
 }
@@ -189,14 +183,11 @@ Result<bool> Scope::compare(const Condition& condition) const {
     if (!subject) {
         return at(condition.operand, Result<bool>(fail(subject.error())));
     }
-    const auto operand = evaluate(condition.operand, skill::typeOf(*subject));
-    if (!operand) {
-        return fail(operand.error());
-    }
+    METIER_ASSIGN(const auto operand, evaluate(condition.operand, skill::typeOf(*subject)));
     const auto left = asNumber(*subject);
-    const auto right = asNumber(*operand);
+    const auto right = asNumber(operand);
     if (condition.kind == Condition::Kind::is) {
-        return left && right ? *left == *right : *subject == *operand;
+        return left && right ? *left == *right : *subject == operand;
     }
     if (!left || !right) {
         return fail(Errc::internal, "a comparison of what are no numbers");

@@ -103,11 +103,10 @@ Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
     return {};
 }
 
-Result<std::unique_ptr<skill::ExecutionWork>> SequenceSkill::prepare(const skill::ValueMap& snapshot) {
+Result<std::unique_ptr<skill::ExecutionWork>> SequenceSkill::prepare(
+    const skill::ValueMap& snapshot) {
     for (const auto& alias : needed_) {
-        if (auto usable = checkUsable(alias); !usable) {
-            return fail(std::move(usable.error()));
-        }
+        METIER_TRY(checkUsable(alias));
     }
     return std::make_unique<SequenceWork>(RunSetup{composition_, used_, executor_, clock_, origin_},
                                           snapshot, work_count_);
@@ -133,11 +132,8 @@ Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<UsedSki
             return fail(Errc::not_found, fmt::format("no use {}", alias));
         }
     }
-    auto composed = compose(composition_.definition, descriptionsWith(used_skills));
-    if (!composed) {
-        return fail(std::move(composed.error()));
-    }
-    composition_ = std::move(*composed);
+    METIER_ASSIGN(auto composed, compose(composition_.definition, descriptionsWith(used_skills)));
+    composition_ = std::move(composed);
     for (auto& [alias, used] : used_skills) {
         auto& used = used_.find(alias)->second;
         std::swap(used.skill, used);

@@ -15,8 +15,8 @@
 
 namespace metier::dashboard {
 
-using nlohmann::json;
 using client::AsyncSkill;
+using nlohmann::json;
 
 namespace {
 
@@ -35,49 +35,27 @@ std::string serverOf(const std::string& key) {
 /// As the tab that has control.
 Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, const Person& person) {
     const auto key = textIn(body, "key");
-    const auto tab = key ? textIn(body, "tab") : Result<std::string>(fail(key.error()));
-    if (!tab) {
-        return fail(tab.error());
-    }
-    auto reached = watches.skill(*key);
-    if (!reached) {
-        return fail(reached.error());
-    }
-    auto session = tabs.session(*tab, person, serverOf(*key));
-    if (!session) {
-        return fail(session.error());
-    }
-    auto skill = (*session)->session().skill(*reached->skill);
-    if (!skill) {
-        return fail(skill.error());
-    }
-    return Named{std::move(*reached), std::move(*session), nullptr, std::move(*skill)};
+    METIER_ASSIGN(const auto tab,
+                  key ? textIn(body, "tab") : Result<std::string>(fail(key.error())));
+    METIER_ASSIGN(auto reached, watches.skill(*key));
+    METIER_ASSIGN(auto session, tabs.session(tab, person, serverOf(*key)));
+    METIER_ASSIGN(auto skill, session->session().skill(*reached.skill));
+    return Named{std::move(reached), std::move(session), nullptr, std::move(skill)};
 }
 
 /// As somebody who needs no control; as the tab, if it has control: a server tells others that the
 /// skill is not theirs.
 Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person& person) {
     const auto key = textIn(body, "key");
-    const auto tab = key ? textOrNone(body, "tab") : Result<std::string>(fail(key.error()));
-    if (!tab) {
-        return fail(tab.error());
-    }
-    if (tabs.session(*tab, person, serverOf(*key))) {
+    METIER_ASSIGN(const auto tab,
+                  key ? textOrNone(body, "tab") : Result<std::string>(fail(key.error())));
+    if (tabs.session(tab, person, serverOf(*key))) {
         return commandedSkill(watches, tabs, body, person);
     }
-    auto reached = watches.skill(*key);
-    if (!reached) {
-        return fail(reached.error());
-    }
-    auto session = person.session(serverOf(*key));
-    if (!session) {
-        return fail(session.error());
-    }
-    auto skill = (*session)->skill(*reached->skill);
-    if (!skill) {
-        return fail(skill.error());
-    }
-    return Named{std::move(*reached), nullptr, std::move(*session), std::move(*skill)};
+    METIER_ASSIGN(auto reached, watches.skill(*key));
+    METIER_ASSIGN(auto session, person.session(serverOf(*key)));
+    METIER_ASSIGN(auto skill, session->skill(*reached.skill));
+    return Named{std::move(reached), nullptr, std::move(session), std::move(skill)};
 }
 
 opcua::Answer<> callOnce(const client::AsyncSkill& skill, skill::Method method) {
@@ -117,11 +95,8 @@ Result<skill::ValueMap> parametersIn(const json& body, const skill::SkillDescrip
             return fail(Errc::not_found, fmt::format("{} has no parameter '{}'", skill.name,
                                                      opcua::sanitise(name.substr(0, 60))));
         }
-        auto typed = skill::valueFrom(value, field->type, name);
-        if (!typed) {
-            return fail(typed.error());
-        }
-        values[name] = std::move(*typed);
+        METIER_ASSIGN(auto typed, skill::valueFrom(value, field->type, name));
+        values[name] = std::move(typed);
     }
     return values;
 }

@@ -80,11 +80,8 @@ Result<std::unique_ptr<Dashboard>> Dashboard::start(Options options, const Clock
         }
     });
     own.api.bind(own.http);
-    const auto port = own.http.serve(own.options.address, own.options.port);
-    if (!port) {
-        return fail(port.error());
-    }
-    own.port = *port;
+    METIER_ASSIGN(const auto port, own.http.serve(own.options.address, own.options.port));
+    own.port = port;
     std::unique_ptr<Dashboard> dashboard(new Dashboard(std::move(impl)));  // NOLINT: private
     for (const auto& server : own.options.cell.servers) {
         dashboard->addServer(server);

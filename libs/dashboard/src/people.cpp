@@ -61,24 +61,18 @@ void Person::setRole(std::string role) {
 
 Result<std::unique_ptr<opcua::Client>> Person::connect(const std::string& server,
                                                        const std::string& name) const {
-    const auto url = watches_.url(server);
-    if (!url) {
-        return fail(url.error());
-    }
-    auto options = connector_.options(*url);
-    if (!options) {
-        return fail(options.error());
-    }
-    options->application_name = name;
-    options->connect_timeout = kConnect;
-    if (!isOfLab() && !options->security) {
+    METIER_ASSIGN(const auto url, watches_.url(server));
+    METIER_ASSIGN(auto options, connector_.options(url));
+    options.application_name = name;
+    options.connect_timeout = kConnect;
+    if (!isOfLab() && !options.security) {
         return fail(Errc::connection_lost,
                     fmt::format("{}: without security it knows nobody's password", server));
     }
     if (!isOfLab()) {
-        options->user = opcua::UserName{user_, password_};
+        options.user = opcua::UserName{user_, password_};
     }
-    auto client = opcua::Client::connect(*url, *options);
+    auto client = opcua::Client::connect(url, options);
     if (!client) {
         const auto code = isDenial(client.error()) ? Errc::access_denied : client.error().code;
         return fail(code, opcua::sanitise(fmt::format("{}: {}", server, client.error().message)));
@@ -94,12 +88,9 @@ Result<std::shared_ptr<SkillSession>> Person::session(const std::string& server)
             return known->second;
         }
     }
-    auto client =
-        connect(server, fmt::format("metier dashboard{}{}", user_.empty() ? "" : " of ", user_));
-    if (!client) {
-        return fail(client.error());
-    }
-    auto session = std::make_shared<SkillSession>(std::move(*client));
+    METIER_ASSIGN(auto client, connect(server, fmt::format("metier dashboard{}{}",
+                                                           user_.empty() ? "" : " of ", user_)));
+    auto session = std::make_shared<SkillSession>(std::move(client));
     auto before = session;  // what was there ends after the lock
     const std::lock_guard lock(mutex_);
     sessions_[server].swap(before);
@@ -196,9 +187,7 @@ Result<std::string> People::login(const std::string& user, const std::string& pa
     if (user.empty() || password.empty()) {
         return fail(Errc::access_denied, "a name and a password are needed");
     }
-    if (auto free = beginAttempt(user); !free) {
-        return fail(free.error());
-    }
+    METIER_TRY(beginAttempt(user));
     const auto turn = queue_.await(kLongestQueue);
     if (!turn) {
         takeBack(user);

@@ -187,15 +187,12 @@ Reply RecordsView::list(const httplib::Request& request) {
 }
 
 Result<json> RecordsView::detailsOf(Store& store, std::int64_t number) const {
-    const auto details = records::detailsOf(store, number);
-    if (!details) {
-        return fail(details.error());
-    }
-    auto shown = recordJson(details->execution);
-    shown["transitions"] = listOf(details->transitions);
-    shown["path"] = pathJson(details->path);
+    METIER_ASSIGN(const auto details, records::detailsOf(store, number));
+    auto shown = recordJson(details.execution);
+    shown["transitions"] = listOf(details.transitions);
+    shown["path"] = pathJson(details.path);
     shown["children"] = json::array();
-    for (const auto& child : details->children) {
+    for (const auto& child : details.children) {
         shown["children"].push_back(recordJson(child));
     }
     return shown;

@@ -26,17 +26,12 @@ Answer<std::shared_ptr<ServerLink>> ServerLink::open(
     const LinkContext& context, opcua::ClientOptions options,
     std::function<void(const opcua::Failure&)> on_lost) {
     options.publishing_interval = kJoints;
-    auto client = opcua::Client::connect(context.server.url, std::move(options));
-    if (!client) {
-        return tl::unexpected(client.error());
-    }
-    std::shared_ptr<ServerLink> link(new ServerLink(std::move(*client)));  // NOLINT: private
+    METIER_ASSIGN(auto client, opcua::Client::connect(context.server.url, std::move(options)));
+    std::shared_ptr<ServerLink> link(new ServerLink(std::move(client)));  // NOLINT: private
     link->client_->onConnectionLost(std::move(on_lost));
     link->board_ = &context.board;
     link->server_ = context.server.name;
-    if (auto asked = Survey(context, *link).run(); !asked) {
-        return tl::unexpected(asked.error());
-    }
+    METIER_TRY(Survey(context, *link).run());
     return link;
 }
 
@@ -109,10 +104,11 @@ void ServerLink::showArm(const Arm& arm) {
 
 void ServerLink::showCycles(const Arm& arm) {
     const auto& key = arm.key;
-    subscribeLive<std::int32_t>(arm.nodes.safety_state, kStates,
-                                [key](LiveValues& live, std::int32_t kind, UtcTime /*time*/) {
-                                    live.setOfArm(key, "safety", std::string(nameOf(opcua_skill::SafetyStateKind(kind))));
-                                });
+    subscribeLive<std::int32_t>(
+        arm.nodes.safety_state, kStates,
+        [key](LiveValues& live, std::int32_t kind, UtcTime /*time*/) {
+            live.setOfArm(key, "safety", std::string(nameOf(opcua_skill::SafetyStateKind(kind))));
+        });
     subscribeLive<double>(arm.nodes.cycle_jitter, kStates,
                           [key](LiveValues& live, double seconds, UtcTime /*time*/) {
                               live.setOfArm(key, "jitter", rounded(seconds));

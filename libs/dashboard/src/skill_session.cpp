@@ -15,11 +15,8 @@ opcua::Answer<std::shared_ptr<AsyncSkill>> SkillSession::skill(const LinkedSkill
             return known->second;
         }
     }
-    auto opened = AsyncSkill::open(*client_, linked.address, {});
-    if (!opened) {
-        return tl::unexpected(opened.error());
-    }
-    auto skill = std::make_shared<AsyncSkill>(std::move(*opened));
+    METIER_ASSIGN(auto opened, AsyncSkill::open(*client_, linked.address, {}));
+    auto skill = std::make_shared<AsyncSkill>(std::move(opened));
     const std::lock_guard lock(mutex_);
     return skills_.try_emplace(linked.key, std::move(skill)).first->second;
 }

@@ -6,19 +6,19 @@
 #include <utility>
 
 #include "arm_json.hpp"
+#include "metier/client/skill_references.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
-#include "metier/client/skill_references.hpp"
 #include "transitions.hpp"
 
 namespace metier::dashboard {
 namespace {
 
-using opcua::Answer;
-using opcua::NodeId;
 using client::AsyncSkill;
 using client::KinematicsNodes;
 using client::SkillAddress;
+using opcua::Answer;
+using opcua::NodeId;
 
 const NodeId kServerArray{0, 2254U};
 
@@ -41,16 +41,11 @@ double lastTransition(opcua::Client& client, const NodeId& skill) {
 
 Answer<> Survey::run() {
     auto& client = link_.client();
-    const auto skills = client::findSkills(client);
-    if (!skills) {
-        return tl::unexpected(skills.error());
-    }
+    METIER_ASSIGN(const auto skills, client::findSkills(client));
     link_.offer_.application_uri = applicationUri(client);
     link_.offer_.uses.insert(context_.server.uses.begin(), context_.server.uses.end());
-    for (const auto& address : *skills) {
-        if (auto added = add(address); !added) {
-            return added;
-        }
+    for (const auto& address : skills) {
+        METIER_TRY(add(address));
     }
     if (!link_.arms_.empty()) {
         link_.offer_.arm = link_.arms_.front().key;
@@ -90,23 +85,14 @@ std::string Survey::uniqueKey(const SkillAddress& address) const {
 }
 
 Answer<> Survey::add(const SkillAddress& address) {
-    auto arm = armOf(address, noteUses(address));
-    if (!arm) {
-        return tl::unexpected(arm.error());
-    }
-    auto halt = link_.client().translate(address.node, {{0, "Halt"}});
-    if (!halt) {
-        return tl::unexpected(halt.error());
-    }
-    LinkedSkill linked{uniqueKey(address), address, addController(address), std::move(*halt),
+    METIER_ASSIGN(auto arm, armOf(address, noteUses(address)));
+    METIER_ASSIGN(auto halt, link_.client().translate(address.node, {{0, "Halt"}}));
+    LinkedSkill linked{uniqueKey(address), address, addController(address), std::move(halt),
                        nullptr};
-    auto skill =
-        AsyncSkill::open(link_.client(), address, {transitionsTo(context_.board, linked.key)});
-    if (!skill) {
-        return tl::unexpected(skill.error());
-    }
-    link_.offer_.skills.push_back(skillJson(linked.key, context_.server.name, *skill, *arm));
-    linked.skill = std::make_unique<AsyncSkill>(std::move(*skill));
+    METIER_ASSIGN(auto skill, AsyncSkill::open(link_.client(), address,
+                                               {transitionsTo(context_.board, linked.key)}));
+    link_.offer_.skills.push_back(skillJson(linked.key, context_.server.name, skill, arm));
+    linked.skill = std::make_unique<AsyncSkill>(std::move(skill));
     readState(linked);
     link_.skills_.push_back(std::move(linked));
     return {};
@@ -150,8 +136,7 @@ Answer<MovedArm> Survey::armOf(const SkillAddress& address, const std::string& u
 
 std::string Survey::noteUses(const SkillAddress& address) {
     auto reader = client::ReferenceReader::create(link_.client());
-    const auto references =
-        reader ? reader->read(address.node) : Answer<client::SkillReferences>();
+    const auto references = reader ? reader->read(address.node) : Answer<client::SkillReferences>();
     std::string first;
     for (const auto& use : references ? references->uses : std::vector<client::SkillUse>()) {
         const auto used = use.endpoint_url.empty() ? "" : context_.server_at(use.endpoint_url);
@@ -168,18 +153,15 @@ Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const std::string&
     if (const auto known = arms_by_object_.find(nodes.object); known != arms_by_object_.end()) {
         return known->second;
     }
-    const auto data = client::readKinematics(link_.client(), nodes);
-    if (!data) {
-        return tl::unexpected(data.error());
-    }
+    METIER_ASSIGN(const auto data, client::readKinematics(link_.client(), nodes));
     const auto& name = context_.server.name;
     const auto& configured = context_.server.arm_of;
     const auto& owner = configured.empty() ? used : configured;
-    MovedArm arm{owner, data->axisCount(), data->tool_frames};
+    MovedArm arm{owner, data.axisCount(), data.tool_frames};
     if (owner.empty()) {
         arm.key = link_.arms_.empty() ? name : fmt::format("{}/{}", name, nodes.device_name);
         link_.offer_.arms.push_back(
-            armJson({arm.key, name, nodes.device_name, context_.server.world_from_base}, *data,
+            armJson({arm.key, name, nodes.device_name, context_.server.world_from_base}, data,
                     context_.models));
         link_.arms_.push_back({arm.key, nodes});
     }

@@ -106,9 +106,7 @@ Result<void> Tabs::check(const std::string& tab, const Person& person) const {
 
 Result<void> Tabs::take(const std::string& tab, const std::shared_ptr<Person>& person,
                         const std::string& server) {
-    if (auto good = check(tab, *person); !good) {
-        return good;
-    }
+    METIER_TRY(check(tab, *person));
     const auto link = watches_.link(server);
     if (!link) {
         const auto known = watches_.url(server);
@@ -118,19 +116,12 @@ Result<void> Tabs::take(const std::string& tab, const std::shared_ptr<Person>& p
     if (const auto held = session(tab, *person, server); held && (*held)->holdsAll()) {
         return {};
     }
-    if (auto released = release(tab, *person, server); !released) {
-        return released;
-    }
+    METIER_TRY(release(tab, *person, server));
     const auto name = nameOf(tab, *person);
-    auto client = person->connect(server, name);
-    if (!client) {
-        return fail(client.error());
-    }
-    auto session = std::make_shared<TabSession>(board_, std::move(*client));
+    METIER_ASSIGN(auto client, person->connect(server, name));
+    auto session = std::make_shared<TabSession>(board_, std::move(client));
     for (const auto& controller : link->controllers()) {
-        if (auto taken = session->take(controller, tab, name); !taken) {
-            return taken;
-        }
+        METIER_TRY(session->take(controller, tab, name));
     }
     const std::lock_guard lock(mutex_);
     if (auto good = checkLocked(tab, *person); !good) {
@@ -144,9 +135,7 @@ Result<void> Tabs::release(const std::string& tab, const Person& person,
                            const std::string& server) {
     std::shared_ptr<TabSession> gone;  // destroyed after the lock is
     const std::lock_guard lock(mutex_);
-    if (auto good = checkLocked(tab, person); !good) {
-        return good;
-    }
+    METIER_TRY(checkLocked(tab, person));
     auto& sessions = tabs_.at(tab).sessions;
     if (const auto found = sessions.find(server); found != sessions.end()) {
         gone = std::move(found->second);
@@ -158,9 +147,7 @@ Result<void> Tabs::release(const std::string& tab, const Person& person,
 Result<std::shared_ptr<TabSession>> Tabs::session(const std::string& tab, const Person& person,
                                                   const std::string& server) const {
     const std::lock_guard lock(mutex_);
-    if (auto good = checkLocked(tab, person); !good) {
-        return fail(good.error());
-    }
+    METIER_TRY(checkLocked(tab, person));
     const auto& sessions = tabs_.at(tab).sessions;
     const auto found = sessions.find(server);
     return found == sessions.end() || !found->second->session().isConnected()

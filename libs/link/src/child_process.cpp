@@ -187,9 +187,7 @@ Result<std::string> ChildProcess::readLine(SteadyTime deadline) {
             buffered_.erase(0, end + 1);
             return line;
         }
-        if (auto more = readMore(deadline); !more) {
-            return fail(more.error());
-        }
+        METIER_TRY(readMore(deadline));
     }
 }
 

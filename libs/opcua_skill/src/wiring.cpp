@@ -48,11 +48,8 @@ bool isParameterPath(std::string_view path) {
 
 /// What the type of an instance declares.
 Result<SkillLayout> declarationsOf(const AddressSpace& nodes, const NodeId& instance) {
-    const auto types = nodes.browse(instance, {opcua::ids::kHasTypeDefinition});
-    if (!types) {
-        return fail(types.error());
-    }
-    return types->empty() ? SkillLayout() : layoutOfType(nodes, types->front().target);
+    METIER_ASSIGN(const auto types, nodes.browse(instance, {opcua::ids::kHasTypeDefinition}));
+    return types.empty() ? SkillLayout() : layoutOfType(nodes, types.front().target);
 }
 
 }  // namespace

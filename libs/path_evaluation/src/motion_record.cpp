@@ -31,26 +31,23 @@ Result<std::vector<double>> numbersOf(std::string_view line) {
 
 /// Appends to the record, or tells why not.
 Result<void> append(MotionRecord& record, double time, std::span<const double> joints) {
-    auto position = JointVector::from(joints);
-    if (!position) {
-        return fail(std::move(position.error()));
-    }
+    METIER_ASSIGN(auto position, JointVector::from(joints));
     if (!std::isfinite(time)) {
         return fail(Errc::invalid_argument, fmt::format("time {} s is not finite", time));
     }
-    if (position->empty()) {
+    if (position.empty()) {
         return fail(Errc::invalid_argument, "no joint positions behind the time");
     }
-    if (!record.empty() && record.back().position.size() != position->size()) {
+    if (!record.empty() && record.back().position.size() != position.size()) {
         return fail(Errc::invalid_argument,
-                    fmt::format("{} joint positions, {} before", position->size(),
+                    fmt::format("{} joint positions, {} before", position.size(),
                                 record.back().position.size()));
     }
     if (!record.empty() && time <= record.back().time) {
         return fail(Errc::invalid_argument,
                     fmt::format("time {} s is not after {} s", time, record.back().time));
     }
-    record.push_back({time, *position});
+    record.push_back({time, position});
     return {};
 }
 

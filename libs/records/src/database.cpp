@@ -101,21 +101,14 @@ Result<void> checkUrl(const std::string& url) {
 }
 
 Result<std::unique_ptr<Database>> connect(const std::string& url, Store::Access access) {
-    if (auto known = checkUrl(url); !known) {
-        return fail(known.error());
-    }
+    METIER_TRY(checkUrl(url));
     return isPostgres(url) ? PostgresDatabase::open(url, access)
                            : SqliteDatabase::open(fileOf(url), access);
 }
 
 Result<std::unique_ptr<Database>> openDatabase(const std::string& url, Store::Access access) {
-    auto database = connect(url, access);
-    if (!database) {
-        return database;
-    }
-    if (auto ready = prepareSchema(**database, access); !ready) {
-        return fail(ready.error());
-    }
+    METIER_ASSIGN(auto database, connect(url, access));
+    METIER_TRY(prepareSchema(*database, access));
     return database;
 }
 

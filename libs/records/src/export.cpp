@@ -35,9 +35,7 @@ Result<void> insert(Database& into, std::string_view table, const Rows& rows) {
         }
         const auto sql =
             fmt::format("INSERT INTO {} VALUES ({})", table, fmt::join(parameters, ", "));
-        if (auto inserted = into.run(sql, row.cells()); !inserted) {
-            return inserted;
-        }
+        METIER_TRY(into.run(sql, row.cells()));
     }
     return {};
 }
@@ -52,9 +50,7 @@ Result<void> copy(Database& from, Database& into, const Copied& copied) {
         if (!rows || rows->empty()) {
             return rows.map([](const Rows& /*none*/) {});
         }
-        if (auto inserted = insert(into, copied.table, *rows); !inserted) {
-            return inserted;
-        }
+        METIER_TRY(insert(into, copied.table, *rows));
         last = rows->back().integer(0);
     }
 }
@@ -84,11 +80,8 @@ Result<void> copyAll(Database& from, Database& into) {
 }
 
 Result<std::uint64_t> writeFile(Database& from, const std::string& file) {
-    const auto opened = SqliteDatabase::open(file, Store::Access::write);
-    if (!opened) {
-        return fail(opened.error());
-    }
-    auto& into = **opened;
+    METIER_ASSIGN(const auto opened, SqliteDatabase::open(file, Store::Access::write));
+    auto& into = *opened;
     return prepareSchema(into, Store::Access::write)
         .and_then([&] { return inSnapshot(from, [&] { return copyAll(from, into); }); })
         .and_then([&] { return into.number("SELECT count(*) FROM executions"); })

@@ -121,10 +121,7 @@ std::string toJson(const Details& details) {
 }
 
 Result<Details> detailsOf(Store& store, std::int64_t number) {
-    auto execution = store.find(std::to_string(number));
-    if (!execution) {
-        return fail(execution.error());
-    }
+    METIER_ASSIGN(auto execution, store.find(std::to_string(number)));
     auto children = store.children(number);
     auto transitions = store.transitions(number);
     auto intermediates = store.intermediates(number);
@@ -135,7 +132,7 @@ Result<Details> detailsOf(Store& store, std::int64_t number) {
                     : !intermediates ? intermediates.error()
                                      : path.error());
     }
-    return Details{std::move(*execution), std::move(*children), std::move(*transitions),
+    return Details{std::move(execution), std::move(*children), std::move(*transitions),
                    std::move(*intermediates), std::move(*path)};
 }
 

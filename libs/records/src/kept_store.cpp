@@ -20,11 +20,8 @@ void KeptStore::giveBack() {
 
 Result<void> KeptStore::open() {
     store_.reset();
-    auto opened = Store::open(url_);
-    if (!opened) {
-        return fail(opened.error());
-    }
-    store_ = std::move(*opened);
+    METIER_ASSIGN(auto opened, Store::open(url_));
+    store_ = std::move(opened);
     return {};
 }
 

@@ -14,24 +14,23 @@ constexpr std::string_view kLostText = "the server ended while this was under wa
 
 /// The latest time that is known of an execution under way.
 Result<UtcTime> lastSignOf(Database& database, const ExecutionRow& execution) {
-    const auto rows = database.query(
-        "SELECT events, samples FROM parts WHERE part >= $1 AND part < $2 ORDER BY part DESC "
-        "LIMIT 1",
-        {execution.number * kMostParts, (execution.number + 1) * kMostParts});
-    if (!rows) {
-        return fail(rows.error());
-    }
+    METIER_ASSIGN(
+        const auto rows,
+        database.query(
+            "SELECT events, samples FROM parts WHERE part >= $1 AND part < $2 ORDER BY part DESC "
+            "LIMIT 1",
+            {execution.number * kMostParts, (execution.number + 1) * kMostParts}));
     auto last = execution.started;
-    if (rows->empty()) {
+    if (rows.empty()) {
         return last;
     }
     std::vector<Event> events;
-    decodeEvents(rows->front().text(0), events);
+    decodeEvents(rows.front().text(0), events);
     for (const auto& event : events) {
         last = std::max(last, std::visit([](const auto& one) { return one.time; }, event));
     }
     std::vector<PathSample> samples;
-    decodeSamples(rows->front().bytes(1), samples);
+    decodeSamples(rows.front().bytes(1), samples);
     if (!samples.empty()) {
         const std::chrono::duration<double> time(samples.back().time);
         last =
@@ -41,15 +40,12 @@ Result<UtcTime> lastSignOf(Database& database, const ExecutionRow& execution) {
 }
 
 Result<void> close(Database& database, const std::string& server) {
-    auto executions =
-        readExecutions(database, "ended = 0 AND server = $1 ORDER BY number", {server});
-    if (!executions) {
-        return fail(executions.error());
-    }
+    METIER_ASSIGN(auto executions,
+                  readExecutions(database, "ended = 0 AND server = $1 ORDER BY number", {server}));
     KindCache kinds;
     RowWriter writer(database, kinds);
-    auto done = writer.takeRevisions(static_cast<std::int64_t>(executions->size()));
-    for (auto& execution : *executions) {
+    auto done = writer.takeRevisions(static_cast<std::int64_t>(executions.size()));
+    for (auto& execution : executions) {
         const auto ended = lastSignOf(database, execution);
         if (!done || !ended) {
             return ended ? done : Result<void>(fail(ended.error()));

@@ -267,17 +267,12 @@ void Recorder::Impl::takeWaiting() {
 }
 
 Result<void> Recorder::Impl::openStore() {
-    auto opened = openDatabase(options_.url, Store::Access::write);
-    if (!opened) {
-        return fail(opened.error());
-    }
-    auto attended = attend(**opened, options_.server, opened_ ? Opening::again : Opening::first);
-    if (!attended) {
-        return fail(attended.error());
-    }
-    presence_ = std::move(*attended);
+    METIER_ASSIGN(auto opened, openDatabase(options_.url, Store::Access::write));
+    METIER_ASSIGN(auto attended,
+                  attend(*opened, options_.server, opened_ ? Opening::again : Opening::first));
+    presence_ = std::move(attended);
     opened_ = true;
-    database_ = std::move(*opened);
+    database_ = std::move(opened);
     writer_.reopened();
     return {};
 }
@@ -291,20 +286,15 @@ Result<void> Recorder::Impl::trim() {
 /// Messages that come meanwhile are written between two parts.
 Result<void> Recorder::Impl::trimPart() {
     if (!trimming_ && now() >= next_trim_) {
-        if (auto closed = closeLostOfOthers(*database_, options_.server); !closed) {
-            return closed;
-        }
+        METIER_TRY(closeLostOfOthers(*database_, options_.server));
         next_trim_ = now() + kTrimEvery;
         trimming_.emplace(options_.keep, std::chrono::system_clock::now());
     }
     if (!trimming_) {
         return {};
     }
-    const auto more = trimming_->step(*database_);
+    METIER_ASSIGN(const auto more, trimming_->step(*database_));
     if (!more) {
-        return fail(more.error());
-    }
-    if (!*more) {
         trimming_.reset();
     }
     return {};
@@ -364,8 +354,8 @@ std::optional<WriteReport> Recorder::Impl::news() {
         return std::nullopt;
     }
     if (!fails) {
-        return WriteReport{write_state, "executions are recorded again; lost are " + lossText(dropped_),
-                            dropped_};
+        return WriteReport{
+            write_state, "executions are recorded again; lost are " + lossText(dropped_), dropped_};
     }
     const auto why = !error_.empty() ? error_
                      : hangs()       ? options_.url + " takes too long"
@@ -374,9 +364,7 @@ std::optional<WriteReport> Recorder::Impl::news() {
 }
 
 Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
-    if (auto known = checkUrl(options.url); !known) {
-        return fail(known.error());
-    }
+    METIER_TRY(checkUrl(options.url));
     if (options.server.empty()) {
         return fail(Errc::invalid_argument, "records need the name of their server");
     }

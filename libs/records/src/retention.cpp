@@ -47,11 +47,8 @@ Result<bool> RetentionRun::step(Database& database) {
     }
     age_done_ = true;
     if (!excess_) {
-        const auto found = excess(database);
-        if (!found) {
-            return fail(found.error());
-        }
-        excess_ = *found;
+        METIER_ASSIGN(const auto found, excess(database));
+        excess_ = found;
     }
     if (*excess_ == 0) {
         return finish(database);
@@ -69,14 +66,11 @@ Result<std::uint64_t> RetentionRun::excess(Database& database) const {
         return 0;
     }
     const auto used = database.number(database.dialect().bytes);
-    const auto all = used ? database.number("SELECT count(*) FROM executions") : used;
-    if (!all) {
-        return fail(all.error());
-    }
+    METIER_ASSIGN(const auto all, used ? database.number("SELECT count(*) FROM executions") : used);
     const double share = 1.0 - 0.9 * static_cast<double>(keep_.bytes) / static_cast<double>(*used);
     return static_cast<std::uint64_t>(*used) <= keep_.bytes
                ? 0
-               : static_cast<std::uint64_t>(share * static_cast<double>(*all)) + 1;
+               : static_cast<std::uint64_t>(share * static_cast<double>(all)) + 1;
 }
 
 /// Executions that are over and began before that time.

@@ -97,18 +97,15 @@ std::vector<Argument> valuesOf(const ExecutionRow& execution, Wanted wanted,
 }  // namespace
 
 Result<std::vector<ExecutionRow>> readExecutions(Database& database, std::string_view condition,
-                                              const std::vector<Cell>& values) {
+                                                 const std::vector<Cell>& values) {
     static const auto kSelect =
         fmt::format("SELECT {} FROM history WHERE ", listOf(columnsOf(isAny)));
-    const auto rows = database.query(kSelect + std::string(condition), values);
-    if (!rows) {
-        return fail(rows.error());
-    }
-    std::vector<ExecutionRow> result(rows->size());
-    for (std::size_t i = 0; i < rows->size(); ++i) {
+    METIER_ASSIGN(const auto rows, database.query(kSelect + std::string(condition), values));
+    std::vector<ExecutionRow> result(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
         std::size_t column = 0;
         visitMembers(result[i], [&](const Member& /*member*/, auto& value) {
-            read((*rows)[i], column++, value);
+            read(rows[i], column++, value);
         });
     }
     return result;
@@ -125,12 +122,9 @@ Result<void> RowWriter::takeRevisions(std::int64_t count) {
 Result<std::int64_t> RowWriter::insertOrFind(std::string_view insert, std::string_view find,
                                              std::span<const Argument> values) {
     for (const auto sql : {find, insert, find}) {
-        const auto rows = database_.execute(sql, values);
-        if (!rows) {
-            return fail(rows.error());
-        }
-        if (!rows->empty()) {
-            return rows->front().integer(0);
+        METIER_ASSIGN(const auto rows, database_.execute(sql, values));
+        if (!rows.empty()) {
+            return rows.front().integer(0);
         }
     }
     return fail(Errc::internal, database_.name() + ": a row that was inserted is not there");
@@ -169,17 +163,10 @@ Result<std::int64_t> RowWriter::noteOf(const std::string& text) {
 }
 
 Result<void> RowWriter::save(ExecutionRow& execution) {
-    const auto kind = kindOf(execution);
-    if (!kind) {
-        return fail(kind.error());
-    }
-    const auto note = noteOf(execution.reason_text);
-    if (!note) {
-        return fail(note.error());
-    }
+    METIER_ASSIGN(const auto kind, kindOf(execution));
+    METIER_ASSIGN(const auto note, noteOf(execution.reason_text));
     ++revision_;
-    return execution.number == 0 ? insert(execution, *kind, *note)
-                                 : update(execution, *kind, *note);
+    return execution.number == 0 ? insert(execution, kind, note) : update(execution, kind, note);
 }
 
 Result<void> RowWriter::insert(ExecutionRow& execution, std::int64_t kind, std::int64_t note) {
@@ -191,7 +178,8 @@ Result<void> RowWriter::insert(ExecutionRow& execution, std::int64_t kind, std::
         .map([&](const Rows& rows) { execution.number = rows.front().integer(0); });
 }
 
-Result<void> RowWriter::update(const ExecutionRow& execution, std::int64_t kind, std::int64_t note) {
+Result<void> RowWriter::update(const ExecutionRow& execution, std::int64_t kind,
+                               std::int64_t note) {
     static const auto kColumns = columnsOf(isUpdated, {"kind", "note", "revision"});
     static const auto kUpdate =
         fmt::format("UPDATE executions SET {} WHERE number = ${}",

@@ -65,14 +65,11 @@ Result<void> checkVersion(Database& database) {
 
 /// Errors: not_found (no tables), invalid_argument (those of others), not_supported.
 Result<void> check(Database& database) {
-    const auto tables = database.query(database.dialect().tables);
-    if (!tables) {
-        return fail(tables.error());
-    }
-    if (tables->empty()) {
+    METIER_ASSIGN(const auto tables, database.query(database.dialect().tables));
+    if (tables.empty()) {
         return fail(Errc::not_found, database.name() + ": there are no records");
     }
-    const bool known = std::any_of(tables->begin(), tables->end(),
+    const bool known = std::any_of(tables.begin(), tables.end(),
                                    [](const Row& row) { return row.text(0) == "metier_records"; });
     return known ? checkVersion(database)
                  : fail(Errc::invalid_argument,

@@ -43,11 +43,8 @@ Values Search::bounds() const {
 }
 
 Result<std::vector<std::int64_t>> Search::run() {
-    const auto bounded = findBounds();
-    if (!bounded) {
-        return fail(bounded.error());
-    }
-    const auto done = !*bounded                 ? Result<void>()
+    METIER_ASSIGN(const auto bounded, findBounds());
+    const auto done = !bounded                  ? Result<void>()
                       : !filter_.parent.empty() ? takeChildren()
                       : !filter_.text.empty()   ? takeText()
                       : namesKinds()            ? takeKinds()
@@ -79,11 +76,8 @@ Result<bool> Search::findBounds() {
 }
 
 Result<void> Search::take(const std::string& sql, const Values& values) {
-    const auto rows = database_.query(sql, values.all());
-    if (!rows) {
-        return fail(rows.error());
-    }
-    for (const auto& row : *rows) {
+    METIER_ASSIGN(const auto rows, database_.query(sql, values.all()));
+    for (const auto& row : rows) {
         found_.insert({row.integer(0), row.integer(1)});
     }
     while (found_.size() > count_) {
@@ -118,10 +112,7 @@ Result<void> Search::takeOfEach(const std::string& column, const Numbers& number
                 "SELECT * FROM ({}) AS t{}",
                 newest(fmt::format("{} = {} AND {}", column, numbers[j], condition)), j));
         }
-        if (auto taken = take(fmt::format("{}", fmt::join(each, " UNION ALL ")), bounds());
-            !taken) {
-            return taken;
-        }
+        METIER_TRY(take(fmt::format("{}", fmt::join(each, " UNION ALL ")), bounds()));
     }
     return {};
 }
@@ -151,12 +142,9 @@ Result<void> Search::takeNotes(const std::string& of_kinds) {
     };
     Values values;
     const auto some = fmt::format("{} LIMIT {}", notes(values), kAtOnce + 1);
-    const auto fitting = database_.numbers(some, values.all());
-    if (!fitting) {
-        return fail(fitting.error());
-    }
-    if (fitting->size() <= kAtOnce) {
-        return takeOfEach("note", *fitting, "note <> 0 AND " + of_kinds);
+    METIER_ASSIGN(const auto fitting, database_.numbers(some, values.all()));
+    if (fitting.size() <= kAtOnce) {
+        return takeOfEach("note", fitting, "note <> 0 AND " + of_kinds);
     }
     // If many fit, the newest executions that have a note soon show enough.
     auto bounded = bounds();

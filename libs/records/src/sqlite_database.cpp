@@ -159,17 +159,11 @@ Result<std::unique_ptr<Database>> SqliteDatabase::open(const fs::path& file, Sto
                     fmt::format("{} is a folder, no file of records", file.string()));
     }
     if (access == Store::Access::write) {
-        if (auto made = makeFile(file); !made) {
-            return fail(made.error());
-        }
+        METIER_TRY(makeFile(file));
     }
     std::unique_ptr<SqliteDatabase> database(new SqliteDatabase(file.string()));
-    if (auto connected = database->connect(access); !connected) {
-        return fail(connected.error());
-    }
-    if (auto ready = database->setUp(access); !ready) {
-        return fail(ready.error());
-    }
+    METIER_TRY(database->connect(access));
+    METIER_TRY(database->setUp(access));
     return std::unique_ptr<Database>(std::move(database));
 }
 
@@ -239,11 +233,8 @@ Result<sqlite3_stmt*> SqliteDatabase::prepared(std::string_view sql) {
 }
 
 Result<Rows> SqliteDatabase::execute(std::string_view sql, std::span<const Argument> parameters) {
-    const auto found = prepared(sql);
-    if (!found) {
-        return fail(found.error());
-    }
-    auto* const statement = *found;
+    METIER_ASSIGN(const auto found, prepared(sql));
+    auto* const statement = found;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         if (bind(statement, static_cast<int>(i) + 1, parameters[i]) != SQLITE_OK) {
             return failed();

@@ -66,30 +66,25 @@ Result<ExecutionRow> Store::find(std::string_view number_or_id) {
             return found ? Result<ExecutionRow>(std::move(found->front())) : fail(found.error());
         }
     }
-    auto found = readExecutions(*database_, "id = $1 ORDER BY started DESC, number DESC LIMIT 1",
-                                {storable(number_or_id)});
-    if (!found) {
-        return fail(found.error());
-    }
-    return found->empty() ? fail(Errc::not_found, fmt::format("{}: no execution '{}'",
-                                                              database_->name(), number_or_id))
-                          : Result<ExecutionRow>(std::move(found->front()));
+    METIER_ASSIGN(auto found,
+                  readExecutions(*database_, "id = $1 ORDER BY started DESC, number DESC LIMIT 1",
+                                 {storable(number_or_id)}));
+    return found.empty() ? fail(Errc::not_found, fmt::format("{}: no execution '{}'",
+                                                             database_->name(), number_or_id))
+                         : Result<ExecutionRow>(std::move(found.front()));
 }
 
 Result<Listing> Store::list(const Filter& filter, const Page& page) {
-    auto numbers = Search(*database_, filter, page).run();
-    if (!numbers) {
-        return fail(numbers.error());
-    }
+    METIER_ASSIGN(auto numbers, Search(*database_, filter, page).run());
     Listing listing;
     const auto count = std::clamp<std::size_t>(page.count, 1, kLargestPage);
-    listing.more = numbers->size() > count;
-    numbers->resize(std::min(numbers->size(), count));
-    if (numbers->empty()) {
+    listing.more = numbers.size() > count;
+    numbers.resize(std::min(numbers.size(), count));
+    if (numbers.empty()) {
         return listing;
     }
     const auto condition =
-        fmt::format("number IN ({}) ORDER BY started DESC, number DESC", fmt::join(*numbers, ", "));
+        fmt::format("number IN ({}) ORDER BY started DESC, number DESC", fmt::join(numbers, ", "));
     return readExecutions(*database_, condition).map([&](std::vector<ExecutionRow> found) {
         listing.executions = std::move(found);
         return listing;
@@ -97,18 +92,15 @@ Result<Listing> Store::list(const Filter& filter, const Page& page) {
 }
 
 Result<std::vector<ExecutionRow>> Store::children(std::int64_t number) {
-    const auto parent = readExecutions(*database_, "number = $1", {number});
-    if (!parent) {
-        return fail(parent.error());
-    }
-    if (parent->empty() || parent->front().id.empty()) {
+    METIER_ASSIGN(const auto parent, readExecutions(*database_, "number = $1", {number}));
+    if (parent.empty() || parent.front().id.empty()) {
         return std::vector<ExecutionRow>{};
     }
     return readExecutions(*database_,
                           "parent = $1 AND parent <> '' AND number <> $2 AND "
                           "(parent_server = $3 OR (parent_server = '' AND server = $3)) "
                           "ORDER BY started, number",
-                          {parent->front().id, number, parent->front().server});
+                          {parent.front().id, number, parent.front().server});
 }
 
 Result<std::vector<Transition>> Store::transitions(std::int64_t number) {
@@ -130,21 +122,17 @@ Result<std::vector<PathSample>> Store::path(std::int64_t number) {
 }
 
 Result<Changes> Store::changes(std::int64_t revision, const Filter& filter, std::uint32_t count) {
-    const auto latest = latestRevision();
-    if (!latest) {
-        return fail(latest.error());
-    }
-    Values values({revision, *latest, std::int64_t{count}});
+    METIER_ASSIGN(const auto latest, latestRevision());
+    Values values({revision, latest, std::int64_t{count}});
     const auto condition = fits(filter, values);
-    auto found = readExecutions(
-        *database_,
-        fmt::format("revision > $1 AND revision <= $2 AND {} ORDER BY revision LIMIT $3",
-                    condition),
-        values.all());
-    if (!found) {
-        return fail(found.error());
-    }
-    Changes changes{.executions = std::move(*found), .revision = *latest};
+    METIER_ASSIGN(
+        auto found,
+        readExecutions(
+            *database_,
+            fmt::format("revision > $1 AND revision <= $2 AND {} ORDER BY revision LIMIT $3",
+                        condition),
+            values.all()));
+    Changes changes{.executions = std::move(found), .revision = latest};
     if (changes.executions.size() < count) {
         return changes;
     }
@@ -164,11 +152,8 @@ Result<std::int64_t> Store::latestRevision() {
 Result<std::uint64_t> Store::retain(const Retention& keep, UtcTime now) {
     RetentionRun run(keep, now);
     while (true) {
-        const auto more = run.step(*database_);
+        METIER_ASSIGN(const auto more, run.step(*database_));
         if (!more) {
-            return fail(more.error());
-        }
-        if (!*more) {
             return run.removed();
         }
     }

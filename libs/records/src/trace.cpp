@@ -71,9 +71,7 @@ Result<void> Trace::add(const ExecutionRow& execution, const ExecutionRow* paren
         addArrow(*parent, execution);
     }
     for (const auto& child : *children) {
-        if (auto added = add(child, &execution); !added) {
-            return added;
-        }
+        METIER_TRY(add(child, &execution));
     }
     return {};
 }
@@ -190,18 +188,12 @@ void Trace::addArrow(const ExecutionRow& parent, const ExecutionRow& child) {
 }  // namespace
 
 Result<std::string> chromeTrace(Store& store, std::int64_t number) {
-    const auto root = store.find(std::to_string(number));
-    if (!root) {
-        return fail(root.error());
-    }
-    Trace trace(store, root->started);
-    if (auto added = trace.add(*root, nullptr); !added) {
-        return fail(added.error());
-    }
-    ordered_json json{
-        {"traceEvents", std::move(trace).events()},
-        {"displayTimeUnit", "ms"},
-        {"otherData", {{"execution", root->id}, {"started", timeText(root->started)}}}};
+    METIER_ASSIGN(const auto root, store.find(std::to_string(number)));
+    Trace trace(store, root.started);
+    METIER_TRY(trace.add(root, nullptr));
+    ordered_json json{{"traceEvents", std::move(trace).events()},
+                      {"displayTimeUnit", "ms"},
+                      {"otherData", {{"execution", root.id}, {"started", timeText(root.started)}}}};
     return dump(json);
 }
 

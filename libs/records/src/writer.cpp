@@ -120,13 +120,9 @@ Result<void> Writer::write(Database& database) {
 
 Result<void> Writer::writeWithin(Database& database) {
     RowWriter rows(database, kinds_);
-    if (auto taken = rows.takeRevisions(static_cast<std::int64_t>(changed_.size())); !taken) {
-        return taken;
-    }
+    METIER_TRY(rows.takeRevisions(static_cast<std::int64_t>(changed_.size())));
     for (const auto key : changed_) {
-        if (auto written = writeOne(rows, key, active_.at(key)); !written) {
-            return written;
-        }
+        METIER_TRY(writeOne(rows, key, active_.at(key)));
     }
     return {};
 }
@@ -135,16 +131,12 @@ Result<void> Writer::writeOne(RowWriter& rows, Recorder::Key key, Active& active
     auto& execution = active.execution;
     if (execution.number == 0) {
         numbered_.push_back(key);
-        const auto there = in_doubt_ ? rows.numberOf(execution) : Result<std::int64_t>(0);
-        if (!there) {
-            return fail(there.error());
-        }
-        execution.number = *there;
+        METIER_ASSIGN(const auto there,
+                      in_doubt_ ? rows.numberOf(execution) : Result<std::int64_t>(0));
+        execution.number = there;
     }
     if (active.row_changed) {
-        if (auto saved = rows.save(execution); !saved) {
-            return saved;
-        }
+        METIER_TRY(rows.save(execution));
     }
     return active.hasPart() ? rows.addPart(execution.number * kMostParts + active.parts,
                                            encodeEvents(active.events), active.samples)

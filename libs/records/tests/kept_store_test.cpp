@@ -19,11 +19,8 @@ protected:
     }
     static Result<std::string> newest(KeptStore& kept) {
         return kept.use([](Store& store) -> Result<std::string> {
-            const auto listing = store.list({}, {});
-            if (!listing) {
-                return fail(listing.error());
-            }
-            return listing->executions.empty() ? "nothing" : listing->executions.front().id;
+            METIER_ASSIGN(const auto listing, store.list({}, {}));
+            return listing.executions.empty() ? "nothing" : listing.executions.front().id;
         });
     }
 };

@@ -72,13 +72,13 @@ public:
     const skill::Caller& caller() const { return caller_; }
     StreamReport::Figures streamFigures() const { return stream_report_->figures(); }
     /// The moves' report of how soon they would stand.
-    std::optional<motion::StoppingEstimate> stoppingEstimate() const { return stopping_report_->read(); }
+    std::optional<motion::StoppingEstimate> stoppingEstimate() const {
+        return stopping_report_->read();
+    }
 
     Result<void> write(const std::string& skill, const skill::ValueMap& values) {
         for (const auto& [name, value] : values) {
-            if (auto written = program(skill).write(caller_, name, value); !written) {
-                return written;
-            }
+            METIER_TRY(program(skill).write(caller_, name, value));
         }
         return {};
     }

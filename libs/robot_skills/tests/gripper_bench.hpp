@@ -109,9 +109,7 @@ public:
 
     Result<void> start(const std::string& name, const skill::ValueMap& values = {}) {
         for (const auto& [parameter, value] : values) {
-            if (auto written = program(name).write(caller, parameter, value); !written) {
-                return written;
-            }
+            METIER_TRY(program(name).write(caller, parameter, value));
         }
         return run([&] { return program(name).start(caller); });
     }

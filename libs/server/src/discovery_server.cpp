@@ -19,22 +19,14 @@ Result<std::unique_ptr<DiscoveryServer>> DiscoveryServer::start(const Options& o
     server_options.bind_addresses = {options.address};
     server_options.discovery = opcua::DiscoveryService{.forget_after = options.forget_after};
     std::unique_ptr<DiscoveryServer> made(new DiscoveryServer);
-    auto access = secureServer(server_options, identity, made->clock_);
-    if (!access) {
-        return fail(access.error());
-    }
-    made->access_ = std::move(*access);
-    auto server = opcua::Server::create(std::move(server_options));
-    if (!server) {
-        return fail(server.error());
-    }
-    made->server_ = std::move(*server);
+    METIER_ASSIGN(auto access, secureServer(server_options, identity, made->clock_));
+    made->access_ = std::move(access);
+    METIER_ASSIGN(auto server, opcua::Server::create(std::move(server_options)));
+    made->server_ = std::move(server);
     if (made->access_ != nullptr) {
         made->access_->follow(*made->server_);
     }
-    if (auto started = made->server_->start(); !started) {
-        return fail(started.error());
-    }
+    METIER_TRY(made->server_->start());
     if (made->access_ == nullptr) {
         identity.security().noteServedOpen(made->url());
     }

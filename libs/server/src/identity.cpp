@@ -28,16 +28,9 @@ Result<security::SecurityFolder> Security::openFolder() const {
 
 Result<opcua::Credentials> Security::credentials(const std::string& name,
                                                  const security::IdentityOptions& options) const {
-    auto place = openFolder();
-    if (!place) {
-        return fail(place.error());
-    }
-    auto identity = place->identity(name, options, std::chrono::system_clock::now());
-    if (!identity) {
-        return fail(identity.error());
-    }
-    return opcua::Credentials{std::move(*identity), place->trustFolder(),
-                              place->identityFolder(name)};
+    METIER_ASSIGN(auto place, openFolder());
+    METIER_ASSIGN(auto identity, place.identity(name, options, std::chrono::system_clock::now()));
+    return opcua::Credentials{std::move(identity), place.trustFolder(), place.identityFolder(name)};
 }
 
 Result<security::KnownServers> Security::knownServers() const {
@@ -84,11 +77,8 @@ Result<Identity> Identity::create(Security security, const std::string& name,
     if (security.insecure_lab) {
         return Identity(std::move(security), std::nullopt);
     }
-    auto credentials = security.credentials(name, options);
-    if (!credentials) {
-        return fail(credentials.error());
-    }
-    return Identity(std::move(security), std::move(*credentials));
+    METIER_ASSIGN(auto credentials, security.credentials(name, options));
+    return Identity(std::move(security), std::move(credentials));
 }
 
 Identity::Identity(Security security, std::optional<opcua::Credentials> credentials)

@@ -64,10 +64,7 @@ Result<motion::ChainDescription> toChain(const opcua_skill::KinematicsData& data
         return fail(Errc::not_supported, fmt::format("an arm of {} axes; motion plans for {}",
                                                      data.axisCount(), motion::kMaxAxes));
     }
-    const auto home = motion::JointVector::from(current);
-    if (!home) {
-        return fail(home.error());
-    }
+    METIER_ASSIGN(const auto home, motion::JointVector::from(current));
     motion::ChainDescription chain;
     for (std::size_t axis = 0; axis < data.axisCount(); ++axis) {
         chain.joints.push_back(jointFrom(data, axis));
@@ -77,7 +74,7 @@ Result<motion::ChainDescription> toChain(const opcua_skill::KinematicsData& data
         data.max_cartesian_velocity[0],     data.max_cartesian_acceleration[0],
         data.max_cartesian_jerk[0],         data.max_cartesian_velocity[1],
         data.max_cartesian_acceleration[1], data.max_cartesian_jerk[1]};
-    chain.home = *home;
+    chain.home = home;
     chain.cycle_time = data.cycle_time;
     return chain;
 }

@@ -18,9 +18,7 @@ std::weak_ptr<FakeGripper> last_gripper;
 Result<device::OpenDevice> openGripper(const device::OpenRequest& request) {
     last_request = request;
     static_cast<void>(request.settings.numberOr("port", 0, 0, 65'535));
-    if (auto checked = request.settings.finish(); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(request.settings.finish());
     auto gripper = std::make_shared<FakeGripper>();  // shared, as OpenDevice asks for
     last_gripper = gripper;
     device::OpenDevice device;
@@ -30,9 +28,7 @@ Result<device::OpenDevice> openGripper(const device::OpenRequest& request) {
 }
 
 Result<device::OpenDevice> openSensor(const device::OpenRequest& request) {
-    if (auto checked = request.settings.finish(); !checked) {
-        return fail(checked.error());
-    }
+    METIER_TRY(request.settings.finish());
     auto sensor = std::make_shared<FakeSensor>();
     device::OpenDevice device;
     device.force_torque_sensor = sensor.get();

@@ -42,9 +42,7 @@ void Control::detach(Listener& listener) {
 
 Result<std::uint64_t> Control::acquire(const Caller& caller, milliseconds lease,
                                        OwnerLossAction action) {
-    if (auto free = checkFree(caller); !free) {
-        return fail(std::move(free.error()));
-    }
+    METIER_TRY(checkFree(caller));
     const auto wanted = lease == milliseconds(0) ? kDefaultLease : lease;
     if (wanted < kShortestLease || wanted > kLongestLease) {
         return fail(Errc::out_of_range,
@@ -71,17 +69,13 @@ Result<void> Control::checkHolds(const Caller& caller, std::uint64_t epoch) cons
 }
 
 Result<void> Control::heartbeat(const Caller& caller, std::uint64_t epoch) {
-    if (auto held = checkHolds(caller, epoch); !held) {
-        return held;
-    }
+    METIER_TRY(checkHolds(caller, epoch));
     lease_end_ = clock_.now() + lease_;
     return {};
 }
 
 Result<void> Control::release(const Caller& caller, std::uint64_t epoch) {
-    if (auto held = checkHolds(caller, epoch); !held) {
-        return held;
-    }
+    METIER_TRY(checkHolds(caller, epoch));
     endLease();
     return {};
 }
@@ -118,9 +112,7 @@ void Control::endLease() {
 }
 
 Result<void> Control::lock(const Caller& caller) {
-    if (auto free = checkFree(caller); !free) {
-        return free;
-    }
+    METIER_TRY(checkFree(caller));
     stale_sessions_.erase(caller.session_id);
     locked_ = true;
     locker_ = caller;

@@ -52,9 +52,7 @@ Result<std::unique_ptr<DiskNames>> DiskNames::open(const std::filesystem::path& 
         std::filesystem::create_directories(file.parent_path(), error);
     }
     std::unique_ptr<DiskNames> names(new DiskNames(file));
-    if (auto opened = names->openFile(); !opened) {
-        return fail(std::move(opened.error()));
-    }
+    METIER_TRY(names->openFile());
     auto lines = readLines(file);
     known = {std::move(lines.whole), readLines(oldOf(file)).whole};
     names->size_ = lines.size;

@@ -38,11 +38,8 @@ ExecutionNames::~ExecutionNames() = default;
 Result<std::unique_ptr<ExecutionNames>> ExecutionNames::open(const std::filesystem::path& file,
                                                              std::size_t least) {
     DiskNames::Known known;
-    auto opened = DiskNames::open(file, known);
-    if (!opened) {
-        return fail(std::move(opened.error()));
-    }
-    auto names = std::make_unique<ExecutionNames>(std::move(*opened), Options{.least = least});
+    METIER_ASSIGN(auto opened, DiskNames::open(file, known));
+    auto names = std::make_unique<ExecutionNames>(std::move(opened), Options{.least = least});
     names->newer_ = std::move(known.newer);
     names->older_ = std::move(known.older);
     return names;
@@ -58,10 +55,7 @@ Result<ExecutionNames::Keeping> ExecutionNames::note(std::string_view skill, std
     auto entry = entryOf(skill, name);
     const bool full = newer_.size() >= least_;
     if (writer_) {
-        auto added = writer_->add({entry + "\n", full, std::move(on_kept)});
-        if (!added) {
-            return fail(std::move(added.error()));
-        }
+        METIER_TRY(writer_->add({entry + "\n", full, std::move(on_kept)}));
     }
     if (full) {
         older_ = std::exchange(newer_, {});

@@ -35,13 +35,9 @@ public:
 
     template <typename T>
     Result<void> operator()(const std::vector<T>& values) const {
-        if (auto checked = length(values.size()); !checked) {
-            return checked;
-        }
+        METIER_TRY(length(values.size()));
         for (std::size_t i = 0; i < values.size(); ++i) {
-            if (auto checked = element(values[i], fmt::format("[{}]", i)); !checked) {
-                return checked;
-            }
+            METIER_TRY(element(values[i], fmt::format("[{}]", i)));
         }
         return {};
     }
@@ -62,9 +58,7 @@ private:
         return finiteFrame(frame, where);
     }
     Result<void> element(const Range& range, const std::string& where) const {
-        if (auto checked = allOf({{range.low, ".low"}, {range.high, ".high"}}, where); !checked) {
-            return checked;
-        }
+        METIER_TRY(allOf({{range.low, ".low"}, {range.high, ".high"}}, where));
         if (range.low > range.high) {
             return refuse(where,
                           fmt::format("low {} is over high {}", withUnit(range.low, field_.unit),
@@ -86,10 +80,7 @@ private:
 
     Result<void> allOf(std::initializer_list<Part> parts, std::string_view where) const {
         for (const auto& part : parts) {
-            if (auto checked = number(part.value, fmt::format("{}{}", where, part.name));
-                !checked) {
-                return checked;
-            }
+            METIER_TRY(number(part.value, fmt::format("{}{}", where, part.name)));
         }
         return {};
     }
@@ -141,9 +132,7 @@ Result<void> checkValue(const Field& field, const Value& value) {
                     fmt::format("{}: {} expected, {} given", field.name, toString(field.type),
                                 toString(typeOf(value))));
     }
-    if (auto checked = std::visit(Checker(field), value); !checked) {
-        return checked;
-    }
+    METIER_TRY(std::visit(Checker(field), value));
     if (!field.extra_check) {
         return {};
     }

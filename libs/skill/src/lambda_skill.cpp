@@ -50,9 +50,7 @@ LambdaSkill::LambdaSkill(SkillDescription description, SkillFunctions functions)
 
 Result<std::unique_ptr<ExecutionWork>> LambdaSkill::prepare(const ValueMap& snapshot) {
     if (functions_.check) {
-        if (auto checked = functions_.check(snapshot); !checked) {
-            return fail(std::move(checked.error()));
-        }
+        METIER_TRY(functions_.check(snapshot));
     }
     return std::make_unique<LambdaWork>(functions_, snapshot);
 }

@@ -58,9 +58,7 @@ void NameWriter::run(const std::stop_token& stop) {
 Result<void> NameWriter::write(const Job& job) {
     begins_anew_ = begins_anew_ || job.begins_anew;
     if (begins_anew_) {
-        if (auto begun = file_->beginAnew(); !begun) {
-            return begun;
-        }
+        METIER_TRY(file_->beginAnew());
         begins_anew_ = false;
     }
     return file_->append(job.line);

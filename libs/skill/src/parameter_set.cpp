@@ -82,16 +82,12 @@ Result<ValueMap> ParameterSet::snapshotOf(const ValueMap& given) const {
         if (!known) {
             return fail(Errc::invalid_argument, known.error().message);
         }
-        if (auto checked = checkValue(**known, value); !checked) {
-            return fail(std::move(checked.error()));
-        }
+        METIER_TRY(checkValue(**known, value));
         if (!isNull(value)) {
             snapshot.find(name)->second = value;
         }
     }
-    if (auto complete = checkComplete(snapshot); !complete) {
-        return fail(std::move(complete.error()));
-    }
+    METIER_TRY(checkComplete(snapshot));
     return snapshot;
 }
 

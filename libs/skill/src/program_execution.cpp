@@ -22,19 +22,13 @@ Reason faultReason(Reason reason) noexcept {
 
 /// Whether parameters and device are free for the caller.
 Result<void> Program::checkFree(const Caller& caller) const {
-    if (auto access = parameters_.checkAccess(caller.session_id); !access) {
-        return access;
-    }
+    METIER_TRY(parameters_.checkAccess(caller.session_id));
     return options_.resource ? options_.resource->checkFree() : Result<void>{};
 }
 
 Result<void> Program::startNow(const Caller& caller) {
-    if (auto free = checkFree(caller); !free) {
-        return free;
-    }
-    if (auto complete = parameters_.checkComplete(); !complete) {
-        return complete;
-    }
+    METIER_TRY(checkFree(caller));
+    METIER_TRY(parameters_.checkComplete());
     return begin(caller, parameters_.snapshot(), {});
 }
 
@@ -55,23 +49,13 @@ Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) 
             fmt::format("the deadline of the start passed {} ms ago",
                         std::chrono::duration_cast<std::chrono::milliseconds>(late).count()));
     }
-    if (auto held = checkEpoch(caller, request.epoch); !held) {
-        return held;
-    }
-    if (auto free = checkFree(caller); !free) {
-        return free;
-    }
-    auto snapshot = parameters_.snapshotOf(request.parameters);
-    if (!snapshot) {
-        return metier::fail(std::move(snapshot.error()));
-    }
-    if (auto begun = begin(caller, std::make_shared<const ValueMap>(std::move(*snapshot)),
-                           {.id = request.execution_id,
-                            .on_owner_loss = request.on_owner_loss,
-                            .parent = std::move(request.parent)});
-        !begun) {
-        return begun;
-    }
+    METIER_TRY(checkEpoch(caller, request.epoch));
+    METIER_TRY(checkFree(caller));
+    METIER_ASSIGN(auto snapshot, parameters_.snapshotOf(request.parameters));
+    METIER_TRY(begin(caller, std::make_shared<const ValueMap>(std::move(snapshot)),
+                     {.id = request.execution_id,
+                      .on_owner_loss = request.on_owner_loss,
+                      .parent = std::move(request.parent)}));
     request.execution_id = history_.last().id;
     return {};
 }
@@ -92,16 +76,14 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
         return metier::fail(std::move(work.error()));
     }
     if (!*work) {
-        return metier::fail(Errc::internal, "the skill made no body");
+        return metier::fail(Errc::internal, "the skill made no work");
     }
     const bool named = !order.id.empty();
     auto core = std::make_shared<ExecutionCore>(
         executor_, named ? std::move(order.id) : fmt::format("{}-{}", boot_id_, ++execution_count_),
         static_cast<ExecutionSink&>(*this));
     if (named) {
-        if (auto noted = noteName(core); !noted) {
-            return noted;
-        }
+        METIER_TRY(noteName(core));
     }
     if (options_.resource) {
         options_.resource->acquire(description_.name);
@@ -194,11 +176,8 @@ Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& para
     if (!allowed) {
         return metier::fail(std::move(allowed.error()));
     }
-    auto snapshot = parameters_.snapshotOf(parameters);
-    if (!snapshot) {
-        return metier::fail(std::move(snapshot.error()));
-    }
-    return guarded([&] { return skill_->check(*snapshot); });
+    METIER_ASSIGN(auto snapshot, parameters_.snapshotOf(parameters));
+    return guarded([&] { return skill_->check(snapshot); });
 }
 
 void Program::startWork() {

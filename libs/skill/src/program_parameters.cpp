@@ -18,35 +18,26 @@ Result<Value> Program::read(std::string_view parameter) const {
 
 Result<void> Program::write(const Caller& caller, std::string_view parameter, Value value,
                             std::optional<UtcTime> meant_for) {
-    const auto field = parameters_.field(parameter);
-    if (!field) {
-        return metier::fail(field.error());
-    }
+    METIER_ASSIGN(const auto field, parameters_.field(parameter));
     if (busy_) {
         return metier::fail(Errc::invalid_state,
                             fmt::format("{} written from inside a notification", parameter));
     }
     const Call call(*this);
     if (state_ == State::ready) {
-        return writeReady(caller, **field, std::move(value));
+        return writeReady(caller, *field, std::move(value));
     }
-    if ((*field)->input == Input::live && sub_state_ == SubState::executing) {
-        return writeLive(caller, **field, {std::move(value), meant_for});
+    if (field->input == Input::live && sub_state_ == SubState::executing) {
+        return writeLive(caller, *field, {std::move(value), meant_for});
     }
     return metier::fail(Errc::invalid_state, fmt::format("{} cannot be written while {}{}",
                                                          parameter, toString(state_), wayOut()));
 }
 
 Result<void> Program::writeReady(const Caller& caller, const Field& field, Value value) {
-    if (auto allowed = checkControl(caller); !allowed) {
-        return allowed;
-    }
-    if (auto access = parameters_.checkAccess(caller.session_id); !access) {
-        return access;
-    }
-    if (auto checked = checkValue(field, value); !checked) {
-        return checked;
-    }
+    METIER_TRY(checkControl(caller));
+    METIER_TRY(parameters_.checkAccess(caller.session_id));
+    METIER_TRY(checkValue(field, value));
     const Value& held = parameters_.write(field, std::move(value));
     notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
     last_write_ = clock_.now();
@@ -62,9 +53,7 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
     if (caller.session_id != owner_session_) {
         return metier::fail(Errc::locked, "another session has started the skill");
     }
-    if (auto allowed = checkControl(caller); !allowed) {
-        return allowed;
-    }
+    METIER_TRY(checkControl(caller));
     if (!work_started_) {
         return metier::fail(Errc::invalid_state,
                             "the execution has not begun: its name is not on disk yet");
@@ -81,14 +70,9 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
 
 /// \return the value that the work has taken
 Result<Value> Program::takeLive(const Field& field, const LiveValue& live) {
-    if (auto checked = checkValue(field, live.value); !checked) {
-        return metier::fail(std::move(checked.error()));
-    }
-    auto used = valueOrDefault(field, live.value);
-    if (!used) {
-        return used;
-    }
-    LiveValue given{std::move(*used), live.meant_for};
+    METIER_TRY(checkValue(field, live.value));
+    METIER_ASSIGN(auto used, valueOrDefault(field, live.value));
+    LiveValue given{std::move(used), live.meant_for};
     if (auto taken = guarded([&] { return work_->input(field.name, given); }); !taken) {
         return metier::fail(std::move(taken.error()));
     }

@@ -12,9 +12,7 @@ Result<void> Resource::checkFree() const {
 }
 
 Result<void> Resource::acquire(std::string_view holder) {
-    if (auto free = checkFree(); !free) {
-        return free;
-    }
+    METIER_TRY(checkFree());
     holder_ = holder;
     return {};
 }

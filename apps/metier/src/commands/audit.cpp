@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "metier/security/audit_log.hpp"
 #include "metier/base/text.hpp"
 #include "metier/opcua/standard_ids.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
+#include "metier/security/audit_log.hpp"
 #include "metier/server/audit_anchor.hpp"
 #include "servers.hpp"
 
@@ -136,18 +136,15 @@ bool isAddress(const std::string& text) {
 
 /// As the server publishes it.
 Result<std::string> anchorOfServer(const CommandIdentity& identity, const std::string& url) {
-    const auto client = connectTo(identity, url);
-    if (!client) {
-        return fail(client.error());
-    }
-    const auto metier = (*client)->namespaceIndex(opcua_skill::kMetierUri);
+    METIER_ASSIGN(const auto client, connectTo(identity, url));
+    const auto metier = client->namespaceIndex(opcua_skill::kMetierUri);
     const auto variable =
-        metier ? (*client)->translate(opcua::ids::kServer, {{*metier, server::kAuditAnchor}})
+        metier ? client->translate(opcua::ids::kServer, {{*metier, server::kAuditAnchor}})
                : opcua::Answer<opcua::NodeId>(tl::unexpected(metier.error()));
     if (!variable) {
         return fail(Errc::not_found, fmt::format("{}: keeps no audit log", url));
     }
-    const auto value = (*client)->read(*variable);
+    const auto value = client->read(*variable);
     if (!value) {
         return fail(value.error().code, fmt::format("{}: {}", url, value.error().message));
     }

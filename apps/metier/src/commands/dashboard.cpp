@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "metier/cell/cell.hpp"
-#include "metier/opcua/search.hpp"
 #include "metier/link/start_watch.hpp"
 #include "metier/link/stop_signal.hpp"
+#include "metier/opcua/search.hpp"
 #include "metier/server/ready_line.hpp"
 #include "recorded.hpp"
 #include "robot_argument.hpp"
@@ -75,17 +75,11 @@ CellServer serverOf(const opcua::FoundServer& found) {
 Result<Cell> cellOf(const DashboardOptions& options) {
     Cell cell;
     if (!options.servers.cell.empty()) {
-        const auto config = cell::loadCell(options.servers.cell);
-        if (!config) {
-            return fail(config.error());
-        }
-        const auto endpoints = options.endpoints.empty()
-                                   ? dashboard::Endpoints{}
-                                   : dashboard::loadEndpoints(options.endpoints);
-        if (!endpoints) {
-            return fail(endpoints.error());
-        }
-        cell = dashboard::cellFrom(*config, *endpoints);
+        METIER_ASSIGN(const auto config, cell::loadCell(options.servers.cell));
+        METIER_ASSIGN(const auto endpoints, options.endpoints.empty()
+                                                ? dashboard::Endpoints{}
+                                                : dashboard::loadEndpoints(options.endpoints));
+        cell = dashboard::cellFrom(config, endpoints);
     }
     for (const auto& url : options.servers.urls) {
         cell.servers.push_back(serverAt(url));
@@ -151,10 +145,7 @@ Result<Exit> serve(const DashboardOptions& options, const CommandContext& contex
         return reportUsage(cell.error());
     }
     auto records = recordsOf(options, *cell);
-    auto models = loadAllRobots();
-    if (!models) {
-        return fail(models.error());
-    }
+    METIER_ASSIGN(auto models, loadAllRobots());
     const SystemClock clock;
     auto page = Dashboard::start({.cell = std::move(*cell),
                                   .connector = connectorOf(context.identity),
@@ -165,7 +156,7 @@ Result<Exit> serve(const DashboardOptions& options, const CommandContext& contex
                                   .web = webFolder(options.web),
                                   .meshes = options.meshes,
                                   .records = std::move(records),
-                                  .models = std::move(*models)},
+                                  .models = std::move(models)},
                                  clock);
     starting.reset();
     if (!page) {

@@ -25,11 +25,8 @@ void tell(const SkillAddress& skill, std::string_view what) {
 
 /// Calls Halt. \return whether it was called: a skill that is Halted already is as it should be
 Result<bool> callHalt(opcua::Client& client, const SkillAddress& skill) {
-    const auto method = client.translate(skill.node, {{0, "Halt"}});
-    if (!method) {
-        return fail(method.error());
-    }
-    const auto called = client.call(skill.node, *method);
+    METIER_ASSIGN(const auto method, client.translate(skill.node, {{0, "Halt"}}));
+    const auto called = client.call(skill.node, method);
     if (!called && called.error().status != opcua::status::kBadInvalidState) {
         return fail(called.error());
     }
@@ -39,11 +36,8 @@ Result<bool> callHalt(opcua::Client& client, const SkillAddress& skill) {
 /// Waits for standstill: until then the skill is Running, its sub-state Stopping.
 Result<void> awaitHalted(opcua::Client& client, const SkillAddress& address,
                          const HaltOptions& options, SteadyTime deadline) {
-    auto skill = client::SkillHandle::open(client, address);
-    if (!skill) {
-        return fail(skill.error());
-    }
-    const auto stands = skill->awaitRest(deadline);
+    METIER_ASSIGN(auto skill, client::SkillHandle::open(client, address));
+    const auto stands = skill.awaitRest(deadline);
     if (!stands && stands.error().code == Errc::timeout) {
         return fail(Errc::timeout,
                     fmt::format("{}: still halting after {} s", address.name, options.timeout));

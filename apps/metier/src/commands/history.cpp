@@ -136,12 +136,9 @@ public:
 
 private:
     Result<void> printChanges(Store& store) {
-        const auto changes = store.changes(revision_, filter_);
-        if (!changes) {
-            return fail(changes.error());
-        }
-        revision_ = changes->revision;
-        for (const auto& execution : changes->executions) {
+        METIER_ASSIGN(const auto changes, store.changes(revision_, filter_));
+        revision_ = changes.revision;
+        for (const auto& execution : changes.executions) {
             printLine(execution, options_);
         }
         return {};

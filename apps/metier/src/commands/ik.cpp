@@ -14,9 +14,9 @@
 namespace metier::app {
 namespace {
 
-using motion::Pose;
 using motion::IkKind;
 using motion::JointVector;
+using motion::Pose;
 using motion::RobotModel;
 
 struct IkOptions {
@@ -65,41 +65,23 @@ Result<std::optional<double>> armAngleOf(const IkOptions& options, const RobotMo
             options.reference.empty() ? 0.0 : model.kinematics().redundancyAngle(reference);
         return redundant ? std::optional(angle) : std::nullopt;
     }
-    const auto angle = parseNumbers({{options.arm_angle}}, "arm angle");
-    if (!angle) {
-        return fail(angle.error());
-    }
-    if (!redundant || angle->size() != 1) {
+    METIER_ASSIGN(const auto angle, parseNumbers({{options.arm_angle}}, "arm angle"));
+    if (!redundant || angle.size() != 1) {
         return fail(Errc::invalid_argument,
-                    redundant ? fmt::format("arm angle: {} values given, it is one", angle->size())
+                    redundant ? fmt::format("arm angle: {} values given, it is one", angle.size())
                               : fmt::format("{} has no arm angle: only seven-axis arms have",
                                             model.name()));
     }
-    return angle->front();
+    return angle.front();
 }
 
 Result<IkQuestion> questionOf(const IkOptions& options) {
-    auto model = loadRobot(options.robot);
-    if (!model) {
-        return fail(model.error());
-    }
-    const auto pose = parsePose(options.pose, "pose");
-    if (!pose) {
-        return fail(pose.error());
-    }
-    auto tool = model->tool(options.tool);
-    if (!tool) {
-        return fail(tool.error());
-    }
-    const auto reference = referenceOf(options, *model);
-    if (!reference) {
-        return fail(reference.error());
-    }
-    const auto arm_angle = armAngleOf(options, *model, *reference);
-    if (!arm_angle) {
-        return fail(arm_angle.error());
-    }
-    return IkQuestion{std::move(*model), std::move(*tool), *pose, *reference, *arm_angle};
+    METIER_ASSIGN(auto model, loadRobot(options.robot));
+    METIER_ASSIGN(const auto pose, parsePose(options.pose, "pose"));
+    METIER_ASSIGN(auto tool, model.tool(options.tool));
+    METIER_ASSIGN(const auto reference, referenceOf(options, model));
+    METIER_ASSIGN(const auto arm_angle, armAngleOf(options, model, reference));
+    return IkQuestion{std::move(model), std::move(tool), pose, reference, arm_angle};
 }
 
 /// Turns each axis that is outside of its limits by a whole turn, if that brings it inside.

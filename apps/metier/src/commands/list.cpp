@@ -3,9 +3,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "metier/opcua/text.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/text.hpp"
 #include "printable.hpp"
 #include "servers.hpp"
 
@@ -30,12 +30,9 @@ Result<std::vector<ListedSkill>> listSkills(const CommandIdentity& identity,
     if (!client) {
         return fail(client.error());
     }
-    const auto skills = client::findSkills(**client);
-    if (!skills) {
-        return fail(skills.error());
-    }
+    METIER_ASSIGN(const auto skills, client::findSkills(**client));
     std::vector<ListedSkill> listed;
-    for (const auto& skill : *skills) {
+    for (const auto& skill : skills) {
         const auto state = (*client)->translate(skill.node, {{0, "CurrentState"}});
         const auto value = state ? (*client)->read(*state) : opcua::Answer<opcua::Value>();
         const auto text =

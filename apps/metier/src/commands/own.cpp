@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "metier/link/stop_signal.hpp"
 #include "metier/client/control_handle.hpp"
 #include "metier/client/skill_finder.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "owner_options.hpp"
 #include "servers.hpp"
 
@@ -26,12 +26,9 @@ struct OwnOptions {
 
 /// The controllers of a server's skills, each once.
 Result<std::vector<client::SkillAddress::Above>> controllersOf(opcua::Client& client) {
-    const auto skills = client::findSkills(client);
-    if (!skills) {
-        return fail(skills.error());
-    }
+    METIER_ASSIGN(const auto skills, client::findSkills(client));
     std::vector<client::SkillAddress::Above> controllers;
-    for (const auto& skill : *skills) {
+    for (const auto& skill : skills) {
         const auto* controller = skill.controller();
         const bool known = controller == nullptr ||
                            std::any_of(controllers.begin(), controllers.end(),

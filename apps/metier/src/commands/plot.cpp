@@ -36,21 +36,18 @@ std::optional<double> askedSpeed(const RobotModel& model, const MoveOptions& opt
 }
 
 Result<DrawnMotion> plannedMotion(const RobotModel& model, const MoveOptions& options) {
-    const auto move = planMove(model, options);
-    if (!move) {
-        return fail(move.error());
-    }
-    if (!move->plan) {
-        return fail(Errc::unreachable, move->plan.error().error.message);
+    METIER_ASSIGN(const auto move, planMove(model, options));
+    if (!move.plan) {
+        return fail(Errc::unreachable, move.plan.error().error.message);
     }
     DrawnMotion motion;
-    motion.samples = path_evaluation::sampleMotion(*move->plan, kSamples);
+    motion.samples = path_evaluation::sampleMotion(*move.plan, kSamples);
     for (const auto& sample : motion.samples) {
-        motion.tool_positions.push_back(move->plan->toolPose(sample.position).translation);
+        motion.tool_positions.push_back(move.plan->toolPose(sample.position).translation);
     }
-    motion.note = fmt::format("{}, {:.3f} s", move->skill, move->plan->duration().count());
-    if (move->plan->length() > 0) {
-        motion.note += fmt::format(", {:.4f} m", move->plan->length());
+    motion.note = fmt::format("{}, {:.3f} s", move.skill, move.plan->duration().count());
+    if (move.plan->length() > 0) {
+        motion.note += fmt::format(", {:.4f} m", move.plan->length());
     }
     motion.asked_speed = askedSpeed(model, options);
     return motion;

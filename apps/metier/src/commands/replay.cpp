@@ -24,7 +24,8 @@ struct ReplayOptions {
 };
 
 /// Where the execution's server is now.
-Result<std::string> addressOf(const records::ExecutionRow& execution, const ReplayOptions& options) {
+Result<std::string> addressOf(const records::ExecutionRow& execution,
+                              const ReplayOptions& options) {
     if (!options.url.empty()) {
         return options.url;
     }
@@ -32,11 +33,8 @@ Result<std::string> addressOf(const records::ExecutionRow& execution, const Repl
         return fail(Errc::invalid_argument, fmt::format("say where server '{}' is: --url or --cell",
                                                         execution.server_name));
     }
-    const auto cell = cell::loadCell(options.cell);
-    if (!cell) {
-        return fail(cell.error());
-    }
-    for (const auto& server : cell->servers) {
+    METIER_ASSIGN(const auto cell, cell::loadCell(options.cell));
+    for (const auto& server : cell.servers) {
         if (server.name == execution.server_name) {
             return fmt::format("opc.tcp://{}:{}", server.address, server.port);
         }

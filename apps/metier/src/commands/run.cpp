@@ -67,11 +67,8 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
                                       const std::vector<std::string>& settings) {
     skill::ValueMap values;
     for (const auto& setting : settings) {
-        auto parsed = parseSetting(skill, setting);
-        if (!parsed) {
-            return fail(parsed.error());
-        }
-        values.insert_or_assign(parsed->first, std::move(parsed->second));
+        METIER_ASSIGN(auto parsed, parseSetting(skill, setting));
+        values.insert_or_assign(parsed.first, std::move(parsed.second));
     }
     return values;
 }

@@ -94,8 +94,7 @@ void chooseControllers(const ServeOptions& options, cell::ServerConfig& config) 
 }
 
 /// Addresses of used servers that the command line says instead of the file.
-Result<void> chooseUsed(const std::vector<std::string>& given,
-                        cell::ServerConfig& config) {
+Result<void> chooseUsed(const std::vector<std::string>& given, cell::ServerConfig& config) {
     if (config.driver() != nullptr) {
         return {};  // it has a device and uses nobody
     }
@@ -115,8 +114,7 @@ Result<void> chooseUsed(const std::vector<std::string>& given,
     return {};
 }
 
-Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
-                                                 const ServeOptions& options) {
+Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell, const ServeOptions& options) {
     const auto* server = options.server.empty() && cell.servers.size() == 1
                              ? &cell.servers.front()
                              : cell.find(options.server);
@@ -133,11 +131,8 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
     config.port = options.port.value_or(config.port);
     config.state_folder = stateFolder(options, config.port);
     chooseRecords(options, config);
-    if (auto chosen = chooseMetrics(options, config); !chosen) {
-        return fail(chosen.error());
-    }
-    if (auto* move = config.as<cell::MoveComponent>();
-        move != nullptr && !options.robot.empty()) {
+    METIER_TRY(chooseMetrics(options, config));
+    if (auto* move = config.as<cell::MoveComponent>(); move != nullptr && !options.robot.empty()) {
         move->robot = options.robot;
         move->discover = false;
     }
@@ -148,9 +143,7 @@ Result<cell::ServerConfig> chosenServer(const cell::CellConfig& cell,
         config.discovery.announce_as = options.announce_as;
     }
     chooseControllers(options, config);
-    if (const auto chosen = chooseUsed(options.used, config); !chosen) {
-        return fail(chosen.error());
-    }
+    METIER_TRY(chooseUsed(options.used, config));
     return cell.resolved(std::move(config));
 }
 

@@ -72,15 +72,12 @@ opcua::Answer<> call(client::SkillHandle& skill, const Command& command) {
 
 /// Suspended follows at standstill, unless the skill reaches its end before, or is halted.
 Result<void> awaitSuspended(client::SkillHandle& skill, const CommandOptions& options) {
-    const auto stands = skill.awaitRest(deadlineOf(options));
-    if (!stands) {
-        return fail(stands.error());
-    }
-    if (*stands == State::ready) {
+    METIER_ASSIGN(const auto stands, skill.awaitRest(deadlineOf(options)));
+    if (stands == State::ready) {
         return fail(Errc::invalid_state,
                     options.choice.skill + " has reached its end: it is Ready, not Suspended");
     }
-    if (*stands == State::halted) {
+    if (stands == State::halted) {
         return fail(Errc::invalid_state, fmt::format("{} is Halted, not Suspended: {}",
                                                      options.choice.skill, skill.reasonText()));
     }

@@ -29,23 +29,17 @@ struct Place {
 };
 
 Result<Place> openPlace(const server::Security& security) {
-    auto folder = security.openFolder();
-    if (!folder) {
-        return fail(folder.error());
-    }
-    auto store = TrustStore::open(folder->trustFolder());
-    if (!store) {
-        return fail(store.error());
-    }
-    return Place{std::move(*folder), std::move(*store)};
+    METIER_ASSIGN(auto folder, security.openFolder());
+    METIER_ASSIGN(auto store, TrustStore::open(folder.trustFolder()));
+    return Place{std::move(folder), std::move(store)};
 }
 
 /// "ends 2028-11-21", and what is to be done about it.
 std::string endText(const Certificate& certificate) {
     const auto now = std::chrono::system_clock::now();
-    const auto* remark = certificate.notAfter() < now                         ? ", is over"
+    const auto* remark = certificate.notAfter() < now                            ? ", is over"
                          : certificate.notAfter() < now + security::kRenewalTime ? ", renew it"
-                                                                              : "";
+                                                                                 : "";
     return fmt::format("ends {}{}", security::dateText(certificate.notAfter()), remark);
 }
 
@@ -83,73 +77,51 @@ Result<Certificate> trustOne(Place& place, const std::string& what) {
     if (!std::filesystem::exists(what, error)) {
         return place.store.trustRejected(what);
     }
-    auto certificate = Certificate::fromFile(what);
-    if (!certificate) {
-        return certificate;
-    }
-    if (auto trusted = place.store.trust(*certificate); !trusted) {
-        return fail(trusted.error());
-    }
+    METIER_ASSIGN(auto certificate, Certificate::fromFile(what));
+    METIER_TRY(place.store.trust(certificate));
     return certificate;
 }
 
 Result<void> accept(Place& place, const TrustOptions& options) {
     const auto role = security::roleNamed(options.role);
-    const auto certificate = trustOne(place, options.what);
-    if (!certificate) {
-        return fail(certificate.error());
-    }
+    METIER_ASSIGN(const auto certificate, trustOne(place, options.what));
     if (role) {
-        if (auto set = place.folder.setRole(*certificate, role); !set) {
-            return set;
-        }
+        METIER_TRY(place.folder.setRole(certificate, role));
     }
     fmt::print("trusted from now on:\n");
-    print(*certificate, roleText(place.folder, *certificate));
+    print(certificate, roleText(place.folder, certificate));
     return {};
 }
 
 Result<void> reject(Place& place, const TrustOptions& options) {
-    const auto certificate = place.store.distrust(options.what);
-    if (!certificate) {
-        return fail(certificate.error());
-    }
-    if (auto removed = place.folder.setRole(*certificate, std::nullopt); !removed) {
-        return removed;
-    }
+    METIER_ASSIGN(const auto certificate, place.store.distrust(options.what));
+    METIER_TRY(place.folder.setRole(certificate, std::nullopt));
     fmt::print("trusted no longer:\n");
-    print(*certificate, "");
+    print(certificate, "");
     return {};
 }
 
 Result<void> revoke(Place& place, const TrustOptions& options) {
-    if (auto taken = place.store.addRevocationList(options.what); !taken) {
-        return taken;
-    }
+    METIER_TRY(place.store.addRevocationList(options.what));
     fmt::print("the revocation list {} holds from now on\n", options.what);
     return {};
 }
 
 Result<void> renew(Place& place, const TrustOptions& options) {
-    const auto identity = place.folder.renew(options.what, std::chrono::system_clock::now());
-    if (!identity) {
-        return fail(identity.error());
-    }
+    METIER_ASSIGN(const auto identity,
+                  place.folder.renew(options.what, std::chrono::system_clock::now()));
     const auto file = place.folder.identityFolder(options.what) / "certificate.der";
     fmt::print("renewed:\n");
-    print(identity->certificate, options.what);
+    print(identity.certificate, options.what);
     fmt::print("whoever trusted the former is to trust {}\n", file.string());
     return {};
 }
 
 Result<void> forget(Place& place, const TrustOptions& options) {
     const auto known = SecurityFolder::knownServers(place.folder.path());
-    const auto forgotten = known.forget(options.what);
-    if (!forgotten) {
-        return fail(forgotten.error());
-    }
+    METIER_ASSIGN(const auto forgotten, known.forget(options.what));
     fmt::print("{} {}\n", opcua::sanitise(options.what),
-               *forgotten ? "may be open from now on" : "was not known as closed");
+               forgotten ? "may be open from now on" : "was not known as closed");
     return {};
 }
 

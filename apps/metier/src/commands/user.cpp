@@ -25,12 +25,9 @@ Result<void> list(UserTable& users, const UserOptions& /*options*/) {
 }
 
 Result<void> add(UserTable& users, const UserOptions& options) {
-    const auto password = readPassword(options.name);
-    if (!password) {
-        return fail(password.error());
-    }
+    METIER_ASSIGN(const auto password, readPassword(options.name));
     const auto role = security::roleNamed(options.role).value_or(security::Role::observer);
-    return users.add(options.name, role, *password);
+    return users.add(options.name, role, password);
 }
 
 Result<void> setPassword(UserTable& users, const UserOptions& options) {
@@ -48,18 +45,10 @@ Result<void> remove(UserTable& users, const UserOptions& options) {
 using Action = Result<void> (*)(UserTable&, const UserOptions&);
 
 Result<void> act(Action action, const UserOptions& options, const server::Security& security) {
-    const auto folder = security.openFolder();
-    if (!folder) {
-        return fail(folder.error());
-    }
-    auto users = UserTable::load(folder->usersFile());
-    if (!users) {
-        return fail(users.error());
-    }
-    if (auto done = action(*users, options); !done) {
-        return done;
-    }
-    return action == &list ? Result<void>() : users->save(folder->usersFile());
+    METIER_ASSIGN(const auto folder, security.openFolder());
+    METIER_ASSIGN(auto users, UserTable::load(folder.usersFile()));
+    METIER_TRY(action(users, options));
+    return action == &list ? Result<void>() : users.save(folder.usersFile());
 }
 
 }  // namespace

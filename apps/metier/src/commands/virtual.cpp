@@ -11,9 +11,9 @@
 #include "commands.hpp"
 #include "metier/base/text.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/link/stop_signal.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "metier/link/stop_signal.hpp"
 #include "metier/server/ready_line.hpp"
 #include "metier/virtual_controller/host.hpp"
 
@@ -36,24 +36,18 @@ struct VirtualRunOptions {
 };
 
 Result<Exit> runController(const VirtualRunOptions& options, const link::StopSignal& stop) {
-    const auto cell = cell::loadCell(options.cell);
-    if (!cell) {
-        return fail(cell.error());
-    }
-    const auto* controller = cell->findVirtual(options.name);
+    METIER_ASSIGN(const auto cell, cell::loadCell(options.cell));
+    const auto* controller = cell.findVirtual(options.name);
     if (controller == nullptr) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: no virtual controller \"{}\"", options.cell, options.name));
     }
     std::optional<motion::RobotModel> model;
     if (!controller->model.empty()) {
-        auto loaded = motion::RobotModel::load(controller->model);
-        if (!loaded) {
-            return fail(loaded.error());
-        }
-        model = std::move(*loaded);
+        METIER_ASSIGN(auto loaded, motion::RobotModel::load(controller->model));
+        model = std::move(loaded);
     }
-    const auto* world = cell->world();
+    const auto* world = cell.world();
     const bool has_world = world != nullptr && world != controller;
     virtual_controller::HostOptions host_options;
     host_options.name = controller->name;
@@ -64,17 +58,15 @@ Result<Exit> runController(const VirtualRunOptions& options, const link::StopSig
     host_options.world_address =
         !options.world.empty() ? options.world : (has_world ? world->address : "");
     host_options.control_port = controller->control_port;
-    auto host = Host::start(std::move(host_options), virtual_controller::controllerTypes());
-    if (!host) {
-        return fail(host.error());
-    }
+    METIER_ASSIGN(auto host,
+                  Host::start(std::move(host_options), virtual_controller::controllerTypes()));
     fmt::print("{}\n", server::readyVirtualLine(options.address.empty() ? controller->address
                                                                         : options.address));
     std::fflush(stdout);
-    std::jthread running([&] { (*host)->run(); });
+    std::jthread running([&] { host->run(); });
     stop.wait();
     link::StopSignal::endWithin(kLongestEnd);
-    (*host)->stopOnceAlone(kLongestCompany);
+    host->stopOnceAlone(kLongestCompany);
     return Exit::success;
 }
 
@@ -88,11 +80,8 @@ struct ControlOptions {
 /// "127.0.1.1", "127.0.1.1:7400", or the name of a virtual controller of the cell file.
 Result<std::pair<std::string, std::uint16_t>> controlAddress(const ControlOptions& options) {
     if (!options.cell.empty()) {
-        const auto cell = cell::loadCell(options.cell);
-        if (!cell) {
-            return fail(cell.error());
-        }
-        const auto* controller = cell->findVirtual(options.target);
+        METIER_ASSIGN(const auto cell, cell::loadCell(options.cell));
+        const auto* controller = cell.findVirtual(options.target);
         if (controller == nullptr) {
             return fail(Errc::invalid_argument, fmt::format("{}: no virtual controller \"{}\"",
                                                             options.cell, options.target));
@@ -116,27 +105,17 @@ Result<std::pair<std::string, std::uint16_t>> controlAddress(const ControlOption
 /// One line for one line.
 Result<nlohmann::ordered_json> ask(const ControlOptions& options,
                                    const nlohmann::ordered_json& request) {
-    const auto address = controlAddress(options);
-    if (!address) {
-        return fail(address.error());
-    }
+    METIER_ASSIGN(const auto address, controlAddress(options));
     const auto deadline = std::chrono::steady_clock::now() + 5s;
-    auto link = link::TcpLink::connect(address->first, address->second, deadline);
-    if (!link) {
-        return fail(link.error());
-    }
+    METIER_ASSIGN(auto link, link::TcpLink::connect(address.first, address.second, deadline));
     const auto line = request.dump() + "\n";
-    if (auto sent = link->send(std::as_bytes(std::span(line)), deadline); !sent) {
-        return fail(sent.error());
-    }
+    METIER_TRY(link.send(std::as_bytes(std::span(line)), deadline));
     std::string answer;
     while (answer.find('\n') == std::string::npos) {
         std::array<char, 4096> buffer{};
-        const auto count = link->receive(std::as_writable_bytes(std::span(buffer)), deadline);
-        if (!count) {
-            return fail(count.error());
-        }
-        answer.append(buffer.data(), *count);
+        METIER_ASSIGN(const auto count,
+                      link.receive(std::as_writable_bytes(std::span(buffer)), deadline));
+        answer.append(buffer.data(), count);
     }
     auto parsed = nlohmann::ordered_json::parse(answer, nullptr, false);
     if (parsed.is_object() && parsed.contains("error") && parsed.at("error").is_string()) {

@@ -5,16 +5,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "metier/client/skill_handle.hpp"
 #include "metier/link/stop_signal.hpp"
 #include "metier/link/wake_event.hpp"
-#include "metier/client/skill_handle.hpp"
 #include "servers.hpp"
 
 namespace metier::app {
 namespace {
 
-using skill::TransitionEvent;
 using client::SkillHandle;
+using skill::TransitionEvent;
 
 struct WatchOptions {
     std::string url;
@@ -114,23 +114,17 @@ private:
 /// Opens what is to be watched. Errors: those of the server; not_found.
 Result<std::vector<SkillHandle>> openAll(opcua::Client& client, const WatchOptions& options,
                                          Printer& printer) {
-    const auto skills = client::findSkills(client);
-    if (!skills) {
-        return fail(skills.error());
-    }
+    METIER_ASSIGN(const auto skills, client::findSkills(client));
     std::vector<SkillHandle> handles;
-    for (const auto& address : *skills) {
+    for (const auto& address : skills) {
         if (!options.skill.empty() && address.name != options.skill) {
             continue;
         }
-        auto handle = SkillHandle::open(client, address);
-        if (!handle) {
-            return fail(handle.error());
-        }
-        handle->onTransition([&printer, name = address.name](const TransitionEvent& event) {
+        METIER_ASSIGN(auto handle, SkillHandle::open(client, address));
+        handle.onTransition([&printer, name = address.name](const TransitionEvent& event) {
             printer.add(name, event);
         });
-        handles.push_back(std::move(*handle));
+        handles.push_back(std::move(handle));
     }
     if (handles.empty()) {
         return fail(Errc::not_found, fmt::format("{}: no skill '{}'", options.url, options.skill));

@@ -9,12 +9,9 @@ namespace metier::client {
 Result<std::unique_ptr<RemoteArm>> RemoteArm::connect(RemoteArmOptions options) {
     // Shared by the thread that waits and the sessions that ring, also late.
     auto wake_up = std::make_shared<WakeUp>();
-    auto session = StreamSession::open(options, wake_up);
-    if (!session) {
-        return fail(session.error());
-    }
+    METIER_ASSIGN(auto session, StreamSession::open(options, wake_up));
     auto worker =
-        std::make_unique<Worker>(std::move(options), std::move(wake_up), std::move(*session));
+        std::make_unique<Worker>(std::move(options), std::move(wake_up), std::move(session));
     return std::unique_ptr<RemoteArm>(new RemoteArm(std::move(worker)));
 }
 

@@ -22,11 +22,8 @@ constexpr auto kSafetyInterval = 20ms;
 constexpr double kMotion = 1e-5;
 
 Result<client::SkillAddress> findStream(opcua::Client& client) {
-    const auto skills = client::findSkills(client);
-    if (!skills) {
-        return fail(skills.error());
-    }
-    for (const auto& skill : *skills) {
+    METIER_ASSIGN(const auto skills, client::findSkills(client));
+    for (const auto& skill : skills) {
         if (skill.type_name == kStreamType) {
             return skill;
         }
@@ -77,40 +74,25 @@ Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOption
     if (!client) {
         return fail(client.error());
     }
-    auto address = findStream(**client);
-    if (!address) {
-        return fail(address.error());
-    }
-    auto nodes = client::findKinematics(**client, *address);
-    if (!nodes) {
-        return fail(nodes.error());
-    }
-    auto kinematics = client::readKinematics(**client, *nodes);
-    if (!kinematics) {
-        return fail(kinematics.error());
-    }
-    if (kinematics->axisCount() > device::kMaxAxes || kinematics->cycle_time <= 0) {
+    METIER_ASSIGN(auto address, findStream(**client));
+    METIER_ASSIGN(auto nodes, client::findKinematics(**client, address));
+    METIER_ASSIGN(auto kinematics, client::readKinematics(**client, nodes));
+    if (kinematics.axisCount() > device::kMaxAxes || kinematics.cycle_time <= 0) {
         return fail(Errc::not_supported,
-                    fmt::format("an arm of {} axes, at most {}; cycle {} s",
-                                kinematics->axisCount(), device::kMaxAxes, kinematics->cycle_time));
+                    fmt::format("an arm of {} axes, at most {}; cycle {} s", kinematics.axisCount(),
+                                device::kMaxAxes, kinematics.cycle_time));
     }
-    auto stream = client::SkillHandle::open(**client, std::move(*address));
-    if (!stream) {
-        return fail(stream.error());
-    }
-    std::unique_ptr<StreamSession> session(new StreamSession(std::move(*client), std::move(*nodes),
-                                                             std::move(*kinematics),
-                                                             std::move(*stream), std::move(wake_up)));
-    if (auto subscribed = session->subscribe(); !subscribed) {
-        return fail(subscribed.error());
-    }
+    METIER_ASSIGN(auto stream, client::SkillHandle::open(**client, std::move(address)));
+    std::unique_ptr<StreamSession> session(
+        new StreamSession(std::move(*client), std::move(nodes), std::move(kinematics),
+                          std::move(stream), std::move(wake_up)));
+    METIER_TRY(session->subscribe());
     return session;
 }
 
-StreamSession::StreamSession(std::unique_ptr<opcua::Client> client,
-                             client::KinematicsNodes nodes,
-                             opcua_skill::KinematicsData kinematics,
-                             client::SkillHandle stream, std::shared_ptr<WakeUp> wake_up)
+StreamSession::StreamSession(std::unique_ptr<opcua::Client> client, client::KinematicsNodes nodes,
+                             opcua_skill::KinematicsData kinematics, client::SkillHandle stream,
+                             std::shared_ptr<WakeUp> wake_up)
     : client_(std::move(client)),
       nodes_(std::move(nodes)),
       kinematics_(std::move(kinematics)),
@@ -213,7 +195,8 @@ Result<void> StreamSession::subscribeState() {
                 return;
             }
             const auto kind = value.value.as<std::int32_t>();
-            notes->noteSafety(kind ? safetyFrom(opcua_skill::SafetyStateKind(*kind)) : SafetyState::disconnected);
+            notes->noteSafety(kind ? safetyFrom(opcua_skill::SafetyStateKind(*kind))
+                                   : SafetyState::disconnected);
         });
     if (!safety) {
         return fail(safety.error());
@@ -290,24 +273,17 @@ void StreamSession::write(std::string_view parameter, const skill::Value& value,
 }
 
 Result<skill::State> StreamSession::streamState() {
-    auto state = stream_.state();
-    if (!state) {
-        return fail(state.error());
-    }
-    return *state;
+    METIER_ASSIGN(auto state, stream_.state());
+    return state;
 }
 
 Result<void> StreamSession::haltStream() {
-    if (auto halted = stream_.halt(); !halted) {
-        return fail(halted.error());
-    }
+    METIER_TRY(stream_.halt());
     return {};
 }
 
 Result<void> StreamSession::resetStream() {
-    if (auto reset = stream_.reset(); !reset) {
-        return fail(reset.error());
-    }
+    METIER_TRY(stream_.reset());
     return {};
 }
 

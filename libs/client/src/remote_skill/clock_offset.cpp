@@ -34,12 +34,9 @@ Result<ClockOffset> ask(opcua::Client& client) {
 Result<ClockOffset> clockOffsetOf(opcua::Client& client) {
     std::optional<ClockOffset> best;
     for (int i = 0; i < kQuestions; ++i) {
-        auto offset = ask(client);
-        if (!offset) {
-            return offset;
-        }
-        if (!best || offset->uncertainty < best->uncertainty) {
-            best = *offset;
+        METIER_ASSIGN(auto offset, ask(client));
+        if (!best || offset.uncertainty < best->uncertainty) {
+            best = offset;
         }
     }
     return *best;

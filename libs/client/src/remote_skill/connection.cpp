@@ -52,10 +52,7 @@ void Connection::watch(opcua::Client& client) {
 Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
                                                     const std::shared_ptr<UsedSkillLink>& link) {
     const auto client = present();
-    auto skill = AsyncSkill::open(*client, address, watchFor(*client, link));
-    if (!skill) {
-        return fail(skill.error());
-    }
+    METIER_ASSIGN(auto skill, AsyncSkill::open(*client, address, watchFor(*client, link)));
     const auto controller = address.controllerName();
     auto name = controller.empty() ? address.name : fmt::format("{}/{}", controller, address.name);
     const std::lock_guard lock(mutex_);
@@ -64,7 +61,7 @@ Result<std::shared_ptr<OpenSkill>> Connection::open(const SkillAddress& address,
     if (!known) {
         uses_.push_back({std::move(name), link});
     }
-    return std::make_shared<OpenSkill>(OpenSkill{client, std::move(*skill)});
+    return std::make_shared<OpenSkill>(OpenSkill{client, std::move(skill)});
 }
 
 AsyncSkill::Watch Connection::watchFor(const opcua::Client& client,
@@ -170,7 +167,7 @@ std::function<void()> Connection::adoptionOf(const Use& use) {
     const auto now = skill ? (*skill)->skill.now() : opcua::Answer<AsyncSkill::Now>();
     if (!skill || !now) {
         warn(reported_attempt_, fmt::format("{} is not there yet: {}", use.skill,
-                                        skill ? now.error().message : skill.error().message));
+                                            skill ? now.error().message : skill.error().message));
         return nullptr;
     }
     return [link = use.link, skill = std::move(*skill), now = *now] {

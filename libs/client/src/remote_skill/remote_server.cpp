@@ -59,34 +59,29 @@ Result<std::vector<client::SkillAddress>> RemoteServer::skills() {
                  : fail(found.error());
 }
 
-Result<std::unique_ptr<composition::UsedSkill>> RemoteServer::use(
-    const client::SkillAddress& skill, std::string origin) {
+Result<std::unique_ptr<composition::UsedSkill>> RemoteServer::use(const client::SkillAddress& skill,
+                                                                  std::string origin) {
     auto opened = open(skill, std::move(origin));
-    return opened ? used(std::move(*opened))
-                  : Result<std::unique_ptr<composition::UsedSkill>>(fail(std::move(opened.error())));
+    return opened
+               ? used(std::move(*opened))
+               : Result<std::unique_ptr<composition::UsedSkill>>(fail(std::move(opened.error())));
 }
 
 Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::string origin) {
     const auto link = std::make_shared<UsedSkillLink>(worker_->executor);
-    auto open = worker_->connection.open(skill, link);
-    if (!open) {
-        return fail(std::move(open.error()));
-    }
-    const auto now = (*open)->skill.now();
-    if (!now) {
-        return fail(now.error());
-    }
-    if (!(*open)->skill.knowsExecutions()) {
+    METIER_ASSIGN(auto open, worker_->connection.open(skill, link));
+    METIER_ASSIGN(const auto now, open->skill.now());
+    if (!open->skill.knowsExecutions()) {
         return fail(Errc::not_supported,
                     fmt::format("{}: {} has no StartWith and GetExecution", url(), skill.name));
     }
-    return PendingUse{link, std::move(*open), *now, fmt::format("{} of {}", skill.name, name()),
+    return PendingUse{link, std::move(open), now, fmt::format("{} of {}", skill.name, name()),
                       std::move(origin)};
 }
 
 std::unique_ptr<composition::UsedSkill> RemoteServer::used(PendingUse use) {
-    auto used = std::make_unique<RemoteUsedSkill>(worker_->connection, use.link, std::move(use.name),
-                                               std::move(use.origin));
+    auto used = std::make_unique<RemoteUsedSkill>(worker_->connection, use.link,
+                                                  std::move(use.name), std::move(use.origin));
     used->adopt(use.skill, use.now);
     // What happened since it was opened has reached no used skill.
     worker_->connection.run([skill = std::move(use.skill), link = std::move(use.link)] {

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "synchronized/synchronized_work.hpp"
 #include "synchronized/synchronized_fields.hpp"
+#include "synchronized/synchronized_work.hpp"
 
 namespace metier::composition {
 
@@ -79,26 +79,20 @@ Result<Arm*> SynchronizedMoveSkill::find(const std::string& name) {
     return &*found;
 }
 
-Result<std::unique_ptr<skill::ExecutionWork>> SynchronizedMoveSkill::plan(const Parameters& parameters) {
-    if (auto counted = checkCounts(parameters); !counted) {
-        return fail(std::move(counted.error()));
-    }
+Result<std::unique_ptr<skill::ExecutionWork>> SynchronizedMoveSkill::plan(
+    const Parameters& parameters) {
+    METIER_TRY(checkCounts(parameters));
     SynchronizedWork::Setup setup{options_, {}, parameters.duration};
     std::set<std::string> taken;
     for (std::size_t i = 0; i < parameters.arms.size(); ++i) {
-        const auto arm = find(parameters.arms[i]);
-        if (!arm) {
-            return fail(arm.error());
-        }
+        METIER_ASSIGN(const auto arm, find(parameters.arms[i]));
         if (!taken.insert(parameters.arms[i]).second) {
             return fail(Errc::invalid_argument,
                         fmt::format("Arms: \"{}\" is there twice", parameters.arms[i]));
         }
-        if (auto reachable = checkReachable(**arm); !reachable) {
-            return fail(std::move(reachable.error()));
-        }
+        METIER_TRY(checkReachable(*arm));
         setup.arms.push_back(
-            {**arm, parameters.target_poses[i],
+            {*arm, parameters.target_poses[i],
              parameters.tool_frames.empty() ? std::string() : parameters.tool_frames[i]});
     }
     return std::make_unique<SynchronizedWork>(std::move(setup));

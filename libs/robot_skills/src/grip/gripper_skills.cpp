@@ -59,11 +59,7 @@ Result<void> checkRequest(const device::GripperRequest& request, const device::G
                                 *request.force, info.name));
     }
     if (request.force) {
-        if (auto checked =
-                checkWithin(*request.force, {"Force", "N", {info.min_force, info.max_force}});
-            !checked) {
-            return checked;
-        }
+        METIER_TRY(checkWithin(*request.force, {"Force", "N", {info.min_force, info.max_force}}));
     }
     return request.width ? checkWithin(*request.width, {"Width", "m", {0.0, info.stroke}})
                          : Result<void>();
@@ -100,7 +96,8 @@ public:
     }
 
 protected:
-    Result<std::unique_ptr<skill::ExecutionWork>> plan(const GripperParameters& parameters) override {
+    Result<std::unique_ptr<skill::ExecutionWork>> plan(
+        const GripperParameters& parameters) override {
         device::GripperRequest request;
         request.force = unlessZero(parameters.force);
         request.width = needs_width_ ? parameters.width : unlessZero(parameters.width);

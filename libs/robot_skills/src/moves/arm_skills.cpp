@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "moves/controller_planned_move_skills.hpp"
 #include "moves/force_move_skill.hpp"
 #include "moves/move_skills.hpp"
-#include "moves/controller_planned_move_skills.hpp"
 
 namespace metier::robot_skills {
 
@@ -44,11 +44,8 @@ Result<Skills> makeMoves(const ArmDevices& devices, const StreamedArm& streamed)
         return moves;
     }
     const PlanningArm planning{arm, *devices.planner, model, clock, devices.sensor, stopping};
-    auto moves = makeControllerPlannedMoveSkills(planning);
-    if (!moves) {
-        return moves;
-    }
-    return with(std::move(*moves), makeControllerPlannedForceMoveSkill(planning));
+    METIER_ASSIGN(auto moves, makeControllerPlannedMoveSkills(planning));
+    return with(std::move(moves), makeControllerPlannedForceMoveSkill(planning));
 }
 
 }  // namespace
@@ -66,11 +63,8 @@ Result<ArmSkills> makeArmSkills(const ArmDevices& devices, const motion::RobotMo
         return fail(std::move(moves.error()));
     }
     skills.moves = std::move(*moves);
-    auto position_stream = makePositionStreamSkill(devices.arm, model, clock, stream);
-    if (!position_stream) {
-        return fail(std::move(position_stream.error()));
-    }
-    skills.position_stream = std::move(*position_stream);
+    METIER_ASSIGN(auto position_stream, makePositionStreamSkill(devices.arm, model, clock, stream));
+    skills.position_stream = std::move(position_stream);
     skills.stream_report = stream.report;
     skills.stopping_report = streamed.stopping;
     return skills;

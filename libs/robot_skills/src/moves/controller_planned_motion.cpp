@@ -12,8 +12,8 @@
 namespace metier::robot_skills {
 
 using device::ControllerPlannedMotion;
-using motion::Pose;
 using motion::JointVector;
+using motion::Pose;
 using motion::RobotModel;
 using motion::Trajectory;
 
@@ -153,7 +153,8 @@ Result<void> checkSameLine(const RobotModel& model, const Trajectory& trajectory
 }
 
 /// The line's speed is the plan's; its acceleration the robot's own.
-void setLineLimits(const ControllerPlannedRequest& request, double path_speed, ControllerPlannedMotion& motion) {
+void setLineLimits(const ControllerPlannedRequest& request, double path_speed,
+                   ControllerPlannedMotion& motion) {
     const auto& own = request.model.cartesianLimits();
     const double length = request.trajectory.length();
     const double angle = request.trajectory.angle();
@@ -163,17 +164,14 @@ void setLineLimits(const ControllerPlannedRequest& request, double path_speed, C
                                    : own.acceleration;
 }
 
-Result<ControllerPlannedMotion> plannedLine(const ControllerPlannedRequest& request, double path_speed) {
+Result<ControllerPlannedMotion> plannedLine(const ControllerPlannedRequest& request,
+                                            double path_speed) {
     const auto& [model, trajectory, path, parameters] = request;
     if (trajectory.length() < kShortLine) {
         return notByController("its speed bounds no rotation");
     }
-    if (auto same = checkElbow(model, trajectory); !same) {
-        return fail(std::move(same.error()));
-    }
-    if (auto same = checkSameLine(model, trajectory); !same) {
-        return fail(std::move(same.error()));
-    }
+    METIER_TRY(checkElbow(model, trajectory));
+    METIER_TRY(checkSameLine(model, trajectory));
     ControllerPlannedMotion motion;
     motion.path = ControllerPlannedMotion::Path::line;
     motion.target_flange = motion::toFrame(model.kinematics().forward(trajectory.end()));
@@ -184,12 +182,8 @@ Result<ControllerPlannedMotion> plannedLine(const ControllerPlannedRequest& requ
 }  // namespace
 
 Result<ControllerPlannedMotion> controllerPlannedMotion(const ControllerPlannedRequest& request) {
-    if (auto timed = checkTimes(request.parameters); !timed) {
-        return fail(std::move(timed.error()));
-    }
-    if (auto quick = checkAcceleration(request); !quick) {
-        return fail(std::move(quick.error()));
-    }
+    METIER_TRY(checkTimes(request.parameters));
+    METIER_TRY(checkAcceleration(request));
     const double path_speed = pathSpeed(request.trajectory);
     const auto fastest = fastestAxis(request, path_speed);
     // Without any way there is no speed.

@@ -96,8 +96,10 @@ MoveResults ControllerPlannedMove::results(const device::JointArray& reached) co
 // ---- the execution
 // -------------------------------------------------------------------------------
 
-ControllerPlannedWork::ControllerPlannedWork(Devices devices, device::ControllerPlannedMotion motion,
-                         std::shared_ptr<ControllerPlannedMove> move, ToolDistance tool_distance)
+ControllerPlannedWork::ControllerPlannedWork(Devices devices,
+                                             device::ControllerPlannedMotion motion,
+                                             std::shared_ptr<ControllerPlannedMove> move,
+                                             ToolDistance tool_distance)
     : ArmWork(devices.arm, std::move(tool_distance)),
       planner_(devices.planner),
       motion_(std::move(motion)),
@@ -136,9 +138,7 @@ Result<void> ControllerPlannedWork::suspend() {
 }
 
 Result<void> ControllerPlannedWork::resume() {
-    if (auto checked = checkNotMoved(move_->restingPlace()); !checked) {
-        return checked;
-    }
+    METIER_TRY(checkNotMoved(move_->restingPlace()));
     return move();
 }
 

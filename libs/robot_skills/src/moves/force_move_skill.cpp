@@ -4,12 +4,12 @@
 
 #include <utility>
 
+#include "metier/motion/force_limit.hpp"
+#include "moves/controller_planned_motion.hpp"
+#include "moves/controller_planned_work.hpp"
 #include "moves/force_axes.hpp"
 #include "moves/force_report.hpp"
-#include "metier/motion/force_limit.hpp"
 #include "moves/move_skill.hpp"
-#include "moves/controller_planned_work.hpp"
-#include "moves/controller_planned_motion.hpp"
 #include "moves/sensor_failure.hpp"
 #include "moves/streamed_move.hpp"
 
@@ -29,9 +29,7 @@ Eigen::Vector3d toEigen(const std::array<double, 3>& values) noexcept {
 }
 
 Result<std::unique_ptr<skill::Skill>> makeForceSkill(ForceSkill::Setup setup) {
-    if (auto checked = checkSameAxes(setup.arm, setup.model); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSameAxes(setup.arm, setup.model));
     MoveVariant<ForceMoveParameters> variant{
         describeMove("CartesianLinearForceMoveSkill",
                      "Moves the tool frame on a straight line until it reaches a pose or a force"),
@@ -97,45 +95,37 @@ private:
 };
 
 Result<std::unique_ptr<skill::ExecutionWork>> feelingWork(const FeelingArm& arm,
-                                                 const Trajectory& trajectory,
-                                                 const ForceMoveParameters& parameters) {
+                                                          const Trajectory& trajectory,
+                                                          const ForceMoveParameters& parameters) {
     if (arm.sensor.sample().health != SafetyState::normal) {
         return fail(Errc::device_fault,
                     fmt::format("{}: {}", arm.sensor.name(), arm.sensor.safety().text));
     }
     const auto& max = parameters.max_force;
-    auto limit = motion::ForceLimit::create({0.0, 0.0, {max.x, max.y, max.z, 0.0, 0.0, 0.0}},
-                                            motion::Seconds(arm.arm.info().cycleSeconds()));
-    if (!limit) {
-        return fail(std::move(limit.error()));
-    }
+    METIER_ASSIGN(auto limit,
+                  motion::ForceLimit::create({0.0, 0.0, {max.x, max.y, max.z, 0.0, 0.0, 0.0}},
+                                             motion::Seconds(arm.arm.info().cycleSeconds())));
     return makeStreamedWork(
         {arm.arm, arm.model, arm.clock, arm.stopping},
         {trajectory, Path::cartesian_line, parameters.start_time, parameters.stop_time,
-         std::make_unique<SensorWatch>(arm, parameters, *limit)});
+         std::make_unique<SensorWatch>(arm, parameters, limit)});
 }
 
 // ---- by either --------------------------------------------------------------------------------
 
 /// What the controller is asked for. Errors: not_supported, where it cannot do just this.
 Result<device::ControllerPlannedMotion> plannedForceMotion(const RobotModel& model,
-                                                 const Trajectory& trajectory,
-                                                 const ForceMoveParameters& parameters) {
-    auto motion = controllerPlannedMotion({model, trajectory, Path::cartesian_line, parameters});
-    if (!motion) {
-        return motion;
-    }
-    auto condition = flangeCondition(model, trajectory, parameters.max_force);
-    if (!condition) {
-        return fail(std::move(condition.error()));
-    }
-    motion->until = *condition;
+                                                           const Trajectory& trajectory,
+                                                           const ForceMoveParameters& parameters) {
+    METIER_ASSIGN(auto motion,
+                  controllerPlannedMotion({model, trajectory, Path::cartesian_line, parameters}));
+    METIER_ASSIGN(auto condition, flangeCondition(model, trajectory, parameters.max_force));
+    motion.until = condition;
     return motion;
 }
 
-Result<std::unique_ptr<skill::ExecutionWork>> plannedForceWork(const PlanningArm& arm,
-                                                      const Trajectory& trajectory,
-                                                      const ForceMoveParameters& parameters) {
+Result<std::unique_ptr<skill::ExecutionWork>> plannedForceWork(
+    const PlanningArm& arm, const Trajectory& trajectory, const ForceMoveParameters& parameters) {
     auto motion = plannedForceMotion(arm.model, trajectory, parameters);
     if (!motion && arm.sensor != nullptr) {
         return feelingWork({arm.arm, *arm.sensor, arm.model, arm.clock}, trajectory, parameters);
@@ -150,9 +140,9 @@ Result<std::unique_ptr<skill::ExecutionWork>> plannedForceWork(const PlanningArm
     };
     auto move = std::make_shared<ControllerPlannedMove>(ControllerPlannedMove::Setup{
         arm.arm, arm.clock, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
-    return std::make_unique<ControllerPlannedWork>(ControllerPlannedWork::Devices{arm.arm, arm.planner},
-                                         std::move(*motion), std::move(move),
-                                         toolDistance(trajectory));
+    return std::make_unique<ControllerPlannedWork>(
+        ControllerPlannedWork::Devices{arm.arm, arm.planner}, std::move(*motion), std::move(move),
+        toolDistance(trajectory));
 }
 
 }  // namespace

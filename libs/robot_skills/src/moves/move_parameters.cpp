@@ -74,9 +74,7 @@ Field toolFrameField(const motion::RobotModel& model) {
                 .description = "Name of the tool frame that is moved; empty: the flange"};
     field.default_value = std::string();
     field.extra_check = [&model](const Value& value) -> Result<void> {
-        if (auto tool = model.tool(std::get<std::string>(value)); !tool) {
-            return fail(std::move(tool.error()));
-        }
+        METIER_TRY(model.tool(std::get<std::string>(value)));
         return {};
     };
     return field;

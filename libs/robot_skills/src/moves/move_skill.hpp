@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
-#include "moves/arm_work.hpp"
-#include "moves/arm_skill.hpp"
 #include "conversions.hpp"
 #include "metier/skill/typed_skill.hpp"
+#include "moves/arm_skill.hpp"
+#include "moves/arm_work.hpp"
 #include "moves/move_variant.hpp"
 #include "moves/timetable.hpp"
 
@@ -16,8 +16,8 @@ namespace metier::robot_skills {
 /// Makes the execution of a planned motion; nothing moves.
 /// Errors: why this arm cannot do it.
 template <typename Parameters>
-using MakeWork = std::function<Result<std::unique_ptr<skill::ExecutionWork>>(const motion::Trajectory&,
-                                                                    const Parameters&)>;
+using MakeWork = std::function<Result<std::unique_ptr<skill::ExecutionWork>>(
+    const motion::Trajectory&, const Parameters&)>;
 
 /// How far the tool frame of `trajectory` is from one joint position to another.
 ToolDistance toolDistance(const motion::Trajectory& trajectory);
@@ -47,9 +47,7 @@ public:
 
 protected:
     Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override {
-        if (auto ready = checkCanStart(parameters); !ready) {
-            return fail(std::move(ready.error()));
-        }
+        METIER_TRY(checkCanStart(parameters));
         auto trajectory = planFromHere(parameters);
         if (!trajectory) {
             return fail(std::move(trajectory.error().error));
@@ -58,14 +56,10 @@ protected:
     }
 
     Result<skill::CheckReport> assess(const Parameters& parameters) override {
-        if (auto ready = checkCanStart(parameters); !ready) {
-            return fail(std::move(ready.error()));
-        }
+        METIER_TRY(checkCanStart(parameters));
         const auto trajectory = planFromHere(parameters);
         if (trajectory) {
-            if (const auto work = setup_.make_work(*trajectory, parameters); !work) {
-                return fail(work.error());
-            }
+            METIER_TRY(setup_.make_work(*trajectory, parameters));
         }
         return reportOf(trajectory);
     }
@@ -89,9 +83,7 @@ private:
 template <typename Parameters>
 Result<std::unique_ptr<skill::Skill>> makeMove(typename MoveSkill<Parameters>::Setup setup,
                                                MoveVariant<Parameters> variant) {
-    if (auto checked = checkSameAxes(setup.arm, setup.model); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSameAxes(setup.arm, setup.model));
     return std::make_unique<MoveSkill<Parameters>>(std::move(setup), std::move(variant),
                                                    moveResultFields());
 }

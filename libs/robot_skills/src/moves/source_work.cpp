@@ -29,9 +29,7 @@ Result<void> SourceWork::suspend() {
 }
 
 Result<void> SourceWork::resume() {
-    if (auto checked = checkNotMoved(source_->restingPlace()); !checked) {
-        return checked;
-    }
+    METIER_TRY(checkNotMoved(source_->restingPlace()));
     source_->beginAgain(arm().state().commanded_position);
     auto attached = arm().attach(source_);
     if (!attached) {

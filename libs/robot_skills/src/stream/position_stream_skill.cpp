@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "moves/arm_skill.hpp"
 #include "conversions.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/skill/typed_skill.hpp"
+#include "moves/arm_skill.hpp"
 #include "moves/source_work.hpp"
 #include "stream/stream_input.hpp"
 #include "stream/stream_source.hpp"
@@ -94,13 +94,10 @@ private:
             return fail(Errc::invalid_state,
                         fmt::format("{}: no set-point is taken after {}", kTarget, kEndOfStream));
         }
-        auto position = JointVector::from(values);
-        if (!position) {
-            return fail(std::move(position.error()));
-        }
+        METIER_ASSIGN(auto position, JointVector::from(values));
         const auto time = stream_.times.next(meant_for);
         stream_.report->noteClockStep(stream_.times.clockStep().count());
-        if (!stream_.source->queue().tryPush({*position, time})) {
+        if (!stream_.source->queue().tryPush({position, time})) {
             return fail(Errc::resource_unavailable,
                         fmt::format("{}: {} set-points wait already, more than the arm can take",
                                     kTarget, StreamQueue::kCapacity));
@@ -129,23 +126,18 @@ public:
     Result<void> reset() override { return resetArm(arm_); }
 
 protected:
-    Result<std::unique_ptr<skill::ExecutionWork>> plan(const PositionStreamParameters& given) override {
-        if (auto ready = checkReady(arm_); !ready) {
-            return fail(std::move(ready.error()));
-        }
-        auto source = StreamSource::create(
-            model_, {arm_.info().cycleSeconds(), toVector(arm_.state().commanded_position),
-                     options_.longest_silence, given.play_out_delay, options_.largest_lag,
-                     options_.report});
-        if (!source) {
-            return fail(std::move(source.error()));
-        }
-        if (auto begins = checkBegins(**source, given); !begins) {
-            return fail(std::move(begins.error()));
-        }
+    Result<std::unique_ptr<skill::ExecutionWork>> plan(
+        const PositionStreamParameters& given) override {
+        METIER_TRY(checkReady(arm_));
+        METIER_ASSIGN(auto source,
+                      StreamSource::create(model_, {arm_.info().cycleSeconds(),
+                                                    toVector(arm_.state().commanded_position),
+                                                    options_.longest_silence, given.play_out_delay,
+                                                    options_.largest_lag, options_.report}));
+        METIER_TRY(checkBegins(*source, given));
         return std::make_unique<StreamWork>(
             arm_,
-            StreamWork::Stream{std::move(*source),
+            StreamWork::Stream{std::move(source),
                                StreamTimes(clock_, arm_.info().cycle, arrivalsFor(given)),
                                given.target_joint_position, options_.report},
             toolDistance());
@@ -170,7 +162,7 @@ private:
         return [&model = model_](const device::JointArray& a, const device::JointArray& b) {
             const auto& kinematics = model.kinematics();
             return motion::distanceBetween(kinematics.forward(toVector(a)),
-                                             kinematics.forward(toVector(b)));
+                                           kinematics.forward(toVector(b)));
         };
     }
 
@@ -246,9 +238,7 @@ const skill::FieldList<PositionStreamResults>& positionStreamResultFields() {
 Result<std::unique_ptr<skill::Skill>> makePositionStreamSkill(
     device::Arm& arm, const RobotModel& model, const Clock& clock,
     const PositionStreamOptions& options) {
-    if (auto checked = checkSameAxes(arm, model); !checked) {
-        return fail(std::move(checked.error()));
-    }
+    METIER_TRY(checkSameAxes(arm, model));
     return std::make_unique<PositionStreamSkill>(arm, model, clock, options);
 }
 

@@ -66,11 +66,9 @@ motion::StreamOptions StreamSource::followerOptions(const Setup& setup) noexcept
 
 Result<std::shared_ptr<StreamSource>> StreamSource::create(const motion::RobotModel& model,
                                                            const Setup& setup) {
-    auto follower = StreamFollower::create(model, followerOptions(setup), setup.start);
-    if (!follower) {
-        return fail(std::move(follower.error()));
-    }
-    return std::make_shared<StreamSource>(model, setup, *follower);
+    METIER_ASSIGN(auto follower,
+                  StreamFollower::create(model, followerOptions(setup), setup.start));
+    return std::make_shared<StreamSource>(model, setup, follower);
 }
 
 StreamSource::StreamSource(const motion::RobotModel& model, const Setup& setup,

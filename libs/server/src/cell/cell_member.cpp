@@ -39,12 +39,9 @@ Result<void> CellMember::begin(SteadyTime now) {
         command.push_back(plan_.command.option_for_port);
         command.push_back(address_.substr(address_.rfind(':') + 1));
     }
-    auto process = link::ChildProcess::start(
-        command, {.group = link::Group::own, .on_owners_death = SIGTERM});
-    if (!process) {
-        return fail(process.error());
-    }
-    process_.emplace(std::move(*process));
+    METIER_ASSIGN(auto process, link::ChildProcess::start(command, {.group = link::Group::own,
+                                                                    .on_owners_death = SIGTERM}));
+    process_.emplace(std::move(process));
     return {};
 }
 

@@ -70,19 +70,15 @@ int millisecondsUntil(SteadyTime time) {
 CellRunner::CellRunner() = default;
 CellRunner::CellRunner(CellRunner&&) noexcept = default;
 
-Result<CellRunner> CellRunner::start(const cell::CellConfig& cell,
-                                     const CellCommands& commands, int stop_descriptor,
-                                     const OnReady& on_ready) {
+Result<CellRunner> CellRunner::start(const cell::CellConfig& cell, const CellCommands& commands,
+                                     int stop_descriptor, const OnReady& on_ready) {
     CellRunner runner;
-    if (auto started = runner.startAll(cell, commands, stop_descriptor, on_ready); !started) {
-        return fail(started.error());
-    }
+    METIER_TRY(runner.startAll(cell, commands, stop_descriptor, on_ready));
     return runner;
 }
 
-Result<void> CellRunner::startAll(const cell::CellConfig& cell,
-                                  const CellCommands& commands, int stop_descriptor,
-                                  const OnReady& on_ready) {
+Result<void> CellRunner::startAll(const cell::CellConfig& cell, const CellCommands& commands,
+                                  int stop_descriptor, const OnReady& on_ready) {
     for (const bool world : {true, false}) {
         for (const auto& controller : cell.virtual_controllers) {
             if ((&controller == cell.world()) != world) {
@@ -90,21 +86,13 @@ Result<void> CellRunner::startAll(const cell::CellConfig& cell,
             }
             CellMember::Plan plan{controller.name, world ? CellRank::world : CellRank::controller,
                                   commands.of(controller, known_)};
-            if (auto started =
-                    startMember(std::make_unique<CellMember>(std::move(plan)), stop_descriptor);
-                !started) {
-                return started;
-            }
+            METIER_TRY(startMember(std::make_unique<CellMember>(std::move(plan)), stop_descriptor));
             known_.controllers[controller.name] = members_.back()->address();
         }
     }
     for (const auto* server : inStartOrder(cell.servers)) {
         CellMember::Plan plan{server->name, rankOf(*server), commands.of(*server, known_)};
-        if (auto started =
-                startMember(std::make_unique<CellMember>(std::move(plan)), stop_descriptor);
-            !started) {
-            return started;
-        }
+        METIER_TRY(startMember(std::make_unique<CellMember>(std::move(plan)), stop_descriptor));
         const auto& url = members_.back()->address();
         known_.servers[server->name] = url;
         running_.push_back({server->name, url});
@@ -115,9 +103,7 @@ Result<void> CellRunner::startAll(const cell::CellConfig& cell,
 
 Result<void> CellRunner::startMember(std::unique_ptr<CellMember> new_member, int stop_descriptor) {
     auto& member = *members_.emplace_back(std::move(new_member));
-    if (auto begun = member.begin(now()); !begun) {
-        return begun;
-    }
+    METIER_TRY(member.begin(now()));
     for (;;) {
         switch (member.look(now())) {
             case CellMember::Event::ready:

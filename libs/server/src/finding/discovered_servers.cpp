@@ -20,7 +20,7 @@ std::size_t servedBy(const DiscoveredServer& server, const std::vector<compositi
 }  // namespace
 
 std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discovery,
-                                                     const std::vector<std::string>& but) {
+                                                 const std::vector<std::string>& but) {
     auto sighting = opcua::searchServers(
         discovery.servers, discovery.mdns ? opcua::Mdns::asked : opcua::Mdns::left_out);
     for (const auto& problem : sighting.problems) {
@@ -56,11 +56,8 @@ Result<std::map<std::string, OfferedSkill>> chooseAll(const std::vector<composit
                                                       const DiscoveredServer& server) {
     std::map<std::string, OfferedSkill> chosen;
     for (const auto& use : uses) {
-        auto skill = choose(use, server.offered);
-        if (!skill) {
-            return fail(std::move(skill.error()));
-        }
-        chosen.emplace(use.alias, std::move(*skill));
+        METIER_ASSIGN(auto skill, choose(use, server.offered));
+        chosen.emplace(use.alias, std::move(skill));
     }
     return chosen;
 }

@@ -34,13 +34,11 @@ public:
 
     opcua::Answer<SurveyedSkill> ask(client::SkillAddress address) {
         auto own = references_.read(address.node);
-        const auto type_terms = own ? typeTermsOf(address) : tl::unexpected(own.error());
-        if (!type_terms) {
-            return tl::unexpected(type_terms.error());
-        }
-        SurveyedSkill skill{std::move(address), (*type_terms)->types, std::move(own->terms),
+        METIER_ASSIGN(const auto type_terms,
+                      own ? typeTermsOf(address) : tl::unexpected(own.error()));
+        SurveyedSkill skill{std::move(address), type_terms->types, std::move(own->terms),
                             std::move(own->uses)};
-        append(skill.terms, (*type_terms)->terms);
+        append(skill.terms, type_terms->terms);
         if (const auto* controller = skill.address.controller()) {
             const auto [arm, is_new] = arms_.try_emplace(controller->node);
             if (is_new) {
@@ -69,17 +67,11 @@ private:
         if (!is_new) {
             return &type_terms->second;
         }
-        const auto types = client::typeChain(client_, address);
-        if (!types) {
-            return tl::unexpected(types.error());
-        }
-        for (const auto& type : *types) {
-            const auto references = references_.read(type.node);
-            if (!references) {
-                return tl::unexpected(references.error());
-            }
+        METIER_ASSIGN(const auto types, client::typeChain(client_, address));
+        for (const auto& type : types) {
+            METIER_ASSIGN(const auto references, references_.read(type.node));
             type_terms->second.types.push_back(type.name);
-            append(type_terms->second.terms, references->terms);
+            append(type_terms->second.terms, references.terms);
         }
         return &type_terms->second;
     }
@@ -87,24 +79,18 @@ private:
     opcua::Client& client_;
     const client::ReferenceReader& references_;
     std::map<opcua::NodeId, TypeTerms> type_terms_;  // by type
-    std::map<opcua::NodeId, ArmFigures> arms_;   // by controller
+    std::map<opcua::NodeId, ArmFigures> arms_;       // by controller
 };
 
 opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client) {
     auto found = client::findSkills(client);
-    const auto references = found ? client::ReferenceReader::create(client)
-                                  : tl::unexpected(std::move(found.error()));
-    if (!references) {
-        return tl::unexpected(references.error());
-    }
-    Questions questions(client, *references);
+    METIER_ASSIGN(const auto references, found ? client::ReferenceReader::create(client)
+                                               : tl::unexpected(std::move(found.error())));
+    Questions questions(client, references);
     std::vector<SurveyedSkill> skills;
     for (auto& address : *found) {
-        auto skill = questions.ask(std::move(address));
-        if (!skill) {
-            return tl::unexpected(std::move(skill.error()));
-        }
-        skills.push_back(std::move(*skill));
+        METIER_ASSIGN(auto skill, questions.ask(std::move(address)));
+        skills.push_back(std::move(skill));
     }
     return skills;
 }
@@ -116,9 +102,7 @@ public:
                                            const ConnectionSecurity& security,
                                            std::chrono::milliseconds limit) {
         auto options = optionsFor(limit);
-        if (auto secured = security.secure(options, url); !secured) {
-            return fail(std::move(secured.error()));
-        }
+        METIER_TRY(security.secure(options, url));
         auto client = opcua::Client::connect(url, options);
         if (!client) {
             return fail(client.error().code, opcua::sanitise(client.error().message));

@@ -74,8 +74,8 @@ std::string addressOf(const std::string& host) {
 
 /// \return nothing for a device that several processes may use
 Result<std::optional<link::NameLock>> lockDevice(const device::Driver& driver,
-                                                    const cell::DriverChoice& choice,
-                                                    const std::string& name) {
+                                                 const cell::DriverChoice& choice,
+                                                 const std::string& name) {
     if (driver.port.setting.empty()) {
         return std::optional<link::NameLock>();
     }
@@ -86,17 +86,14 @@ Result<std::optional<link::NameLock>> lockDevice(const device::Driver& driver,
     }
     const auto device =
         fmt::format("{} at {}, port {}", driver.name, addressOf(choice.controller), port);
-    auto lock = link::NameLock::take("device " + device, name + ": the controller " + device);
-    if (!lock) {
-        return fail(lock.error());
-    }
-    return std::optional(std::move(*lock));
+    METIER_ASSIGN(auto lock,
+                  link::NameLock::take("device " + device, name + ": the controller " + device));
+    return std::optional(std::move(lock));
 }
 
 }  // namespace
 
-Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
-                                      const DeviceUser& user) {
+Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice, const DeviceUser& user) {
     const auto& all = user.drivers;
     const auto found = std::find_if(all.begin(), all.end(),
                                     [&](const auto& known) { return known.name == choice.type; });
@@ -109,14 +106,11 @@ Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
                     fmt::format("{}: no driver of type \"{}\"; there are: {}", user.name,
                                 choice.type, fmt::join(names, ", ")));
     }
-    auto lock = lockDevice(*found, choice, user.name);
-    if (!lock) {
-        return fail(lock.error());
-    }
+    METIER_ASSIGN(auto lock, lockDevice(*found, choice, user.name));
     auto device = found->open({user.name, choice.controller, choice.settings, user.model});
-    if (device && *lock) {
+    if (device && lock) {
         // Shared, as OpenDevice asks for; the connection ends before its lock.
-        device->owner = std::make_shared<LockedDevice>(std::move(**lock), std::move(device->owner));
+        device->owner = std::make_shared<LockedDevice>(std::move(*lock), std::move(device->owner));
     }
     return device;
 }

@@ -40,20 +40,11 @@ fs::file_time_type latestChange(const security::SecurityFolder& folder) {
 Result<std::unique_ptr<ServerAccess>> ServerAccess::open(const Security& security,
                                                          opcua::Credentials own,
                                                          const Clock& clock) {
-    auto folder = security.openFolder();
-    if (!folder) {
-        return fail(folder.error());
-    }
-    auto logins = security::LoginGuard::open(folder->usersFile(), clock);
-    if (!logins) {
-        return fail(logins.error());
-    }
-    auto store = security::TrustStore::open(folder->trustFolder());
-    if (!store) {
-        return fail(store.error());
-    }
-    return std::unique_ptr<ServerAccess>(new ServerAccess(std::move(own), std::move(*folder),
-                                                          std::move(*logins), std::move(*store)));
+    METIER_ASSIGN(auto folder, security.openFolder());
+    METIER_ASSIGN(auto logins, security::LoginGuard::open(folder.usersFile(), clock));
+    METIER_ASSIGN(auto store, security::TrustStore::open(folder.trustFolder()));
+    return std::unique_ptr<ServerAccess>(
+        new ServerAccess(std::move(own), std::move(folder), std::move(logins), std::move(store)));
 }
 
 ServerAccess::ServerAccess(opcua::Credentials own, security::SecurityFolder folder,
@@ -203,7 +194,7 @@ bool ServerAccess::isTrustedStill(const std::string& thumbprint) {
 }
 
 std::optional<security::Role> ServerAccess::roleNow(const std::string& user,
-                                                 const std::string& thumbprint) {
+                                                    const std::string& thumbprint) {
     if (!isTrustedStill(thumbprint)) {
         return std::nullopt;
     }

@@ -13,11 +13,9 @@ constexpr std::uint16_t kOver = 100;
 }  // namespace
 
 Result<void> ServerAlarm::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
-    auto emitter = opcua::EventEmitter::create(server, opcua::ids::kSystemEventType, {});
-    if (!emitter) {
-        return fail(emitter.error());
-    }
-    emitter_ = std::move(*emitter);
+    METIER_ASSIGN(auto emitter,
+                  opcua::EventEmitter::create(server, opcua::ids::kSystemEventType, {}));
+    emitter_ = std::move(emitter);
     const std::lock_guard lock(mutex_);
     executor_ = std::move(executor);
     return {};

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "metier/opcua_skill/namespaces.hpp"
-#include "metier/server/audit_anchor.hpp"
 #include "metier/security/users.hpp"
+#include "metier/server/audit_anchor.hpp"
 
 namespace metier::server {
 namespace {
@@ -68,33 +68,27 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const cell::ServerConfig&
 }
 
 Result<void> ServerAudit::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
-    if (auto published = publishAnchor(server.nodes()); !published) {
-        return published;
-    }
+    METIER_TRY(publishAnchor(server.nodes()));
     return alarm_.follow(server, std::move(executor));
 }
 
 Result<void> ServerAudit::publishAnchor(opcua::AddressSpace& nodes) {
-    const auto metier = nodes.namespaceIndex(opcua_skill::kMetierUri);
-    if (!metier) {
-        return fail(metier.error());
-    }
-    const auto variable = nodes.addVariable(
-        {.node = {.id = {},
-                  .parent = opcua::ids::kServer,
-                  .browse_name = {*metier, kAuditAnchor},
-                  .description = {"en", "Chain value of the newest line of the audit log"}},
-         .data_type = opcua::ids::kString,
-         .value = opcua::Value::of(log_->anchor())});
-    if (!variable) {
-        return fail(variable.error());
-    }
+    METIER_ASSIGN(const auto metier, nodes.namespaceIndex(opcua_skill::kMetierUri));
+    METIER_ASSIGN(
+        const auto variable,
+        nodes.addVariable(
+            {.node = {.id = {},
+                      .parent = opcua::ids::kServer,
+                      .browse_name = {metier, kAuditAnchor},
+                      .description = {"en", "Chain value of the newest line of the audit log"}},
+             .data_type = opcua::ids::kString,
+             .value = opcua::Value::of(log_->anchor())}));
     return nodes.setDataSource(
-        *variable, {.read =
-                        [&log = *log_](const opcua::Session& /*session*/) {
-                            return opcua::DataValue{opcua::Value::of(log.anchor()), {}, {}, {}};
-                        },
-                    .write = {}});
+        variable, {.read =
+                       [&log = *log_](const opcua::Session& /*session*/) {
+                           return opcua::DataValue{opcua::Value::of(log.anchor()), {}, {}, {}};
+                       },
+                   .write = {}});
 }
 
 void ServerAudit::tell(security::WriteState state, const std::string& why) {

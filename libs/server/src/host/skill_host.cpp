@@ -40,48 +40,27 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const cell::ServerConfig& c
                                                      const Identity& identity,
                                                      std::vector<std::string> nodesets,
                                                      std::shared_ptr<skill::ExecutionNames> names) {
-    auto port_lock = lockPort(config);
-    if (!port_lock) {
-        return fail(port_lock.error());
-    }
+    METIER_ASSIGN(auto port_lock, lockPort(config));
     std::unique_ptr<SkillHost> host(new SkillHost(config, identity));
-    host->port_lock_ = std::move(*port_lock);
-    if (auto made = host->makeServer(std::move(nodesets)); !made) {
-        return fail(made.error());
-    }
-    auto skills = opcua_skill::SkillServer::create(*host->server_, host->clock_);
-    if (!skills) {
-        return fail(skills.error());
-    }
-    host->skills_ = std::move(*skills);
-    if (auto followed = host->audit_ == nullptr
-                            ? Result<void>()
-                            : host->audit_->follow(*host->server_, host->skills_->executor());
-        !followed) {
-        return fail(followed.error());
-    }
-    auto records = ServerRecords::open(config, host->application_uri_);
-    if (!records) {
-        return fail(records.error());
-    }
-    host->records_ = std::move(*records);
-    if (auto followed = host->records_ == nullptr
-                            ? Result<void>()
-                            : host->records_->follow(*host->server_, host->skills_->executor());
-        !followed) {
-        return fail(followed.error());
-    }
-    if (auto published = opcua_skill::publishDictionary(host->nodes()); !published) {
-        return fail(published.error());
-    }
+    host->port_lock_ = std::move(port_lock);
+    METIER_TRY(host->makeServer(std::move(nodesets)));
+    METIER_ASSIGN(auto skills, opcua_skill::SkillServer::create(*host->server_, host->clock_));
+    host->skills_ = std::move(skills);
+    METIER_TRY(host->audit_ == nullptr
+                   ? Result<void>()
+                   : host->audit_->follow(*host->server_, host->skills_->executor()));
+    METIER_ASSIGN(auto records, ServerRecords::open(config, host->application_uri_));
+    host->records_ = std::move(records);
+    METIER_TRY(host->records_ == nullptr
+                   ? Result<void>()
+                   : host->records_->follow(*host->server_, host->skills_->executor()));
+    METIER_TRY(opcua_skill::publishDictionary(host->nodes()));
     host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
     host->names_ = std::move(names);
     if (host->names_ != nullptr) {
         return host;
     }
-    if (auto kept = host->keepNames(config); !kept) {
-        return fail(kept.error());
-    }
+    METIER_TRY(host->keepNames(config));
     return host;
 }
 
@@ -91,13 +70,11 @@ Result<void> SkillHost::keepNames(const cell::ServerConfig& config) {
         names_ = std::make_shared<skill::ExecutionNames>();
         return {};
     }
-    auto names = skill::ExecutionNames::open(
-        config.state_folder /
-        fmt::format("{}-{}-{}.executions", config.name, config.address, config.port));
-    if (!names) {
-        return fail(names.error());
-    }
-    names_ = std::move(*names);
+    METIER_ASSIGN(auto names,
+                  skill::ExecutionNames::open(config.state_folder /
+                                              fmt::format("{}-{}-{}.executions", config.name,
+                                                          config.address, config.port)));
+    names_ = std::move(names);
     return {};
 }
 
@@ -115,22 +92,13 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
                                                        : opcua::EventPublishing::at_interval;
     options.limits = limitsOf(config_.limits);
     options.application_uri = applicationUriOf(config_);
-    auto access = secureServer(options, identity_, clock_);
-    if (!access) {
-        return fail(access.error());
-    }
-    access_ = std::move(*access);
+    METIER_ASSIGN(auto access, secureServer(options, identity_, clock_));
+    access_ = std::move(access);
     application_uri_ = options.application_uri;
-    auto audit = ServerAudit::open(config_, options);
-    if (!audit) {
-        return fail(audit.error());
-    }
-    audit_ = std::move(*audit);
-    auto server = opcua::Server::create(std::move(options));
-    if (!server) {
-        return fail(server.error());
-    }
-    server_ = std::move(*server);
+    METIER_ASSIGN(auto audit, ServerAudit::open(config_, options));
+    audit_ = std::move(audit);
+    METIER_ASSIGN(auto server, opcua::Server::create(std::move(options)));
+    server_ = std::move(server);
     if (access_ != nullptr) {
         access_->follow(*server_);
     }
@@ -157,9 +125,7 @@ SkillHost::~SkillHost() {
 }
 
 Result<void> SkillHost::start() {
-    if (auto watched = watchPrograms(); !watched) {
-        return watched;
-    }
+    METIER_TRY(watchPrograms());
     watchStalls();
     auto started = server_->start();
     if (started && access_ == nullptr) {
@@ -172,9 +138,7 @@ Result<void> SkillHost::start() {
 }
 
 Result<void> SkillHost::watchPrograms() {
-    if (auto published = skills_->publishRecords(); !published) {
-        return published;
-    }
+    METIER_TRY(skills_->publishRecords());
     const auto programs = skills_->programs();
     if (records_ != nullptr) {
         records_->record(programs, controller_, moved_);
@@ -182,18 +146,16 @@ Result<void> SkillHost::watchPrograms() {
     if (!config_.metrics) {
         return {};
     }
-    auto metrics = ServerMetrics::start(
-        config_, {.server = *server_,
-                  .control = *control_,
-                  .programs = programs,
-                  .arm = moved_.arm,
-                  .gripper = gripper_,
-                  .recorder = records_ == nullptr ? nullptr : &records_->recorder(),
-                  .audit = audit_.get()});
-    if (!metrics) {
-        return fail(metrics.error());
-    }
-    metrics_ = std::move(*metrics);
+    METIER_ASSIGN(auto metrics,
+                  ServerMetrics::start(
+                      config_, {.server = *server_,
+                                .control = *control_,
+                                .programs = programs,
+                                .arm = moved_.arm,
+                                .gripper = gripper_,
+                                .recorder = records_ == nullptr ? nullptr : &records_->recorder(),
+                                .audit = audit_.get()}));
+    metrics_ = std::move(metrics);
     return {};
 }
 
@@ -226,9 +188,7 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
     if (!published) {
         return published;
     }
-    if (auto served = opcua_skill::serveBasePlacement(*server_, system); !served) {
-        return served;
-    }
+    METIER_TRY(opcua_skill::serveBasePlacement(*server_, system));
     return opcua_skill::publishArmFigures(server_->nodes(), system.kinematics,
                                           figuresOf(shown, clock_));
 }
@@ -252,11 +212,8 @@ Result<void> SkillHost::publishGripper(const opcua::NodeId& parent,
 }
 
 Result<void> SkillHost::offerControl(const opcua::NodeId& controller) {
-    const auto name = server_->nodes().browseNameOf(controller);
-    if (!name) {
-        return fail(name.error());
-    }
-    controller_ = name->name;
+    METIER_ASSIGN(const auto name, server_->nodes().browseNameOf(controller));
+    controller_ = name.name;
     return skills_->serveControl(controller, control_);
 }
 
@@ -272,13 +229,8 @@ std::vector<DeviceSkill> sharing(const std::shared_ptr<skill::Resource>& resourc
 Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
                                     const std::vector<std::string>& wanted,
                                     std::vector<DeviceSkill> skills) {
-    const auto nodes = server_->nodes().browse(folder);
-    if (!nodes) {
-        return fail(nodes.error());
-    }
-    if (auto all_wanted = checkAllWanted(*nodes, wanted); !all_wanted) {
-        return all_wanted;
-    }
+    METIER_ASSIGN(const auto nodes, server_->nodes().browse(folder));
+    METIER_TRY(checkAllWanted(nodes, wanted));
     for (const auto& name : wanted) {
         const auto found = std::find_if(skills.begin(), skills.end(), [&](const auto& one) {
             return one.skill && one.skill->description().name == name;
@@ -286,17 +238,14 @@ Result<void> SkillHost::offerSkills(const opcua::NodeId& folder,
         if (found == skills.end()) {
             return fail(Errc::not_supported, fmt::format("no skill '{}' for this device", name));
         }
-        const auto node = std::find_if(nodes->begin(), nodes->end(), [&](const auto& reference) {
+        const auto node = std::find_if(nodes.begin(), nodes.end(), [&](const auto& reference) {
             return reference.browse_name.name == name;
         });
         const skill::ProgramOptions options{
             .resource = found->resource, .control = control_, .names = names_};
-        const auto offered = node == nodes->end()
-                                 ? skills_->publish(folder, std::move(found->skill), options)
-                                 : skills_->bind(node->target, std::move(found->skill), options);
-        if (!offered) {
-            return fail(offered.error());
-        }
+        METIER_TRY(node == nodes.end()
+                       ? skills_->publish(folder, std::move(found->skill), options)
+                       : skills_->bind(node->target, std::move(found->skill), options));
     }
     return {};
 }

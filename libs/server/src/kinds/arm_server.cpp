@@ -55,16 +55,13 @@ Result<std::optional<device::OpenDevice>> openSensor(const std::string& server,
     if (!config.force_torque_sensor) {
         return std::optional<device::OpenDevice>();
     }
-    auto sensor = openDevice(*config.force_torque_sensor, {server, drivers});
-    if (!sensor) {
-        return fail(sensor.error());
-    }
-    if (sensor->force_torque_sensor == nullptr) {
+    METIER_ASSIGN(auto sensor, openDevice(*config.force_torque_sensor, {server, drivers}));
+    if (sensor.force_torque_sensor == nullptr) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: the driver \"{}\" is not one of a force-torque sensor", server,
                                 config.force_torque_sensor->type));
     }
-    return std::optional(std::move(*sensor));
+    return std::optional(std::move(sensor));
 }
 
 }  // namespace
@@ -78,32 +75,19 @@ Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& co
         return fail(loaded.error());
     }
     auto model = std::make_unique<const motion::RobotModel>(std::move(*loaded));
-    auto device = openDevice(arm.driver, {config.name, context.drivers, model.get()});
-    if (!device) {
-        return fail(device.error());
-    }
-    if (device->arm == nullptr) {
+    METIER_ASSIGN(auto device, openDevice(arm.driver, {config.name, context.drivers, model.get()}));
+    if (device.arm == nullptr) {
         return fail(Errc::invalid_argument,
                     fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
                                 arm.driver.type));
     }
-    auto host = SkillHost::create(config, context.identity, nodesetsOf(arm));
-    if (!host) {
-        return fail(host.error());
-    }
-    auto sensor = openSensor(config.name, arm, context.drivers);
-    if (!sensor) {
-        return fail(sensor.error());
-    }
-    awaitConnection(*device);
+    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, nodesetsOf(arm)));
+    METIER_ASSIGN(auto sensor, openSensor(config.name, arm, context.drivers));
+    awaitConnection(device);
     std::unique_ptr<ArmServer> server(
-        new ArmServer(std::move(model), std::move(*device), std::move(*sensor), std::move(*host)));
-    if (auto offered = server->offer(config, arm); !offered) {
-        return fail(offered.error());
-    }
-    if (auto started = server->host_->start(); !started) {
-        return fail(started.error());
-    }
+        new ArmServer(std::move(model), std::move(device), std::move(sensor), std::move(host)));
+    METIER_TRY(server->offer(config, arm));
+    METIER_TRY(server->host_->start());
     return server;
 }
 
@@ -116,34 +100,22 @@ ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
       model_(device_.model ? *device_.model : *file_model_),
       host_(std::move(host)) {}
 
-Result<void> ArmServer::offer(const cell::ServerConfig& config,
-                              const cell::ArmServer& arm) {
-    const auto system = arm.nodeset.empty() ? opcua_skill::publishMotionDeviceSystem(
-                                                  host_->nodes(), specOf(config, model_))
-                                            : opcua_skill::findMotionDeviceSystem(host_->nodes());
-    if (!system) {
-        return fail(system.error());
-    }
-    if (auto offered = offerSkills(*system, arm); !offered) {
-        return offered;
-    }
-    if (auto offered = offerOwnCompositions(*host_, system->skills,
-                                            {.server = config.name, .files = arm.compositions});
-        !offered) {
-        return offered;
-    }
-    if (auto offered = host_->offerControl(system->controller); !offered) {
-        return offered;
-    }
+Result<void> ArmServer::offer(const cell::ServerConfig& config, const cell::ArmServer& arm) {
+    METIER_ASSIGN(const auto system, arm.nodeset.empty()
+                                         ? opcua_skill::publishMotionDeviceSystem(
+                                               host_->nodes(), specOf(config, model_))
+                                         : opcua_skill::findMotionDeviceSystem(host_->nodes()));
+    METIER_TRY(offerSkills(system, arm));
+    METIER_TRY(offerOwnCompositions(*host_, system.skills,
+                                    {.server = config.name, .files = arm.compositions}));
+    METIER_TRY(host_->offerControl(system.controller));
     host_->haltOnLossOf(*device_.arm);
     if (device_.gripper != nullptr) {
         host_->stopOnStall(*device_.gripper);
-        if (auto shown = host_->publishGripper(system->controller, *device_.gripper); !shown) {
-            return shown;
-        }
+        METIER_TRY(host_->publishGripper(system.controller, *device_.gripper));
     }
     // A controller that measures the wrench itself needs no sensor in the cell file.
-    return host_->publishArm(*system,
+    return host_->publishArm(system,
                              {*device_.arm, model_, arm.payload,
                               sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor,
                               stream_report_, stopping_report_});
@@ -153,24 +125,22 @@ Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& syste
                                     const cell::ArmServer& config) {
     // What a controller that plans cannot stop by itself, its own measurement can.
     auto* const own_sensor = device_.planner != nullptr ? device_.force_torque_sensor : nullptr;
-    auto arm = robot_skills::makeArmSkills(
-        {.arm = *device_.arm,
-         .planner = device_.planner,
-         .sensor = sensor_ ? sensor_->force_torque_sensor : own_sensor},
-        model_, host_->clock(), {.longest_silence = config.stream_silence});
-    if (!arm) {
-        return fail(arm.error());
-    }
-    stream_report_ = arm->stream_report;
-    stopping_report_ = arm->stopping_report;
-    auto skills = std::move(arm->moves);
-    skills.push_back(std::move(arm->position_stream));
+    METIER_ASSIGN(auto arm,
+                  robot_skills::makeArmSkills(
+                      {.arm = *device_.arm,
+                       .planner = device_.planner,
+                       .sensor = sensor_ ? sensor_->force_torque_sensor : own_sensor},
+                      model_, host_->clock(), {.longest_silence = config.stream_silence}));
+    stream_report_ = arm.stream_report;
+    stopping_report_ = arm.stopping_report;
+    auto skills = std::move(arm.moves);
+    skills.push_back(std::move(arm.position_stream));
     if (device_.gripper != nullptr) {
         // A gripper of the arm's own controller is moved by it, as the axes are.
         auto gripper = robot_skills::makeGripperSkills(*device_.gripper);
         std::move(gripper.skills.begin(), gripper.skills.end(), std::back_inserter(skills));
     }
-    auto offered = sharing(arm->resource, std::move(skills));
+    auto offered = sharing(arm.resource, std::move(skills));
     if (device_.gripper != nullptr) {
         offered.push_back(
             {robot_skills::makeHoldSkill(*device_.gripper, host_->skills().executor()), nullptr});

@@ -81,23 +81,13 @@ public:
 
     Result<void> publish(const opcua::NodeId& skills, const std::string& name) {
         auto& nodes = server_.host_->nodes();
-        const auto user = opcua_skill::findSkillObject(nodes, skills, name);
-        if (!user) {
-            return fail(user.error());
-        }
+        METIER_ASSIGN(const auto user, opcua_skill::findSkillObject(nodes, skills, name));
         for (const auto& used : remote_) {
-            if (auto published = opcua_skill::publishUse(nodes, *user, used); !published) {
-                return published;
-            }
+            METIER_TRY(opcua_skill::publishUse(nodes, user, used));
         }
         for (const auto& used : local_) {
-            const auto object = opcua_skill::findSkillObject(nodes, skills, used);
-            if (!object) {
-                return fail(object.error());
-            }
-            if (auto published = opcua_skill::publishUse(nodes, *user, *object); !published) {
-                return published;
-            }
+            METIER_ASSIGN(const auto object, opcua_skill::findSkillObject(nodes, skills, used));
+            METIER_TRY(opcua_skill::publishUse(nodes, user, object));
         }
         return {};
     }
@@ -116,10 +106,10 @@ private:
     void useLocal(const composition::Use& use, skill::Program& program) {
         const auto& name = definition_.name;
         used_skills_.emplace(use.alias, std::make_unique<composition::LocalUsedSkill>(
-                                         program, server_.host_->skills().executor(),
-                                         skill::Caller{.session_id = "composition " + name,
-                                                       .client_name = name,
-                                                       .of_this_server = true}));
+                                            program, server_.host_->skills().executor(),
+                                            skill::Caller{.session_id = "composition " + name,
+                                                          .client_name = name,
+                                                          .of_this_server = true}));
         const auto& used = program.description().name;
         if (std::find(local_.begin(), local_.end(), used) == local_.end()) {
             local_.push_back(used);
@@ -136,11 +126,8 @@ private:
             return fail(std::move(offered.error()));
         }
         auto& remote = *server_.servers_[offered->index];
-        auto used = remote.use(offered->address, origin_);
-        if (!used) {
-            return fail(std::move(used.error()));
-        }
-        used_skills_.emplace(use.alias, std::move(*used));
+        METIER_ASSIGN(auto used, remote.use(offered->address, origin_));
+        used_skills_.emplace(use.alias, std::move(used));
         note(use.alias, remote, offered->address);
         return {};
     }
@@ -178,20 +165,15 @@ private:
     Result<void> useAll(const std::vector<Assignment>& assignments) {
         for (const auto& [server, uses] : assignments) {
             const auto chosen = chooseAll(uses, *server);
-            auto remote = chosen ? server_.connectFound(*server) : fail(chosen.error());
-            if (!remote) {
-                return fail(std::move(remote.error()));
-            }
+            METIER_ASSIGN(auto remote,
+                          chosen ? server_.connectFound(*server) : fail(chosen.error()));
             for (const auto& [alias, skill] : *chosen) {
-                auto used = (*remote)->use(skill.address, origin_);
-                if (!used) {
-                    return fail(std::move(used.error()));
-                }
-                used_skills_.emplace(alias, std::move(*used));
-                note(alias, **remote, skill.address);
+                METIER_ASSIGN(auto used, remote->use(skill.address, origin_));
+                used_skills_.emplace(alias, std::move(used));
+                note(alias, *remote, skill.address);
             }
-            spdlog::info("{} uses {} ({})", definition_.name, (*remote)->name(), (*remote)->url());
-            bindings_.push_back({definition_.name, nullptr, {}, origin_, uses, *remote});
+            spdlog::info("{} uses {} ({})", definition_.name, remote->name(), remote->url());
+            bindings_.push_back({definition_.name, nullptr, {}, origin_, uses, remote});
         }
         return {};
     }
@@ -209,32 +191,20 @@ private:
 Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
     const cell::ServerConfig& config, const cell::CompositionServer& composition,
     const Context& context) {
-    auto definitions = loadDefinitions(composition.files);
-    if (!definitions) {
-        return fail(std::move(definitions.error()));
-    }
-    auto host = SkillHost::create(config, context.identity, {});
-    if (!host) {
-        return fail(host.error());
-    }
+    METIER_ASSIGN(auto definitions, loadDefinitions(composition.files));
+    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, {}));
     std::unique_ptr<CompositionServer> server(
-        new CompositionServer(config, composition, context.identity, std::move(*host)));
-    if (auto connected = server->connect(composition.servers); !connected) {
-        return fail(std::move(connected.error()));
-    }
-    if (auto offered = server->offer(std::move(*definitions), context.stop); !offered) {
-        return fail(std::move(offered.error()));
-    }
-    if (auto started = server->host_->start(); !started) {
-        return fail(started.error());
-    }
+        new CompositionServer(config, composition, context.identity, std::move(host)));
+    METIER_TRY(server->connect(composition.servers));
+    METIER_TRY(server->offer(std::move(definitions), context.stop));
+    METIER_TRY(server->host_->start());
     server->keepBound();
     return server;
 }
 
 CompositionServer::CompositionServer(const cell::ServerConfig& config,
-                                     cell::CompositionServer composition,
-                                     const Identity& identity, std::unique_ptr<SkillHost> host)
+                                     cell::CompositionServer composition, const Identity& identity,
+                                     std::unique_ptr<SkillHost> host)
     : config_(std::move(composition)),
       discovery_(config.discovery),
       name_(config.name),
@@ -271,85 +241,64 @@ Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
             return known;
         }
     }
-    auto server = client::RemoteServer::connect({.url = found.found.url,
-                                                       .name = found.found.name,
-                                                       .application_name = "metier " + name_,
-                                                       .security = identity_.credentials(),
-                                                       .own_server = host_->applicationUri()},
-                                                      host_->skills().executor());
-    if (!server) {
-        return fail(std::move(server.error()));
-    }
-    found_.emplace_back(std::move(*server));
+    METIER_ASSIGN(auto server,
+                  client::RemoteServer::connect({.url = found.found.url,
+                                                 .name = found.found.name,
+                                                 .application_name = "metier " + name_,
+                                                 .security = identity_.credentials(),
+                                                 .own_server = host_->applicationUri()},
+                                                host_->skills().executor()));
+    found_.emplace_back(std::move(server));
     return found_.back();
 }
 
 Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& servers) {
     for (const auto& used : servers) {
-        auto server = client::RemoteServer::connect({.url = used.url,
-                                                           .name = used.name,
-                                                           .application_name = "metier " + name_,
-                                                           .security = identity_.credentials(),
-                                                           .own_server = host_->applicationUri()},
-                                                          host_->skills().executor());
-        if (!server) {
-            return fail(std::move(server.error()));
-        }
-        auto skills = (*server)->skills();
-        if (!skills) {
-            return fail(std::move(skills.error()));
-        }
-        for (auto& skill : *skills) {
-            const auto arm = figuresOfArm((*server)->client(), skill);
+        METIER_ASSIGN(auto server,
+                      client::RemoteServer::connect({.url = used.url,
+                                                     .name = used.name,
+                                                     .application_name = "metier " + name_,
+                                                     .security = identity_.credentials(),
+                                                     .own_server = host_->applicationUri()},
+                                                    host_->skills().executor()));
+        METIER_ASSIGN(auto skills, server->skills());
+        for (auto& skill : skills) {
+            const auto arm = figuresOfArm(server->client(), skill);
             offered_.push_back({used.name, servers_.size(), std::move(skill), arm});
         }
-        servers_.push_back(std::move(*server));
+        servers_.push_back(std::move(server));
     }
     return {};
 }
 
 Result<void> CompositionServer::offer(std::vector<Definition> definitions,
                                       const link::StopSignal& stop) {
-    const auto place = opcua_skill::publishSkillController(host_->nodes(), name_,
-                                                           "Skills that are made of other skills.");
-    if (!place) {
-        return fail(place.error());
-    }
+    METIER_ASSIGN(const auto place,
+                  opcua_skill::publishSkillController(host_->nodes(), name_,
+                                                      "Skills that are made of other skills."));
     for (auto& definition : definitions) {
-        if (auto offered = offerOne(*place, std::move(definition), stop); !offered) {
-            return offered;
-        }
+        METIER_TRY(offerOne(place, std::move(definition), stop));
     }
-    return host_->offerControl(place->controller);
+    return host_->offerControl(place.controller);
 }
 
 Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
                                          Definition definition, const link::StopSignal& stop) {
     const auto name = definition.name;
     Roles roles(*this, definition);
-    if (auto found = roles.find(stop); !found) {
-        return found;
-    }
-    auto composed = composition::compose(definition, roles.descriptions());
-    if (!composed) {
-        return fail(std::move(composed.error()));
-    }
+    METIER_TRY(roles.find(stop));
+    METIER_ASSIGN(auto composed, composition::compose(definition, roles.descriptions()));
     const skill::ProgramOptions options{.control = host_->control(),
                                         .names = host_->names(),
                                         .rest_deadline = composition::restDeadlineOf(definition)};
     auto sequence = std::make_unique<composition::SequenceSkill>(
-        std::move(*composed), roles.takeUsedSkills(), host_->skills().executor(), host_->clock(),
+        std::move(composed), roles.takeUsedSkills(), host_->skills().executor(), host_->clock(),
         roles.origin() + "~" + life_);
     auto& skill = *sequence;
-    const auto published = host_->skills().publish(place.skills, std::move(sequence), options);
-    if (!published) {
-        return fail(published.error());
-    }
-    const auto node = opcua_skill::findSkillObject(host_->nodes(), place.skills, name);
-    if (!node) {
-        return fail(node.error());
-    }
-    roles.keepBindings(skill, *node);
+    METIER_TRY(host_->skills().publish(place.skills, std::move(sequence), options));
+    METIER_ASSIGN(const auto node,
+                  opcua_skill::findSkillObject(host_->nodes(), place.skills, name));
+    roles.keepBindings(skill, node);
     return roles.publish(place.skills, name);
 }
 

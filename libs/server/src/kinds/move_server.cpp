@@ -75,18 +75,12 @@ Result<std::unique_ptr<MoveServer>> MoveServer::start(const cell::ServerConfig& 
     if (move.discover) {
         spdlog::info("{} seeks a robot", config.name);
     }
-    auto robot =
-        move.discover ? search.first(context.stop) : connectRobot(move.robot, context.identity);
-    if (!robot) {
-        return fail(std::move(robot.error()));
-    }
-    spdlog::info("{} moves {} ({})", config.name, robot->arm->info().name, robot->url);
-    auto moves = RobotMoves::serve(config, context.identity, std::move(*robot), nullptr);
-    if (!moves) {
-        return fail(std::move(moves.error()));
-    }
-    return std::unique_ptr<MoveServer>(
-        new MoveServer(config, std::move(search), std::move(*moves)));
+    METIER_ASSIGN(auto robot, move.discover ? search.first(context.stop)
+                                            : connectRobot(move.robot, context.identity));
+    spdlog::info("{} moves {} ({})", config.name, robot.arm->info().name, robot.url);
+    METIER_ASSIGN(auto moves,
+                  RobotMoves::serve(config, context.identity, std::move(robot), nullptr));
+    return std::unique_ptr<MoveServer>(new MoveServer(config, std::move(search), std::move(moves)));
 }
 
 MoveServer::MoveServer(cell::ServerConfig config, RobotSearch search,
@@ -148,17 +142,12 @@ std::vector<std::string> MoveServer::candidates() const {
 
 /// Nothing moves now: what ran when the robot was lost is Halted.
 Result<void> MoveServer::exchange(const std::string& robot_url) {
-    auto robot = connectRobot(robot_url, search_.identity);
-    if (!robot) {
-        return fail(std::move(robot.error()));
-    }
-    const auto name = robot->arm->info().name;
+    METIER_ASSIGN(auto robot, connectRobot(robot_url, search_.identity));
+    const auto name = robot.arm->info().name;
     moves_.reset();  // lets go of the port
-    auto moves = RobotMoves::serve(config_, search_.identity, std::move(*robot), names_);
-    if (!moves) {
-        return fail(std::move(moves.error()));
-    }
-    moves_ = std::move(*moves);
+    METIER_ASSIGN(auto moves,
+                  RobotMoves::serve(config_, search_.identity, std::move(robot), names_));
+    moves_ = std::move(moves);
     spdlog::warn("{} moves {} ({}) from now on: {}", config_.name, name, robot_url,
                  robot_url == robot_url_ ? "another arm, or other limits, at the same address"
                                          : robot_url_ + " is away");

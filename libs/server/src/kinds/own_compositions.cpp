@@ -76,19 +76,11 @@ Result<std::map<std::string, skill::Program*>> chooseAll(
 
 Result<void> publishUses(SkillHost& host, const opcua::NodeId& skills, const std::string& user,
                          const std::map<std::string, skill::Program*>& used) {
-    const auto from = opcua_skill::findSkillObject(host.nodes(), skills, user);
-    if (!from) {
-        return fail(from.error());
-    }
+    METIER_ASSIGN(const auto from, opcua_skill::findSkillObject(host.nodes(), skills, user));
     for (const auto& [alias, program] : used) {
-        const auto to =
-            opcua_skill::findSkillObject(host.nodes(), skills, program->description().name);
-        if (!to) {
-            return fail(to.error());
-        }
-        if (auto published = opcua_skill::publishUse(host.nodes(), *from, *to); !published) {
-            return published;
-        }
+        METIER_ASSIGN(const auto to, opcua_skill::findSkillObject(host.nodes(), skills,
+                                                                  program->description().name));
+        METIER_TRY(opcua_skill::publishUse(host.nodes(), from, to));
     }
     return {};
 }
@@ -96,14 +88,11 @@ Result<void> publishUses(SkillHost& host, const opcua::NodeId& skills, const std
 Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition definition,
                       const std::string& server) {
     const auto name = definition.name;
-    const auto chosen = chooseAll(definition, host.skills().programs(), server);
-    if (!chosen) {
-        return fail(chosen.error());
-    }
+    METIER_ASSIGN(const auto chosen, chooseAll(definition, host.skills().programs(), server));
     const auto executor = host.skills().executor();
     composition::Descriptions descriptions;
     std::map<std::string, std::unique_ptr<composition::Child>> children;
-    for (const auto& [alias, program] : *chosen) {
+    for (const auto& [alias, program] : chosen) {
         descriptions.emplace(alias, program->description());
         children.emplace(alias, std::make_unique<composition::LocalChild>(
                                     *program, executor,
@@ -111,34 +100,26 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
                                                   .client_name = name,
                                                   .of_this_server = true}));
     }
-    auto composed = composition::compose(definition, descriptions);
-    if (!composed) {
-        return fail(std::move(composed.error()));
-    }
+    METIER_ASSIGN(auto composed, composition::compose(definition, descriptions));
     const skill::ProgramOptions options{.control = host.control(),
                                         .names = host.names(),
                                         .rest_deadline = composition::restDeadlineOf(definition)};
     auto origin = fmt::format("{}.{}~{}", server, name, newLife());
     const auto published = host.skills().publish(
         skills,
-        std::make_unique<composition::SequenceSkill>(std::move(*composed), std::move(children),
+        std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(children),
                                                      executor, host.clock(), std::move(origin)),
         options);
-    return published ? publishUses(host, skills, name, *chosen) : fail(published.error());
+    return published ? publishUses(host, skills, name, chosen) : fail(published.error());
 }
 
 }  // namespace
 
 Result<void> offerOwnCompositions(SkillHost& host, const opcua::NodeId& skills,
                                   const OwnCompositions& own) {
-    auto definitions = loadDefinitions(own.files);
-    if (!definitions) {
-        return fail(std::move(definitions.error()));
-    }
-    for (auto& definition : *definitions) {
-        if (auto offered = offerOne(host, skills, std::move(definition), own.server); !offered) {
-            return offered;
-        }
+    METIER_ASSIGN(auto definitions, loadDefinitions(own.files));
+    for (auto& definition : definitions) {
+        METIER_TRY(offerOne(host, skills, std::move(definition), own.server));
     }
     return {};
 }

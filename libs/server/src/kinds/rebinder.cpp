@@ -98,26 +98,18 @@ void Rebinder::renew(SkillBinding& binding) {
 }
 
 Result<void> Rebinder::moveTo(const DiscoveredServer& other, SkillBinding& binding) {
-    auto chosen = chooseAll(binding.uses, other);
-    if (!chosen) {
-        return fail(std::move(chosen.error()));
-    }
-    auto server = client::RemoteServer::connect({.url = other.found.url,
-                                                       .name = chosen->begin()->second.server,
-                                                       .application_name = setup_.application_name,
-                                                       .security = setup_.identity.credentials(),
-                                                       .own_server = setup_.own_server},
-                                                      setup_.executor);
-    if (!server) {
-        return fail(std::move(server.error()));
-    }
-    Exchange parts{.server = std::move(*server), .chosen = std::move(*chosen)};
+    METIER_ASSIGN(auto chosen, chooseAll(binding.uses, other));
+    METIER_ASSIGN(auto server,
+                  client::RemoteServer::connect({.url = other.found.url,
+                                                 .name = chosen.begin()->second.server,
+                                                 .application_name = setup_.application_name,
+                                                 .security = setup_.identity.credentials(),
+                                                 .own_server = setup_.own_server},
+                                                setup_.executor));
+    Exchange parts{.server = std::move(server), .chosen = std::move(chosen)};
     for (const auto& [alias, skill] : parts.chosen) {
-        auto opened = parts.server->open(skill.address, binding.origin);
-        if (!opened) {
-            return fail(std::move(opened.error()));
-        }
-        parts.pending.emplace(alias, std::move(*opened));
+        METIER_ASSIGN(auto opened, parts.server->open(skill.address, binding.origin));
+        parts.pending.emplace(alias, std::move(opened));
     }
     return exchange(parts, binding);
 }

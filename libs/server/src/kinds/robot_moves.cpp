@@ -16,15 +16,12 @@ constexpr double kShare = 0.98;
 Result<motion::RobotModel> modelOf(const client::RemoteArm& arm) {
     const auto position = arm.state().position;
     const std::vector<double> current(position.begin(), position.end());
-    auto chain = toChain(arm.kinematics(), current);
-    if (!chain) {
-        return fail(chain.error());
-    }
-    for (auto& joint : chain->joints) {
+    METIER_ASSIGN(auto chain, toChain(arm.kinematics(), current));
+    for (auto& joint : chain.joints) {
         joint.limits.velocity *= kShare;
         joint.limits.acceleration *= kShare;
     }
-    return motion::RobotModel::fromChain(std::move(*chain));
+    return motion::RobotModel::fromChain(std::move(chain));
 }
 
 opcua_skill::MotionDeviceSystemSpec specOf(const std::string& name, const device::ArmInfo& arm) {
@@ -54,17 +51,10 @@ Result<ConnectedRobot> connectRobot(const std::string& url, const Identity& iden
 Result<std::unique_ptr<RobotMoves>> RobotMoves::serve(
     const cell::ServerConfig& config, const Identity& identity, ConnectedRobot robot,
     std::shared_ptr<skill::ExecutionNames> names) {
-    auto host = SkillHost::create(config, identity, {}, std::move(names));
-    if (!host) {
-        return fail(host.error());
-    }
-    std::unique_ptr<RobotMoves> moves(new RobotMoves(std::move(robot), std::move(*host)));
-    if (auto offered = moves->offer(config.name); !offered) {
-        return fail(offered.error());
-    }
-    if (auto started = moves->host_->start(); !started) {
-        return fail(started.error());
-    }
+    METIER_ASSIGN(auto host, SkillHost::create(config, identity, {}, std::move(names)));
+    std::unique_ptr<RobotMoves> moves(new RobotMoves(std::move(robot), std::move(host)));
+    METIER_TRY(moves->offer(config.name));
+    METIER_TRY(moves->host_->start());
     return moves;
 }
 
@@ -74,31 +64,20 @@ RobotMoves::RobotMoves(ConnectedRobot robot, std::unique_ptr<SkillHost> host)
 Result<void> RobotMoves::offer(const std::string& name) {
     auto& arm = *robot_.arm;
     arm.nameOwner(host_->applicationUri());
-    const auto system =
-        opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(name, arm.info()));
-    if (!system) {
-        return fail(system.error());
+    METIER_ASSIGN(const auto system,
+                  opcua_skill::publishMotionDeviceSystem(host_->nodes(), specOf(name, arm.info())));
+    METIER_ASSIGN(auto skills, robot_skills::makeArmSkills(arm, robot_.model, host_->clock()));
+    for (auto& move : skills.moves) {
+        METIER_TRY(host_->skills().publish(
+            system.skills, std::move(move),
+            {.resource = skills.resource, .control = host_->control(), .names = host_->names()}));
     }
-    auto skills = robot_skills::makeArmSkills(arm, robot_.model, host_->clock());
-    if (!skills) {
-        return fail(skills.error());
-    }
-    for (auto& move : skills->moves) {
-        const auto published = host_->skills().publish(
-            system->skills, std::move(move),
-            {.resource = skills->resource, .control = host_->control(), .names = host_->names()});
-        if (!published) {
-            return fail(published.error());
-        }
-    }
-    if (auto offered = host_->offerControl(system->controller); !offered) {
-        return offered;
-    }
+    METIER_TRY(host_->offerControl(system.controller));
     host_->haltOnLossOf(arm);
-    return host_->publishArm(*system, {.arm = arm,
-                                       .model = robot_.model,
-                                       .payload = arm.kinematics().payload,
-                                       .stopping = skills->stopping_report});
+    return host_->publishArm(system, {.arm = arm,
+                                      .model = robot_.model,
+                                      .payload = arm.kinematics().payload,
+                                      .stopping = skills.stopping_report});
 }
 
 }  // namespace metier::server

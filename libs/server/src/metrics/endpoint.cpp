@@ -62,9 +62,7 @@ private:
 
 Result<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::start(Options options) {
     auto server = std::make_unique<Server>(std::move(options));
-    if (auto started = server->start(); !started) {
-        return fail(started.error());
-    }
+    METIER_TRY(server->start());
     return std::unique_ptr<MetricsEndpoint>(new MetricsEndpoint(std::move(server)));
 }
 

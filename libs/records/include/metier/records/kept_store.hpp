@@ -45,9 +45,7 @@ private:
     };
     template <typename Work>
     auto useNew(Work work) -> std::invoke_result_t<Work, Store&> {
-        if (auto opened = open(); !opened) {
-            return fail(opened.error());
-        }
+        METIER_TRY(open());
         return work(*store_);
     }
     bool take();

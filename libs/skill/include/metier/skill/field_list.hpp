@@ -59,15 +59,10 @@ public:
         for (std::size_t i = 0; i < fields_.size(); ++i) {
             const auto found = values.find(fields_[i].name);
             const Value& given = found == values.end() ? kNull : found->second;
-            if (auto checked = checkValue(fields_[i], given); !checked) {
-                return fail(std::move(checked.error()));
-            }
-            auto value = valueOrDefault(fields_[i], given);
-            if (!value) {
-                return fail(std::move(value.error()));
-            }
-            if (!isNull(*value)) {
-                accessors_[i].set(target, *value);
+            METIER_TRY(checkValue(fields_[i], given));
+            METIER_ASSIGN(auto value, valueOrDefault(fields_[i], given));
+            if (!isNull(value)) {
+                accessors_[i].set(target, value);
             }
         }
         return target;

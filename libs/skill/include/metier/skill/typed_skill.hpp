@@ -29,19 +29,13 @@ public:
     const SkillDescription& description() const final { return description_; }
 
     Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) final {
-        auto parameters = parameters_.read(snapshot);
-        if (!parameters) {
-            return fail(std::move(parameters.error()));
-        }
-        return plan(*parameters);
+        METIER_ASSIGN(auto parameters, parameters_.read(snapshot));
+        return plan(parameters);
     }
 
     Result<CheckReport> check(const ValueMap& snapshot) final {
-        auto parameters = parameters_.read(snapshot);
-        if (!parameters) {
-            return fail(std::move(parameters.error()));
-        }
-        return assess(*parameters);
+        METIER_ASSIGN(auto parameters, parameters_.read(snapshot));
+        return assess(parameters);
     }
 
     /// For work: `execution.finish(skill.results().write(result))`. Lives as long as the skill.
