@@ -11,28 +11,29 @@
 
 namespace metier {
 
-/// Keeps the contents of files for a thread that must not wait for a disk: another thread reads
-/// them.
+/// Reads files on a thread of its own, for a caller that must not wait long for a disk.
 ///
-/// Threading: get() from any thread. The end waits for a read that is under way.
+/// Threading: get() from any thread; it waits kPatience at most. The destructor waits for a read
+/// that is under way.
 template <typename T>
 class BackgroundRead {
 public:
-    /// Reads, or returns `last` if nothing has changed; never null. Runs on the thread of this.
+    /// Reads the files, or returns `last` if nothing has changed. Runs on the reading thread; must
+    /// not return null and must not throw.
     using Read = std::function<std::shared_ptr<const T>(const std::shared_ptr<const T>& last)>;
 
-    /// How long get() may wait for a read. One of a disk that works takes about a millisecond; a
-    /// busy computer delays a thread by some 50 ms.
+    /// Longest time that get() waits for a read. A read from a healthy disk takes about a
+    /// millisecond; a busy computer can delay a thread by some 50 ms.
     static constexpr std::chrono::milliseconds kPatience{100};
 
-    /// \param first result of get() until something was read; not null
+    /// \param first result of get() until the first read has ended; not null
     BackgroundRead(std::shared_ptr<const T> first, Read read)
         : newest_(std::move(first)),
           read_(std::move(read)),
           thread_([this](const auto& stop) { run(stop); }) {}
 
-    /// The contents now; those of the last read if a new one takes longer than kPatience. While
-    /// such a read is under way nobody waits.
+    /// Asks for a new read and returns its contents; those of the last read if the new one takes
+    /// longer than kPatience. While such a slow read is under way, get() returns at once.
     std::shared_ptr<const T> get() {
         std::unique_lock lock(mutex_);
         const auto wanted = ++asked_;
@@ -59,10 +60,10 @@ private:
         }
     }
 
-    std::mutex mutex_;  // of all but read_
+    std::mutex mutex_;  // guards all members but read_ and thread_
     std::condition_variable_any changed_;
     std::uint64_t asked_ = 0;
-    std::uint64_t done_ = 0;  ///< of those asked, by the read that ended last
+    std::uint64_t done_ = 0;  ///< value of asked_ that the last finished read answers
     bool hangs_ = false;      ///< a read has taken longer than kPatience
     std::shared_ptr<const T> newest_;
     const Read read_;

@@ -5,18 +5,20 @@
 
 namespace metier {
 
+/// Moment on the monotonic clock: for durations and deadlines within this machine.
 using SteadyTime = std::chrono::steady_clock::time_point;
+/// Moment on the wall clock: for time stamps that people and other machines read.
 using UtcTime = std::chrono::system_clock::time_point;
 
-/// Where the time comes from, so that tests can move it by hand.
+/// Source of the time. Tests use one that they move by hand.
 ///
 /// Threading: any thread.
 class Clock {
 public:
     virtual ~Clock() = default;
-    /// Monotonic: for every duration and deadline. Never jumps.
+    /// Monotonic time, for every duration and deadline. Never jumps.
     virtual SteadyTime now() const noexcept = 0;
-    /// Wall clock: for time stamps only. May jump.
+    /// Wall clock, for time stamps only. May jump when somebody sets the clock.
     virtual UtcTime utcNow() const noexcept = 0;
 };
 

@@ -9,8 +9,8 @@
 
 namespace metier {
 
-/// What went wrong, chosen by what the caller can do about it.
-/// One table in opcua_skill maps these to StatusCodes.
+/// Kinds of failure, divided by what the caller can do about them. One table in opcua_skill maps
+/// these to StatusCodes.
 enum class Errc {
     invalid_argument,      ///< wrong size, not finite, malformed: correct the call
     type_mismatch,         ///< a value of another type than the parameter has
@@ -41,7 +41,7 @@ struct Error {
     std::string message;
 };
 
-/// A value, or why there is none.
+/// A value, or the Error that explains why there is none.
 template <typename T = void>
 using Result = tl::expected<T, Error>;
 
@@ -61,17 +61,17 @@ inline tl::unexpected<Error> fail(Error error) {
 ///
 ///     METIER_TRY(arm.halt());
 ///
-/// The expression is evaluated once. Works for every tl::expected in functions that return one
-/// whose error can be made of it.
+/// The expression is evaluated once. Works with every tl::expected, in functions that return a
+/// tl::expected whose error can be constructed from that error.
 #define METIER_TRY(...) METIER_TRY_AS(METIER_NEW_NAME(__COUNTER__), __VA_ARGS__)
 
 /// Gives a variable the value of a Result, or leaves the function with its error:
 ///
 ///     METIER_ASSIGN(const auto plan, planner.plan(request));
 ///
-/// The first argument is what stands before the `=` of a declaration or an assignment. The value is
-/// moved; a Result that the expression names is copied before. It is a statement of a block: alone
-/// behind an `if` it does not compile.
+/// The first argument is the left side of a declaration or an assignment, without the `=`. The
+/// value is moved; if the expression is a variable, that Result is copied first. The macro is two
+/// statements: it needs a block and does not compile as the only statement of an `if`.
 #define METIER_ASSIGN(variable, ...) \
     METIER_ASSIGN_AS(METIER_NEW_NAME(__COUNTER__), variable, __VA_ARGS__)
 

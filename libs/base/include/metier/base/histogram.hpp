@@ -7,19 +7,21 @@
 
 namespace metier {
 
-/// Times by how long they were [s], in the buckets 10 us, 20 us, 50 us, ... 100 s and beyond.
+/// Histogram of durations [s] with fixed buckets: up to 10 us, 20 us, 50 us, ... 100 s, and longer.
 ///
-/// Threading: any threads, at the same time; nobody waits, locks or allocates, so a cycle thread
-/// may add. A reader sees every value that was added before, and maybe some of those that are added
-/// meanwhile.
+/// Threading: any threads, at the same time. No call waits, locks or allocates, so a cycle thread
+/// may add. read() sees every value that was added before it, and maybe some of those that are
+/// added while it runs: counts and sum may then differ by those.
 class TimeHistogram {
 public:
-    /// Largest value of each bucket but the last, which has none [s].
+    /// Largest value of each bucket [s]; it belongs to the bucket. The last bucket has no bound.
     static constexpr std::array<double, 22> kBounds{
         10e-6, 20e-6, 50e-6, 100e-6, 200e-6, 500e-6, 1e-3, 2e-3, 5e-3, 10e-3, 20e-3,
         50e-3, 0.1,   0.2,   0.5,    1.0,    2.0,    5.0,  10.0, 20.0, 50.0,  100.0};
+    /// Number of buckets, with the one for longer durations.
     static constexpr std::size_t kBuckets = kBounds.size() + 1;
 
+    /// Adds one duration.
     /// \param seconds >= 0
     void add(double seconds) noexcept {
         std::size_t bucket = 0;
@@ -30,9 +32,10 @@ public:
         sum_.fetch_add(seconds, std::memory_order_relaxed);
     }
 
+    /// Contents at one moment. The mean is `sum` divided by the sum of `counts`.
     struct Snapshot {
-        std::array<std::uint64_t, kBuckets> counts{};  ///< of each bucket, not cumulated
-        double sum = 0;                                ///< of all values [s]
+        std::array<std::uint64_t, kBuckets> counts{};  ///< values in each bucket, not cumulated
+        double sum = 0;                                ///< sum of all values [s]
     };
     Snapshot read() const noexcept {
         Snapshot snapshot;

@@ -9,8 +9,8 @@ namespace metier {
 
 /// Hands the newest value from one thread to another; older ones are overwritten.
 ///
-/// Threading: one writer, one reader. Neither locks, waits or allocates, so a cycle thread may be
-/// either. For several readers give each its own.
+/// Threading: one writer thread, one reader thread. Neither locks, waits or allocates, so a cycle
+/// thread may be either. Several readers need one LatestValue each.
 template <typename T>
 class LatestValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads byte by byte");
@@ -24,8 +24,8 @@ public:
         write_index_ = middle_.exchange(write_index_ | kFresh, std::memory_order_acq_rel) & kIndex;
     }
 
-    /// The newest published value, the initial one before that. Reader only.
-    /// The reference holds until the next call.
+    /// Newest published value; the initial one if none was published. Reader only. The reference is
+    /// valid until the next call.
     const T& read() noexcept {
         if (hasNew()) {
             read_index_ = middle_.exchange(read_index_, std::memory_order_acq_rel) & kIndex;
@@ -33,7 +33,7 @@ public:
         return buffers_[read_index_];
     }
 
-    /// Whether a value came since the last read(). Reader only.
+    /// Reports whether a value was published since the last read(). Reader only.
     bool hasNew() const noexcept { return (middle_.load(std::memory_order_acquire) & kFresh) != 0; }
 
 private:

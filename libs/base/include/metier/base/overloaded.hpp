@@ -2,7 +2,7 @@
 
 namespace metier {
 
-/// One function object for each kind of a std::variant, for std::visit.
+/// Visitor for std::visit made of lambdas, one for each alternative of a std::variant.
 template <typename... Functions>
 struct overloaded : Functions... {
     using Functions::operator()...;

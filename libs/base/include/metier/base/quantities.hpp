@@ -2,8 +2,8 @@
 
 namespace metier {
 
-/// A pose as OPC UA's 3DFrame carries it: position [m] and rotations a, b, c about x, y, z [rad]
-/// with R = Rz(c) * Ry(b) * Rx(a).
+/// A pose in the form of OPC UA's 3DFrame: position x, y, z [m] and rotations a, b, c about x, y, z
+/// [rad] with R = Rz(c) * Ry(b) * Rx(a). The name of a variable states the frames.
 struct Frame {
     double x = 0.0;
     double y = 0.0;
@@ -15,7 +15,7 @@ struct Frame {
     friend bool operator==(const Frame&, const Frame&) = default;
 };
 
-/// Three numbers along x, y, z; the unit is that of what holds them.
+/// Three numbers along x, y, z; their unit and frame are stated where the vector is used.
 struct Vector3 {
     double x = 0.0;
     double y = 0.0;
@@ -24,7 +24,7 @@ struct Vector3 {
     friend bool operator==(const Vector3&, const Vector3&) = default;
 };
 
-/// An interval; both ends belong to it. The skill model reads 0..0 as "not set".
+/// An interval with both ends included; low <= high. The skill model reads 0..0 as "not set".
 struct Range {
     double low = 0.0;
     double high = 0.0;

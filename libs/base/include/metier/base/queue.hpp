@@ -17,10 +17,10 @@ namespace metier {
 template <typename T>
 class Queue {
 public:
-    /// \param capacity most elements it holds, > 0
+    /// \param capacity largest number of elements, > 0
     explicit Queue(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Appends, or returns false when the queue is full or closed. Does not wait.
+    /// Appends a value; returns false if the queue is full or closed. Does not wait.
     bool tryPush(T value) {
         {
             const std::lock_guard lock(mutex_);
@@ -33,7 +33,8 @@ public:
         return true;
     }
 
-    /// The oldest element; nothing if none came before `deadline` or the queue is closed and empty.
+    /// Takes the oldest element; waits for one until `deadline`. Nothing if none came by then, or
+    /// if the queue is closed and empty.
     std::optional<T> popUntil(SteadyTime deadline) {
         std::unique_lock lock(mutex_);
         changed_.wait_until(lock, deadline, [this] { return closed_ || !values_.empty(); });
@@ -45,7 +46,8 @@ public:
         return value;
     }
 
-    /// Refuses further elements and wakes every waiter; what is queued can still be taken.
+    /// Refuses further elements and wakes every waiting thread. Elements in the queue can still be
+    /// taken.
     void close() {
         {
             const std::lock_guard lock(mutex_);

@@ -6,8 +6,8 @@
 
 namespace metier {
 
-// Numbers of the system's generator, which nobody can guess. Threads: any. They throw
-// std::system_error if the system has none.
+// Random numbers of the operating system, which nobody can guess. Threads: any. Both functions
+// throw std::system_error if the system has no random numbers.
 
 /// 64 random bits.
 std::uint64_t randomNumber();

@@ -9,16 +9,19 @@
 
 namespace metier {
 
-/// Mean of what was added to a histogram lately, for whoever looks now and then.
+/// Mean of the values that were added to a histogram lately, for a reader that asks from time to
+/// time, such as a page of metrics.
 ///
-/// Threading: one thread at a time reads; whoever adds to the histogram never notices.
+/// Threading: one thread at a time reads. Adding to the histogram is never delayed by it.
 class RecentMean {
 public:
     /// \param times, clock must outlive this
-    /// \param span  shortest time that a mean is of, > 0
+    /// \param span  shortest time over which a mean is taken, > 0
     RecentMean(const TimeHistogram& times, const Clock& clock, std::chrono::milliseconds span);
 
-    /// Mean [s] of what was added in the last span that has passed; nothing if nothing was.
+    /// Mean [s] of the values added during the last completed span; nothing if none was added. A
+    /// span ends at the first read() after its time, so it is as long as the pause between reads if
+    /// that is longer.
     std::optional<double> read();
 
 private:
@@ -31,7 +34,7 @@ private:
     const TimeHistogram& times_;
     const Clock& clock_;
     const std::chrono::milliseconds span_;
-    SteadyTime begin_;  // of the span that has not passed yet
+    SteadyTime begin_;  // begin of the current span
     Total at_begin_;
     std::optional<double> mean_;
 };

@@ -5,7 +5,8 @@
 
 namespace metier {
 
-/// FNV-1a: the same in every program and on every machine, as std::hash need not be.
+/// Hash (FNV-1a, 64 bits) that is the same in every program and on every machine; std::hash does
+/// not promise that. Not for secrets: anybody can make two texts with the same hash.
 ///
 /// Threads: any; pure.
 constexpr std::uint64_t stableHash(std::string_view text) noexcept {

@@ -11,23 +11,23 @@
 
 namespace metier {
 
-// Small operations on text. Threads: any; pure.
+// Small operations on text. Threads: any; pure. Returned views point into the given text.
 
-/// Characters around a word that trimmed() removes.
+/// Characters that trimmed() removes unless it is given others.
 inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
 /// The text without the blanks at both ends.
 std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks) noexcept;
 
-/// The parts between separators, empty ones too: "a,,b," has four. An empty text has none.
+/// Parts between separators, including empty ones: "a,,b," has four parts. An empty text has none.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
 /// ASCII letters in lower or upper case, all other bytes as they are.
 std::string inLowerCase(std::string_view text);
 std::string inUpperCase(std::string_view text);
 
-/// The number that the whole text is; none if there is anything else, blanks and '+' included, or
-/// if T cannot hold it.
+/// Number that the whole text spells, decimal if T is an integer. Nothing if the text has any other
+/// character (a blank or a leading '+' included), or if T cannot hold the number.
 template <typename T>
 std::optional<T> numberIn(std::string_view text) noexcept {
     T number{};
@@ -36,13 +36,13 @@ std::optional<T> numberIn(std::string_view text) noexcept {
     return read.ec == std::errc() && read.ptr == end ? std::optional(number) : std::nullopt;
 }
 
-/// A character of a UTF-8 text.
+/// One character of a UTF-8 text.
 struct Utf8Character {
     std::uint32_t code_point = 0;
-    std::size_t size = 0;  ///< [byte]
+    std::size_t size = 0;  ///< bytes that it takes in the text, 1 to 4
 };
 
-/// The character at the beginning; none if the text is empty, or begins with a sequence that is
+/// First character of the text. Nothing if the text is empty, or begins with a sequence that is
 /// cut, overlong, a surrogate or above U+10FFFF.
 std::optional<Utf8Character> firstCharacter(std::string_view text) noexcept;
 

@@ -8,15 +8,17 @@
 
 namespace metier {
 
-/// How late a thread of this process wakes up because others have the processors: what is measured
-/// meanwhile cannot be sharper, and controllers with cycles of 1 to 10 ms suffer from it.
+/// Measures how late a thread of this process wakes up because other threads have the processors.
+/// Times that are measured meanwhile cannot be more precise than this delay, and controllers with
+/// cycles of 1 to 10 ms miss their time by it.
 ///
-/// Threading: any thread.
+/// Measures every 5 ms on a thread of its own. Threading: takeLongest() from any thread; it does
+/// not wait.
 class WakeUpDelay {
 public:
     WakeUpDelay() : thread_([this](const std::stop_token& stop) { measure(stop); }) {}
 
-    /// The longest since the last call; 0 if there is none.
+    /// Longest delay since the last call; 0 if none was measured.
     std::chrono::nanoseconds takeLongest() { return longest_.exchange({}); }
 
 private:

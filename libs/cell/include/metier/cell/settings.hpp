@@ -11,9 +11,8 @@
 
 namespace metier::cell {
 
-/// Settings of one device, as a cell file or a command line gives them: names with values. Who
-/// knows the device asks for each by name; finish() tells everything that is wrong at once, unknown
-/// names too.
+/// Settings of one device from a cell file or a command line: names with values. The driver reads
+/// each by its name; finish() reports all errors together, including names that were never read.
 ///
 /// Threading: one thread.
 class Settings {
@@ -21,29 +20,31 @@ public:
     using Value = std::variant<double, bool, std::string, std::vector<double>>;
 
     Settings() = default;
-    /// \param place stands before each message, as "demo.toml:12: server[0].driver"
+    /// \param place begin of each error message, such as "demo.toml:12: server[0].driver"
     Settings(std::string place, std::map<std::string, Value> values);
 
     bool has(std::string_view name) const;
-    /// What stands behind "PREFIX." in the names: of "part.cube" and "part.rod" cube and rod.
+    /// Names after "PREFIX.": with the prefix "part", "part.cube" and "part.rod" give cube and rod.
     std::vector<std::string> namesUnder(std::string_view prefix) const;
-    /// Noted if missing or of another type.
+    /// Required text. An error is noted if it is missing or of another type.
     std::string text(std::string_view name) const;
-    // Noted if of another type.
+    // Values with a default. An error is noted if one is of another type.
     std::string textOr(std::string_view name, std::string fallback) const;
     bool flagOr(std::string_view name, bool fallback) const;
-    /// Also noted if not within [low, high].
+    /// An error is also noted if the number is not within [low, high].
     double numberOr(std::string_view name, double fallback, double low, double high) const;
-    /// Also noted if it is not `count` numbers. Empty if absent.
+    /// An error is also noted if there are not exactly `count` numbers. Returns `fallback` if
+    /// absent.
     std::vector<double> numbersOr(std::string_view name, std::vector<double> fallback,
                                   std::size_t count) const;
-    /// Notes that the value is not acceptable, and why.
+    /// Notes that the value is not acceptable, and why; finish() reports it.
     void reject(std::string_view name, std::string_view why) const;
 
-    /// Gives a value, as a command line does: over what the file says.
+    /// Sets a value, for example from a command line; it replaces the value of the file.
     void set(std::string name, Value value);
 
-    /// Errors: invalid_argument with a line "place.name: why" for each thing that is wrong.
+    /// Ends the reading and reports what was noted.
+    /// Errors: invalid_argument with a line "place.name: why" for each error.
     Result<void> finish() const;
 
 private:

@@ -16,23 +16,24 @@ namespace metier::cell {
 
 class TomlTable;
 
-/// A value whose kind is up to the file: what it is not, it gives nothing for.
+/// A value of any type. Each accessor returns nothing if the value is of another type; the caller
+/// reports that with reject().
 ///
 /// Valid as long as its TomlFile. Threading: one thread.
 class TomlValue {
 public:
     std::optional<bool> flag() const;
     std::optional<std::int64_t> integer() const;
-    /// Also of a whole number; nothing if it is not finite.
+    /// A number, whole or not; nothing if it is not finite.
     std::optional<double> number() const;
     std::optional<std::string> text() const;
     bool isList() const;
-    /// Of a list; empty for all else.
+    /// Elements of a list; empty if the value is no list.
     std::vector<TomlValue> items() const;
     std::optional<TomlTable> table() const;
-    /// Where it stands, from 1.
+    /// Line of the value in the file, counted from 1.
     std::uint32_t line() const;
-    /// Notes that it is not acceptable, and why.
+    /// Notes that the value is not acceptable, and why; TomlFile::finish() reports it.
     void reject(std::string_view why) const;
 
 private:
@@ -43,21 +44,20 @@ private:
     const Impl* impl_;  // owned by the file
 };
 
-/// One table of a TOML file. Reading never fails at once: what is wrong is noted, with file, line
-/// and key, and a harmless value is returned; TomlFile::finish() then tells everything that is
-/// wrong.
+/// One table of a TOML file. Reading never fails at once: an error is noted with file, line and
+/// key, and a harmless value is returned; TomlFile::finish() reports all errors together.
 ///
-/// A key that nobody asked for is an error too, so a misspelt key is never ignored silently.
-/// Valid as long as its TomlFile. Threading: one thread.
+/// A key that was never read is an error too, so a misspelt key is never ignored silently. Valid as
+/// long as its TomlFile. Threading: one thread.
 class TomlTable {
 public:
     bool has(std::string_view key) const;
-    /// The keys as the file gives them; none of them counts as asked for by this.
+    /// The keys as the file spells them. This call does not count as reading them.
     std::vector<std::string> keys() const;
-    /// The value of `key`, whatever kind it is; nothing if there is none.
+    /// The value of `key`, of any type; nothing if there is no such key.
     std::optional<TomlValue> value(std::string_view key) const;
 
-    /// Required values. Noted if missing or of another type.
+    /// Required values. An error is noted if one is missing or of another type.
     std::string text(std::string_view key) const;
     double number(std::string_view key) const;
     std::vector<double> numbers(std::string_view key) const;
@@ -66,26 +66,26 @@ public:
     /// The tables of `[[key]]`; empty if there is none.
     std::vector<TomlTable> tables(std::string_view key) const;
 
-    /// Values with a default. Noted if present and of another type.
+    /// Values with a default. An error is noted if one is present and of another type.
     std::string textOr(std::string_view key, std::string fallback) const;
-    /// Nothing if there is no such key; under 0 is wrong.
+    /// A number >= 0; nothing if there is no such key. `unit` is for the error message.
     std::optional<double> amount(std::string_view key, std::string_view unit) const;
     double numberOr(std::string_view key, double fallback) const;
 
-    /// Whole number within [low, high].
+    /// Whole number within [low, high], both allowed; another value is noted as an error.
     std::int64_t integerOr(std::string_view key, std::int64_t fallback, std::int64_t low,
                            std::int64_t high) const;
     bool flagOr(std::string_view key, bool fallback) const;
 
-    /// All values but those of `taken`, for whoever knows their names; those of tables within have
-    /// names with a point: "part.cube".
+    /// All values but those named in `taken`, for a reader that knows their names. A value of an
+    /// inner table has a name with a point: "part.cube".
     Settings settings(std::initializer_list<std::string_view> taken) const;
 
-    /// Notes that the value of `key` is not acceptable, and why.
+    /// Notes that the value of `key` is not acceptable, and why; TomlFile::finish() reports it.
     void reject(std::string_view key, std::string_view why) const;
     /// "file:line", for messages about the whole table.
     std::string place() const;
-    /// Where the table begins, from 1.
+    /// Line at which the table begins, counted from 1.
     std::uint32_t line() const;
 
 private:
@@ -110,9 +110,10 @@ public:
     ~TomlFile();
 
     TomlTable root() const;
-    /// Notes what is wrong with a line for reasons that only its reader knows.
+    /// Notes an error in a line that only the caller can see; finish() reports it.
     void note(std::uint32_t line, std::string_view what, std::string_view why) const;
-    /// Errors: invalid_argument with one line for each thing that is wrong: "file:line: key: why".
+    /// Ends the reading and reports what was noted.
+    /// Errors: invalid_argument with one line for each error: "file:line: key: why".
     Result<void> finish() const;
 
 private:

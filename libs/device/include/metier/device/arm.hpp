@@ -16,11 +16,12 @@
 
 namespace metier::device {
 
-/// What the controller's own safety allows. It is observed and obeyed, never commanded.
+/// Safety state of a device, as its controller decides it. It is observed and obeyed, never
+/// commanded.
 enum class SafetyState : std::uint8_t {
     normal,           ///< the arm may move
     protective_stop,  ///< the controller stopped the arm; resetFault() ends it
-    emergency_stop,   ///< someone pressed it; release it first, then resetFault()
+    emergency_stop,   ///< the button is pressed; release it first, then resetFault()
     fault,            ///< the controller needs a person
     disconnected,     ///< nothing is known of the arm
 };
@@ -28,14 +29,14 @@ enum class SafetyState : std::uint8_t {
 /// The enumerator's name, for texts.
 std::string_view toString(SafetyState state) noexcept;
 
-/// The safety state and why it is so.
+/// The safety state with its reason.
 struct Safety {
     SafetyState state = SafetyState::normal;
-    std::string text{};           ///< for a person; empty while normal
-    bool limit_violated = false;  ///< because a set-point broke a limit of the controller
+    std::string text{};           ///< reason, for a person; empty while normal
+    bool limit_violated = false;  ///< the reason is a set-point beyond a limit of the controller
 };
 
-/// What does not change while the arm is connected.
+/// Properties of an arm that do not change while it is connected.
 struct ArmInfo {
     std::string name;
     std::vector<std::string> axis_names;  ///< one per axis, axis 1 first
@@ -53,46 +54,47 @@ struct ArmState {
     SafetyState safety = SafetyState::disconnected;
     bool standstill = true;           ///< the measured arm does not move
     std::uint64_t cycle = 0;          ///< cycles of the controller since it was connected
-    std::uint64_t missed_cycles = 0;  ///< of these, run later than one whole period
-    SteadyTime stamp{};               ///< when this state was taken
+    std::uint64_t missed_cycles = 0;  ///< cycles among these that ran more than one period late
+    SteadyTime stamp{};               ///< time at which this state was taken
 };
 
-/// Why the arm no longer asks a source.
+/// Reason for which an arm has let go of a set-point source.
 enum class EndCause : std::uint8_t {
-    done,          ///< the source said so
+    done,          ///< the source returned Next::done
     stopped,       ///< Arm::stop(); reported at standstill
     safety,        ///< the controller's safety stopped the arm; reported at standstill
     disconnected,  ///< the controller is gone; reported at once, the arm brakes by itself
 };
 
-/// Whoever moves an arm: gives one set-point per cycle for as long as it is attached.
+/// Source of an arm's motion: gives one set-point per cycle for as long as it is attached.
 class SetPointSource {
 public:
     enum class Next : std::uint8_t {
-        set_point,  ///< `set_point` was filled: go there in this cycle
+        set_point,  ///< `set_point` was filled: the arm goes there in this cycle
         done,       ///< nothing more; the arm holds its last set-point
     };
 
     virtual ~SetPointSource() = default;
 
-    /// The set-point of this cycle. Called by the arm's cycle thread, once per cycle: must not
-    /// allocate, lock, wait, log or throw.
+    /// Computes the set-point of this cycle. Called by the arm's cycle thread, once per cycle: must
+    /// not allocate, lock, wait, log or throw.
     /// \param state      the arm at the begin of this cycle
     /// \param set_point  [rad]; comes in as the last commanded position
     virtual Next next(const ArmState& state, JointArray& set_point) noexcept = 0;
 
-    /// The arm let go: no next() comes after it, and all that next() wrote is visible. Called
-    /// exactly once for each attach, by the arm's notifying thread (never its cycle thread); may
-    /// lock, should not wait. The arm can be attached to again from within.
+    /// Reports that the arm has let go of this source: no next() follows, and everything that
+    /// next() wrote is visible. Called exactly once for each attach, by the arm's notifying thread
+    /// (never its cycle thread); may lock, should not wait. It may attach a source to the arm
+    /// again.
     virtual void ended(EndCause cause, const Safety& safety) = 0;
 
-    /// Names what it moves the arm for, for records; empty: nothing is known. Any thread, while it
-    /// is attached.
+    /// Name of the execution for which this source moves the arm, for records; empty: not known.
+    /// Called from any thread while it is attached.
     virtual std::string_view execution() const noexcept { return {}; }
 };
 
-/// Ends a registration when it is destroyed: from then on no call begins, but one that already
-/// runs may still end.
+/// Registration of a callback; its destructor ends it. No call begins after that, but one that
+/// already runs may still be running.
 class Registration {
 public:
     Registration() = default;
@@ -114,7 +116,7 @@ private:
     std::function<void()> end_;
 };
 
-/// A robot arm that follows joint set-points: what every driver of an arm offers.
+/// A robot arm that follows joint set-points: the interface of every arm driver.
 ///
 /// Threading: every function from any thread but the arm's own cycle thread; none waits for the
 /// arm. state() neither locks nor allocates.
@@ -132,24 +134,24 @@ public:
     /// The newest safety state with its reason.
     virtual Safety safety() const = 0;
 
-    /// How far the time from one cycle to the next was off the period [s]; null: not measured.
+    /// Histogram of |time from one cycle to the next - period| [s]; nullptr: not measured.
     virtual const TimeHistogram* cycleJitter() const noexcept { return nullptr; }
 
     /// Lets `source` move the arm from the next cycle on, until it is done or the arm is stopped.
-    /// The source's first set-point is judged against state().commanded_position.
-    /// Shared: the arm keeps the source alive until its cycle thread has let go of it.
+    /// The controller checks the first set-point against state().commanded_position. The source is
+    /// shared: the arm keeps it alive until its cycle thread has let go of it.
     /// Errors: resource_unavailable while another source moves the arm,
     ///         device_fault if the safety state is not normal (the text says why).
     virtual Result<void> attach(std::shared_ptr<SetPointSource> source) = 0;
 
-    /// The controller's own stop: brakes as hard as it may, not on any path, and lets go of the
-    /// source. Does nothing to an arm that stands.
+    /// Stops the arm with the controller's own stop, which brakes as hard as it may and follows no
+    /// path, and lets go of the source. Does nothing if the arm stands still.
     virtual void stop() noexcept = 0;
 
-    /// Asks the controller to leave a stop or fault. Does not wait for it: it is called on the
-    /// thread of a server. Errors: timeout: the reset has begun or goes on, ask again for its
-    /// outcome; device_fault,
-    ///         connection_lost: the text says what is still wrong.
+    /// Asks the controller to leave a stop or fault. Does not wait for it, since a server's thread
+    /// calls it.
+    /// Errors: timeout: the reset has begun or goes on, call again for its outcome;
+    ///         device_fault, connection_lost: the text says what is still wrong.
     virtual Result<void> resetFault() = 0;
 
     /// Calls `callback` on the arm's notifying thread after each change of the safety state.

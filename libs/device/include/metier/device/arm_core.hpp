@@ -10,13 +10,13 @@
 
 namespace metier::device {
 
-/// What every driver of an arm needs besides its wire: who moves the arm, what is published of it,
-/// who hears of its safety. A driver forwards the functions of device::Arm to it, and gives it a
-/// Notifier that calls dispatch() whenever toTell().
+/// Common part of all arm drivers: the attached set-point source, the published state and the
+/// callbacks for safety changes. A driver forwards the functions of device::Arm to it, and has a
+/// Notifier that calls dispatch() whenever toTell() is true.
 class ArmCore {
 public:
     explicit ArmCore(ArmInfo info);
-    /// Tells a source that is still attached that the arm is disconnected.
+    /// Ends a source that is still attached with EndCause::disconnected.
     ~ArmCore();
     ArmCore(const ArmCore&) = delete;
     ArmCore& operator=(const ArmCore&) = delete;
@@ -31,22 +31,23 @@ public:
     Registration onSafetyChange(Arm::SafetyCallback callback);
 
     // ---- for the cycle thread; these neither lock, allocate, log nor throw ----
-    /// Whoever moves the arm now; nullptr if nobody does.
+    /// Source that moves the arm now; nullptr if there is none.
     SetPointSource* active() const noexcept { return active_.load(); }
-    /// Whether the active source is to be stopped. True until its end().
+    /// Reports whether the active source must be stopped. Stays true until end().
     bool stopRequested() noexcept;
-    /// Publishes the state; its safety is filled in here.
+    /// Publishes the state; this fills in its safety.
     void publish(ArmState state) noexcept;
-    /// Lets go of the active source; publish() the state of the end before.
+    /// Lets go of the active source. Call publish() with the state at the end before it.
     void end(EndCause cause) noexcept;
     SafetyState safetyState() const noexcept { return safety_.state(); }
-    /// Whether dispatch() has something to tell.
+    /// Reports whether dispatch() has something to report.
     bool toTell() const noexcept { return ended_.load() || safety_.toTell(); }
 
     // ---- any thread, off the cycle's normal path: they lock ----
-    /// A change of state or reason. Its text should name the device and why.
+    /// Sets the safety state. The text should name the device and the reason.
     void setSafety(Safety safety);
-    /// Tells sources and callbacks what happened. The notifier's thread alone.
+    /// Calls the safety callbacks and ended() of a source that the cycle thread has let go of. Only
+    /// the notifier's thread may call it.
     void dispatch();
 
 private:
@@ -56,16 +57,16 @@ private:
     const ArmInfo info_;
     SharedValue<ArmState> published_;
     TimeHistogram jitter_;
-    SteadyTime last_stamp_{};  // of the cycle thread; none: nothing to compare with
+    SteadyTime last_stamp_{};  // cycle thread only; zero: no state to compare with
     SafetyPublisher safety_;
     std::atomic<SetPointSource*> active_{nullptr};
     std::atomic<SetPointSource*> stop_target_{nullptr};
     std::atomic<bool> ended_{false};
     std::atomic<EndCause> end_cause_{EndCause::done};
-    bool stopping_ = false;  // of the cycle thread
+    bool stopping_ = false;  // cycle thread only
 
     std::mutex mutex_;
-    std::shared_ptr<SetPointSource> owner_;  // shared with whoever attached it
+    std::shared_ptr<SetPointSource> owner_;  // shared with the caller of attach()
 };
 
 }  // namespace metier::device

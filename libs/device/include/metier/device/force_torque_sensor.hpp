@@ -14,16 +14,16 @@ namespace metier::device {
 /// One measurement. Trivially copyable.
 struct WrenchSample {
     std::array<double, 3> force{};                   ///< along x, y, z of the sensor frame [N]
-    std::array<double, 3> torque{};                  ///< [Nm]
-    std::uint64_t sequence = 0;                      ///< of the sensor's clock
+    std::array<double, 3> torque{};                  ///< about x, y, z of the sensor frame [Nm]
+    std::uint64_t sequence = 0;                      ///< counter of the sensor's own measurements
     SafetyState health = SafetyState::disconnected;  ///< normal: the values may be used
-    SteadyTime stamp{};                              ///< when it came
+    SteadyTime stamp{};                              ///< time of arrival
 };
 
-/// A sensor of force and torque, with its own stream of measurements.
+/// A force-torque sensor with its own stream of measurements: the interface of every sensor driver.
 ///
-/// Threading: every function from any thread; none waits but tare(). sample() neither locks nor
-/// allocates, so that a cycle thread may call it.
+/// Threading: every function from any thread; only tare() waits. sample() neither locks nor
+/// allocates, so a cycle thread may call it.
 class ForceTorqueSensor {
 public:
     using SampleCallback = std::function<void(const WrenchSample&)>;
@@ -32,10 +32,10 @@ public:
     virtual ~ForceTorqueSensor() = default;
 
     virtual const std::string& name() const noexcept = 0;
-    /// The newest measurement. Its health is not normal once the sensor is silent for 5 periods.
+    /// Newest measurement. Its health is not normal once the sensor has been silent for 5 periods.
     virtual WrenchSample sample() const noexcept = 0;
     virtual Safety safety() const = 0;
-    /// Makes the present load zero. Errors: connection_lost, timeout.
+    /// Takes the present load as zero. Waits for the sensor. Errors: connection_lost, timeout.
     virtual Result<void> tare() = 0;
     virtual Registration onSafetyChange(SafetyCallback callback) = 0;
 };

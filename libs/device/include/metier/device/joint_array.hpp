@@ -8,12 +8,13 @@
 
 namespace metier::device {
 
-/// Most axes that one arm may have.
+/// Largest number of axes of one arm.
 inline constexpr std::size_t kMaxAxes = 8;
 
 /// One number per axis, axis 1 first: [rad] for positions, [rad/s] for velocities.
 ///
-/// Fixed storage and trivially copyable, so that it may cross threads and never allocates.
+/// Has fixed storage and is trivially copyable: it can be handed between threads by SharedValue and
+/// LatestValue, and never allocates.
 class JointArray {
 public:
     JointArray() = default;
@@ -43,7 +44,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Largest difference between two arrays of the same size in one axis.
+/// Largest absolute difference of one axis between two arrays of the same size; in their unit.
 inline double largestDifference(const JointArray& a, const JointArray& b) noexcept {
     double largest = 0.0;
     for (std::size_t axis = 0; axis < std::min(a.size(), b.size()); ++axis) {

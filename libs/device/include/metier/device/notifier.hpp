@@ -8,19 +8,21 @@
 
 namespace metier::device {
 
-/// A thread that does what a cycle thread may not: it calls `handler` soon after each signal().
+/// A thread that calls `handler` soon after each signal(): it does for a cycle thread what that
+/// must not do itself, such as locking.
 ///
 /// Signals that come while the handler runs are handled together by one further call.
 class Notifier {
 public:
     /// \param handler runs on the notifier's own thread; must not throw
     explicit Notifier(std::function<void()> handler);
-    /// Handles what was signalled, then ends the thread.
+    /// Handles pending signals, then ends the thread. Waits for a running handler.
     ~Notifier();
     Notifier(const Notifier&) = delete;
     Notifier& operator=(const Notifier&) = delete;
 
-    /// Any thread, a cycle thread too: neither locks nor allocates.
+    /// Causes a call of `handler`. From any thread, also a cycle thread: neither locks nor
+    /// allocates.
     void signal() noexcept;
 
 private:

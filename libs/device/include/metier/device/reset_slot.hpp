@@ -10,20 +10,22 @@
 
 namespace metier::device {
 
-/// Place where any thread asks a driver's own thread for a reset. Nobody waits.
+/// Request slot for a reset of a device: any thread asks, the driver's own thread resets and
+/// answers. No call waits for the device.
 class ResetSlot {
 public:
-    /// Begins a reset, unless one runs already. If one failed a moment ago and nobody has heard of
-    /// it, nothing begins, and that failure is the answer; a success shows in the safety state.
-    /// \return nothing while it is under way: ask again
+    /// Requests a reset, unless one is under way. If a reset failed within the last 5 s and nobody
+    /// has asked since, no reset begins and that failure is returned; a success shows in the safety
+    /// state.
+    /// \return nothing while a reset is under way: ask again later
     std::optional<Result<void>> ask();
-    /// Whether a reset that somebody asked for has not ended.
+    /// Reports whether a requested reset has not ended yet. Locks.
     bool underWay() const;
 
     // ---- for the thread that resets ----
-    /// Whether someone asked since the last call. Neither locks nor allocates.
+    /// Takes a request: true if one came since the last call. Neither locks nor allocates.
     bool taken() noexcept { return wanted_.load() && wanted_.exchange(false); }
-    /// The end of what was asked; nothing happens if nobody asked.
+    /// Reports the end of a requested reset; does nothing if none was requested. Locks.
     void answer(Result<void> outcome);
 
 private:
@@ -31,7 +33,7 @@ private:
     mutable std::mutex mutex_;
     bool under_way_ = false;
     Result<void> outcome_;
-    SteadyTime unread_until_{};  // a failure is the answer to whoever asks next
+    SteadyTime unread_until_{};  // until then a failure is the answer to the next ask()
 };
 
 }  // namespace metier::device

@@ -12,9 +12,10 @@
 
 namespace metier::device {
 
-/// The safety state of a device, and who hears of its changes.
+/// Safety state of a device, and the callbacks that hear of its changes.
 ///
-/// Threading: any thread, but dispatch() one thread alone. Only state() and toTell() do not lock.
+/// Threading: any thread; dispatch() always on the same one, which calls the callbacks without a
+/// lock. All but state() and toTell() lock, so a cycle thread may call only these two.
 class SafetyPublisher {
 public:
     using Callback = std::function<void(const Safety&)>;
@@ -23,11 +24,11 @@ public:
 
     Safety safety() const;
     SafetyState state() const noexcept { return state_.load(); }
-    /// A change of state or reason.
+    /// Sets the state and its reason.
     void set(Safety safety);
-    /// Whether dispatch() has something to tell.
+    /// Reports whether dispatch() has a change to publish.
     bool toTell() const noexcept { return changed_.load(); }
-    /// Tells the callbacks if the state is another than the one they know.
+    /// Calls the callbacks if the state differs from the one that they got last.
     void dispatch();
     /// Calls `callback` from dispatch(). The registration may outlive this.
     Registration onChange(Callback callback);

@@ -10,8 +10,8 @@ namespace metier::device {
 
 /// Hands the newest value from one thread to any number of readers.
 ///
-/// Threading: one writer, which never waits, so a cycle thread may write; readers take a value
-/// again while one is being written. Nobody locks or allocates.
+/// Threading: one writer thread, which never waits, so a cycle thread may write. A reader that
+/// meets a write reads again until it has a whole value. No call locks or allocates.
 template <typename T>
 class SharedValue {
     static_assert(std::is_trivially_copyable_v<T>, "copied between threads word by word");

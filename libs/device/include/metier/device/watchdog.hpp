@@ -12,33 +12,37 @@
 
 namespace metier::device {
 
-/// Stops devices by itself while the thread that commands them does not work.
+/// Stops devices while the thread that commands them does not work.
 ///
-/// The watched thread shows that it works by tick(). If the next tick is later than the limit, the
-/// devices are told to stop, and again until it comes. Once the watched thread works again it is
-/// told for how long it did not; also when the whole process was stopped, and this with it.
-/// Before the first tick nothing is watched, however long a start takes.
+/// The watched thread calls tick() to show that it works. If the next tick is later than the limit,
+/// the watchdog stops the devices, again and again until a tick comes. Once the watched thread
+/// works again, `tell` gets the length of the stall; also when the whole process, with the watchdog
+/// in it, was stopped. Nothing is watched before the first tick, however long a start takes.
 ///
 /// A process of an ordinary operating system cannot promise its own reactions: this is no safety
 /// function.
 class Watchdog {
 public:
-    /// What it calls; none may wait for the watched thread, and all must stay valid for its life.
+    /// Functions that the watchdog calls. None may wait for the watched thread; all must stay valid
+    /// as long as the watchdog lives.
     struct Actions {
-        /// Stops every device. The watchdog's thread and the watched one; does nothing to what
-        /// stands.
+        /// Stops every device; must do nothing to one that stands still. Runs on the watchdog's
+        /// thread and on the watched one.
         std::function<void()> stop;
-        /// Runs work on the watched thread, before what is posted after it. The watchdog's thread.
+        /// Posts work to the watched thread, which runs it before anything posted later. Called on
+        /// the watchdog's thread.
         std::function<void(std::function<void()>)> post;
-        /// The watched thread did not work for so long; the devices were told to stop. The watched
-        /// thread, once for each stall. May come when the watchdog is gone.
+        /// Reports that the watched thread did not work for `stalled` and that the devices were
+        /// stopped. Runs on the watched thread, once for each stall, possibly after the watchdog's
+        /// end.
         std::function<void(std::chrono::nanoseconds stalled)> tell;
-        /// A stall was noticed and the devices were told to stop. The watchdog's thread, or the
-        /// watched one if the process was stopped; once for each stall, before tell().
+        /// Reports that a stall was noticed and the devices were stopped. Runs on the watchdog's
+        /// thread, or on the watched one if the process was stopped; once for each stall, before
+        /// tell().
         std::function<void(std::chrono::nanoseconds silent)> noticed;
     };
 
-    /// How often the watched thread should tick, for a limit.
+    /// Period with which the watched thread should call tick(), for a limit.
     static constexpr std::chrono::nanoseconds tickPeriod(std::chrono::nanoseconds limit) {
         return limit / 8;
     }
@@ -50,15 +54,16 @@ public:
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// The watched thread works. That thread alone; nothing happens after end().
+    /// Shows that the watched thread works; only that thread may call it. Does nothing after end().
     void tick();
 
-    /// Watches no longer: no action begins after it. Not from an action; again without effect.
+    /// Ends the watch: no action begins after it. Must not be called from an action; a second call
+    /// has no effect.
     void end();
 
-    /// Judges the last tick. The watchdog's own thread calls it by itself, by the machine's clock;
-    /// a test that moves its clock by hand may, too.
-    /// \return how long it may wait before it looks again, > 0
+    /// Checks the age of the last tick and acts on it. The watchdog's own thread calls it; a test
+    /// that moves its clock by hand may call it, too.
+    /// \return time until the next check, > 0
     std::chrono::nanoseconds look();
 
 private:
@@ -68,11 +73,12 @@ private:
     const std::chrono::nanoseconds limit_;
     const Clock& clock_;
     std::atomic<SteadyTime::rep> last_tick_{0};      ///< 0: none yet
-    std::atomic<SteadyTime::rep> noticed_after_{0};  ///< the tick after which a stall was noticed
+    std::atomic<SteadyTime::rep> noticed_after_{0};  ///< last tick before the stall that was
+                                                     ///< noticed
     std::mutex mutex_;
     std::condition_variable_any wake_;
     std::jthread thread_;
-    const std::stop_token stopping_;  ///< as the thread's, also once it was joined
+    const std::stop_token stopping_;  ///< the thread's token; usable also after the join
 };
 
 }  // namespace metier::device

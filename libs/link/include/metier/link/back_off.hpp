@@ -5,10 +5,10 @@
 
 namespace metier::link {
 
-/// Waits, or returns at once when a stop is requested.
+/// Waits for `time`; returns early when a stop is requested.
 void waitFor(const std::stop_token& stop, std::chrono::nanoseconds time);
 
-/// The pauses between attempts to connect: 0.2 s, doubled up to 2 s.
+/// Pauses between attempts to connect: 0.2 s first, then doubled each time, up to 2 s.
 ///
 /// Threading: one thread; the stop may be requested by any.
 class BackOff {
@@ -16,10 +16,10 @@ public:
     static constexpr std::chrono::milliseconds kShortest{200};
     static constexpr std::chrono::milliseconds kLongest{2'000};
 
-    /// After a success: the next pause is the shortest again.
+    /// Call after a success: makes the next pause the shortest again.
     void reset() noexcept { pause_ = kShortest; }
     std::chrono::milliseconds next() const noexcept { return pause_; }
-    /// Waits for the pause, or until a stop is requested.
+    /// Waits for the pause, or until a stop is requested; doubles the next pause.
     void wait(const std::stop_token& stop);
 
 private:

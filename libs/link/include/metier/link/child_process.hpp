@@ -13,25 +13,27 @@
 
 namespace metier::link {
 
-/// Where a child's standard error goes.
+/// Destination of a child's standard error: that of the owner, or the child's standard output.
 enum class ErrorOutput { inherited, with_output };
 
-/// Process group of a child. A terminal sends Ctrl-C, Ctrl-Z and its own end to the owner's group.
+/// Process group of a child. A terminal sends Ctrl-C, Ctrl-Z and its hang-up to the owner's group,
+/// but not to a group of the child's own.
 enum class Group { owners, own };
 
-/// Start of a child that differs from the usual.
+/// Options of a child's start; the defaults suit most children.
 struct ChildOptions {
     ErrorOutput error_output = ErrorOutput::inherited;
     Group group = Group::owners;
-    /// Sent by the kernel when the owner dies. With another signal than SIGKILL the program ends
-    /// by itself, and it is up to the program that it does so in time.
+    /// Signal that the kernel sends to the child when its owner dies. A signal other than SIGKILL
+    /// lets the child end in its own way; the child itself must then see that it ends in time.
     int on_owners_death = SIGKILL;
 };
 
-/// A program that runs as a child and does not outlive its owner: it is ended with this object,
+/// A program that runs as a child process and does not outlive its owner: the destructor ends it,
 /// and the kernel signals it when the owner dies, even by kill -9.
 ///
-/// Threading: one thread, which must live as long as the child: for the kernel it is the owner.
+/// Threading: one thread, which must live as long as the child: the kernel takes the thread that
+/// started the child for its owner.
 class ChildProcess {
 public:
     /// \param command program (a path, or a name found in PATH) and its arguments, not empty
@@ -58,12 +60,12 @@ public:
     /// Errors: timeout at the deadline, connection_lost when the child closed its output.
     Result<std::string> readLine(SteadyTime deadline);
 
-    /// How the child ended; nothing if it still runs at the deadline.
+    /// Waits for the child's end; returns nothing if it still runs at the deadline.
     /// \return its exit status, or 128 + the number of the signal that ended it
     std::optional<int> waitUntil(SteadyTime deadline);
     bool running() { return !waitUntil(SteadyTime{}).has_value(); }
 
-    /// Sends a signal, such as SIGTERM; nothing if it ended already.
+    /// Sends a signal, such as SIGTERM; does nothing if the child has ended already.
     void signal(int number) noexcept;
 
 private:

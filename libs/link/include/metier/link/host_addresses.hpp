@@ -9,16 +9,16 @@
 
 namespace metier::link {
 
-/// Addresses of a host, in the order in which they should be tried; at least one.
+/// Finds the addresses of a host, in the order in which they should be tried; at least one.
 ///
-/// An address is taken as it is. A name is looked up on a thread of its own, since the system's
-/// look-up has no deadline: one that is not answered in time goes on there, and while it does, the
-/// same name is not looked up again. The process ends after it: the system gives up by itself,
-/// within half a minute in its usual settings.
-/// \param host a name or an address
+/// An address is returned unchanged. A name is looked up on a thread of its own, since the system's
+/// look-up has no deadline. A look-up that is not answered in time goes on there; until it ends,
+/// the same name is not looked up again, and the process waits for it at its own end. The system
+/// gives up within half a minute in its usual settings.
+/// \param host a name or an IPv4 or IPv6 address
 /// Errors:  connection_lost if there is no such host; timeout at the deadline. The texts do not
 ///          name the host.
-/// Threads: any; waits.
+/// Threads: any; waits until the deadline at most.
 Result<std::vector<asio::ip::address>> addressesOf(const std::string& host, SteadyTime deadline);
 
 }  // namespace metier::link

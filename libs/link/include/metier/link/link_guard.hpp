@@ -11,12 +11,12 @@
 
 namespace metier::link {
 
-/// Ends a TCP connection when the process that has it does not work, although the system keeps it:
-/// it was stopped (SIGSTOP), or the thread of the connection is stuck. For controllers that stop
-/// their device when a connection ends, but wait for ever on one that is silent.
+/// Closes a TCP connection when its process exists but does not work: the process was stopped
+/// (SIGSTOP), or the thread of the connection is stuck. Made for controllers that stop their device
+/// when a connection ends, but wait for ever on a silent one.
 ///
-/// It is a small process of its own that has a copy of the connection. It ends with its owner, and
-/// opens nothing else. A computer that stands still as a whole is not noticed.
+/// The guard is a small process of its own that holds a copy of the connection and opens nothing
+/// else. It ends with its owner. It does not notice when the whole computer stood still.
 ///
 /// Threading: one thread at a time.
 class LinkGuard {
@@ -27,18 +27,21 @@ public:
 
     LinkGuard(LinkGuard&& other) noexcept;
     LinkGuard& operator=(LinkGuard&& other) noexcept;
-    /// Ends the process; a guarded link is left alone.
+    /// Ends the guard's process; a guarded link stays open.
     ~LinkGuard();
 
-    /// Guards this link from now on, and no other. It ends at the limit, for this process as if the
-    /// peer had closed it. Errors: resource_unavailable if the guard's process is gone.
+    /// Guards this link from now on, and no other. After `limit` without alive() the link is
+    /// closed; this process sees that as if the peer had closed it. Does not wait.
+    /// Errors: resource_unavailable if the guard's process is gone.
     Result<void> guard(TcpLink& link);
-    /// Guards no link; to be called before the guarded one is destroyed, or it stays open.
+    /// Guards no link any more. Call it before the guarded link is destroyed: otherwise the guard's
+    /// copy keeps the connection open.
     void release() noexcept;
-    /// This process works. Neither waits, locks nor allocates.
+    /// Shows that this process works. Neither waits, locks nor allocates; a cycle thread may call
+    /// it.
     void alive() noexcept { beats_->fetch_add(1, std::memory_order_relaxed); }
 
-    /// Of the guard's process.
+    /// Process id of the guard.
     pid_t pid() const noexcept { return pid_; }
 
 private:
@@ -48,7 +51,7 @@ private:
     void end() noexcept;
 
     pid_t pid_ = -1;
-    int channel_ = -1;        // to the guard's process, which ends when it closes
+    int channel_ = -1;        // socket to the guard's process, which ends when this closes
     Beats* beats_ = nullptr;  // in memory that both processes see
 };
 

@@ -8,18 +8,19 @@
 
 namespace metier::link {
 
-/// A name that one process of this machine has at a time, whatever user or folder it runs in. Any
-/// user of the machine can take a name, so that nothing but a start can be kept off by it.
+/// A name that only one process of this machine holds at a time, whatever its user and folder. Any
+/// user of the machine can take any name, so a lock may prevent no more than the start of a
+/// program.
 ///
-/// The kernel frees it with its process, also after kill -9; there is no file that could be left
-/// over. Processes in different network namespaces do not see each other's names, as they do not
-/// see each other's ports: it is an abstract Unix socket.
+/// It is an abstract Unix socket: the kernel frees the name when the process ends, also after kill
+/// -9, and no file is left behind. Processes in different network namespaces do not see each
+/// other's names, just as they do not see each other's ports.
 ///
 /// Threading: any thread, one at a time.
 class NameLock {
 public:
-    /// \param name at most some hundred characters; what differs only beyond is told apart, too
-    /// \param what is locked, for the error
+    /// \param name any length; long names that differ only near their end are different names, too
+    /// \param what the locked thing, for the error text
     /// \param own  user of this process
     /// Errors: already_exists, with `what` and the pid of the process that has it, this one
     ///         included; access_denied, the same, if that process is of another user, who is not

@@ -4,8 +4,8 @@
 
 namespace metier::link {
 
-/// Pauses before a program that ended by itself is started again: 0.5 s at first, doubled up to
-/// 30 s by each further end. A program that ran for a minute begins anew with the shortest.
+/// Pauses before a program that ended by itself is started again: 0.5 s first, doubled at each
+/// further end, up to 30 s. After a run of kProven or longer the pause is 0.5 s again.
 ///
 /// Threading: one thread.
 class RestartPause {
@@ -14,8 +14,8 @@ public:
     static constexpr std::chrono::milliseconds kLongest{30'000};
     static constexpr std::chrono::seconds kProven{60};
 
-    /// \param ran_for from the program's start to its end
-    /// \return how long to wait before the next start
+    /// \param ran_for time from the program's start to its end
+    /// \return time to wait before the next start
     std::chrono::milliseconds next(std::chrono::nanoseconds ran_for) noexcept;
 
 private:

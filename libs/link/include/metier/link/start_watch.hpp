@@ -7,16 +7,16 @@
 
 namespace metier::link {
 
-/// Ends the program when it is told to stop while it starts, whatever the start waits for: nothing
-/// moves yet, so nothing is lost. A start that looks at the signal itself has half a second to end
-/// in its own way.
+/// Ends the program when a stop signal comes during its start, whatever the start is waiting for.
+/// No device moves yet, so nothing is lost. A start that checks the signal itself has half a second
+/// to end in its own way.
 ///
-/// Threading: one thread makes and destroys it; the start is what happens between.
+/// Threading: one thread creates and destroys it; the start is what happens in between.
 class StartWatch {
 public:
     /// \param signal must outlive this
     explicit StartWatch(const StopSignal& signal);
-    /// The start is over.
+    /// Ends the watch: the start is over.
     ~StartWatch();
     StartWatch(const StartWatch&) = delete;
     StartWatch& operator=(const StartWatch&) = delete;

@@ -4,10 +4,11 @@
 
 namespace metier::link {
 
-/// Ctrl-C, SIGTERM and the end of the terminal (SIGHUP) as something to wait for: blocked in every
-/// thread that starts after it. A SIGHUP that is ignored, as below nohup, stays so.
+/// Makes Ctrl-C (SIGINT), SIGTERM and the end of the terminal (SIGHUP) something to wait for. The
+/// signals are blocked in this thread and in every thread that starts after it. A SIGHUP that is
+/// ignored, as under nohup, stays ignored.
 ///
-/// Make it first thing in a command. Threading: one thread.
+/// Create it first in a command, before any thread. Threading: one thread.
 class StopSignal {
 public:
     StopSignal();
@@ -15,19 +16,19 @@ public:
     StopSignal(const StopSignal&) = delete;
     StopSignal& operator=(const StopSignal&) = delete;
 
-    /// Becomes readable when a signal came; for poll().
+    /// File descriptor that is readable once a signal has come; for poll().
     int descriptor() const noexcept { return descriptor_; }
     /// Waits for a signal; false at the deadline.
     bool waitUntil(SteadyTime deadline) const;
-    /// Waits for a signal for as long as the user wants.
+    /// Waits for a signal without a deadline.
     void wait() const { waitUntil(SteadyTime::max()); }
     bool came() const { return waitUntil(SteadyTime{}); }
 
-    /// Bounds the end of the program: the kernel ends it when it still runs after that time,
-    /// because a disk or a peer hangs.
+    /// Bounds the time that the program's end may take: the kernel ends the program if it still
+    /// runs after `longest`, for example because a disk or a peer hangs.
     static void endWithin(std::chrono::seconds longest) noexcept;
-    /// Lets writing to a terminal or a pipe that is gone fail instead of ending the program before
-    /// its devices stand.
+    /// Makes writing to a lost terminal or pipe fail (SIGPIPE is ignored) instead of ending the
+    /// program before its devices stand still.
     static void outliveOutput() noexcept;
 
 private:

@@ -15,7 +15,8 @@ namespace metier::link {
 
 /// A TCP connection on which every wait has a deadline. Small writes leave at once (TCP_NODELAY).
 ///
-/// Errors name the peer, as "10.0.0.5:30004: ...". Without an error nothing allocates.
+/// Error texts begin with the peer, such as "10.0.0.5:30004: ...". Sending and receiving do not
+/// allocate unless there is an error.
 /// Threading: one thread sends and receives; shutdown() from any.
 class TcpLink {
 public:
@@ -29,35 +30,35 @@ public:
     TcpLink& operator=(TcpLink&& other) noexcept;
     ~TcpLink() = default;
 
-    /// Waits for at least one byte and takes what is there, at most the buffer.
+    /// Waits for at least one byte and takes the bytes that are there, up to the buffer's size.
     /// Errors: timeout at the deadline, connection_lost if the peer closed or broke the connection.
     Result<std::size_t> receive(std::span<std::byte> buffer, SteadyTime deadline);
-    /// Waits until the whole buffer is filled. Errors as receive(); part of it may be lost then.
+    /// Waits until the whole buffer is filled. Errors as receive(); received bytes are lost then.
     Result<void> receiveAll(std::span<std::byte> buffer, SteadyTime deadline);
-    /// Hands all bytes to the system, in one write if it takes them.
+    /// Hands all bytes to the system, in one write if the system takes them at once.
     /// Errors: timeout if the peer does not read, connection_lost.
     Result<void> send(std::span<const std::byte> bytes, SteadyTime deadline);
 
     /// Ends both directions: a receive() that waits returns connection_lost. Idempotent.
     void shutdown() noexcept;
-    /// The socket's file descriptor, which stays this link's.
+    /// File descriptor of the socket; the link keeps it and closes it.
     int descriptor();
-    /// "10.0.0.5:30004".
+    /// Address and port of the peer, such as "10.0.0.5:30004".
     const std::string& peer() const noexcept { return peer_; }
 
 private:
     friend class TcpListener;
     TcpLink(std::unique_ptr<asio::io_context> context, asio::ip::tcp::socket socket,
             std::string peer);
-    /// \param events of poll(2)
+    /// \param events events of poll(2) to wait for
     Result<void> waitFor(short events, SteadyTime deadline);
 
-    std::unique_ptr<asio::io_context> context_;  // the socket's, which outlives it
+    std::unique_ptr<asio::io_context> context_;  // context of the socket; must outlive it
     asio::ip::tcp::socket socket_;
     std::string peer_;
 };
 
-/// Waits for peers that dial in.
+/// A TCP port that waits for peers to connect.
 ///
 /// Threading: one thread; shutdown() from any.
 class TcpListener {
@@ -71,7 +72,7 @@ public:
     ~TcpListener() = default;
 
     std::uint16_t port() const;
-    /// The next peer. Errors: timeout, cancelled after shutdown().
+    /// Waits for the next peer. Errors: timeout at the deadline, cancelled after shutdown().
     Result<TcpLink> accept(SteadyTime deadline);
     void shutdown() noexcept;
 

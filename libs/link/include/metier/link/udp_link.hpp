@@ -13,13 +13,14 @@
 
 namespace metier::link {
 
-/// A UDP socket that sends to one peer, hears nobody else, and waits with deadlines only.
+/// A UDP socket for one peer: datagrams of others are not received. Every wait has a deadline.
 ///
-/// Errors name the peer, as "10.0.0.5:49152: ...". Without an error nothing allocates.
+/// Error texts begin with the peer, such as "10.0.0.5:49152: ...". Nothing allocates unless there
+/// is an error.
 /// Threading: one thread.
 class UdpLink {
 public:
-    /// Nothing is sent yet, so whether anybody is there is not known.
+    /// Opens the socket. Nothing is sent yet, so it is not known whether the peer exists.
     /// \param host a name or an address
     /// Errors: connection_lost if there is no such host; timeout if its name is not resolved in
     /// time.
@@ -30,21 +31,21 @@ public:
     UdpLink& operator=(UdpLink&& other) noexcept;
     ~UdpLink() = default;
 
-    /// Waits for a datagram and takes it; what the buffer has no room for is lost.
-    /// Errors: timeout at the deadline, connection_lost if the peer's machine says that nobody
+    /// Waits for a datagram and takes it; bytes beyond the buffer's size are lost.
+    /// Errors: timeout at the deadline, connection_lost if the peer's machine reports that nobody
     ///         listens there.
     Result<std::size_t> receive(std::span<std::byte> buffer, SteadyTime deadline);
     /// Sends one datagram. Errors: connection_lost.
     Result<void> send(std::span<const std::byte> bytes);
 
-    /// "10.0.0.5:49152".
+    /// Address and port of the peer, such as "10.0.0.5:49152".
     const std::string& peer() const noexcept { return peer_; }
 
 private:
     UdpLink(std::unique_ptr<asio::io_context> context, asio::ip::udp::socket socket,
             std::string peer);
 
-    std::unique_ptr<asio::io_context> context_;  // the socket's, which outlives it
+    std::unique_ptr<asio::io_context> context_;  // context of the socket; must outlive it
     asio::ip::udp::socket socket_;
     std::string peer_;
 };

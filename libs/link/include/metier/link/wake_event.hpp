@@ -4,9 +4,10 @@
 
 namespace metier::link {
 
-/// Ends the wait of one thread from another.
+/// Event by which any thread ends the wait of another one. A ring() before the wait is not lost;
+/// several of them count as one.
 ///
-/// Threading: ring() on any thread; wait() on one.
+/// Threading: ring() on any thread; wait() and waitUntil() on one.
 class WakeEvent {
 public:
     WakeEvent();
@@ -15,14 +16,14 @@ public:
     WakeEvent& operator=(const WakeEvent&) = delete;
 
     void ring() noexcept;
-    /// Until it was rung, since the last time, or the user ends the program.
+    /// Waits until ring() was called, or the user ends the program.
     /// \return whether it was rung
     bool wait(const StopSignal& signal);
-    /// Until it was rung; false at the deadline.
+    /// Waits until ring() was called; false at the deadline.
     bool waitUntil(SteadyTime deadline);
 
 private:
-    /// \return whether it was rung since the last time
+    /// \return whether ring() was called since the last wait ended
     bool take() noexcept;
 
     int descriptor_;

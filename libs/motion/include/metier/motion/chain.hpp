@@ -9,7 +9,8 @@
 
 namespace metier::motion {
 
-/// What one axis may do. Positions [rad], the rest [rad/s], [rad/s2], [rad/s3] and > 0.
+/// Limits of one axis: lower and upper position [rad]; velocity [rad/s], acceleration [rad/s2] and
+/// jerk [rad/s3], all > 0.
 struct JointLimits {
     double lower = 0;
     double upper = 0;
@@ -18,7 +19,7 @@ struct JointLimits {
     double jerk = 0;
 };
 
-/// A revolute joint and where it sits.
+/// A revolute joint and its place in the chain.
 struct JointDescription {
     std::string name;
     /// Joint frame in the frame of the joint before (of the base for axis 1), at joint position 0.
@@ -28,7 +29,7 @@ struct JointDescription {
     JointLimits limits;
 };
 
-/// What the tool frame's origin and orientation may do along a path; all > 0.
+/// Limits of the tool frame's origin and orientation along a path; all > 0.
 struct CartesianLimits {
     double velocity = 0;              ///< [m/s]
     double acceleration = 0;          ///< [m/s2]
@@ -38,7 +39,7 @@ struct CartesianLimits {
     double angular_jerk = 0;          ///< [rad/s3]
 };
 
-/// A named frame on the flange, with what it weighs for the driver.
+/// A named frame on the flange, with the mass of the tool for the driver.
 struct ToolFrame {
     std::string name;
     motion::Pose flange_from_tool;
@@ -46,14 +47,14 @@ struct ToolFrame {
     Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();  ///< in the flange frame [m]
 };
 
-/// A robot as a server publishes it and a client reads it back: enough to plan with.
+/// Description of a robot that a server publishes and a client reads: enough to plan motions.
 struct ChainDescription {
     std::vector<JointDescription> joints;  ///< 1 to kMaxAxes
-    motion::Pose last_from_flange;       ///< flange in the last joint's frame
+    motion::Pose last_from_flange;         ///< flange in the last joint's frame
     CartesianLimits cartesian_limits;
     JointVector home;              ///< a usable, non-singular working position [rad]
-    std::vector<ToolFrame> tools;  ///< besides "flange", which always exists
-    double cycle_time = 0.008;     ///< of the controller [s], > 0
+    std::vector<ToolFrame> tools;  ///< in addition to "flange", which always exists
+    double cycle_time = 0.008;     ///< period of the controller [s], > 0
 };
 
 }  // namespace metier::motion

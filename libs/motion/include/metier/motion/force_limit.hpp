@@ -10,7 +10,7 @@
 
 namespace metier::motion {
 
-/// What an arm may press with; 0: no limit.
+/// Largest force and torque with which an arm may press; 0: no limit.
 struct WrenchLimits {
     double force = 0;   ///< length of the force [N]
     double torque = 0;  ///< length of the torque [Nm]
@@ -18,7 +18,7 @@ struct WrenchLimits {
     std::array<double, 6> components{};
 };
 
-/// A limit that the filtered wrench is beyond.
+/// A limit that the filtered wrench exceeds.
 struct ForceExcess {
     enum class Quantity { force, torque, component, not_finite };
     Quantity quantity = Quantity::force;
@@ -26,29 +26,31 @@ struct ForceExcess {
     double value = 0;           ///< [N] or [Nm]
     double limit = 0;
 };
-/// For the person: what, value, limit, unit.
+/// Error text for a person, with quantity, value, limit and unit. Allocates.
 Error toError(const ForceExcess& excess);
 
-/// Watches the wrench of a force-limited motion; what to do about an excess is up to the caller:
+/// Watches the wrench of a force-limited motion. The caller acts on an excess: it calls
 /// MotionRun::halt() in the same cycle.
 ///
-/// The wrench passes a low-pass of first order with 20 Hz, which starts at the first value: a
-/// steady wrench below a limit never is an excess, one above it is within a few cycles. A value
-/// that is not finite is an excess at once: a sensor that fails must not blind the watch.
+/// The wrench passes a first-order low-pass of 20 Hz that starts at the first value: a steady
+/// wrench below a limit is never an excess, one above it becomes an excess within a few cycles. A
+/// value that is not finite is an excess at once, so that a failed sensor is not taken for a small
+/// force.
 /// Threading: one thread, the control cycle. Checking does not allocate, lock or throw.
 /// Source: docs/motion.md#force-limit.
 class ForceLimit {
 public:
-    /// \param cycle between two wrenches [s], > 0
+    /// \param cycle time between two wrenches [s], > 0
     /// Errors: invalid_argument (a limit is negative or not finite, or all are 0; cycle).
     static Result<ForceLimit> create(const WrenchLimits& limits, Seconds cycle);
 
-    /// Takes the wrench of this cycle. \return the limit it is beyond, the first one found
+    /// Takes the wrench of this cycle.
+    /// \return the first limit found that it exceeds; nothing if there is none
     std::optional<ForceExcess> check(const motion::Wrench& measured) noexcept;
 
-    /// After the low-pass.
+    /// Wrench after the low-pass.
     const motion::Wrench& filtered() const noexcept { return filtered_; }
-    /// Forgets the past, as before the first check().
+    /// Forgets the past: the next check() starts the low-pass again.
     void restart() noexcept { started_ = false; }
 
 private:

@@ -7,11 +7,11 @@ namespace metier::motion {
 
 using metier::Frame;
 
-/// The pose of a frame; any finite angles.
+/// Converts a 3DFrame to a pose; the angles may have any finite value.
 Pose toPose(const Frame& frame);
 
-/// The frame of a pose: a and c in (-pi, pi], b in [-pi/2, pi/2].
-/// Where b is +-pi/2 only a sum of a and c is defined: a is 0 then.
+/// Converts a pose to a 3DFrame: a and c in (-pi, pi], b in [-pi/2, pi/2]. If b is +-pi/2, only a
+/// sum or difference of a and c is defined: a is 0 then.
 Frame toFrame(const Pose& pose);
 
 }  // namespace metier::motion

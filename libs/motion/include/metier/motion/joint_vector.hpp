@@ -10,6 +10,7 @@
 
 namespace metier::motion {
 
+/// Largest number of axes of a robot that motions can be planned for.
 inline constexpr std::size_t kMaxAxes = 7;
 
 /// One value per axis, axis 1 first: joint positions [rad], velocities [rad/s] and so on.
@@ -24,7 +25,7 @@ public:
 
     /// Errors: invalid_argument if there are too many values or one is not finite.
     static Result<JointVector> from(std::span<const double> values);
-    /// `value` for each of `size` axes.
+    /// Makes a vector with `value` for each of `size` axes.
     static JointVector constant(std::size_t size, double value) noexcept;
 
     std::size_t size() const noexcept { return size_; }
@@ -43,7 +44,7 @@ public:
     View view() noexcept { return {values_.data(), static_cast<Eigen::Index>(size_)}; }
     ConstView view() const noexcept { return {values_.data(), static_cast<Eigen::Index>(size_)}; }
 
-    /// Whether every value is 0; true for no values.
+    /// Reports whether every value is 0; true if there are no values.
     bool allZero() const noexcept;
     bool allFinite() const noexcept;
     friend bool operator==(const JointVector& a, const JointVector& b) noexcept;

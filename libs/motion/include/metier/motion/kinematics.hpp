@@ -15,25 +15,27 @@
 
 namespace metier::motion {
 
-/// Columns: axes. Rows: velocity of the flange origin [m], then of its rotation [1], base frame.
+/// Jacobian of the flange, in the base frame. A column for each axis; rows: velocity of the flange
+/// origin per axis velocity [m/rad], then angular velocity of the flange per axis velocity [1].
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxAxes>;
 
-/// Per axis the range a solution must lie in [rad]. Empty or all zero: not set.
+/// Range of each axis for a solution [rad], both ends allowed. Empty or all zero: not set.
 struct AxisBounds {
     JointVector lower;
     JointVector upper;
     bool isSet() const noexcept { return !lower.allZero() || !upper.allZero(); }
 };
 
-/// Which of many joint positions is wanted.
+/// Choice among the many joint positions that reach a pose.
 struct IkRequest {
     JointVector reference;  ///< the solution nearest to it is chosen [rad]; size axisCount()
-    AxisBounds bounds;      ///< besides the joint limits
-    /// Arm angle of a 7-axis arm [rad]; without it the reference's own, or the nearest possible.
+    AxisBounds bounds;      ///< bounds in addition to the joint limits
+    /// Arm angle of a 7-axis arm [rad]; without it the arm angle of the reference, or the nearest
+    /// possible one.
     std::optional<double> redundancy_angle;
 };
 
-/// Joint positions that reach one pose; never allocates.
+/// Joint positions that reach one pose, at most kCapacity; never allocates.
 class JointSolutions {
 public:
     static constexpr std::size_t kCapacity = 16;
@@ -53,8 +55,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Why a pose is out of reach, whatever the joint limits: something would be `distance` from an
-/// axis, and the links allow no more, or no less, than `limit`.
+/// Reason why a pose is out of reach even without joint limits: the point `what` would be at
+/// `distance` from an axis, and the links allow no more, or no less, than `limit`.
 struct ReachMiss {
     std::string_view what = "the flange";
     std::size_t axis = 0;  ///< from 0
@@ -64,10 +66,10 @@ struct ReachMiss {
     bool tooNear() const noexcept { return distance < limit; }
     double excess() const noexcept { return tooNear() ? limit - distance : distance - limit; }
 };
-/// As "unreachable: the wrist would be 0.9500 m from axis 2, reach 0.8170 m".
+/// A text such as "unreachable: the wrist would be 0.9500 m from axis 2, reach 0.8170 m".
 std::string toString(const ReachMiss& miss);
 
-/// How a chain's inverse is found; chosen from the chain's structure.
+/// Method of the inverse kinematics; chosen by the structure of the chain.
 enum class IkKind {
     three_parallel_axes,  ///< axes 2, 3, 4 parallel (UR): up to 8 solutions, closed form
     spherical_wrist,      ///< axes 4, 5, 6 meet, 2 and 3 parallel (e.DO): up to 8, closed form
@@ -76,7 +78,7 @@ enum class IkKind {
 };
 std::string_view toString(IkKind kind) noexcept;
 
-/// A rigid transform as matrix and vector: what the fast paths compute with.
+/// A rigid transform as matrix and vector, for fast computation. Translation in [m].
 struct Transform {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d translation = Eigen::Vector3d::Zero();
@@ -84,89 +86,96 @@ struct Transform {
 
 /// Axes and points of the chain in the base frame at joint position 0.
 struct ZeroPosition {
-    std::array<Eigen::Vector3d, kMaxAxes> axis;   ///< unit
-    std::array<Eigen::Vector3d, kMaxAxes> point;  ///< one on each axis, chosen by the closed form
+    std::array<Eigen::Vector3d, kMaxAxes> axis;   ///< unit vectors
+    std::array<Eigen::Vector3d, kMaxAxes> point;  ///< a point on each axis, chosen by the closed
+                                                  ///< form [m]
     Transform base_from_flange;
-    /// Share of a length by which the closed form may miss a pose and still gives a solution, from
-    /// which iteration finds that of the calibrated chain; 0 for an exact one.
+    /// Share of a length by which the closed form may miss a pose and still return a solution;
+    /// iteration then finds the solution of the calibrated chain from it. 0 for an exact chain.
     double slack = 0;
 };
 
 /// Forward and inverse kinematics of one chain.
 ///
 /// Threading: immutable, any thread. Nothing allocates but the text of an error. The same input
-/// gives the same bits; budgets are iterations, never time.
+/// gives the same bits: searches are bounded by a number of iterations, never by time.
 ///
-/// A calibrated UR arm, whose axes are only nearly parallel or meet only nearly (0.02 rad, 10 mm),
-/// is solved in the closed form of the nearest exact arm and from there by Levenberg-Marquardt.
+/// For a calibrated UR arm, whose axes are only nearly parallel or only nearly meet (within 0.02
+/// rad, 10 mm), the closed form of the nearest exact arm gives a start, from which
+/// Levenberg-Marquardt finds the solution.
 /// Source: docs/motion.md#kinematics.
 class Kinematics {
 public:
-    /// \param chain valid as RobotModel checks it
+    /// \param chain valid by the rules of RobotModel::fromChain(); not checked here
     explicit Kinematics(const ChainDescription& chain);
 
     std::size_t axisCount() const noexcept { return axis_count_; }
     IkKind ikKind() const noexcept { return kind_; }
-    /// Whether the closed form fits nearly only and every solution is refined by iteration.
+    /// Reports whether the closed form fits only nearly, so that every solution is refined by
+    /// iteration.
     bool isCalibrated() const noexcept { return calibrated_; }
     const JointLimits& limits(std::size_t axis) const noexcept { return limits_[axis]; }
-    /// Farthest the flange's origin can be from axis 2 [m]: an upper bound.
+    /// Upper bound of the distance of the flange's origin from axis 2 [m].
     double reach() const noexcept { return reach_; }
-    /// Why no joint position at all has this pose; nothing if it is in reach, or if that can only
-    /// be found by trying.
+    /// Reason why no joint position at all reaches this pose; nothing if it is in reach, or if only
+    /// trying can show it.
     /// \param reference as for allSolutions()
     std::optional<ReachMiss> outOfReach(const motion::Pose& base_from_flange,
                                         const JointVector& reference) const noexcept;
 
-    /// base_from_flange. \param q [rad], size axisCount(), finite; limits are not checked
+    /// Computes base_from_flange.
+    /// \param q [rad], size axisCount(), finite; limits are not checked
     motion::Pose forward(const JointVector& q) const noexcept;
-    /// base_from_joint for every axis (the joint frames of the chain, turned), then the flange.
+    /// Computes base_from_joint for every axis (the turned joint frames of the chain), and after
+    /// these base_from_flange.
     std::array<motion::Pose, kMaxAxes + 1> forwardAll(const JointVector& q) const noexcept;
     Jacobian jacobian(const JointVector& q) const noexcept;
-    /// Both at the price of one. \param jacobian filled; any content before
+    /// Computes base_from_flange and the Jacobian together, as fast as one of them.
+    /// \param jacobian is overwritten
     Transform forward(const JointVector& q, Jacobian& jacobian) const noexcept;
-    /// Smallest singular value of the Jacobian: 0 in a singularity.
+    /// Smallest singular value of the Jacobian ([m] and [rad] taken together): 0 in a singularity.
     double smallestSingularValue(const JointVector& q) const;
 
-    /// Every closed-form solution, each axis in (-pi, pi], limits not applied; for a 7-axis arm
-    /// those with the arm angle of `reference`, or with `redundancy_angle`; of a numeric chain the
-    /// one found from `reference`.
-    /// \param reference gives the free axis where the pose leaves one free
+    /// Every closed-form solution, each axis in (-pi, pi], limits not applied. For a 7-axis arm:
+    /// the solutions with the arm angle of `reference`, or with `redundancy_angle`. For a numeric
+    /// chain: the one solution found from `reference`.
+    /// \param reference gives the value of an axis that the pose leaves free [rad]
     JointSolutions allSolutions(const motion::Pose& base_from_flange,
                                 const JointVector& reference) const noexcept;
-    JointSolutions allSolutions(const motion::Pose& base_from_flange,
-                                const JointVector& reference,
+    JointSolutions allSolutions(const motion::Pose& base_from_flange, const JointVector& reference,
                                 double redundancy_angle) const noexcept;
 
-    /// The solution with these axes that follows `guess` without a jump, whole turns included;
-    /// empty if there is none. Limits are not applied.
+    /// The solution that follows `guess` without a jump, whole turns included; empty if there is
+    /// none. Limits are not applied.
     /// \param guess an extrapolated position [rad]
     JointVector solutionNear(const motion::Pose& base_from_flange, const JointVector& guess,
                              double redundancy_angle) const noexcept;
 
-    /// The solution within limits and bounds nearest to the reference: smallest largest
-    /// |difference| / velocity limit over the axes, whole turns included, ties by index.
+    /// The solution within limits and bounds that is nearest to the reference. The distance is the
+    /// largest |difference| / velocity limit of all axes, whole turns included; of two equal ones
+    /// the first wins.
     /// Errors: unreachable (distance and reach, or the axis, its value and limit),
     ///         invalid_argument (sizes, not finite).
     Result<JointVector> inverse(const motion::Pose& base_from_flange,
                                 const IkRequest& request) const;
 
-    /// As inverse(), by Levenberg-Marquardt from the reference and then from fixed other seeds: for
-    /// chains without a closed form. The solution found first, not the nearest.
+    /// The same by Levenberg-Marquardt, from the reference and then from other fixed seeds: for
+    /// chains without a closed form. Returns the first solution found, not the nearest.
     Result<JointVector> inverseNumerically(const motion::Pose& base_from_flange,
                                            const IkRequest& request) const;
 
-    /// Angle of the elbow about the line from shoulder to wrist, 0 where the elbow is in the plane
-    /// through the vertical, upward [rad]; 0 for every chain without an arm angle.
+    /// Arm angle [rad]: angle of the elbow about the line from shoulder to wrist. It is 0 if the
+    /// elbow points upward in the vertical plane through that line, and for every chain without an
+    /// arm angle.
     double redundancyAngle(const JointVector& q) const noexcept;
 
-    /// Levenberg-Marquardt from `seed`, at most `max_iterations`; limits are not applied.
-    /// The fallback of inverse() and the means to polish a solution on a calibrated chain.
+    /// Levenberg-Marquardt from `seed`, with at most `max_iterations`; limits are not applied.
+    /// inverse() falls back to it, and uses it to refine solutions of a calibrated chain.
     std::optional<JointVector> solveNumerically(const motion::Pose& base_from_flange,
                                                 const JointVector& seed,
                                                 int max_iterations) const noexcept;
 
-    /// Whether each axis is within its limits (1e-9 rad of rounding allowed).
+    /// Reports whether each axis is within its limits (1e-9 rad of rounding allowed).
     bool withinLimits(const JointVector& q) const noexcept;
 
 private:

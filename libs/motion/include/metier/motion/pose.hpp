@@ -18,7 +18,7 @@ struct Pose {
 /// a_from_c = a_from_b * b_from_c.
 Pose operator*(const Pose& a_from_b, const Pose& b_from_c);
 
-/// The point, given in source coordinates, in target coordinates [m].
+/// Converts a point from source coordinates to target coordinates [m].
 Eigen::Vector3d operator*(const Pose& target_from_source, const Eigen::Vector3d& point);
 
 /// Distance of the two origins [m].

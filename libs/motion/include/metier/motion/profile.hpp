@@ -26,23 +26,24 @@ struct ScalarLimits {
 class Profile {
 public:
     Profile() = default;
-    /// From any state to rest at `target`, as quick as the limits allow (time-optimal but for
-    /// extreme start accelerations).
+    /// Motion from any state to rest at `target`, as quick as the limits allow (time-optimal except
+    /// for extreme start accelerations).
     static Profile toRest(const ScalarState& start, double target,
                           const ScalarLimits& limits) noexcept;
-    /// From any state to rest wherever the limits allow it soonest.
+    /// Motion from any state to rest, as soon as the limits allow, at any position.
     static Profile brake(const ScalarState& start, const ScalarLimits& limits) noexcept;
 
     /// The same motion in `factor` > 0 times the time.
     Profile slowed(double factor) const noexcept;
 
-    /// [s]
+    /// Time from start to rest [s].
     double duration() const noexcept { return duration_; }
-    /// State after `time` [s]; before 0 the start, after duration() exactly the end, at rest.
+    /// State after `time` [s]; before 0 the start state, after duration() exactly the end state, at
+    /// rest.
     ScalarState at(double time) const noexcept;
     double jerkAt(double time) const noexcept;
     double end() const noexcept { return end_; }
-    /// Times [s] between which the velocity stays the same; the same time if it nowhere does.
+    /// Begin and end of constant velocity [s]; equal if the velocity is constant nowhere.
     double steadyFrom() const noexcept { return steady_from_; }
     double steadyTo() const noexcept { return steady_to_; }
 

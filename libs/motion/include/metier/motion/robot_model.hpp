@@ -19,8 +19,9 @@ namespace metier::motion {
 
 /// A cylinder with round ends around a link, for self-collision.
 struct Capsule {
-    std::size_t link = 0;  ///< 0: the base, i: what axis i moves
-    Eigen::Vector3d from;  ///< in the joint frame of that axis, of the base for link 0 [m]
+    std::size_t link = 0;  ///< 0: the base; i: the link behind axis i, which that axis moves
+    Eigen::Vector3d from;  ///< one end, in the joint frame of that axis, in the base frame for link
+                           ///< 0 [m]
     Eigen::Vector3d to;
     double radius = 0;  ///< [m]
 };
@@ -33,7 +34,8 @@ struct VisualPrimitive {
     double from_radius = 0;         ///< [m]
     double to_radius = 0;           ///< [m]
     std::array<double, 3> color{};  ///< red, green, blue, 0 to 1
-    double edge = -1;               ///< rounding of both edges [m]; negative: up to who draws
+    double edge = -1;               ///< rounding of both edges [m]; negative: the drawing program
+                                    ///< chooses
 };
 
 /// Everything known about a kind of robot: kinematics, limits, tool frames, shape, names.
@@ -44,20 +46,20 @@ public:
     /// Reads a file of models/ (models/README.md).
     /// Errors: not_found; invalid_argument with file:line, key and what is wrong.
     static Result<RobotModel> load(const std::filesystem::path& path);
-    /// The same from text; `name` stands for the file in messages.
+    /// The same from text; `name` takes the place of the file in messages.
     static Result<RobotModel> parse(std::string_view text, const std::string& name);
 
-    /// A robot known from its chain alone, as a client reads it from a server.
+    /// Makes a model of a chain alone, as a client reads it from a server. It has no shape.
     /// Errors: invalid_argument (number of axes, axis not a unit vector, limits, home).
     static Result<RobotModel> fromChain(ChainDescription chain);
 
-    /// The same robot with another chain of as many axes, as its controller measured it: names and
-    /// shape stay. Errors: as fromChain().
+    /// Copies the model with another chain of as many axes, for example the calibrated one of a
+    /// controller; names and shape stay. Errors: as fromChain().
     Result<RobotModel> withChain(ChainDescription chain) const;
 
-    std::string_view name() const noexcept { return name_; }        ///< as "ur5"
-    std::string_view maker() const noexcept { return maker_; }      ///< as "Universal Robots"
-    std::string_view product() const noexcept { return product_; }  ///< as "UR5"
+    std::string_view name() const noexcept { return name_; }        ///< such as "ur5"
+    std::string_view maker() const noexcept { return maker_; }      ///< such as "Universal Robots"
+    std::string_view product() const noexcept { return product_; }  ///< such as "UR5"
     std::size_t axisCount() const noexcept { return chain_.joints.size(); }
     const ChainDescription& chain() const noexcept { return chain_; }
     const Kinematics& kinematics() const noexcept { return kinematics_; }
@@ -71,14 +73,13 @@ public:
     const std::vector<Capsule>& capsules() const noexcept { return capsules_; }
     const std::vector<VisualPrimitive>& visual() const noexcept { return visual_; }
 
-    /// The tool frame of that name; "" and "flange" are the flange itself.
-    /// Errors: not_found, with the names there are.
+    /// Finds a tool frame by its name; "" and "flange" are the flange itself.
+    /// Errors: not_found, with the known names.
     Result<ToolFrame> tool(std::string_view tool_name) const;
 
 private:
     explicit RobotModel(ChainDescription chain);
-    static Result<RobotModel> read(const cell::TomlFile& toml,
-                                   const std::string& file_name);
+    static Result<RobotModel> read(const cell::TomlFile& toml, const std::string& file_name);
 
     std::string name_;
     std::string maker_;

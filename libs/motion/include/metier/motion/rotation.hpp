@@ -4,16 +4,16 @@
 
 namespace metier::motion {
 
-/// The rotation by |vector| about vector.
+/// Rotation about `vector` by the angle |vector|.
 /// \param vector [rad], any length, also zero
 Eigen::Quaterniond fromRotationVector(const Eigen::Vector3d& vector);
 
-/// The short way of a rotation as axis times angle, angle in [0, pi] [rad].
-/// At 180 degrees, where both axes are right, the one whose first non-zero component is positive.
+/// Rotation vector (axis times angle) of the short way of a rotation, angle in [0, pi] [rad]. At
+/// 180 degrees two axes are right: the one whose first non-zero component is positive is taken.
 Eigen::Vector3d toRotationVector(const Eigen::Quaterniond& rotation);
 
-/// What turns `from` into `to` the short way, seen from outside: to = fromRotationVector(v) * from.
-/// Deterministic at 180 degrees.
+/// Rotation vector v [rad] that turns `from` into `to` the short way, in the axes of the frame in
+/// which both are given: to = fromRotationVector(v) * from. Deterministic at 180 degrees.
 Eigen::Vector3d rotationVectorBetween(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to);
 
 /// Angle of the rotation from one to the other, in [0, pi] [rad]; exact for tiny angles too.

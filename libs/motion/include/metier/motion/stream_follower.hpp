@@ -15,16 +15,16 @@ namespace metier::motion {
 struct FollowerLimits;
 struct TargetStates;
 
-/// How a stream of set-points is played out.
+/// Options of playing out a stream of set-points.
 struct StreamOptions {
-    Seconds cycle{0.008};          ///< of the controller, > 0
+    Seconds cycle{0.008};          ///< period of the controller, > 0
     int playout_delay_cycles = 3;  ///< from a set-point's intended time to its execution, >= 0;
                                    ///< 0: every cycle takes the newest set-point at once
-    int stale_cycles = 6;          ///< with nothing to play, then it gives up, >= 1
-    /// Without delay: so many cycles without a set-point go on as those before, >= 0.
+    int stale_cycles = 6;          ///< cycles with nothing to play before it gives up, >= 1
+    /// Without delay: cycles without a set-point during which the motion is extrapolated, >= 0.
     int extrapolated_cycles = 3;
-    /// Without delay: a stream whose axes are all no faster stands, and in silence its last
-    /// set-point is held; >= 0 [rad/s].
+    /// Without delay: largest speed of any axis at which the stream counts as standing; then, if
+    /// the stream is silent, its last set-point is held; >= 0 [rad/s].
     double standing_speed = 0.0;
     /// Largest step from one set-point to the next, as a multiple of what the axis' velocity limit
     /// allows in the time between them; > 0.
@@ -37,7 +37,7 @@ struct StreamOptions {
     double braking_factor = 1.0;
 };
 
-/// A set-point that was not taken. No text, so that the cycle thread need not allocate.
+/// A refused set-point. It has no text, so that the cycle thread need not allocate.
 struct StreamRefusal {
     enum class Reason { wrong_size, not_finite, position_limit, jump, not_later, timed_out };
     Reason reason = Reason::wrong_size;
@@ -45,17 +45,13 @@ struct StreamRefusal {
     double value = 0;      ///< [rad]; a number of axes for wrong_size; [s] for not_later
     double limit = 0;
 };
-/// For the person: axis, value, limit, unit.
+/// Error text for a person, with axis, value, limit and unit. Allocates.
 Error toError(const StreamRefusal& refusal);
 
-/// Follows joint positions that arrive irregularly, never breaking an axis limit.
+/// Follows joint positions that arrive irregularly, and never breaks an axis limit.
 ///
-/// The stream is played out a constant delay after its intended times, interpolated in between, and
-/// passed through unchanged as long as the limits allow; else followed as fast as they allow. When
-/// nothing is left to play it brakes; if that lasts for stale_cycles it stays stopped and reports
-/// it. Without a delay a cycle's target is the newest set-point, or, where a set-point of the
-/// stream's rhythm is late, what it would be at the last velocity and acceleration. Threading: one
-/// thread, the control cycle. accept() and next() do not allocate, lock or throw.
+///
+/// Threading: one thread, the control cycle. accept() and next() do not allocate, lock or throw.
 class StreamFollower {
 public:
     enum class State {
@@ -65,35 +61,38 @@ public:
         timed_out,  ///< at rest after the stream fell silent
     };
 
-    /// \param start where the arm stands, at rest: the first set-point is checked against it
+    /// \param start position at which the arm stands still [rad]; the first set-point is checked
+    /// against it
     /// Errors: invalid_argument (sizes, options out of range).
     static Result<StreamFollower> create(const RobotModel& model, const StreamOptions& options,
                                          const JointVector& start);
 
-    /// Takes a set-point, or leaves everything unchanged and says why not.
-    /// \param intended_time on the sender's clock; later than the one before
-    /// \param now           on the clock of next()
+    /// Takes a set-point, or leaves everything unchanged and returns the reason.
+    /// \param position [rad], one value per axis
+    /// \param intended_time time of the set-point on the sender's clock; later than the one before
+    /// \param now           time on the clock of next()
     std::optional<StreamRefusal> accept(const JointVector& position, Seconds intended_time,
                                         Seconds now) noexcept;
 
-    /// How much longer than the play-out delay a set-point meant for that time would wait if it
+    /// Additional waiting time, beyond the play-out delay, of a set-point for `intended_time` that
     /// came now [s]; negative: it would be late. 0 without a delay, and before the first set-point.
     Seconds lagOf(Seconds intended_time, Seconds now) const noexcept;
-    /// Skips what is left to play if that is nothing but standing still where the arm rests, as far
-    /// as it delays a set-point meant for that time.
+    /// Skips the rest of the stream if the arm stands still and the rest only keeps it there, as
+    /// far as that would delay a set-point for `intended_time`.
     void skipRest(Seconds intended_time, Seconds now) noexcept;
 
-    /// The set-point of this cycle. \param now one cycle later than at the call before
+    /// Computes the set-point of this cycle.
+    /// \param now one cycle later than at the call before
     SetPoint next(Seconds now) noexcept;
 
-    /// Ends the stream: brakes to rest, then timed_out.
+    /// Ends the stream: brakes to rest; the state is timed_out then.
     void stop() noexcept;
 
     State state() const noexcept { return state_; }
     bool atRest() const noexcept;
     std::uint64_t acceptedCount() const noexcept { return accepted_; }
-    /// Cycles for which no set-point was there in time; those that went on without delay do not
-    /// count.
+    /// Number of cycles for which no set-point was there in time; extrapolated cycles without delay
+    /// do not count.
     std::uint64_t missedCycles() const noexcept { return missed_; }
 
 private:
@@ -111,22 +110,23 @@ private:
     /// The `age`-th newest knot, 0 the newest.
     const Knot& knot(std::size_t age) const noexcept;
     double slope(std::size_t age, std::size_t axis) const noexcept;
-    /// The stream's position at a time of the sender's clock; after its last one that, without
-    /// delay bridged().
+    /// Position of the stream at a time of the sender's clock. After its last set-point: that one,
+    /// or bridged() without delay.
     JointVector play(double time) const noexcept;
     JointVector bridged(double time) const noexcept;
-    /// How far an axis of the stream goes on after its last set-point: at its last velocity and
-    /// acceleration, but never back [rad].
+    /// Extrapolated way of an axis after its last set-point, with its last velocity and
+    /// acceleration, but never backwards [rad].
     double goingOn(std::size_t axis, double ahead) const noexcept;
     bool withoutDelay() const noexcept { return options_.playout_delay_cycles == 0; }
     double longestBridge() const noexcept;
     bool standing() const noexcept;
     void waitFor(double time, double now) noexcept;
     bool onlyRestIsLeft(double played) const noexcept;
-    /// The target of this cycle and of the three before.
+    /// Targets of this cycle and of the three before.
     using Targets = std::array<JointVector, 4>;
     void follow(const Targets& targets) noexcept;
-    /// Without delay targets carry noise: one that no axis could follow is one of a steady motion.
+    /// Without delay targets have noise: a target state that no axis could follow is replaced by
+    /// that of a steady motion.
     TargetStates statesOf(const Targets& targets, std::size_t axis) const noexcept;
     void take(std::size_t axis, const ScalarState& next) noexcept;
     void playAt(double now) noexcept;
@@ -143,14 +143,14 @@ private:
     std::array<Knot, kKnots> knots_{};
     std::size_t newest_ = 0;
     std::size_t knot_count_ = 0;
-    bool fresh_ = false;  ///< a set-point came since the last cycle
-    // Without delay, of the last cycle:
-    double played_ = 0;  ///< on the sender's clock [s]
-    Targets targets_{};  ///< what was followed in this cycle and the three before
+    bool fresh_ = false;  ///< a set-point has come since the last cycle
+    // Values of the last cycle, without delay only:
+    double played_ = 0;  ///< time that was played, on the sender's clock [s]
+    Targets targets_{};  ///< targets that were followed in this cycle and the three before
     double offset_ = 0;  ///< from the sender's clock to ours [s]
     struct Brake {
         Profile profile;
-        int cycles = 0;  ///< since its start
+        int cycles = 0;  ///< cycles since its start
     };
     std::array<Brake, kMaxAxes> brakes_;
     int silent_cycles_ = 0;

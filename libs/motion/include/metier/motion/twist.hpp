@@ -4,7 +4,8 @@
 
 namespace metier::motion {
 
-/// Velocity of a frame, expressed in the base frame: of its origin [m/s] and of rotation [rad/s].
+/// Velocity of a frame, expressed in the base frame: that of its origin [m/s] and its angular
+/// velocity [rad/s].
 struct Twist {
     Eigen::Vector3d linear = Eigen::Vector3d::Zero();
     Eigen::Vector3d angular = Eigen::Vector3d::Zero();

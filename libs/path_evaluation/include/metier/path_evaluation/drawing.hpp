@@ -9,11 +9,12 @@
 
 namespace metier::path_evaluation {
 
-/// One robot's path around its square, as a client measured it.
+/// Measured path of one robot around its square.
 struct DrawnPath {
     std::string name;  ///< any text; escaped for XML
     Square square;
-    std::vector<Eigen::Vector3d> positions;  ///< [m], base frame, in the order of time
+    std::vector<Eigen::Vector3d> positions;  ///< measured positions [m], base frame, in the order
+                                             ///< of time
     SquareMeasurement measurement;
 };
 

@@ -11,9 +11,9 @@
 
 namespace metier::path_evaluation {
 
-/// What the axes do at one instant; all vectors of the same size.
+/// State of all axes at one instant; all vectors have the same size.
 struct MotionSample {
-    double time = 0;                   ///< after the start [s]
+    double time = 0;                   ///< time after the start [s]
     motion::JointVector position;      ///< [rad]
     motion::JointVector velocity;      ///< [rad/s]
     motion::JointVector acceleration;  ///< [rad/s2]
@@ -26,22 +26,22 @@ struct MotionSample {
 std::vector<MotionSample> sampleMotion(const motion::Trajectory& trajectory, std::size_t count);
 
 /// A recorded motion; its derivatives are those of a cubic fitted to seven positions around each.
-/// \param record as parseRecord() gives it
+/// \param record a record from parseRecord()
 std::vector<MotionSample> sampleMotion(const MotionRecord& record);
 
-/// What of a sample is looked at.
+/// Quantity of a sample.
 enum class Quantity { position, velocity, acceleration, jerk };
 
 const motion::JointVector& valuesOf(const MotionSample& sample, Quantity quantity) noexcept;
 
-/// A value as a share of its limit: -1 and 1 are the limits. A position's 0 is half way between
+/// A value as a share of its limit: -1 and 1 are the limits. For a position 0 is half way between
 /// its limits.
 double shareOfLimit(const motion::JointLimits& limits, Quantity quantity, double value) noexcept;
 
-/// Where an axis came nearest to its limit, or went farthest beyond it.
+/// Moment at which an axis came nearest to its limit, or went farthest beyond it.
 struct Peak {
     std::size_t axis = 0;  ///< from 0
-    double share = 0;      ///< of the limit, >= 0
+    double share = 0;      ///< share of the limit, >= 0
     double value = 0;      ///< in the quantity's unit
     double time = 0;       ///< [s]
 };

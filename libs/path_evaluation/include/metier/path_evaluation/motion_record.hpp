@@ -10,25 +10,25 @@
 
 namespace metier::path_evaluation {
 
-/// Where the axes were at one time.
+/// Joint position at one time.
 struct RecordedPosition {
-    double time = 0;  ///< [s], from any origin
+    double time = 0;  ///< time [s], from any origin
     motion::JointVector position;
 };
 
-/// A motion as it was recorded: at least kFewestRecorded positions of the same size, times growing.
+/// A recorded motion: at least kFewestRecorded positions of the same size, with growing times.
 using MotionRecord = std::vector<RecordedPosition>;
 inline constexpr std::size_t kFewestRecorded = 5;
 
-/// Reads a record from CSV or JSON; which of them is seen from its first character.
+/// Reads a record from CSV or JSON; the first character decides which of them it is.
 ///
 /// CSV: a line `time,q1,...,qn` for each position, [s] and [rad]; a first line that does not begin
-/// with a number is a heading, lines that begin with # are passed over. JSON: a list of objects
-/// with `time` and `joint_position`, or an object that has such a list as `preview`.
-/// \param name stands for the file in messages
-/// Errors: invalid_argument, with name, line or position, and what is wrong.
+/// with a number is a heading, lines that begin with # are skipped. JSON: a list of objects with
+/// `time` and `joint_position`, or an object that has such a list as `preview`.
+/// \param name name of the file in messages
+/// Errors: invalid_argument, with name, line or position, and the error.
 Result<MotionRecord> parseRecord(std::string_view text, std::string_view name);
-/// The same of a file. Errors: also not_found.
+/// The same from a file. Errors: also not_found.
 Result<MotionRecord> loadRecord(const std::filesystem::path& file);
 
 /// The record as CSV, every number with all its digits.

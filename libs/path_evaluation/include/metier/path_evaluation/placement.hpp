@@ -7,12 +7,12 @@
 
 namespace metier::path_evaluation {
 
-/// Finds where an arm has most room for an upright square, from its published chain and limits
-/// alone: candidates all over its reach are compared by their distance from joint limits and from
-/// singularities.
+/// Finds the place where an arm has most room for an upright square, from its published chain and
+/// limits alone: candidates all over its reach are compared by their distance from joint limits and
+/// from singularities.
 ///
-/// \param current where the arm is now [rad]; the square lies on the side it already points to
-/// \param side    [m], > 0
+/// \param current present joint position [rad]; the square lies on the side to which the arm points
+/// \param side    length of a side [m], > 0
 /// \return the square for the flange frame
 /// Errors:  unreachable if no candidate fits, with the reach; invalid_argument (sizes, side).
 /// Threads: any; pure.

@@ -13,7 +13,7 @@ inline constexpr std::size_t kCorners = 4;
 
 /// A square that stands upright in the robot's base frame; the tool keeps its orientation on it.
 struct Square {
-    /// First corner, lower left as the robot's base sees it: base_from_tool.
+    /// First corner, lower left seen from the robot's base: base_from_tool.
     motion::Pose start;
     /// Unit vectors of the lower and of the left side, in the base frame. `up` is the base's z
     /// axis.
@@ -34,10 +34,10 @@ double distanceFromSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& 
 /// Distance of a point from the nearest side [m].
 double distanceFromOutline(const Square& square, const Eigen::Vector3d& point);
 
-/// What a client measured on one robot.
+/// Measured deviations of one robot's path from its square.
 struct SquareMeasurement {
-    double largest_deviation = 0;  ///< from the straight sides [m]
-    double closure_error = 0;      ///< from the first to the last position [m]
+    double largest_deviation = 0;  ///< largest distance from the straight sides [m]
+    double closure_error = 0;      ///< distance from the first to the last position [m]
 };
 
 /// Measures positions [m, base frame] taken along the laps, from the first corner back to it.

@@ -20,58 +20,59 @@
 
 namespace metier::security {
 
-/// Something that somebody did, or was not let do.
+/// An act of a user or application that was done or refused.
 struct Entry {
     UtcTime time;
     std::string event;  ///< "Start", "Halt", "LoginRefused"
-    /// Who, where, what came of it; in this order in the file. Text that is not UTF-8 is made so,
-    /// and cut after 1000 bytes.
+    /// Names and values, such as the user, the place and the outcome; in this order in the file.
+    /// Text that is not UTF-8 is converted, and cut after 1000 bytes.
     std::vector<std::pair<std::string, std::string>> fields;
 };
 
-/// What the file of a log can be in.
+/// State of a log's file.
 enum class WriteState {
     writing,
-    failing,  ///< nothing can be written: entries are kept, and some may be lost
+    failing,  ///< nothing can be written: entries wait, and some may be lost
 };
 
-/// A file that only grows: a JSON object in each line, chained to the one before by SHA-256.
-/// Beyond `part_size` it goes on in another one: "a.log", "a.2.log", "a.3.log", ..., the chain too.
-/// No part is ever removed.
+/// A log file that only grows: one JSON object per line, each chained to the line before by
+/// SHA-256. Beyond `part_size` the log and its chain go on in a further file: "a.log", "a.2.log",
+/// "a.3.log", ... No part is ever removed.
 ///
-/// Whoever changes, removes or inserts a line breaks the chain, which verify() tells. Lines
-/// cut off at the end show to those who kept a chain value, see anchor(). What is
-/// appended is in the file a second later at most; a slow or full disk delays nobody but the log's
-/// own thread. Beyond 10,000 waiting entries new ones are lost, and their number is written once
-/// that is possible. Threading: any thread may append.
+/// A changed, removed or inserted line breaks the chain, which verify() reports. Lines cut off at
+/// the end are noticed only with a chain value that was kept elsewhere, see anchor(). An entry is
+/// in the file a second after append() at most; a slow or full disk delays only the log's own
+/// thread. Beyond 10,000 waiting entries new ones are lost; their number is written once that is
+/// possible.
+/// Threading: any thread may append.
 class AuditLog {
 public:
     struct Options {
         std::filesystem::path file;
-        /// On the log's thread, at each change; with the reason. May be empty.
+        /// Called on the log's thread at each change of write_state, with the reason. May be empty.
         std::function<void(WriteState, const std::string& why)> on_write_state;
         std::uintmax_t part_size = std::uintmax_t{64} << 20U;  ///< [byte] about
     };
 
-    /// Goes on where the file ends, or its last part. Others may not read it, nor its folder if
-    /// that is new. A last line that is not whole, as after a loss of power, is
-    /// dropped, which an entry tells.
+    /// Opens the log and goes on at the end of its last part. Other users may not read the file,
+    /// nor its folder if this call makes it. An incomplete last line, as after a loss of power, is
+    /// dropped, and an entry reports that.
     /// Errors: resource_unavailable (the file, also if another log has it open);
     ///         invalid_argument (it is no audit log).
     static Result<std::unique_ptr<AuditLog>> open(Options options);
-    /// Writes what is waiting, unless the disk refuses it.
+    /// Writes waiting entries, unless the disk refuses them.
     ~AuditLog();
     AuditLog(const AuditLog&) = delete;
     AuditLog& operator=(const AuditLog&) = delete;
 
-    /// Returns at once.
+    /// Adds an entry; returns at once, does not wait for the disk.
     void append(Entry entry);
-    /// Entries that are not in the file yet.
+    /// Number of entries that are not in the file yet.
     std::size_t waiting() const;
-    /// Waits until all that was appended before is in the file; false at the deadline.
+    /// Waits until all entries appended before are in the file; false at the deadline.
     bool flush(SteadyTime deadline);
-    /// Chain value of the newest line in the file, 64 hexadecimal digits; zeros: there is none.
-    /// Kept elsewhere it shows later whether lines were cut off, see verify().
+    /// Chain value of the newest line in the file, 64 hexadecimal digits; zeros if there is no
+    /// line. A copy kept elsewhere shows later whether lines were cut off, see verify().
     std::string anchor() const;
 
 private:
@@ -82,7 +83,7 @@ private:
     void tell(WriteState write_state, const std::string& why);
 
     const Options options_;
-    std::unique_ptr<File> file_;  // of the thread
+    std::unique_ptr<File> file_;  // used by the log's thread only
     WriteState write_state_ = WriteState::writing;
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
@@ -94,25 +95,25 @@ private:
     std::jthread thread_;
 };
 
-/// What a log that was not tampered with holds.
+/// Content of a log whose chain is intact.
 struct Verified {
     std::uint64_t entries = 0;
-    std::uint64_t first_number = 1;  ///< more: what came before is in another part
+    std::uint64_t first_number = 1;  ///< above 1: earlier entries are in another part
     std::string first_time;          ///< empty if there is no entry
     std::string last_time;
     std::string last_chain;  ///< 64 hexadecimal digits
-    /// Those of the given anchors that are chain values of this log.
+    /// Given anchors that are chain values of this log.
     std::set<std::string> anchors{};
 };
 
-/// Reads the whole file and the parts that follow it.
-/// \param anchors chain values that were newest once, see AuditLog::anchor()
-/// Errors: not_found, naming the part; invalid_argument, naming the first line that is not as it
-///         was written.
+/// Checks the chain of the whole file and of the parts that follow it. Waits for the disk.
+/// \param anchors chain values kept from earlier, see AuditLog::anchor()
+/// Errors: not_found, naming the part; invalid_argument, naming the first line that differs from
+///         what the log wrote.
 Result<Verified> verify(const std::filesystem::path& file,
                         const std::set<std::string>& anchors = {});
 
-/// The file and the parts that follow it, in their order.
+/// Paths of the file and of the parts that follow it, in their order.
 std::vector<std::filesystem::path> partsOf(const std::filesystem::path& file);
 
 }  // namespace metier::security

@@ -10,31 +10,31 @@
 
 namespace metier::security {
 
-/// An X.509 certificate of an OPC UA application or of whoever signs them (OPC 10000-6, 6.2).
-/// Its text came from somebody else: it is printable, but nothing else is known of it.
+/// An X.509 certificate of an OPC UA application or of an authority that signs them (OPC 10000-6,
+/// 6.2). Its texts come from another party: they are printable, but not to be believed.
 class Certificate {
 public:
-    /// The first certificate of what a peer sends, which may be a chain.
+    /// Parses the bytes that a peer sends; of a chain the first certificate.
     /// Errors: invalid_argument (not a certificate).
     static Result<Certificate> fromDer(std::string_view der);
-    /// DER or PEM.
+    /// Reads a file in DER or PEM form.
     /// Errors: not_found (the file), invalid_argument (not a certificate, or over 64 kB).
     static Result<Certificate> fromFile(const std::filesystem::path& file);
 
-    /// Without what may have followed it.
+    /// The certificate in DER form, without bytes that followed it.
     const std::string& der() const noexcept { return der_; }
     std::string pem() const;
-    /// SHA-1 of the DER form, 40 hexadecimal digits: how OPC UA names a certificate.
+    /// SHA-1 of the DER form, 40 hexadecimal digits: the name of a certificate in OPC UA.
     const std::string& thumbprint() const noexcept { return thumbprint_; }
     const std::string& subject() const noexcept { return subject_; }
     const std::string& issuer() const noexcept { return issuer_; }
-    /// Of the SubjectAltName; empty if there is none, or several.
+    /// URI in the SubjectAltName; empty if there is none, or several.
     const std::string& applicationUri() const noexcept { return application_uri_; }
     UtcTime notBefore() const noexcept { return not_before_; }
     UtcTime notAfter() const noexcept { return not_after_; }
     int keyBits() const noexcept { return key_bits_; }
     bool isSelfSigned() const noexcept { return self_signed_; }
-    /// Whether it may sign other certificates.
+    /// Reports whether it may sign other certificates.
     bool isAuthority() const noexcept { return authority_; }
 
     friend bool operator==(const Certificate& a, const Certificate& b) { return a.der_ == b.der_; }
@@ -54,10 +54,10 @@ private:
     bool authority_ = false;
 };
 
-/// SHA-1, as 40 hexadecimal digits.
+/// SHA-1 of a certificate in DER form, as 40 hexadecimal digits.
 std::string thumbprintOf(std::string_view der);
 
-/// As "2027-11-22".
+/// The UTC date, such as "2027-11-22".
 std::string dateText(UtcTime time);
 
 }  // namespace metier::security

@@ -11,7 +11,7 @@
 
 namespace metier::security {
 
-/// Who an application is: its certificate, and the key that proves it.
+/// Identity of an application: its certificate, and the private key that proves it.
 struct Identity {
     Certificate certificate;
     std::string private_key;  ///< PKCS #8, DER
@@ -20,31 +20,34 @@ struct Identity {
 struct IdentityOptions {
     std::string application_name = "metier";
     std::string application_uri = "urn:metier";
-    std::vector<std::string> hosts{"localhost"};  ///< names and IPv4 addresses it is reached by
+    std::vector<std::string> hosts{"localhost"};  ///< host names and IPv4 addresses at which it is
+                                                  ///< reached
     std::chrono::days lifetime{730};
-    int key_bits = 2048;  ///< 2048 to 4096
+    int key_bits = 2048;  ///< length of the RSA key, 2048 to 4096
 };
 
-/// A new key and a self-signed certificate for it, valid from an hour before `now`.
+/// Makes a new key and a self-signed certificate for it, valid from an hour before `now`.
 /// Errors: invalid_argument (an option), internal (the library).
 /// Threads: any; takes up to a second.
 Result<Identity> makeIdentity(const IdentityOptions& options, UtcTime now);
 
-/// A new key and a certificate for the same names as the former.
+/// Makes a new key and a certificate with the names of the former identity.
 /// Errors: internal (the library).
 /// Threads: any; takes up to a second.
 Result<Identity> makeSuccessor(const Identity& former, std::chrono::days lifetime, UtcTime now);
 
-/// The identity in `folder`: identity.pem, which its owner alone may read.
-/// Errors: not_found (none there), access_denied (others may read it), invalid_argument (what it
-///         holds).
+/// Loads the identity in `folder` from identity.pem, a file that only its owner may read.
+/// Errors: not_found (none there), access_denied (others may read it), invalid_argument (its
+///         content).
 Result<Identity> loadIdentity(const std::filesystem::path& folder);
 
-/// Writes it there whole, and the certificate alone to certificate.der, for others to trust.
+/// Saves the identity as `folder`/identity.pem, and the certificate alone as certificate.der, which
+/// others copy to trust it.
 /// Errors: resource_unavailable (the folder).
 Result<void> saveIdentity(const std::filesystem::path& folder, const Identity& identity);
 
-/// The identity in `folder`; a new one, which is saved there, if there is none.
+/// Loads the identity in `folder`; makes and saves a new one if there is none. Errors as
+/// loadIdentity() but not_found, makeIdentity() and saveIdentity().
 Result<Identity> ensureIdentity(const std::filesystem::path& folder, const IdentityOptions& options,
                                 UtcTime now);
 

@@ -14,16 +14,17 @@
 
 namespace metier::security {
 
-/// Lets users in by name and password, and makes whoever guesses wait.
+/// Checks user names and passwords, and delays repeated wrong passwords.
 ///
-/// After five wrong passwords for one user from one application each further attempt is refused for
-/// a while, which doubles from one second to a minute, without a look at the password: that look
-/// takes some ten milliseconds of the server's thread. Counted for each user and each application
-/// by itself: somebody who guesses cannot lock out other users of the same application, such as of
-/// the page of a cell, nor those who use others. After twenty wrong passwords from one application
-/// for whatever users, the last within ten minutes, the first wrong one for a user is enough.
-/// The file of users is read again when it has changed; while a disk hangs, the users of before are
-/// let in.
+/// After five wrong passwords for one user from one application, further attempts are refused for a
+/// while, which doubles from one second to a minute. The password is not checked meanwhile: a check
+/// takes some ten milliseconds of the server's thread. Each pair of user and application is counted
+/// by itself, so a person who guesses locks out neither other users of the same application, such
+/// as the page of a cell, nor users of other applications. After twenty wrong passwords from one
+/// application for any users, the last within ten minutes, the first wrong one for a user causes a
+/// delay.
+/// The file of users is read again when it has changed; while a disk hangs, the last known users
+/// count.
 /// Threading: one thread.
 class LoginGuard {
 public:
@@ -31,13 +32,14 @@ public:
     /// Errors: those of UserTable::load().
     static Result<LoginGuard> open(std::filesystem::path file, const Clock& clock);
 
-    /// \param thumbprint of the certificate of the application
-    /// Errors: access_denied: a wrong name or password, not told apart; too many attempts, with how
-    ///         long to wait.
+    /// Checks a password and returns the role of its user.
+    /// \param thumbprint thumbprint of the application's certificate
+    /// Errors: access_denied: a wrong name or password (the text does not say which), or too many
+    ///         attempts, with the time to wait.
     Result<Role> check(const std::string& user, const std::string& password,
                        const std::string& thumbprint);
 
-    /// What a user may do now; nothing for one who is not known.
+    /// Present role of a user; nothing if the user is not known.
     std::optional<Role> roleOf(const std::string& user);
 
 private:

@@ -19,26 +19,26 @@ namespace metier::security {
 
 /// All that the applications of one user of a machine need for security, in a folder that nobody
 /// else may write:
-///   own/NAME/identity.pem  who each of them is
-///   trust/                 whom they trust, a TrustStore
-///   roles/THUMBPRINT       what an application may do that logs in without a user
-///   users                  who may log in, a UserTable
-///   closed/                addresses at which servers proved who they are, KnownServers
-/// What is made here trusts each other, and may act as Operator: whoever writes to this folder
-/// could decide that anyway.
+///   own/NAME/identity.pem  identity of each application
+///   trust/                 certificates that they trust, a TrustStore
+///   roles/THUMBPRINT       role of an application that logs in without a user
+///   users                  users that may log in, a UserTable
+///   closed/                addresses where servers proved their identity, KnownServers
+/// Applications whose identity is made here trust each other and may act as Operator: a person who
+/// can write to this folder could grant that anyway.
 /// Threading: any thread, one at a time; several processes may use one folder.
 class SecurityFolder {
 public:
-    /// Makes what is missing, for its owner alone.
+    /// Opens the folder and makes missing parts, with access for the owner only.
     /// Errors: resource_unavailable; access_denied (others may write to the folder).
     static Result<SecurityFolder> open(std::filesystem::path folder);
 
-    /// The identity of that name; a new one if there is none.
+    /// Identity of that name; makes a new one if there is none.
     /// \param name letters, digits, `.`, `-` and `_`
     /// Errors: invalid_argument (the name, an option), resource_unavailable, access_denied.
     Result<Identity> identity(const std::string& name, const IdentityOptions& options, UtcTime now);
-    /// Gives an application a new key and certificate, which are trusted like the former, which
-    /// still are, too.
+    /// Gives an application a new key and certificate. The new certificate is trusted like the
+    /// former one, which stays trusted.
     /// Errors: not_found; as identity().
     Result<Identity> renew(const std::string& name, UtcTime now);
 
@@ -46,21 +46,22 @@ public:
         std::string name;
         Certificate certificate;
     };
-    /// Those that can be read, by name.
+    /// Identities in this folder that can be read, sorted by name.
     std::vector<Own> own() const;
 
-    /// Without one an application needs a user.
+    /// Role of the application with that thumbprint; nothing: the application needs a user.
     std::optional<Role> roleOf(std::string_view thumbprint) const;
-    /// Roles of all applications that have one, by thumbprint.
+    /// Roles of all applications that have a role, by thumbprint.
     std::map<std::string, Role> roles() const;
-    /// None: it needs a user from now on. Errors: resource_unavailable.
+    /// Sets the role of an application; nothing: it needs a user from now on.
+    /// Errors: resource_unavailable.
     Result<void> setRole(const Certificate& certificate, std::optional<Role> role);
 
     const std::filesystem::path& path() const noexcept { return folder_; }
     std::filesystem::path identityFolder(const std::string& name) const;
     std::filesystem::path trustFolder() const { return folder_ / "trust"; }
     std::filesystem::path usersFile() const { return folder_ / "users"; }
-    /// \param folder a security folder, which need not be there
+    /// \param folder a security folder, which need not exist
     static KnownServers knownServers(const std::filesystem::path& folder) {
         return KnownServers(folder / "closed");
     }
@@ -72,7 +73,7 @@ private:
     std::filesystem::path folder_;
 };
 
-/// A certificate that ends so soon is to be renewed.
+/// A certificate that expires within this time should be renewed.
 constexpr std::chrono::days kRenewalTime{30};
 
 }  // namespace metier::security

@@ -10,12 +10,12 @@
 
 namespace metier::security {
 
-/// What somebody may do (OPC 10000-18).
+/// Rights of a user or an application (OPC 10000-18).
 enum class Role {
     observer,        ///< reads and browses
     operator_,       ///< also commands skills
     engineer,        ///< also changes how the server works
-    security_admin,  ///< decides whom to trust; commands nothing
+    security_admin,  ///< decides which certificates are trusted; commands nothing
 };
 /// "Observer", "Operator", "Engineer", "SecurityAdmin".
 std::string_view toString(Role role) noexcept;
@@ -24,20 +24,20 @@ std::optional<Role> roleNamed(std::string_view name) noexcept;
 struct User {
     std::string name;
     Role role = Role::observer;
-    std::string password_hash;  ///< as crypt(5): yescrypt, with its salt
+    std::string password_hash;  ///< in the form of crypt(5): yescrypt, with its salt
 };
 
-/// The users of a server, in a file that its owner alone may read: a line for each, with name, role
-/// and password hash.
+/// Users of a server, kept in a file that only its owner may read: one line for each user, with
+/// name, role and password hash.
 ///
 /// Threading: one thread.
 class UserTable {
 public:
     UserTable() = default;
-    /// No file is a table without users.
+    /// Loads the file; a missing file gives a table without users.
     /// Errors: access_denied (others may read the file), invalid_argument, naming the line.
     static Result<UserTable> load(const std::filesystem::path& file);
-    /// Errors: resource_unavailable.
+    /// Writes the file, readable by its owner only. Errors: resource_unavailable.
     Result<void> save(const std::filesystem::path& file) const;
 
     const std::vector<User>& users() const noexcept { return users_; }
@@ -54,10 +54,11 @@ private:
     std::vector<User> users_;
 };
 
-/// Takes some ten milliseconds, so that nobody can guess many.
+/// Hashes a password with a new salt. Takes some ten milliseconds on purpose, so that nobody can
+/// try many passwords.
 /// Errors: internal (the system's crypt()).
 Result<std::string> hashPassword(const std::string& password);
-/// Whether it is the password of that hash; takes as long.
+/// Reports whether `hash` was made of this password; takes as long as hashPassword().
 bool isPassword(const std::string& password, const std::string& hash);
 
 }  // namespace metier::security

@@ -16,10 +16,10 @@
 
 namespace metier::virtual_controller {
 
-/// One thing that a person or an accident does to a controller, as `metier virtual inject` names
-/// it.
+/// An act of a person or an accident that a controller suffers, named as for `metier virtual
+/// inject`.
 struct Injection {
-    std::string name;   ///< as "emergency-stop"
+    std::string name;   ///< such as "emergency-stop"
     std::string value;  ///< its argument as text; may be empty
 };
 
@@ -28,42 +28,43 @@ struct InjectionHelp {
     std::string help;  ///< one line; names the argument, its unit and range
 };
 
-/// The controller of a robot, gripper or sensor, without the device: speaks the maker's wire.
+/// Virtual controller of a robot, gripper or sensor: uses the maker's wire protocol, but has no
+/// device.
 ///
 /// Threading: made, used and destroyed on the thread that runs its io_context.
 class Controller {
 public:
     virtual ~Controller() = default;
 
-    /// What it can be asked to suffer, beyond the link faults, which every controller has.
+    /// Injections that it supports, in addition to the link faults, which every controller has.
     virtual std::vector<InjectionHelp> injections() const = 0;
     /// Errors: not_found (no such injection), invalid_argument.
     virtual Result<void> inject(const Injection& injection) = 0;
-    /// What can be seen of it from outside: modes, joint position [rad], width [m], ...
+    /// State seen from outside: modes, joint position [rad], width [m], ...
     virtual nlohmann::ordered_json state() const = 0;
-    /// As switching the power off and on: every connection breaks, every mode is the first one.
+    /// Switches the power off and on: every connection breaks, every mode is the initial one.
     virtual void restart() = 0;
 };
 
-/// What a virtual controller is made from.
+/// Request to make a virtual controller.
 struct ControllerRequest {
     asio::io_context& context;
     std::string name;
-    std::string address;                        ///< to listen on, as 127.0.1.1
-    cell::Settings settings;           ///< the controller's own; it calls finish()
-    const motion::RobotModel* model = nullptr;  ///< of the arm; nullptr for other devices
+    std::string address;      ///< address to listen on, such as 127.0.1.1
+    cell::Settings settings;  ///< settings of the controller, which calls finish()
+    const motion::RobotModel* model = nullptr;  ///< model of the arm; nullptr for other devices
     LinkFaults& faults;                         ///< outlives the controller
     WorldLink& world;                           ///< outlives the controller
 };
 
 /// One kind of virtual controller. To add one: docs/guide/add-a-robot.md.
 struct ControllerType {
-    std::string_view name;  ///< as in `type = "ur"`
+    std::string_view name;  ///< name in a cell file: `type = "ur"`
     std::string_view help;
     Result<std::unique_ptr<Controller>> (*start)(const ControllerRequest& request);
 };
 
-/// Every virtual controller that was built, by name.
+/// Every type of virtual controller of this build, by name.
 const std::vector<ControllerType>& controllerTypes();
 
 }  // namespace metier::virtual_controller

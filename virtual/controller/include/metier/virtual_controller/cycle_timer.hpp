@@ -10,8 +10,8 @@
 
 namespace metier::virtual_controller {
 
-/// Calls a function once per period on an exact grid, on the thread that runs the io_context.
-/// Late calls are caught up as TimeBase says.
+/// Calls a function once per period on an exact grid, on the thread that runs the io_context. Late
+/// calls are caught up by the rule of TimeBase.
 class CycleTimer {
 public:
     CycleTimer(asio::io_context& context, std::chrono::nanoseconds period,
@@ -19,7 +19,7 @@ public:
     CycleTimer(const CycleTimer&) = delete;
     CycleTimer& operator=(const CycleTimer&) = delete;
 
-    /// From the next call on. The grid begins anew there.
+    /// Sets the period from the next call on; the grid begins anew there.
     void setPeriod(std::chrono::nanoseconds period) noexcept { next_period_ = period; }
 
 private:

@@ -14,19 +14,19 @@
 
 namespace metier::virtual_controller {
 
-/// What a host is to run.
+/// Options of a host.
 struct HostOptions {
     std::string name;
-    std::string type;     ///< of controllerTypes()
-    std::string address;  ///< for every port, as 127.0.1.1
+    std::string type;     ///< a name of controllerTypes()
+    std::string address;  ///< address of every port, such as 127.0.1.1
     cell::Settings settings;
     const motion::RobotModel* model = nullptr;
     std::string world_address;          ///< empty: no world
     std::uint16_t control_port = 7400;  ///< 0: a free one
 };
 
-/// One virtual controller with its control port, through which it is asked to suffer and to show
-/// itself: a line of JSON for a line of JSON (controlAnswer()).
+/// One virtual controller with its control port, which takes injections and shows the state: each
+/// line of JSON is answered by a line of JSON, see controlAnswer().
 ///
 /// Threading: one thread makes, runs and destroys it; stop() from any.
 class Host {
@@ -40,14 +40,14 @@ public:
     /// Runs the controller until stop().
     void run() { context_.run(); }
     void stop() { context_.stop(); }
-    /// Ends run() once nobody is connected to the controller, or at the latest after that time:
-    /// a driver that is about to end brakes its arm first. Any thread; does not wait.
+    /// Ends run() once no peer is connected to the controller, at the latest after `longest`: a
+    /// driver that is about to end brakes its arm first. Any thread; does not wait.
     void stopOnceAlone(std::chrono::milliseconds longest);
     asio::io_context& context() noexcept { return context_; }
     Controller& controller() noexcept { return *controller_; }
     std::uint16_t controlPort() const { return control_->port(); }
 
-    /// {"inject": NAME, "value": TEXT}, {"state": true} or {"help": true}.
+    /// Answers a request: {"inject": NAME, "value": TEXT}, {"state": true} or {"help": true}.
     /// \return {"ok": true}, the state, the list of injections, or {"error": why}
     nlohmann::ordered_json controlAnswer(std::string_view line);
 
@@ -60,7 +60,7 @@ private:
     asio::io_context context_;
     asio::steady_timer solitude_{context_};
     LinkFaults faults_;
-    LinkFaults no_faults_;  // of the control port
+    LinkFaults no_faults_;  // faults of the control port: none
     std::unique_ptr<WorldLink> world_;
     std::unique_ptr<Controller> controller_;
     std::unique_ptr<TcpServer> control_;

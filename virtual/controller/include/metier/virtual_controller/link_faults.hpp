@@ -7,19 +7,19 @@
 
 namespace metier::virtual_controller {
 
-/// What is wrong with the cable of a virtual controller. Every port of it obeys.
+/// Faults of the cable of a virtual controller. They apply to every port of it.
 ///
 /// Threading: any thread.
 struct LinkFaults {
-    /// Nothing is sent, received or accepted, and nobody is told: a pulled cable.
+    /// A pulled cable: nothing is sent, received or accepted, and neither side is notified.
     std::atomic<bool> cut{false};
-    /// Everything that is sent comes so much later [ms].
+    /// Delay of all sent bytes [ms].
     std::atomic<std::uint32_t> delay_ms{0};
-    /// So many of the next packets that are sent have one byte changed.
+    /// Number of the next sent packets that get one changed byte.
     std::atomic<std::uint32_t> garble{0};
 
-    /// Changes a byte of a packet that is to be sent, if it is one of those. In turns it is the
-    /// first byte and one in the middle, then in the middle of the halves, of the quarters, ...
+    /// Changes a byte of a packet before it is sent, if `garble` asks for it. The place of the byte
+    /// goes round: the first one, the middle one, the middle of the halves, of the quarters, ...
     void spoil(std::span<std::byte> packet) noexcept;
 
 private:

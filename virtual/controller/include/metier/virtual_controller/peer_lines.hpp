@@ -11,22 +11,22 @@
 
 namespace metier::virtual_controller {
 
-/// Cuts what the peers of a port send into lines.
+/// Cuts the bytes from the peers of a port into lines.
 ///
 /// Threading: the thread of its server.
 class PeerLines {
 public:
-    /// \param longest line; a peer that sends a longer one is reset
+    /// \param longest longest line [byte]; a peer that sends a longer one is reset
     explicit PeerLines(std::size_t longest = 4096) : longest_(longest) {}
 
-    /// Calls `take` for each line that is whole now, without its line feed.
+    /// Calls `take` for each complete line, without its line feed.
     void add(TcpPeer& peer, std::span<const std::byte> bytes,
              const std::function<void(std::string_view)>& take);
     void forget(const TcpPeer& peer) { parts_.erase(&peer); }
 
 private:
     std::size_t longest_;
-    std::map<const TcpPeer*, std::string> parts_;  // what came since the last line feed
+    std::map<const TcpPeer*, std::string> parts_;  // bytes since the last line feed
 };
 
 }  // namespace metier::virtual_controller

@@ -11,13 +11,14 @@
 
 namespace metier::virtual_controller {
 
-/// The world in a process of its own (virtual/world), spoken to by lines of JSON over TCP: one
-/// effect comes back for each report. A world that is not there has no effect; it is sought again.
+/// The world in a process of its own (virtual/world), reached by lines of JSON over TCP: each
+/// report is answered by one effect. While the world cannot be reached there is no effect, and
+/// connecting is tried again.
 class RemoteWorld final : public WorldLink {
 public:
     static constexpr std::uint16_t kPort = 7410;
 
-    /// \param name as the world's settings call this controller
+    /// \param name name of this controller in the world's settings
     RemoteWorld(asio::io_context& context, std::string name, std::string address,
                 std::uint16_t port = kPort);
     RemoteWorld(const RemoteWorld&) = delete;
@@ -42,11 +43,11 @@ private:
     WorldReport newest_;
     WorldEffect effect_;
     bool connected_ = false;
-    bool unsent_ = false;    // newest_ has not gone out
-    bool awaiting_ = false;  // an effect is under way
+    bool unsent_ = false;    // newest_ has not been sent
+    bool awaiting_ = false;  // waits for an effect
 };
 
-/// No world: nothing is touched, nothing is between the jaws.
+/// A world without objects: nothing is touched, no part is between the jaws.
 class EmptyWorld final : public WorldLink {
 public:
     void report(const WorldReport&) override {}

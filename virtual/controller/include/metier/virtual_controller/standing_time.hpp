@@ -9,23 +9,24 @@
 
 namespace metier::virtual_controller {
 
-/// For how long a device has been standing, by the clock of this machine: what a real robot's
-/// observer sees, whatever its controller says.
+/// Time for which a device has been standing still, by the clock of this machine: the view of an
+/// observer beside the robot, independent of what its controller reports.
 class StandingTime {
 public:
-    /// Less than this is no motion [rad].
+    /// Change of position below which nothing counts as motion [rad].
     static constexpr double kNoMotion = 1e-4;
 
-    /// Once per cycle. \param position where the device truly is, per axis [rad]
+    /// Takes the position; call it once per cycle.
+    /// \param position true position of each axis [rad]
     void take(std::span<const double> position, SteadyTime now);
 
-    /// Since the device moved last, at `now`; zero before the first take().
+    /// Time from the last motion to `now`; zero before the first take().
     std::chrono::duration<double> standing(SteadyTime now) const;
-    /// Longest time from one cycle to the next since the device began to move last: what a busy
-    /// machine adds to every time that is seen of this controller.
+    /// Longest time from one cycle to the next since the last begin of a motion: a busy machine
+    /// adds up to this to every time measured at this controller.
     std::chrono::duration<double> longestCycle() const { return longest_cycle_; }
 
-    /// Adds "standing_for" and "longest_cycle", both [s], to what a controller shows of itself.
+    /// Adds "standing_for" and "longest_cycle", both [s], to a controller's state.
     void show(nlohmann::ordered_json& state, SteadyTime now) const;
 
 private:

@@ -12,33 +12,34 @@
 
 namespace metier::virtual_controller {
 
-/// The TCP connections that a virtual controller makes by itself.
+/// TCP connection that a virtual controller opens itself.
 ///
 /// Threading: made, used and destroyed on the thread that runs the io_context, whose handlers are
 /// all called there.
 class TcpDialer {
 public:
     struct Route {
-        std::string from;      ///< address of the controller; its peer sees it if both are loopback
+        std::string from;      ///< address of the controller; the peer sees it if both are loopback
+                               ///< addresses
         std::string to;        ///< address to dial
         std::uint16_t port{};  ///< > 0
     };
     struct Handlers {
         TcpServer::Handlers peer;
-        /// Nobody answered; dial() again when it is time.
+        /// Reports that no peer answered; the owner calls dial() again when it likes.
         std::function<void(const Error& error)> on_failed;
     };
 
-    /// Does not dial yet.
+    /// Creates the dialer; does not connect yet.
     /// \param faults must outlive the dialer
     /// Errors: invalid_argument (not an address, no port).
     static Result<std::unique_ptr<TcpDialer>> create(asio::io_context& context, const Route& route,
                                                      LinkFaults& faults, Handlers handlers);
     virtual ~TcpDialer() = default;
 
-    /// Tries once; peer.on_connected or on_failed follows. Over a cut cable nobody answers.
+    /// Tries to connect once; peer.on_connected or on_failed follows. Fails while the cable is cut.
     virtual void dial() = 0;
-    /// Gives up dialling and resets what is connected.
+    /// Gives up dialling and resets an open connection.
     virtual void reset() = 0;
 };
 

@@ -14,24 +14,25 @@
 
 namespace metier::virtual_controller {
 
-/// One peer of a TCP port. Owned by its server; a pointer to it holds until the server has called
-/// onClosed for it.
+/// One peer of a TCP port. Owned by its server; a pointer to it is valid until the server has
+/// called on_closed for it.
 ///
 /// Threading: the thread that runs the io_context.
 class TcpPeer {
 public:
     virtual ~TcpPeer() = default;
 
-    /// Queues bytes; they leave in order. A peer that does not read 1 MB is cut.
+    /// Queues bytes, which are sent in order; does not wait. A peer that leaves 1 MB unread is
+    /// disconnected.
     virtual void send(std::span<const std::byte> bytes) = 0;
     void send(std::string_view text) { send(std::as_bytes(std::span(text))); }
-    /// Sends what is queued, then closes. onClosed follows.
+    /// Sends the queued bytes, then closes. on_closed follows.
     virtual void close() = 0;
-    /// Closes at once with a reset, as a controller that lost power.
+    /// Closes at once with a reset, like a controller that lost power.
     virtual void reset() = 0;
-    /// Bytes queued and not yet taken by the system.
+    /// Number of queued bytes that the system has not taken yet.
     virtual std::size_t queued() const = 0;
-    /// "127.0.0.1:51234".
+    /// Address and port of the peer, such as "127.0.0.1:51234".
     virtual const std::string& address() const = 0;
 };
 
@@ -43,7 +44,7 @@ class TcpServer {
 public:
     struct Handlers {
         std::function<void(TcpPeer&)> on_connected;
-        /// Whatever came in one read; a packet may come in parts, several at once.
+        /// Receives the bytes of one read: part of a packet, or several packets.
         std::function<void(TcpPeer&, std::span<const std::byte>)> on_data;
         /// The peer is gone or was closed; the last call for it.
         std::function<void(TcpPeer&)> on_closed;
@@ -60,7 +61,7 @@ public:
 
     virtual std::uint16_t port() const = 0;
     virtual void forEach(const std::function<void(TcpPeer&)>& action) = 0;
-    /// Resets every connection, as a controller that restarts.
+    /// Resets every connection, like a controller that restarts.
     virtual void resetAll() = 0;
 };
 

@@ -7,21 +7,22 @@
 
 namespace metier::virtual_controller {
 
-/// What the world does to one controller's device.
+/// Effect of the world on one controller's device.
 struct WorldEffect {
-    /// On the flange, in the flange frame: contact with a wall, the weight of a held part.
+    /// Wrench on the flange, in the flange frame, from contact with a wall and the weight of a held
+    /// part.
     motion::Wrench wrench{};
-    /// Width of the part between the jaws, if there is one [m].
+    /// Width of the part between the jaws [m]; empty: no part.
     std::optional<double> part_width{};
 };
 
-/// What one controller's device shows the world. What it does not have stays empty.
+/// State of one controller's device for the world. Fields that the device does not have stay empty.
 struct WorldReport {
-    /// The device's own time [s]: its cycles, however late they are calculated.
+    /// The device's own time [s], counted in cycles, however late these are calculated.
     double time = 0.0;
     std::optional<motion::Pose> base_from_flange{};
     std::optional<double> jaw_width{};  ///< [m]
-    /// The jaws press on a part. It is held from then on until they are wider than it.
+    /// The jaws press on a part. The part is held from then on until they are wider than it.
     bool gripping = false;
 };
 
@@ -32,10 +33,10 @@ class WorldLink {
 public:
     virtual ~WorldLink() = default;
 
-    /// Call once per cycle of the device, with its present state, also if it has none: the world
-    /// answers with its effect.
+    /// Sends the present state of the device; call it once per cycle, also if all fields are empty:
+    /// the world answers each report with its effect.
     virtual void report(const WorldReport& report) = 0;
-    /// The newest effect; a few milliseconds old.
+    /// Newest effect, a few milliseconds old.
     virtual const WorldEffect& effect() const = 0;
 };
 

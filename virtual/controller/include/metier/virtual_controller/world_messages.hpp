@@ -8,16 +8,16 @@
 
 namespace metier::virtual_controller {
 
-// What a controller and the world tell each other: a line of JSON each.
+// Messages between a controller and the world: a line of JSON each.
 
 struct NamedReport {
-    std::string name;  ///< of the controller
+    std::string name;  ///< name of the controller
     WorldReport report;
 };
 
 std::string toLine(const NamedReport& report);
 std::string toLine(const WorldEffect& effect);
-/// Nothing if the line is not such a message or a number in it is not finite.
+/// Parsers; nothing if the line is not such a message or a number in it is not finite.
 std::optional<NamedReport> reportOf(std::string_view line);
 std::optional<WorldEffect> effectOf(std::string_view line);
 

@@ -9,22 +9,22 @@
 
 namespace metier::joint_simulator {
 
-/// What the simulated controller allows one axis.
+/// Limits of one axis in the simulated controller.
 struct AxisLimits {
     double lower = 0.0;         ///< [rad]
     double upper = 0.0;         ///< [rad]
     double velocity = 0.0;      ///< [rad/s], > 0
-    double acceleration = 0.0;  ///< [rad/s2], > 0; also how hard it brakes by itself
+    double acceleration = 0.0;  ///< [rad/s2], > 0; the controller's own stop brakes with it
 };
 
-/// How far a set-point may exceed a limit before the controller stops the arm.
+/// Amounts by which a set-point may exceed a limit before the controller stops the arm.
 struct GuardTolerance {
     double position = 1e-6;      ///< [rad]
     double velocity = 0.01;      ///< part of the limit
     double acceleration = 0.05;  ///< part of the limit
 };
 
-/// What a set-point broke, without text so that a cycle thread can make it.
+/// A limit that a set-point broke; without text, so that a cycle thread can make it.
 struct Violation {
     enum class Quantity : std::uint8_t { position, velocity, acceleration, not_finite, axis_count };
 
@@ -34,12 +34,12 @@ struct Violation {
     double limit = 0.0;
 };
 
-/// A sentence with axis (from 1), value, limit and unit.
+/// A sentence for a person, with axis (from 1), value, limit and unit.
 std::string toText(const Violation& violation);
 
-/// Judges each set-point against the last two, as a real controller does: finite differences over
-/// one cycle. Written for this simulator alone, so that it cannot share a mistake with the motion
-/// library whose set-points it judges.
+/// Checks each set-point against the last two by finite differences over one cycle, as a real
+/// controller does. It shares no code with the motion library, so that it cannot share a mistake
+/// with the set-points that it checks.
 ///
 /// Threading: one thread, the cycle. Does not allocate.
 class Guard {
@@ -47,14 +47,14 @@ public:
     /// \param cycle [s], > 0
     Guard(std::vector<AxisLimits> limits, GuardTolerance tolerance, double cycle);
 
-    /// Takes a set-point, or leaves the guard unchanged and says what it breaks.
+    /// Takes a set-point, or leaves the guard unchanged and returns the broken limit.
     std::optional<Violation> accept(const device::JointArray& set_point) noexcept;
 
     /// Brakes each axis by one cycle as hard as its limit allows.
     /// \return the position at the end of the cycle
     const device::JointArray& brake() noexcept;
 
-    /// Puts the arm elsewhere, standing.
+    /// Sets the arm at a position, standing still.
     void reset(const device::JointArray& position) noexcept;
 
     const device::JointArray& position() const noexcept { return position_; }  ///< [rad]

@@ -14,7 +14,7 @@
 
 namespace metier::joint_simulator {
 
-/// What one simulated arm is like.
+/// Properties of a simulated arm.
 struct JointSimulatorOptions {
     std::string name;
     std::vector<std::string> axis_names;  ///< 1 to device::kMaxAxes
@@ -22,18 +22,19 @@ struct JointSimulatorOptions {
     std::vector<double> start_position;   ///< [rad], within the limits
     std::chrono::nanoseconds cycle{};     ///< > 0
     GuardTolerance tolerance;
-    std::size_t delay_cycles = 2;    ///< from set-point to measured arm, <= kMaxDelayCycles
-    double time_constant = 0.0;      ///< of the lag after that [s]; 0: none
+    std::size_t delay_cycles = 2;    ///< dead time from set-point to measured arm, <=
+                                     ///< kMaxDelayCycles
+    double time_constant = 0.0;      ///< time constant of the lag after that [s]; 0: no lag
     double standstill_speed = 1e-3;  ///< below it the measured arm counts as standing [rad/s]
 };
 
 enum class EmergencyStop : std::uint8_t { released, pressed };
 
-/// A robot arm without a robot: follows set-points with a lag, judges each by its own guard and
-/// stops by itself when one breaks a limit.
+/// A simulated robot arm: follows set-points with a lag, checks each with its own guard and stops
+/// by itself when one breaks a limit.
 ///
-/// It has no thread: cycle() is one period of the controller, and time passes by nothing else, so
-/// tests move it by hand with step(); SimulatorDrive runs it at its real rate.
+/// It has no thread: cycle() is one period of the controller and the only thing that makes time
+/// pass. Tests move time by hand with step(); SimulatorDrive runs the arm at its real rate.
 ///
 /// After a violation each axis brakes at its acceleration limit, off the path as a real robot
 /// would, and the safety state is protective_stop until resetFault(). A set-point that breaks a
@@ -46,7 +47,7 @@ public:
     ///         position is outside the limits.
     static Result<std::unique_ptr<JointSimulator>> create(JointSimulatorOptions options);
 
-    /// Tells a source that is still attached that the arm is disconnected.
+    /// Ends a source that is still attached with EndCause::disconnected.
     ~JointSimulator() override;
     JointSimulator(const JointSimulator&) = delete;
     JointSimulator& operator=(const JointSimulator&) = delete;
@@ -61,29 +62,29 @@ public:
     device::Registration onSafetyChange(SafetyCallback callback) override;
 
     /// One period of the controller. Neither locks, allocates, logs nor throws.
-    /// \param scheduled when the time base says it begins
+    /// \param scheduled begin of the cycle by the TimeBase
     /// \param missed    cycles so far that began more than one period late
-    /// \return whether dispatch() has something to tell
+    /// \return whether dispatch() has something to report
     bool cycle(SteadyTime scheduled, std::uint64_t missed) noexcept;
-    /// How late the cycle's thread woke up. Cycle thread.
+    /// Notes how late the cycle thread woke up. Cycle thread only.
     void measure(std::chrono::nanoseconds late) noexcept {
         jitter_.add(std::chrono::duration<double>(late).count());
     }
 
-    /// Tells sources and callbacks what happened. Not from the cycle thread.
+    /// Calls ended() of a released source and the safety callbacks. Not from the cycle thread.
     void dispatch();
 
     /// cycle() on a time base of its own, then dispatch(): for tests with time moved by hand.
     void step();
 
-    /// What people and accidents do to an arm; each takes effect in the next cycle. Any thread.
+    /// Acts of people and accidents on an arm; each takes effect in the next cycle. Any thread.
     /// \param text the controller's reason
     void protectiveStop(std::string text);
     void emergencyStop(EmergencyStop button) noexcept;
     void disconnect() noexcept;
-    /// The arm answers again; normal if nothing else holds it.
+    /// The arm answers again; its safety state is normal if there is no other reason for a stop.
     void reconnect() noexcept;
-    /// Someone pushes the arm there. Only while no source moves it; ignored otherwise.
+    /// Moves the arm to a position as if somebody pushed it there. Ignored while a source moves it.
     /// \param position [rad], one value per axis
     void moveByHand(const device::JointArray& position) noexcept;
 
@@ -113,14 +114,14 @@ private:
     const device::ArmInfo info_;
     const double standstill_speed_;
 
-    // Of the cycle thread alone.
+    // Cycle thread only:
     Guard guard_;
     Lag lag_;
     device::ArmState state_;
     bool stopping_ = false;
     device::SafetyState last_safety_ = device::SafetyState::normal;
 
-    // Between the cycle thread and the others.
+    // Shared by the cycle thread and the others:
     device::SharedValue<device::ArmState> published_;
     TimeHistogram jitter_;
     device::SharedValue<StopReason> reason_;
@@ -135,9 +136,9 @@ private:
     std::atomic<bool> link_cut_{false};
     LatestValue<device::JointArray> hand_move_;
 
-    // Of everyone but the cycle thread.
+    // All threads but the cycle thread:
     mutable std::mutex mutex_;
-    std::shared_ptr<device::SetPointSource> owner_;  // shared with whoever attached it
+    std::shared_ptr<device::SetPointSource> owner_;  // shared with the caller of attach()
     std::string external_text_;
     std::vector<std::pair<std::uint64_t, SafetyCallback>> callbacks_;
     std::uint64_t next_callback_ = 1;

@@ -5,11 +5,12 @@
 
 namespace metier::joint_simulator {
 
-/// A simulated arm of that kind, standing at its home position at its controller's rate.
+/// Options of a simulated arm of this model: it stands at its home position and has its
+/// controller's cycle.
 ///
-/// The model's accelerations are those to plan with; the simulated drives give twice as much, since
-/// a Halt brakes twice as hard as a motion is planned. Only numbers are taken from the model: the
-/// guard that judges the set-points is the simulator's own.
+/// Motions are planned with the model's accelerations; the simulated drives allow twice as much,
+/// since a Halt brakes twice as hard. Only numbers are taken from the model: the guard that checks
+/// the set-points is the simulator's own.
 JointSimulatorOptions optionsFor(const motion::RobotModel& model);
 
 }  // namespace metier::joint_simulator

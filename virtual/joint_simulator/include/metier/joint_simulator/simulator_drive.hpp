@@ -8,11 +8,11 @@
 
 namespace metier::joint_simulator {
 
-/// Runs a simulated arm at its real rate: its cycle thread and its notifying thread.
+/// Cycle thread and notifying thread of a simulated arm; runs it at its real rate.
 class SimulatorDrive {
 public:
-    /// Begins at once. The arm must outlive the drive, and nobody else may call cycle(),
-    /// dispatch() or step().
+    /// Begins at once. The arm must outlive the drive; no other code may call its cycle(),
+    /// dispatch() or step() meanwhile.
     explicit SimulatorDrive(JointSimulator& arm);
 
     /// Ends both threads within one period; the arm keeps its last state.

@@ -7,26 +7,26 @@
 
 namespace metier::joint_simulator {
 
-/// When the cycles of a controller are due.
+/// Schedule of a controller's cycles.
 ///
-/// Catch-up rule: a cycle that begins late still is the next whole cycle of the time base, and the
-/// cycles behind it follow at once until the time base is reached again. So each set-point is one
-/// period after the last and a late thread alone breaks no limit. Only when it is more than
-/// kLongestCatchUp late is the time base moved to the present; the cycles left out count as missed
-/// and the arm's own time stands still meanwhile.
+/// Catch-up rule: a cycle that begins late is still the next cycle of the schedule, and the cycles
+/// after it follow at once until the schedule is reached again. So each set-point is one period
+/// after the last, and a late thread alone breaks no limit. Only a delay of more than
+/// kLongestCatchUp moves the schedule to the present; the cycles left out count as missed, and the
+/// arm's own time stands still meanwhile.
 class TimeBase {
 public:
     static constexpr std::chrono::milliseconds kLongestCatchUp{100};
 
-    /// \param first when the first cycle is due
+    /// \param first time at which the first cycle is due
     TimeBase(SteadyTime first, std::chrono::nanoseconds period) noexcept
         : next_(first), period_(period) {}
 
-    /// When the next cycle is due.
+    /// Time at which the next cycle is due.
     SteadyTime next() const noexcept { return next_; }
 
     /// Begins the next cycle at `now`, which is not before next().
-    /// \return when it was due
+    /// \return time at which it was due
     SteadyTime begin(SteadyTime now) noexcept {
         if (now - next_ > kLongestCatchUp) {
             const auto left_out = (now - next_) / period_;
@@ -41,7 +41,7 @@ public:
         return due;
     }
 
-    /// Cycles that were left out or began at least one period late.
+    /// Number of cycles that were left out or began at least one period late.
     std::uint64_t missed() const noexcept { return missed_; }
 
 private:

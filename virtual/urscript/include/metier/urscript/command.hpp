@@ -9,7 +9,8 @@
 
 namespace metier::urscript {
 
-// What a script sets and that takes effect at once. SI and radians; tool flange frame unless said.
+// Commands of a script that take effect at once. SI units and radians; tool flange frame unless
+// stated otherwise.
 
 struct SetPayload {
     double mass = 0.0;               ///< [kg]
@@ -33,7 +34,7 @@ struct ForceMode {
     Vector6 selection{};  ///< 1: compliant axis
     Vector6 wrench{};     ///< [N], [Nm]
     int type = 2;         ///< 1 to 3
-    Vector6 limits{};     ///< compliant: speed [m/s], [rad/s]; else deviation [m], [rad]
+    Vector6 limits{};     ///< compliant axis: speed [m/s], [rad/s]; else deviation [m], [rad]
 };
 struct EndForceMode {};
 struct ForceModeDamping {
@@ -55,7 +56,7 @@ struct ForceSensorInput {
     Vector3 cog{};      ///< [m]
 };
 struct RtdeWatchdog {
-    std::string variable;          ///< as "input_int_register_0"
+    std::string variable;          ///< such as "input_int_register_0"
     double min_frequency = 0.0;    ///< [Hz]
     std::string action = "pause";  ///< "ignore", "pause" or "stop"
 };
@@ -69,7 +70,7 @@ struct AnalogDomain {
 struct PowerDown {};
 /// `protective_stop`: the controller stops the arm, as if it had found a fault.
 struct ProtectiveStop {};
-/// A function that exists but changes nothing that other functions can see, as
+/// A function that exists but has no effect visible to other functions, such as
 /// `set_tool_communication`.
 struct OtherCommand {
     std::string name;

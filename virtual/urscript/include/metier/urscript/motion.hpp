@@ -7,7 +7,7 @@
 
 namespace metier::urscript {
 
-/// Where a move goes: a joint position [rad] or a pose of the tool frame in the base frame.
+/// Target of a move: a joint position [rad] or a pose of the tool frame in the base frame.
 using Target = std::variant<Vector6, Pose>;
 
 // The motion calls of a script, with the manual's defaults filled in. SI and radians.
@@ -47,8 +47,8 @@ struct MoveC : Move {
     Target via{};
     int mode = 0;  ///< 0 unconstrained orientation, 1 fixed
 };
-/// Drives the tool towards a target. Lasts one cycle; the arm goes on until it is there, or another
-/// motion takes over.
+/// Drives the tool towards a target. Lasts one cycle; the arm goes on until it reaches the target
+/// or another motion takes over.
 struct ServoC {
     Target target{};
     double acceleration = 0.0;  ///< [m/s^2]

@@ -11,32 +11,32 @@ namespace metier::urscript {
 struct Code;  // private
 
 enum class ProgramKind {
-    primary,    ///< `def NAME():`, or statements alone: may move the arm, replaces what runs
+    primary,    ///< `def NAME():`, or statements alone: may move the arm, replaces the running
+                ///< program
     secondary,  ///< `sec NAME():`: runs beside the primary program in one cycle, never moves the
                 ///< arm
 };
 
-/// A script that was understood: its names are resolved, it is ready to be run any number of times.
+/// A parsed script with resolved names; it can be run any number of times.
 ///
-/// Cheap to copy; copies share what never changes. Threading: any thread.
-/// Source: URScript manual; what of it is there, virtual/urscript/README.md.
+/// Cheap to copy: copies share immutable code. Threading: any thread.
+/// Source: URScript manual; virtual/urscript/README.md lists the supported part.
 class Program {
 public:
     /// Longest text that is accepted [bytes].
     static constexpr std::size_t kMaxText = 1'000'000;
 
-    /// Understands one `def ... end`, one `sec ... end`, or statements outside of both, which make
-    /// an anonymous primary program.
-    /// Errors, all with "line L, column C: why" (both count from 1):
-    ///         not_found for a function, thread or variable that nobody defines, its name in '',
+    /// Parses one `def ... end`, one `sec ... end`, or statements outside of both, which make an
+    /// anonymous primary program. Errors, all with "line L, column C: why" (both count from 1):
+    ///         not_found for a function, thread or variable without a definition, its name in '',
     ///         invalid_argument for the rest, also wrong argument counts and text beyond the
     ///         limits.
     static Result<Program> parse(std::string_view text);
 
-    /// Empty for an anonymous program.
+    /// Name of the program; empty for an anonymous one.
     const std::string& name() const;
     ProgramKind kind() const;
-    /// Of the implementation: what the interpreter runs.
+    /// Internal form for the interpreter; not for other callers.
     const std::shared_ptr<const Code>& code() const { return code_; }
 
 private:

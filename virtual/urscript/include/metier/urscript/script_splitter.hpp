@@ -8,13 +8,13 @@
 
 namespace metier::urscript {
 
-/// Cuts what a client sends to a script port into programs: each `def`/`sec` up to its `end`, and
-/// each line outside of these, are a program of their own. Empty lines and comments are dropped.
+/// Cuts the bytes that a client sends to a script port into programs: each `def` or `sec` up to its
+/// `end` is a program, and each line outside of these. Empty lines and comments are dropped.
 ///
 /// One per connection. Threading: one thread.
 class ScriptSplitter {
 public:
-    /// Takes bytes as they came and appends each program that is now complete, oldest first.
+    /// Takes received bytes and appends each program that is complete now, oldest first.
     /// Errors: out_of_range if a program grows beyond Program::kMaxText; what was collected is
     ///         dropped, and the splitter begins anew with the next line.
     Result<void> push(std::string_view bytes, std::vector<std::string>& programs);
@@ -22,8 +22,8 @@ public:
 private:
     void takeLine(std::vector<std::string>& programs);
 
-    std::string line_;     // what came since the last line feed
-    std::string program_;  // the lines of a block that is not closed yet
+    std::string line_;     // bytes since the last line feed
+    std::string program_;  // lines of the block that is not closed yet
     int open_blocks_ = 0;
 };
 

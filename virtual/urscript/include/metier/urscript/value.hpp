@@ -23,8 +23,8 @@ struct Pose {
 
 class Value;
 
-/// A list with the meaning of a value: a copy is independent of what it was copied from.
-/// Copies share their elements until one of them is changed.
+/// A list with value semantics: a copy is independent of the original. Copies share their elements
+/// until one of them is changed.
 class List {
 public:
     List() = default;
@@ -32,9 +32,9 @@ public:
 
     const std::vector<Value>& elements() const;
     std::size_t size() const;
-    /// Values in it and in the lists in it.
+    /// Number of values in this list and in the lists inside it.
     std::size_t weight() const { return weight_; }
-    /// Lists within lists: 1 for a list of numbers, at least.
+    /// Depth of nested lists, at least 1: 1 for a list of numbers.
     int depth() const { return depth_; }
     /// \param index less than size()
     void set(std::size_t index, Value value);
@@ -45,7 +45,7 @@ private:
     int depth_ = 1;
 };
 
-/// A value of a script. Integers have 32 bits, as the controller's.
+/// A value of a script. Integers have 32 bits, as in the controller.
 class Value {
 public:
     using Data = std::variant<std::monostate, bool, std::int32_t, double, std::string, List, Pose>;
@@ -73,11 +73,11 @@ public:
     }
     bool isNone() const { return data_.index() == 0; }
     bool isNumber() const { return get<std::int32_t>() != nullptr || get<double>() != nullptr; }
-    /// The number; 0 for what is none.
+    /// The number; 0 if the value is no number.
     double number() const;
     /// "none", "bool", "int", "float", "string", "list" or "pose".
     std::string_view typeName() const;
-    /// As textmsg, str_cat and to_str write it: True, 1, 0.5, [1, 2], p[0, 0, 0, 0, 0, 0].
+    /// Text in the form of textmsg, str_cat and to_str: True, 1, 0.5, [1, 2], p[0, 0, 0, 0, 0, 0].
     std::string text() const;
 
 private:

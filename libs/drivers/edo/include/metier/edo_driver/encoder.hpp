@@ -9,14 +9,16 @@
 
 namespace metier::edo_driver {
 
-// Texts for the rosbridge server. Fields that older software does not know are left out: missing
-// fields keep their defaults, an unknown one would make the server drop the whole message.
+// Encoders of the JSON texts for the rosbridge server. Fields that older software does not know are
+// left out: missing fields keep their defaults, an unknown one would make the server drop the whole
+// message.
 
 std::string advertiseText(std::string_view topic, std::string_view type);
-/// Every message, as soon as it is there: no throttle, no fragments, no compression.
+/// Subscribes to every message, sent as soon as it exists: no throttle, no fragments, no
+/// compression.
 std::string subscribeText(std::string_view topic, std::string_view type);
 std::string softwareVersionCallText(std::string_view id);
-/// \param mode of ControlSwitch: 0 to 255
+/// \param mode mode of ControlSwitch, 0 to 255
 std::string controlSwitchCallText(std::string_view id, int mode);
 /// Discovery of the joints (mode 0).
 std::string initText(const JointLayout& layout);
@@ -25,7 +27,7 @@ std::string moveText(const JointLayout& layout, const JointMove& move);
 /// Cancels all moves.
 std::string cancelText();
 
-/// Writes the text of a set-point into memory of its own, once per cycle.
+/// Writes the text of a set-point into its own buffer, once per cycle.
 ///
 /// Threading: one thread. write() does not allocate.
 class SetPointText {

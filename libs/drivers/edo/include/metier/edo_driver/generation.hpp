@@ -6,7 +6,7 @@
 
 namespace metier::edo_driver {
 
-/// How set-points reach the joints, which changed between versions of the robot's software.
+/// Way in which set-points reach the joints; it changed between versions of the robot's software.
 struct Generation {
     enum class Kind : std::uint8_t {
         classic,   ///< up to 3.0.1: JointControlArray on /algo_jnt_ctrl
@@ -14,8 +14,8 @@ struct Generation {
     };
 
     Kind kind = Kind::classic;
-    int take_mode = 1;       ///< of the service /algo_control_switch_srv
-    int give_back_mode = 2;  ///< of the same
+    int take_mode = 1;       ///< mode of the service /algo_control_switch_srv that takes control
+    int give_back_mode = 2;  ///< mode of the same service that gives control back
     int taken_state = 9;     ///< /algorithm_state while control is taken
 
     bool isTaken(int algorithm_state) const noexcept { return algorithm_state == taken_state; }

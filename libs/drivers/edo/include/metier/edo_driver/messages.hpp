@@ -11,9 +11,9 @@
 
 namespace metier::edo_driver {
 
-// What the robot says and is told, in SI units and radians. Source: docs/protocols/edo.md.
+// Messages from and to the robot, in SI units and radians. Source: docs/protocols/edo.md.
 
-/// Most joints that an e.DO has: six axes and the gripper.
+/// Largest number of joints of an e.DO: six axes and the gripper.
 inline constexpr std::size_t kMaxJoints = 7;
 
 /// The joints of one robot. Joint i is an axis for i < axes; the gripper follows the last axis.
@@ -22,7 +22,7 @@ struct JointLayout {
     bool gripper = false;
 
     std::size_t count() const noexcept { return axes + (gripper ? 1 : 0); }
-    /// One bit per joint, as the messages carry it.
+    /// Joint mask of the messages: one bit per joint.
     std::uint64_t mask() const noexcept { return (std::uint64_t{1} << count()) - 1; }
     bool isGripper(std::size_t joint) const noexcept { return gripper && joint == axes; }
 };
@@ -76,14 +76,14 @@ struct MachineState {
     bool operator==(const MachineState&) const = default;
 };
 
-/// /algorithm_state: what the robot's own trajectory generator does.
+/// /algorithm_state: state of the robot's own trajectory generator.
 struct AlgorithmState {
     int value = 0;
 };
 
 /// /machine_movement_ack.
 struct MovementFeedback {
-    /// Types.
+    /// Values of `type`.
     enum Type : std::int8_t {
         received = 0,
         need_data = 1,
@@ -100,18 +100,19 @@ struct MovementFeedback {
 struct ServiceResponse {
     std::string id;
     bool ok = false;                        ///< the service ran
-    std::optional<int> result_code{};       ///< of ControlSwitch: 0 done, 1 refused
-    std::optional<std::string> software{};  ///< of SoftwareVersion: of the entry with id 255
-    std::string text{};                     ///< why it did not run
+    std::optional<int> result_code{};       ///< answer of ControlSwitch: 0 done, 1 refused
+    std::optional<std::string> software{};  ///< answer of SoftwareVersion: version of the entry
+                                            ///< with id 255
+    std::string text{};                     ///< reason why it did not run
 };
 
-/// A complaint of the rosbridge server.
+/// A status message (error or warning) of the rosbridge server.
 struct Status {
     std::string level;
     std::string text;
 };
 
-/// Something that the driver did not ask for.
+/// A message that the driver does not use.
 struct Ignored {};
 
 using Incoming = std::variant<Ignored, JointStates, MachineState, AlgorithmState, MovementFeedback,
@@ -126,13 +127,13 @@ struct JointSetPoint {
 /// A joint motion that the robot plans by itself.
 struct JointMove {
     JointSetPoint target;
-    int override_percent = 100;  ///< part of full speed, 1 to 100
+    int override_percent = 100;  ///< share of the full speed [%], 1 to 100
 };
 
-/// How the brakes are released (JointReset).
+/// Parameters of releasing the brakes (JointReset).
 struct ResetRequest {
     std::uint32_t steps = 2000;
-    double offset = 0.0;  ///< how far the joints move meanwhile [rad]
+    double offset = 0.0;  ///< way of the joints meanwhile [rad]
 };
 
 }  // namespace metier::edo_driver

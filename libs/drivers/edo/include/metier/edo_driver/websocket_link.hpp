@@ -10,10 +10,11 @@
 
 namespace metier::edo_driver {
 
-/// A websocket client (RFC 6455) for texts, on which every wait has a deadline.
+/// A WebSocket client (RFC 6455) for text messages; every wait has a deadline.
 ///
-/// Errors name the peer, as "10.42.0.49:9090: ...". After connection_lost only shutdown() and the
-/// destructor are of use. Pings of the server are answered while receive() or send() waits.
+/// Error texts begin with the peer, such as "10.42.0.49:9090: ...". After connection_lost only
+/// shutdown() and the destructor may be called. Pings of the server are answered while receive() or
+/// send() waits.
 /// Threading: one thread; shutdown() from any.
 class WebSocketLink {
 public:
@@ -26,12 +27,14 @@ public:
     WebSocketLink& operator=(WebSocketLink&&) noexcept;
     ~WebSocketLink();
 
-    /// Sends one message, in one write if the system takes it. Without an error nothing allocates.
-    /// Errors: timeout if the peer does not read (the link is of no use then), connection_lost.
+    /// Sends one message, in one write if the system takes it at once. Nothing allocates unless
+    /// there is an error.
+    /// Errors: timeout if the peer does not read (the link is unusable then), connection_lost.
     Result<void> send(std::string_view text, SteadyTime deadline);
 
-    /// The next message, valid until the next call. What came in part at the deadline is not lost.
-    /// Without an error nothing allocates, once the longest message was seen.
+    /// Waits for the next message; the view is valid until the next call. A message that has
+    /// arrived in part at the deadline is not lost. Nothing allocates, unless there is an error or
+    /// a message is longer than all before.
     /// Errors: timeout, connection_lost (also for a message over 1 MiB).
     Result<std::string_view> receive(SteadyTime deadline);
 

@@ -14,41 +14,42 @@
 namespace metier::iiwa_driver {
 
 struct IiwaOptions {
-    std::string name = "iiwa";          ///< for texts
-    std::string address = "127.0.0.1";  ///< of this computer, where the cabinet dials in
+    std::string name = "iiwa";          ///< name of the arm in messages
+    std::string address = "127.0.0.1";  ///< address of this computer to which the cabinet connects
     std::uint16_t port = 12225;         ///< 0: a free one
     Precision precision = Precision::float32;
-    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};  ///< of polling, > 0
+    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};  ///< polling period, > 0
     /// Longest silence of the cabinet after a command.
     std::chrono::nanoseconds answer_timeout{std::chrono::milliseconds(100)};
-    /// Index in the station's setup of the tool that is attached; -1: none.
+    /// Index of the attached tool in the station's setup; -1: none.
     int tool = -1;
-    /// A force condition also ends a motion if the cabinet's estimate of the force is worse than
-    /// this [N].
+    /// Largest inaccuracy of the cabinet's force estimate [N]; a force condition also ends a motion
+    /// if the estimate is less accurate.
     double force_tolerance = 10.0;
 };
 
-/// An LBR iiwa whose cabinet runs the robot application of libiiwa, which dials in.
+/// An LBR iiwa whose cabinet runs the robot application of libiiwa; the cabinet connects to this
+/// program.
 ///
-/// As a device::Arm it streams set-points by the servo interface; as a device::MotionPlanner it
-/// lets the cabinet plan. There is no safety state in the protocol: `protective_stop` means that
-/// the cabinet is not ready to move. Not ready is obeyed, and whatever ran is cancelled, so that
-/// the arm does not go on when somebody makes it ready again. If the connection ends for any
+/// As a device::Arm it streams set-points through the servo interface; as a device::MotionPlanner
+/// it lets the cabinet plan. The protocol has no safety state: `protective_stop` means that the
+/// cabinet is not ready to move. If it is not ready, the running motion is cancelled, so that the
+/// arm does not go on when somebody makes the cabinet ready again. If the connection ends for any
 /// reason, the robot application stops the arm and ends; an operator has to start it again.
 /// Source: docs/protocols/iiwa.md.
 class IiwaArm final : public device::Arm, public device::MotionPlanner {
 public:
-    /// \param model must outlive the arm; of an arm with 7 axes
+    /// \param model model of an arm with 7 axes; must outlive the arm
     /// Errors: invalid_argument (model, cycle, not an address of this computer), already_exists
     /// (the port is taken).
     static Result<std::unique_ptr<IiwaArm>> create(const IiwaOptions& options,
                                                    const motion::RobotModel& model);
-    /// Closes the connection: a moving arm is stopped by the cabinet.
+    /// Closes the connection; the cabinet then stops a moving arm.
     ~IiwaArm() override;
 
-    /// Where the cabinet is awaited.
+    /// TCP port at which the cabinet is awaited.
     std::uint16_t port() const;
-    /// The wrench on the flange as the cabinet estimates it; lives as long as the arm.
+    /// Sensor of the wrench at the flange that the cabinet estimates; lives as long as the arm.
     device::ForceTorqueSensor& flangeForce() noexcept;
 
     const device::ArmInfo& info() const noexcept override;

@@ -11,13 +11,13 @@
 
 namespace metier::iiwa_driver {
 
-/// Axes of the arm.
+/// Number of axes of the arm.
 inline constexpr std::size_t kAxes = 7;
 
-/// How the cabinet writes its numbers; a switch in its process data, not negotiated.
+/// Number format of the cabinet; a switch in its process data, not negotiated on the wire.
 enum class Precision : std::uint8_t { float32, float64 };
 
-/// What the robot application can be asked. Source: docs/protocols/iiwa.md#commands.
+/// Commands of the robot application. Source: docs/protocols/iiwa.md#commands.
 enum class Code : std::uint16_t {
     state = 0,
     cancel = 101,
@@ -35,13 +35,13 @@ enum class Code : std::uint16_t {
     tool = 400,
 };
 
-/// One command as the wire carries it: in its units (mm, rad, N).
+/// One command in the units of the wire: mm, rad, N.
 struct Command {
     Code code = Code::state;
     std::array<double, 7> arguments{};
 };
 
-/// A whole command in the wire's bytes.
+/// The bytes of a whole command.
 class CommandBytes {
 public:
     static constexpr std::size_t kLongest = 64;
@@ -55,10 +55,10 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Big-endian, eight numbers. Neither allocates nor throws.
+/// Encodes a command as eight big-endian numbers. Neither allocates nor throws.
 CommandBytes encode(const Command& command, Precision precision) noexcept;
 
-/// Bytes of a state: 38 numbers.
+/// Number of bytes of a state, which has 38 numbers.
 constexpr std::size_t stateSize(Precision precision) noexcept {
     return precision == Precision::float32 ? 38 * 4 : 38 * 8;
 }
@@ -68,18 +68,19 @@ inline constexpr std::size_t kLongestState = stateSize(Precision::float64);
 struct CabinetState {
     bool executed = false;             ///< the command was executed or scheduled; false for `state`
     device::JointArray position;       ///< [rad]
-    device::JointArray velocity;       ///< [rad/s], by differences over some 10 ms
-    device::JointArray joint_torque;   ///< from outside [Nm]; not finite: not known
-    Frame pose;                        ///< of the tool, or of the flange without one; base frame
-    std::array<double, 3> force{};     ///< at the flange, its axes [N]; not finite: not known
+    device::JointArray velocity;       ///< differences over some 10 ms [rad/s]
+    device::JointArray joint_torque;   ///< external torque [Nm]; not finite: not known
+    Frame pose;                        ///< pose of the tool, or of the flange without a tool, in
+                                       ///< the base frame
+    std::array<double, 3> force{};     ///< at the flange, in its axes [N]; not finite: not known
     std::array<double, 3> torque{};    ///< [Nm]; not finite: not known
     int last_error = 0;                ///< never reset: see errorText()
-    bool force_condition_met = false;  ///< ended the last motion
-    bool ready = false;                ///< to move
+    bool force_condition_met = false;  ///< the force condition ended the last motion
+    bool ready = false;                ///< the cabinet is ready to move
     bool active = false;               ///< a motion is under way
 };
 
-/// Why a state cannot be used.
+/// Reason why a state cannot be used.
 struct StateError {
     enum class Kind : std::uint8_t {
         size,          ///< `value` bytes
@@ -88,18 +89,19 @@ struct StateError {
         out_of_range,  ///< `element` is `value`
     };
     Kind kind = Kind::size;
-    std::size_t element = 0;  ///< from 0, as docs/protocols/iiwa.md#state counts
+    std::size_t element = 0;  ///< index from 0, as in docs/protocols/iiwa.md#state
     double value = 0.0;
 };
-/// For the person. Code: connection_lost, since the two sides no longer understand each other.
+/// Error text for a person. The code is connection_lost, since the two sides no longer understand
+/// each other.
 Error toError(const StateError& error);
 
-/// Neither allocates nor throws. Positions, velocities and the pose must be finite and within what
-/// any arm of this kind can have; forces need not be finite.
+/// Decodes and checks a state. Neither allocates nor throws. Positions, velocities and the pose
+/// must be finite and possible for an arm of this kind; forces need not be finite.
 tl::expected<CabinetState, StateError> parseState(std::span<const std::byte> bytes,
                                                   Precision precision) noexcept;
 
-/// What the cabinet's error codes mean; "" for none.
+/// Meaning of an error code of the cabinet; "" if there is no error.
 std::string_view errorText(int code) noexcept;
 
 }  // namespace metier::iiwa_driver

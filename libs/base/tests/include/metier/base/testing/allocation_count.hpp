@@ -4,7 +4,8 @@
 
 namespace metier {
 
-/// How often operator new was called on this thread, in a program that links metier::base_testing.
+/// Number of calls of operator new on this thread so far, in a program that links
+/// metier::base_testing. A test compares two readings to show that a call did not allocate.
 std::size_t allocationCount() noexcept;
 
 }  // namespace metier

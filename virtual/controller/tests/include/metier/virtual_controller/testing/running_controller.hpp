@@ -16,10 +16,10 @@
 
 namespace metier::virtual_controller::testing {
 
-/// A world that has what the test says.
+/// A world whose effect the test sets.
 class ScriptedWorld final : public WorldLink {
 public:
-    /// As a world does, it answers reports: without one there is no effect.
+    /// Like a real world it answers reports: there is no effect before the first report.
     void report(const WorldReport& report) override {
         last_report = report;
         answered_ = true;
@@ -34,20 +34,20 @@ private:
     bool answered_ = false;
 };
 
-/// What a test starts a controller with.
+/// Parameters with which a test starts a controller.
 struct Start {
     std::map<std::string, cell::Settings::Value> settings;
     const motion::RobotModel* model = nullptr;
     std::string address = "127.0.0.1";
 };
 
-/// A virtual controller on a thread of its own, as a process has it.
+/// A virtual controller on a thread of its own, as in its process.
 class RunningController {
 public:
     RunningController(const ControllerType& type, const Start& start) {
-        auto controller = type.start({context_, "test", start.address,
-                                      cell::Settings("test", start.settings), start.model,
-                                      faults, world_});
+        auto controller =
+            type.start({context_, "test", start.address, cell::Settings("test", start.settings),
+                        start.model, faults, world_});
         if (!controller) {
             throw std::runtime_error(controller.error().message);
         }
@@ -58,7 +58,7 @@ public:
         });
     }
 
-    /// Runs on the controller's thread, and waits for it.
+    /// Runs an action on the controller's thread and waits for its end.
     void inTurn(const std::function<void(Controller&, ScriptedWorld&)>& action) {
         std::promise<void> done;
         asio::post(context_, [&] {
@@ -87,7 +87,7 @@ public:
         inTurn([&](Controller&, ScriptedWorld& world) { result = world.last_report; });
         return result;
     }
-    /// Looks at state() until it is as wanted. False after `longest`.
+    /// Reads state() until it is as wanted. False after `longest`.
     bool waitUntil(const std::function<bool(const nlohmann::ordered_json&)>& wanted,
                    std::chrono::milliseconds longest = std::chrono::seconds(10)) {
         const auto end = std::chrono::steady_clock::now() + longest;
