@@ -14,13 +14,14 @@
 
 namespace metier::client {
 
-/// One skill of a server for an owner that must not wait: requests are sent, and their outcomes
-/// told, on the client's thread.
+/// One skill of a server, for an owner that must not wait: requests are sent without waiting, and
+/// the client's thread calls back with their outcomes.
 ///
-/// open() and the destructor wait, nothing else does. Each `done` is called once, at the latest at
-/// the client's time-out, also after this has ended; not at all if the request is refused here.
-/// Errors of every request: connection_lost; not_supported (the skill lacks the method); told:
-/// those of the server, timeout, connection_lost.
+/// Only open(), now() and the destructor wait. Each `done` is called once, at the latest at the
+/// client's time-out, even after this object has ended; it is not called if the request itself
+/// returns an error.
+/// Errors of every request, returned: connection_lost; not_supported (the skill lacks the method).
+/// Passed to `done`: those of the server, timeout, connection_lost.
 /// Threading: requests from any thread. Must end before its Client.
 class AsyncSkill {
 public:
@@ -28,44 +29,46 @@ public:
     using Done = std::function<void(opcua::Answer<T>)>;
     using OnTransition = std::function<void(const skill::TransitionEvent&)>;
 
-    /// Callbacks for what the skill does; each may be empty. On the client's thread.
+    /// Callbacks for events of the skill; each may be empty. Called on the client's thread.
     struct Watch {
         OnTransition on_transition{};
-        /// It begins to come to rest; not called by servers that do not say so.
+        /// The skill begins to come to rest. Not called for servers that do not publish it.
         std::function<void(const skill::StoppingEvent&)> on_stopping{};
-        /// Transitions may have been missed: look what has become of it.
+        /// Transitions may have been missed: ask for the present state.
         std::function<void()> on_missed{};
-        /// No event will come any more, though requests may still be answered.
+        /// No further event will come, though requests may still be answered.
         /// \param why for a person
         std::function<void(const std::string& why)> on_ended{};
     };
 
-    /// Reads what the skill is like and subscribes to its events; the first may come before this
-    /// returns. `client` must outlive it.
+    /// Reads the skill's description and subscribes to its events; waits. The first event may come
+    /// before this returns. `client` must outlive the result.
     static opcua::Answer<AsyncSkill> open(opcua::Client& client, SkillAddress address, Watch watch);
     AsyncSkill(AsyncSkill&&) noexcept;
     AsyncSkill& operator=(AsyncSkill&&) noexcept;
     ~AsyncSkill();
 
     const SkillAddress& address() const noexcept;
-    /// Which parameters must be given a server does not tell: none. It can be suspended unless the
-    /// server says that it cannot.
+    /// Description as far as the server publishes it. Which parameters must be given is not
+    /// published: none is marked so. The skill counts as suspendable unless the server says
+    /// otherwise.
     const skill::SkillDescription& description() const noexcept;
 
-    /// Whether executions can be named and asked for: startWith() and execution().
+    /// Whether the server supports named executions: startWith() and execution().
     bool knowsExecutions() const noexcept;
 
-    /// What the skill is doing.
+    /// Present state of the skill.
     struct Now {
         skill::State state = skill::State::halted;
         std::string reason_text{};
-        std::string execution_id{};  ///< the last one; empty if the server does not tell
+        /// Id of the last execution; empty if the server does not publish it
+        std::string execution_id{};
     };
-    /// Waits for the server.
+    /// Reads the present state; waits for the server.
     opcua::Answer<Now> now() const;
 
     opcua::Answer<> startWith(const skill::StartRequest& request, Done<std::string> done) const;
-    /// Any method but StartWith.
+    /// Calls any method but StartWith.
     opcua::Answer<> call(skill::Method method, Done<> done) const;
     opcua::Answer<> check(const skill::ValueMap& parameters, Done<skill::CheckReport> done) const;
     opcua::Answer<> execution(const std::string& id, Done<skill::ExecutionRecord> done) const;

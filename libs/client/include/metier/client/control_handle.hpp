@@ -11,27 +11,27 @@
 namespace metier::client {
 
 struct ControlOptions {
-    /// Until the server takes this client for gone, without a heartbeat; a quarter of it is the
-    /// interval of the heartbeats.
+    /// Time without a heartbeat after which the server ends the control; heartbeats are sent every
+    /// quarter of it.
     std::chrono::milliseconds lease{1'000};
+    /// Action of the server on this client's executions when the control is lost.
     skill::OwnerLossAction on_loss = skill::OwnerLossAction::skill_default;
 };
 
-/// Control of one controller, kept alive by heartbeats, and given back at the end.
+/// Control of one controller. Heartbeats keep it alive; the destructor gives it back.
 ///
 /// While it lasts, only sessions of this client may command the skills of the controller; Halt is
-/// everybody's. When it is lost the server does with running skills what `on_loss` says.
+/// allowed to everybody. When it is lost the server does `on_loss` with running skills.
 ///
-/// Control is lost with the connection, or when two heartbeats in succession get no answer for a
-/// lease. It is never taken again by itself, also if the Client reconnects: this time of control is
-/// over, and whoever wants another acquires it.
+/// Control is lost with the connection, or when two heartbeats in succession got no answer within a
+/// lease each. It is never taken again by itself, even if the Client reconnects: acquire() it anew.
 ///
 /// Threading: a thread of its own sends the heartbeats. Must end before its Client.
 class ControlHandle {
 public:
     /// \param controller object with the lease's methods, see SkillAddress::controller()
-    /// Errors: locked, with the holder's name where the server tells it; not_found, if the
-    ///         controller has no lease; the server's.
+    /// Errors: locked, with the holder's name if the server publishes it; not_found, if the
+    /// controller has no lease; those of the server.
     static opcua::Answer<ControlHandle> acquire(opcua::Client& client,
                                                 const opcua::NodeId& controller,
                                                 const ControlOptions& options);
@@ -39,10 +39,12 @@ public:
     ControlHandle& operator=(ControlHandle&&) noexcept;
     ~ControlHandle();
 
-    /// For StartRequest::epoch.
+    /// Epoch of this control, for StartRequest::epoch.
     std::uint64_t epoch() const noexcept;
+    /// Whether control is held, as far as this client knows. Any thread.
     bool held() const noexcept;
-    /// `callback` runs once, on the thread of the heartbeats, when control is lost.
+    /// Sets a callback that runs once, on the heartbeats' thread, when control is lost; at once, on
+    /// the caller's thread, if it is lost already.
     void onLost(std::function<void(const opcua::Failure&)> callback);
 
 private:

@@ -12,28 +12,28 @@
 namespace metier::client {
 
 struct RemoteArmOptions {
-    /// Address of the server that has the arm's PositionStreamSkill.
+    /// Address of the server with the arm's PositionStreamSkill.
     std::string url;
-    /// Pause between tries to reach a server that was lost.
+    /// Pause between attempts to connect to a lost server.
     std::chrono::milliseconds retry_interval{500};
     std::optional<opcua::Credentials> security{};  ///< as opcua::ClientOptions::security
 };
 
-/// An arm behind another OPC UA server: its set-points go out as the position stream of that
-/// server, each with the time it is meant for, one per cycle of the arm.
+/// An arm of another OPC UA server. Its set-points are written to the position stream of that
+/// server, one per cycle of the arm, each with the time for which it is meant.
 ///
-/// Each motion is a stream of its own, and is told its end when the stream has ended: then the arm
-/// is free for other skills of its server. A server whose stream does not know EndOfStream ends it
-/// by silence, half a second later. Its loss, a lost connection, and every
-/// safety state but normal end the motion; the server's arm brakes by itself then. A lost server
-/// is sought again until it is back. Should it tell of another arm then, or of other limits, the
-/// arm stays disconnected: whoever has planned for the former must begin anew.
+/// Each motion is a stream of its own. The motion's end is reported when the stream has ended, so
+/// that the arm is free for other skills of its server. A server whose stream does not know
+/// EndOfStream ends it by silence, half a second later. A motion also ends when its stream ends by
+/// itself, when the connection is lost, and in every safety state but normal; the server's arm then
+/// brakes by itself. A lost server is looked for until it is back. If it then publishes another arm
+/// or other limits, the arm stays disconnected, since earlier plans may not fit it.
 ///
-/// Threading: as device::Arm. One thread of its own is the cycle; it sends messages, so unlike
-/// that of a driver it may allocate, and a request that its server answers late delays the next.
+/// Threading: as device::Arm. One thread of its own is the cycle. It sends messages, so unlike that
+/// of a driver it may allocate, and a late answer of the server delays the next message.
 class RemoteArm final : public device::Arm {
 public:
-    /// Connects and reads what the arm is like.
+    /// Connects and reads the arm's description; waits.
     /// Errors: connection_lost, timeout; not_found if the server has no PositionStreamSkill or
     ///         publishes no Kinematics for it.
     static Result<std::unique_ptr<RemoteArm>> connect(RemoteArmOptions options);
@@ -44,16 +44,16 @@ public:
     /// Chain and limits, as the server published them at connect().
     const opcua_skill::KinematicsData& kinematics() const noexcept;
 
-    /// Says whose motions it makes: the ApplicationUri of a server whose executions they are, which
-    /// the position stream is told, if its server keeps records. Any thread.
+    /// Sets the ApplicationUri of the server on whose behalf motions are made; the position stream
+    /// gets it with its start, if its server keeps records. Any thread.
     void nameOwner(std::string application_uri);
 
-    /// Why the arm cannot be used, though its server may be.
+    /// Reason why the arm cannot be used.
     struct Absence {
         SteadyTime since;
-        bool replaced = false;  ///< its server is there again, with another arm or other limits
+        bool replaced = false;  ///< its server is back, with another arm or other limits
     };
-    /// Nothing while the arm is there. Threads: any.
+    /// Absence of the arm; nothing while it can be used. Threads: any.
     std::optional<Absence> absence() const;
 
     const device::ArmInfo& info() const noexcept override;

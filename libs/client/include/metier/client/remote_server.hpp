@@ -18,21 +18,21 @@ namespace metier::client {
 
 struct RemoteServerOptions {
     std::string url;   ///< "opc.tcp://host:port"
-    std::string name;  ///< for texts; empty: the URL
+    std::string name;  ///< name for messages; empty: the URL
     std::string application_name = "metier composition";
-    /// Silence after which the server takes this client for gone, and does with what runs as it was
-    /// told with its start; at least 2 s.
+    /// Silence after which the server drops this client's session, and does what OnOwnerLoss says
+    /// with its executions; at least 2 s.
     std::chrono::milliseconds session_timeout{5'000};
     std::chrono::milliseconds retry_interval{500};  ///< between attempts to connect again
     std::optional<opcua::Credentials> security{};   ///< as opcua::ClientOptions::security
-    /// ApplicationUri of the component, which the executions that it starts are told; may be empty.
+    /// ApplicationUri of the component; it is sent with each start, for records. May be empty.
     std::string own_server{};
 };
 
 struct OpenSkill;
 class UsedSkillLink;
 
-/// A skill that was opened and has no used skill yet.
+/// A skill that was opened and has no used skill yet; moved from open() to used().
 struct PendingUse {
     std::shared_ptr<UsedSkillLink> link;   // shared with what is on its way to the used skill
     std::shared_ptr<OpenSkill> skill;  // shared with the work that waits for the server
@@ -41,40 +41,43 @@ struct PendingUse {
     std::string origin;
 };
 
-/// Another server whose skills a component uses. After a loss it connects again by itself.
+/// Another server whose skills a component uses. After a loss of the connection it connects again
+/// by itself.
 ///
-/// What runs when the connection is lost has ended for its user; what still runs of it when the
-/// connection is back, or when the component was started again, is halted: nobody waits for it.
-/// Threading: connect(), skills(), use() and the destructor wait, on any thread but the
-/// executor's; a thread of its own connects again.
+/// An execution under way when the connection is lost counts as lost for its user. If it still runs
+/// when the connection is back, or when the component was restarted, it is halted, since nothing
+/// waits for it any more.
+/// Threading: connect(), skills(), use() and the destructor wait; call them on any thread but the
+/// executor's. A thread of its own connects again.
 class RemoteServer {
 public:
-    /// \param executor the thread that owns the used_skills
+    /// \param executor runs on the thread that owns the used_skills
     /// Errors: connection_lost, timeout, access_denied, with the address.
     static Result<std::unique_ptr<RemoteServer>> connect(RemoteServerOptions options,
                                                          std::shared_ptr<skill::Executor> executor);
-    /// After its used_skills.
+    /// Destroy it after its used_skills.
     ~RemoteServer();
 
     const std::string& url() const noexcept;
     const std::string& name() const noexcept;
-    /// Since when there is no connection with all used skills; nothing while there is one. Any
-    /// thread.
+    /// Time since which a connection with all used skills is missing; nothing while there is one.
+    /// Any thread.
     std::optional<SteadyTime> awaySince() const;
 
-    /// For further questions before the first use().
+    /// Client of this connection, for other requests before the first use().
     opcua::Client& client();
-    /// Every skill there is.
+    /// All skills of the server.
     Result<std::vector<client::SkillAddress>> skills();
-    /// \param origin as the executions begin that the used skill's user starts, up to a '~' or '/':
+    /// Opens a skill and makes a used skill for it.
+    /// \param origin prefix of the execution ids of the used skill's user, up to a '~' or '/':
     ///               "pick.PickPlaceSkill"
     /// \return a used skill, for the executor's thread; must end before this
-    /// Errors: not_supported, if it lacks StartWith or GetExecution; the server's.
+    /// Errors: not_supported, if the skill lacks StartWith or GetExecution; those of the server.
     Result<std::unique_ptr<composition::UsedSkill>> use(const client::SkillAddress& skill,
                                                     std::string origin);
 
-    /// The same in two parts, for an executor that is at work: open() waits, on any thread but the
-    /// executor's; used() does not, on the executor's thread and nowhere else.
+    /// use() in two parts, for an executor that is at work: open() waits, on any thread but the
+    /// executor's; used() does not wait and must be called on the executor's thread.
     Result<PendingUse> open(const client::SkillAddress& skill, std::string origin);
     std::unique_ptr<composition::UsedSkill> used(PendingUse use);
 

@@ -20,64 +20,69 @@
 
 namespace metier::client {
 
-/// One skill of a server, as a client commands and watches it.
+/// One skill of a server, for a client that commands and watches it.
 ///
-/// It hears of every transition by events, so nothing polls. Errors of every call: what the server
-/// said, with the server's own reason (value, limit, unit) where it gives one; connection_lost;
-/// timeout; Failure::delivery says whether the request left.
+/// Transitions arrive as events, so nothing polls. Errors of every call: those of the server, with
+/// the server's text (value, limit, unit) if it gives one; connection_lost; timeout.
+/// Failure::delivery says whether the request left.
 ///
-/// With a Client that reconnects a handle stays good. Whoever waits for an execution goes on
-/// waiting while the connection is away, up to the deadline, and is then told what has become of
-/// it by GetExecution. Nothing is ever started or resumed again. After a restart of the server it
-/// looks up the skill again, by its name and controller.
+/// With a Client that reconnects a handle stays usable. A call that waits for the end of an
+/// execution goes on while the connection is away, up to the deadline, and then asks for the
+/// outcome by GetExecution. Nothing is ever started or resumed a second time. After a restart of
+/// the server the skill is looked up again, by its name and controller.
 ///
 /// Threading: any thread but the client's own; calls of one handle one at a time. Must end before
 /// its Client.
 class SkillHandle {
 public:
-    /// Reads what the skill is like and subscribes to its transitions. `client` must outlive it.
+    /// Reads the skill's description and subscribes to its transitions. `client` must outlive it.
     static opcua::Answer<SkillHandle> open(opcua::Client& client, SkillAddress address);
 
     SkillHandle(SkillHandle&&) noexcept;
     SkillHandle& operator=(SkillHandle&&) noexcept;
     ~SkillHandle();
 
-    /// Looks the skill up again if the server was started again since; every call does so first.
-    /// References got from the handle before may not be used any more.
-    /// Errors: not_found, if the server has the skill no more.
+    /// Looks the skill up again if the server was started again; every call does so first.
+    /// References that the handle returned before are not valid any more.
+    /// Errors: not_found, if the server does not have the skill any more.
     opcua::Answer<> refresh();
 
     const SkillAddress& address() const noexcept;
-    /// Parameters, of ParameterSet and of Options, with unit, range and present value as default.
+    /// Parameters of ParameterSet and of Options, with unit, range and the present value as
+    /// default.
     const std::vector<skill::Field>& parameters() const noexcept;
     const std::vector<skill::Field>& results() const noexcept;
 
-    /// Writes one parameter; Null asks for its default.
-    /// Errors: not_found (unknown name, with the known), and the server's refusal.
+    /// Writes one parameter; Null sets it to its default.
+    /// Errors: not_found (unknown name, with the known names); the server's refusal.
     opcua::Answer<> set(std::string_view name, const skill::Value& value);
-    /// Writes a live parameter without waiting, with the time it is meant for; for position
+    /// Writes a live parameter without waiting, with the time for which it is meant; for position
     /// streams. `done` runs on the client's thread.
     opcua::Answer<> setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
                              std::function<void(opcua::Answer<>)> done);
 
+    /// Calls Start. Running has been committed when this returns without an error.
     opcua::Answer<> start();
-    /// Gives all parameters along and starts, in one step. \return the execution's id
+    /// Sets all parameters and starts, in one call.
+    /// \return the execution's id
     /// Errors: not_supported, if the server's skill lacks StartWith.
     opcua::Answer<std::string> startWith(const skill::StartRequest& request);
-    /// Whether the server can start with an id and tell what became of it: startWith() and
-    /// execution().
+    /// Whether the server supports named executions: startWith() and execution().
     bool knowsExecutions() const noexcept;
-    /// Whether startWith() tells the server on whose behalf it starts.
+    /// Whether startWith() sends the execution on whose behalf it starts.
     bool takesParents() const noexcept;
-    /// What startWith() would say now. Errors: not_supported.
+    /// Asks whether startWith() would succeed now; nothing moves.
+    /// Errors: not_supported.
     opcua::Answer<skill::CheckReport> check(const skill::ValueMap& parameters);
-    /// What became of an execution, also of another session's. Errors: not_found, not_supported.
+    /// Record of an execution, also one of another session.
+    /// Errors: not_found, not_supported.
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
     opcua::Answer<> suspend();
     opcua::Answer<> resume();
     opcua::Answer<> halt();
-    /// Asks again for up to 1 s while the device takes its time.
-    /// Errors: timeout, if it is not done then: it goes on, and another reset() gives its outcome.
+    /// Calls Reset, repeatedly for up to 1 s while the device is not done.
+    /// Errors: timeout, if it is not done then: it goes on, and another reset() returns its
+    /// outcome.
     opcua::Answer<> reset();
     opcua::Answer<> call(skill::Method method);
     /// Whether this session may call the method now.
@@ -86,49 +91,50 @@ public:
     opcua::Answer<skill::State> state();
     /// FinalResultData of the last execution that finished.
     opcua::Answer<skill::ValueMap> result();
-    /// The server's reason for the last refusal to this session, or for the present state.
+    /// Reason of the server's last refusal to this session, or of the present state.
     std::string reasonText();
 
     /// Waits until the skill is in the state `wanted`.
     /// Errors: timeout at the deadline; connection_lost.
     opcua::Answer<> awaitState(skill::State wanted, SteadyTime deadline);
-    /// Waits until the skill is not Running, as after Suspend or Halt: what it moves stands then.
+    /// Waits until the skill is not Running, for example after Suspend or Halt; then its device
+    /// stands still.
     /// \return Suspended, Halted, or Ready if it had reached its end before it came to rest
     /// Errors: as awaitState().
     opcua::Answer<skill::State> awaitRest(SteadyTime deadline);
-    /// Waits for the end of what this handle started or resumed last, which may have come already;
-    /// once that was told, or if it was somebody else's, for the next transition to Ready or
-    /// Halted.
-    /// \return that transition; of one that was missed, where it led to and why
+    /// Waits for the end of the execution that this handle started or resumed last; that end may
+    /// have come already. If that end was returned before, or the execution belongs to another
+    /// client, it waits for the next transition to Ready or Halted.
+    /// \return that transition; if it was missed, only its target state and reason are known
     /// Errors: as awaitState(); execution_lost, if the server was started again meanwhile.
     opcua::Answer<skill::TransitionEvent> awaitEnd(SteadyTime deadline);
 
     /// Sets the parameters, starts, and waits for the end of this execution. If Start is refused,
-    /// the parameters fall back to their defaults.
-    /// At the deadline it halts the skill and reports timeout, or connection_lost with
-    /// Delivery::unknown if the Halt did not arrive.
-    /// Errors: as above; device_fault, limit_violated, connection_lost or cancelled if it ended in
-    /// Halted, with the reason; cancelled if it was given up while suspended; connection_lost with
-    /// Delivery::unknown if transitions were missed and the server cannot tell what became of it.
+    /// the parameters are set back to their defaults. At the deadline it halts the skill and
+    /// reports timeout, or connection_lost with Delivery::unknown if the Halt did not arrive.
+    /// Errors: as above; device_fault, limit_violated, connection_lost or cancelled, with the
+    /// reason, if it ended Halted; cancelled if it was given up while suspended; connection_lost
+    /// with Delivery::unknown if transitions were missed and the server does not know the outcome.
     opcua::Answer<skill::ValueMap> run(const skill::ValueMap& parameters, SteadyTime deadline);
-    /// The same by startWith(). The execution gets an id here if it has none, so that its end is
-    /// learnt even if the answer to the start, or its transitions, are lost. If that answer was
-    /// lost, connection_lost with Delivery::not_sent says that nothing was started.
+    /// Does the same by startWith(). An execution without an id gets one here, so that its end is
+    /// found even if the answer to the start, or its transitions, are lost. If the answer was lost
+    /// and nothing was started, the error is connection_lost with Delivery::not_sent.
     /// Errors: also execution_lost, if the server was started again meanwhile: the motion is over.
     opcua::Answer<skill::ValueMap> runWith(const skill::StartRequest& request, SteadyTime deadline);
-    /// The same for parameters and results declared as plain structs.
+    /// Does the same for parameters and results that are declared as plain structs.
     template <typename Parameters, typename Results>
     opcua::Answer<Results> run(const skill::FieldList<Parameters>& parameter_list,
                                const Parameters& parameters,
                                const skill::FieldList<Results>& result_list, SteadyTime deadline);
 
-    /// Called on the client's thread for each transition from now on; an empty function ends it.
+    /// Sets the callback for each transition from now on, on the client's thread; an empty one ends
+    /// it.
     void onTransition(std::function<void(const skill::TransitionEvent&)> callback);
 
 private:
     struct Impl;
     void takeBack(const skill::ValueMap& parameters, const opcua::Failure& refusal);
-    /// Halts the skill if its end was not seen in time.
+    /// Halts the skill if its end did not come in time.
     opcua::Answer<skill::ValueMap> orHalt(opcua::Answer<skill::ValueMap> outcome);
     explicit SkillHandle(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;

@@ -9,31 +9,32 @@
 
 namespace metier::client {
 
-/// A skill that another one runs, as the other one's server tells.
+/// A skill that another skill uses, as published by the server of the using skill.
 struct SkillUse {
-    std::string endpoint_url;  ///< of its server; empty: the server that tells
-    std::string name;          ///< BrowseName; empty in the server that tells
-    std::string controller;    ///< BrowseName of its controller; empty: none, or not told
-    opcua::NodeId node;        ///< in the server that tells: the skill, or what tells where it is
+    std::string endpoint_url;  ///< address of its server; empty: the same server
+    std::string name;          ///< BrowseName; empty if it is in the same server
+    std::string controller;    ///< BrowseName of its controller; empty: none, or not published
+    /// In the publishing server: the skill, or the object with its address
+    opcua::NodeId node;
 };
 
-/// What a skill, or the type of one, refers to.
+/// References of a skill or of a skill type.
 struct SkillReferences {
-    /// What it is for: BrowseNames of the entries to which HasDictionaryEntry leads, which are
-    /// their identifiers (OPC 10000-19).
+    /// Purposes: BrowseNames of the entries to which HasDictionaryEntry leads. The names are the
+    /// entries' identifiers (OPC 10000-19).
     std::vector<std::string> terms;
-    std::vector<SkillUse> uses;  ///< to which UsesSkill leads, the first 100
+    std::vector<SkillUse> uses;  ///< targets of UsesSkill, the first 100
 };
 
-/// Reads references of skills and types of one server. Text is as the server says it.
+/// Reads references of skills and types of one server. Text is returned as the server sent it.
 ///
 /// Threads: one at a time, any but the client's own; waits.
 class ReferenceReader {
 public:
-    /// Errors: the server's.
+    /// Errors: those of the server.
     static opcua::Answer<ReferenceReader> create(opcua::Client& client);
 
-    /// Errors: the server's.
+    /// Errors: those of the server.
     opcua::Answer<SkillReferences> read(const opcua::NodeId& node) const;
 
 private:
@@ -42,7 +43,7 @@ private:
     opcua::Answer<SkillUse> readUse(const opcua::ReferenceDescription& used) const;
 
     opcua::Client* client_;
-    std::optional<std::uint16_t> metier_;  // index of the Metier namespace; without it no uses
+    std::optional<std::uint16_t> metier_;  // index of the Metier namespace; none: no UsesSkill
 };
 
 }  // namespace metier::client

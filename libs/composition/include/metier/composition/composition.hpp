@@ -19,10 +19,10 @@ struct Composition {
 };
 
 /// Checks names, types, units, ranges and lengths of all bindings against the used skills.
-/// Errors: invalid_argument with a line "file:line: key: why" for all that is wrong.
+/// Errors: invalid_argument, with one line "file:line: key: why" for each mistake.
 Result<Composition> compose(Definition definition, const Descriptions& used);
 
-/// What clients may know of the composed skill.
+/// Description of the composed skill for its clients.
 skill::SkillDescription descriptionOf(const Definition& definition);
 
 }  // namespace metier::composition

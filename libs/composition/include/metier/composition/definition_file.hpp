@@ -10,15 +10,16 @@
 
 namespace metier::composition {
 
-/// Reads a composition file and checks all that the file alone tells: keys, types, names, whether
-/// every value is there before it is used, whether every loop ends.
-/// Errors: not_found; invalid_argument with a line "file:line: key: why" for all that is wrong.
+/// Reads a composition file and makes all checks that need no other file: keys, types, names,
+/// whether every value exists before it is used, whether every loop ends.
+/// Errors: not_found; invalid_argument, with one line "file:line: key: why" for each mistake.
 Result<Definition> loadDefinition(const std::filesystem::path& file);
-/// The same from text; `name` stands for the file in messages.
+/// Does the same for a text; `name` stands for the file's name in messages.
 Result<Definition> parseDefinition(std::string_view text, std::string name);
 
-/// The definitions in an order in which each comes after those it uses by type.
-/// Errors: invalid_argument, naming the way around, if one uses itself; two of one name.
+/// Sorts the definitions so that each comes after those that it uses by type.
+/// Errors: invalid_argument if a definition uses itself, naming the circle, or if two have one
+/// name.
 Result<std::vector<Definition>> inOrderOfUse(std::vector<Definition> definitions);
 
 }  // namespace metier::composition

@@ -6,8 +6,8 @@
 
 namespace metier::composition {
 
-/// The steps as a graph in Graphviz's language: boxes are used skills, in the order of the arrows;
-/// dashed arrows lead to what follows a failure.
+/// Draws the steps as a graph in Graphviz's language. Boxes are used skills, in the order of the
+/// arrows; dashed arrows lead to the steps that follow a failure.
 std::string toDot(const Definition& definition);
 
 }  // namespace metier::composition

@@ -16,7 +16,7 @@ namespace metier::composition {
 class LocalUsedSkill final : public UsedSkill, private skill::ProgramObserver {
 public:
     /// \param program must outlive this
-    /// \param caller  as whom the composed skill commands it
+    /// \param caller  client as which the composed skill commands the Program
     LocalUsedSkill(skill::Program& program, std::shared_ptr<skill::Executor> executor,
                skill::Caller caller);
     ~LocalUsedSkill() override;
@@ -39,7 +39,7 @@ public:
     void release() override { link_->listener = nullptr; }
 
 private:
-    /// What posted work reaches, as long as both ends are there.
+    /// Target of posted work; valid as long as both ends exist.
     struct Link {
         UsedSkillListener* listener = nullptr;
     };
@@ -48,10 +48,10 @@ private:
     void onStopping(const skill::StoppingEvent& event) override;
     void onProgress(const skill::Value& intermediate) override;
 
-    /// Has `tell` called with the listener, outside of the call that is under way.
+    /// Posts `tell` to be called with the listener, outside of the call that is under way.
     template <typename Tell>
     void post(Tell tell);
-    /// Has `done` called with `answer`, outside of the call that is under way.
+    /// Posts `done` to be called with `answer`, outside of the call that is under way.
     template <typename Answer>
     void answer(std::function<void(Result<Answer>)> done, Answer answer);
     void end(UsedSkillEnd end);
@@ -60,7 +60,7 @@ private:
     skill::Program& program_;
     std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
     skill::Caller caller_;
-    std::string execution_;  // that was begun here and has not ended
+    std::string execution_;  // the execution that was begun here and has not ended
     // Shared with posted work, which may come after this; a new one for each listener.
     std::shared_ptr<Link> link_ = std::make_shared<Link>();
     // Posted answers ask it whether this is still there.

@@ -12,10 +12,10 @@
 
 namespace metier::composition {
 
-/// A used skill, and what the composed skill knows of its last dealings with it.
+/// A used skill, and the state of its last execution.
 struct BoundSkill {
     std::unique_ptr<UsedSkill> skill;
-    bool may_reset = false;  ///< in any case; else only if the composed skill halted it
+    bool may_reset = false;  ///< always; else only if the composed skill halted it
     bool halted_by_us = false;
 
     bool mayReset() const noexcept { return may_reset || halted_by_us || skill->leftOver(); }
@@ -23,17 +23,17 @@ struct BoundSkill {
 
 using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
 
-/// A skill whose work is to run other skills, as a file says.
+/// A skill that runs other skills, as a file says.
 ///
-/// Its executions give those of the used skills the id "ORIGIN/EXECUTION/STEP/COUNT". Suspend,
-/// Resume and Halt reach every skill that runs; at rest it is once these are. A failure leaves none
-/// of them running.
+/// Each execution of a used skill gets the id "ORIGIN/EXECUTION/STEP/COUNT". Suspend, Resume and
+/// Halt reach every skill that runs; the whole is at rest once all these are. After a failure none
+/// of them is left running.
 /// Threading: the owner's thread, which all used skills report to.
 class SequenceSkill final : public skill::Skill {
 public:
     /// \param used_skills one for each alias of the composition
-    /// \param origin   names the component, the skill, and the life of the component, so that no
-    ///                 id comes twice: "pick-server.PickPlaceSkill~3f09a2"
+    /// \param origin   names the component, the skill, and this run of the component, so that no id
+    ///                 occurs twice: "pick-server.PickPlaceSkill~3f09a2"
     /// \param clock    must outlive this
     SequenceSkill(Composition composition, std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                   std::shared_ptr<skill::Executor> executor, const Clock& clock,
@@ -42,17 +42,18 @@ public:
 
     const skill::SkillDescription& description() const override { return composition_.description; }
     const Definition& definition() const noexcept { return composition_.definition; }
-    /// Errors: invalid_state, connection_lost, naming a used skill that is certainly needed and
-    ///         cannot begin.
+    /// Errors: invalid_state, connection_lost, with the name of a used skill that every execution
+    /// needs and that cannot begin.
     Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& snapshot) override;
     bool underWay() const noexcept { return work_count_.use_count() > 1; }
-    /// Uses other skills from the next execution on.
-    /// \param used_skills by alias; those that were used so far, once this has succeeded
+    /// Replaces the used skills, from the next execution on.
+    /// \param used_skills new ones by alias; after a success, the ones that were used before
     /// Errors: invalid_state (an execution is under way), invalid_argument (a binding does not fit
-    ///         them), not_found (an alias); then nothing has changed.
+    /// them), not_found (an alias); then nothing has changed.
     Result<void> rebind(std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills);
-    /// Resets the used skills that are Halted, as far as they may be.
-    /// Errors: what a skill of the same process refuses with. Of others, the next Start tells.
+    /// Resets the used skills that are Halted, as far as they may be reset.
+    /// Errors: those of skills of the same process. An error of a skill of another server is
+    /// reported by the next Start.
     Result<void> reset() override;
 
 private:
@@ -72,8 +73,8 @@ private:
     std::shared_ptr<const char> work_count_ = std::make_shared<const char>();
 };
 
-/// The deadline to come to rest that a Program of this skill needs: its used skills have theirs
-/// before, and time to be halted.
+/// Deadline to come to rest that a Program of this skill needs: longer than that of its used skill
+/// skills, with time to halt them.
 std::chrono::milliseconds restDeadlineOf(const Definition& definition);
 
 }  // namespace metier::composition

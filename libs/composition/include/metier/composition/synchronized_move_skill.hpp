@@ -12,16 +12,16 @@
 
 namespace metier::composition {
 
-/// An arm that can be moved together with others.
+/// An arm that can move together with others.
 struct Arm {
     std::string name{};
-    /// CartesianPtpMoveSkill: asked for the joints of a pose, never started.
+    /// CartesianPtpMoveSkill: computes the joint position for a pose; never started.
     std::unique_ptr<composition::UsedSkill> pose_move{};
     /// JointPtpMoveSkill: moves the arm.
     std::unique_ptr<composition::UsedSkill> joint_move{};
-    bool halted_by_us = false;  ///< the last execution was halted here
+    bool halted_by_us = false;  ///< this skill halted the last execution
 
-    /// Only what was halted here is reset here.
+    /// Whether it may be reset: only after a halt by this skill.
     bool mayReset() const { return halted_by_us || joint_move->leftOver(); }
 };
 
@@ -32,55 +32,58 @@ struct Parameters {
     double duration = 0.0;                     ///< least duration [s]
 };
 
-/// All by the set-points that the arms' controllers were given [s]. After a Resume they tell of the
-/// part since then.
+/// Times of the set-points that the arms' controllers got [s]. After a Resume they cover the part
+/// since then.
 struct Results {
-    double skew_at_start = 0.0;      ///< between the first ones of the first and of the last arm
-    double largest_skew = 0.0;       ///< no two arms were further apart on the way
-    double skew_at_end = 0.0;        ///< as skew_at_start, of the last ones
-    double clock_uncertainty = 0.0;  ///< the skews may be wrong by that much
-    double duration = 0.0;           ///< from the first one to the last one
+    /// Between the first set-points of the first and of the last arm
+    double skew_at_start = 0.0;
+    double largest_skew = 0.0;       ///< largest time by which two arms were apart on the way
+    double skew_at_end = 0.0;        ///< as skew_at_start, for the last set-points
+    double clock_uncertainty = 0.0;  ///< bound of the error of the skews
+    double duration = 0.0;           ///< from the first set-point to the last
 };
 
 struct Options {
-    std::shared_ptr<skill::Executor> executor;  ///< shared by what its thread owns
+    std::shared_ptr<skill::Executor> executor;  ///< shared by the objects of its thread
     const Clock& clock;                         ///< must outlive the skill
-    /// Names the component, the skill and the life of the component: "both.Synchro...~3f09a2".
+    /// Names the component, the skill and this run of the component: "both.Synchro...~3f09a2".
     std::string origin;
-    /// From the moment at which all is known until the arms begin: they are told and made ready
-    /// meanwhile [s].
+    /// Time between the end of planning and the begin of the motion [s]; the arms' skills are
+    /// started meanwhile.
     std::chrono::duration<double> start_delay{0.5};
 };
 
-/// How long an arm may take to come to rest before the whole is Halted without it.
+/// Longest time that an arm may take to come to rest; then the whole is Halted without it.
 inline constexpr std::chrono::seconds kRestTime{6};
-/// The deadline to come to rest that the Program of this skill needs.
+/// Deadline to come to rest that the Program of this skill needs.
 inline constexpr std::chrono::seconds kRestDeadline{2 * kRestTime + std::chrono::seconds(1)};
 
 /// Moves several arms, each to its pose by a PTP, so that they begin and arrive together.
 ///
-/// Each arm is first asked whether it can get there and how long that takes at least; if one
-/// cannot, none moves. The slowest one's time, or Duration, is what all of them take. They begin at
-/// one moment, each told it by its own server's clock, which is compared right before: clocks may
-/// differ by any amount, but must not jump during the move. What stops one stops all: if an arm is
-/// Halted or lost the others are halted, if somebody suspends one the others are suspended.
+/// Each arm is first asked whether it can reach its pose and how long that takes at least; if one
+/// cannot, none moves. All moves take the longest of these times, or Duration if that is longer.
+/// They begin at one moment, which each server gets in its own clock's time; the clocks are
+/// compared right before. Clocks may differ by any amount, but must not jump during the move. A
+/// stop of one arm stops all: if an arm is Halted or lost the others are halted, if somebody
+/// suspends one the others are suspended.
 ///
-/// Suspend lets all come to rest; Resume begins anew from there, again together, along what is left
-/// of each way; it fails if an arm was moved off its way meanwhile.
-/// Threading: the owner's thread, which all arms report to; nothing waits.
+/// Suspend lets all come to rest. Resume begins anew from there, together again, along the rest of
+/// each way; it fails if an arm was moved off its way meanwhile.
+/// Threading: the owner's thread, on which all arms report; nothing waits.
 class SynchronizedMoveSkill final : public skill::TypedSkill<Parameters, Results> {
 public:
     /// \param arms at least two, whose joint moves take Duration and StartTime
     SynchronizedMoveSkill(std::vector<Arm> arms, Options options);
     ~SynchronizedMoveSkill() override;
 
-    /// Resets the arms' moves that were halted here.
-    /// Errors: what a skill of the same process refuses with. Of others, the next Start tells.
+    /// Resets those joint moves of the arms that were halted here.
+    /// Errors: those of skills of the same process. An error of a skill of another server is
+    /// reported by the next Start.
     Result<void> reset() override;
 
 protected:
     /// Errors: invalid_argument (unknown arm, or one twice; counts that differ), connection_lost,
-    ///         naming the arm. What state the arms are in, they are asked.
+    /// with the arm's name. The arms' states are not checked here: the arms are asked.
     Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override;
 
 private:
@@ -92,7 +95,7 @@ private:
     std::unique_ptr<Unheard> unheard_;
 };
 
-/// Why an arm cannot be moved together with others by this skill of it; "" if it can.
+/// Reason why this joint move does not allow its arm to move together with others; "" if it does.
 std::string unfitReason(const skill::SkillDescription& joint_move);
 
 }  // namespace metier::composition

@@ -12,16 +12,16 @@
 
 namespace metier::composition {
 
-/// How the execution of a used skill ended.
+/// End of the execution of a used skill.
 struct UsedSkillEnd {
     enum class Kind {
         finished,
         halted,
         refused,  ///< it did not begin
-        lost,     ///< nothing is known of it any more
+        lost,     ///< lost: its state is unknown from now on
     };
     Kind kind = Kind::finished;
-    skill::ValueMap result{};  ///< of one that finished
+    skill::ValueMap result{};  ///< empty unless it finished
     skill::Reason reason = skill::Reason::none;
     std::string text{};  ///< with value, limit and unit
 };
@@ -33,75 +33,79 @@ struct UsedSkillStop {
     std::string text{};  ///< "by CLIENT", or what is wrong
 };
 
-/// How far the clock of a used skill's server is ahead of this machine's.
+/// Clock of a used skill's server, compared with this machine's clock.
 struct ClockOffset {
+    /// How far the server's clock is ahead; negative: behind.
     std::chrono::nanoseconds ahead{0};
-    std::chrono::nanoseconds uncertainty{0};  ///< it may be wrong by that much either way
+    std::chrono::nanoseconds uncertainty{0};  ///< bound of the error, in either direction
 };
 
-/// Observer of an execution of a used skill; each function does nothing unless it is overridden.
+/// Listener to the execution of a used skill; each function does nothing unless overridden.
 ///
 /// Threading: the owner's thread; never from inside a call to the UsedSkill.
 class UsedSkillListener {
 public:
     virtual ~UsedSkillListener() = default;
-    /// Answers UsedSkill::reset().
+    /// Outcome of UsedSkill::reset().
     virtual void onReset(const Result<void>& /*outcome*/) {}
-    /// It begins to come to rest, also at a request from here; onSuspended() or onEnd() follows.
-    /// Not called by servers that do not say so.
+    /// The execution begins to come to rest, also if this side asked for it; onSuspended() or
+    /// onEnd() follows. Not called for servers that do not publish it.
     virtual void onStopping(const UsedSkillStop& /*stop*/) {}
-    /// It came to rest; at whoever's request.
+    /// The execution came to rest, at the request of any client.
     virtual void onSuspended() {}
     virtual void onResumed() {}
     virtual void onProgress(const skill::Value& /*intermediate*/) {}
-    /// A suspend(), resume() or halt() was refused; all goes on as before.
+    /// A suspend(), resume() or halt() was refused; the execution goes on as before.
     virtual void onRefused(skill::Method /*method*/, const Error& /*error*/) {}
-    /// Once for each begin().
+    /// The execution has ended. Called once for each begin().
     virtual void onEnd(UsedSkillEnd /*end*/) {}
 };
 
 /// A skill that a composed skill uses, in the same process or elsewhere.
 ///
-/// One execution at a time. Threading: the owner's thread; nothing waits.
+/// One execution at a time.
+/// Threading: the owner's thread; nothing waits.
 class UsedSkill {
 public:
     virtual ~UsedSkill() = default;
-    /// For texts: "GraspGripperSkill of wsg50".
+    /// Name for messages: "GraspGripperSkill of wsg50".
     virtual const std::string& name() const = 0;
     virtual const skill::SkillDescription& description() const = 0;
     /// Address of its server; empty for a skill of the same server.
     virtual std::string serverUrl() const { return {}; }
 
-    /// Whether it can be reached.
+    /// Checks that the skill can be reached.
     /// Errors: connection_lost.
     virtual Result<void> available() const = 0;
-    /// As far as is known here.
+    /// State of the skill, as last heard.
     virtual skill::State state() const = 0;
-    /// Why it is in its state.
+    /// Reason of its state, for a person.
     virtual std::string reasonText() const = 0;
 
-    /// Whether it is Halted because it still ran for the composed skill when nobody waited for it.
+    /// Whether the skill is Halted because it still ran on behalf of the composed skill after that
+    /// had stopped waiting for it.
     virtual bool leftOver() const { return false; }
-    /// Clears a fault; `listener` hears the outcome.
-    /// Errors: it refuses, where that is known at once; then the listener is not called.
+    /// Clears a fault; the outcome goes to `listener`.
+    /// Errors: those of the skill, where they are known at once; then the listener is not called.
     virtual Result<void> reset(UsedSkillListener& listener) = 0;
-    /// Asks what begin() with these parameters would say now; nothing moves.
-    /// \param done called once, in a later turn of the owner's thread, as long as this is there.
-    ///             Errors: connection_lost, timeout, the server's
+    /// Asks whether begin() with these parameters would succeed now; nothing moves.
+    /// \param done called once, in a later turn of the owner's thread, unless this is destroyed
+    ///             before. Errors: connection_lost, timeout, the server's
     virtual void check(const skill::ValueMap& parameters,
                        std::function<void(Result<skill::CheckReport>)> done) = 0;
     /// Compares the clocks of the used skill's server and of this machine.
     /// \param done as that of check()
     virtual void compareClocks(std::function<void(Result<ClockOffset>)> done) = 0;
 
-    /// Begins; `listener` hears what follows, its end at the latest. What is asked of the execution
-    /// right after this waits until it has begun.
+    /// Begins an execution; its events go to `listener`, the end as the last one. A suspend, resume
+    /// or halt right after this call waits until the execution has begun.
     virtual void begin(skill::StartRequest request, UsedSkillListener& listener) = 0;
-    /// Ask what runs, begun here or not; what is refused is told, at once where it is known.
+    /// Ask the running execution, whoever began it. A refusal that is known at once is the result;
+    /// a later one goes to UsedSkillListener::onRefused().
     virtual Result<void> suspend() = 0;
     virtual Result<void> resume() = 0;
     virtual void halt() = 0;
-    /// The listener is not called any more.
+    /// Detaches the listener: it is not called any more.
     virtual void release() = 0;
 };
 

@@ -8,12 +8,12 @@
 
 namespace metier::dashboard {
 
-/// How this program connects to servers. The functions are called from any thread.
+/// Settings for connections of this program to servers. The functions are called on any thread.
 struct Connector {
-    /// As secure as that server wants it, as this program's own user.
-    /// Errors: told on the page.
+    /// Options for a connection as secure as that server wants it, as this program's own user.
+    /// Errors: shown on the page.
     std::function<Result<opcua::ClientOptions>(const std::string& url)> options;
-    /// What a person can do about a connection that was refused; begins with "; ", or is empty.
+    /// Advice for a person after a refused connection; begins with "; ", or is empty.
     std::function<std::string(const opcua::Failure&)> advice;
     /// Called after a connection to a server was made with these options; may be empty.
     std::function<void(const opcua::ClientOptions&, const std::string& url)> connected{};

@@ -18,38 +18,39 @@ namespace metier::dashboard {
 struct Options {
     Cell cell;
     Connector connector;
-    /// Nobody logs in: everybody on this machine may do what this program may. Such a page is
-    /// served at a loopback address alone, and answers no request that a proxy passes on.
+    /// Without login: everybody on this machine may do what this program may. Such a page is served
+    /// only at a loopback address, and answers no request that came through a proxy.
     bool lab = false;
     std::string address = "127.0.0.1";
     std::uint16_t port = 0;  ///< 0: a free one
-    /// Name by which people reach the page, besides addresses and localhost; empty: none.
+    /// Host name by which people reach the page, besides addresses and localhost; empty: none.
     std::string host_name{};
     std::filesystem::path web;       ///< folder with the files of the page
     std::filesystem::path meshes{};  ///< folder served below /meshes; empty: none
-    /// Of what servers record, as records::Store::open() takes it; empty: nothing is shown.
+    /// URL of the servers' records, as records::Store::open() takes it; empty: none are shown.
     std::string records{};
-    std::vector<motion::RobotModel> models{};  ///< whose shapes arms may have
+    std::vector<motion::RobotModel> models{};  ///< robot models whose shapes arms may have
     http::HttpLimits limits{};
 };
 
-/// The page of a cell: an OPC UA client of its servers, and the HTTP server that people look at.
+/// The page of a cell: an OPC UA client of its servers, and an HTTP server for browsers.
 ///
-/// Threading: any thread; threads of its own for each server, each connection of a browser, and the
-/// stream.
+/// Threading: any thread may call it. It has threads for each server, each connection of a browser,
+/// and the stream.
 class Dashboard {
 public:
-    /// Serves once this returns; servers are connected to in the background.
-    /// Errors: invalid_argument (the address; that or a host name of a lab); already_exists (the
-    /// port is taken).
+    /// Starts serving; connects to the servers in the background.
+    /// Errors: invalid_argument (the address, or a host name or an address that is not allowed
+    /// without login); already_exists (the port is taken).
     static Result<std::unique_ptr<Dashboard>> start(Options options, const Clock& clock);
-    /// Ends all connections within a few seconds; control that tabs hold is given back.
+    /// Ends all connections within a few seconds; gives back the control that browser tabs hold.
     ~Dashboard();
     Dashboard(const Dashboard&) = delete;
     Dashboard& operator=(const Dashboard&) = delete;
 
     std::uint16_t port() const noexcept;
-    /// One more server, such as discovery finds later. Nothing happens if its name is known.
+    /// Adds a server, for example one that discovery finds later. Does nothing if its name is
+    /// known.
     void addServer(const CellServer& server);
 
 private:

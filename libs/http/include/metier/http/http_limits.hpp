@@ -5,16 +5,20 @@
 
 namespace metier::http {
 
-/// What peers may ask of a server.
+/// Limits for the clients of an HTTP server.
 struct HttpLimits {
-    std::size_t connections = 256;                   ///< at the same time, streams among them
-    std::size_t tabs = 128;                          ///< streams at the same time
-    std::size_t head_bytes = 16'384;                 ///< request line and header fields
-    std::size_t body_bytes = 262'144;                ///< of one request
-    std::size_t waiting_bytes = 2'097'152;           ///< owed to one stream; then it is cut
-    std::chrono::milliseconds request_time{10'000};  ///< for one request to arrive
-    std::chrono::milliseconds idle_time{15'000};     ///< between two requests of a connection
-    std::chrono::milliseconds send_time{5'000};      ///< without progress; then it is cut
+    std::size_t connections = 256;     ///< at the same time, streams among them
+    std::size_t tabs = 128;            ///< streams at the same time
+    std::size_t head_bytes = 16'384;   ///< request line and header fields
+    std::size_t body_bytes = 262'144;  ///< of one request
+    /// Waiting to be sent to one stream; beyond it the stream is cut
+    std::size_t waiting_bytes = 2'097'152;
+    /// Longest time in which one request must arrive
+    std::chrono::milliseconds request_time{10'000};
+    /// Longest pause between two requests of a connection
+    std::chrono::milliseconds idle_time{15'000};
+    /// Longest time without progress of a sending; then the connection is cut
+    std::chrono::milliseconds send_time{5'000};
 };
 
 }  // namespace metier::http

@@ -15,20 +15,21 @@ namespace metier::http {
 
 class Connection;
 
-/// httplib's server with limits: how many connections, how long a request may be and take, and how
-/// long a peer may not read. One thread for each connection that is open.
+/// httplib's server with limits: number of connections, size and time of a request, and time for
+/// which a client may not read. One thread for each open connection.
 ///
-/// Routes are set before listen(). Threading: handlers run on the connections' threads.
+/// Set all routes before serve(). Threading: handlers run on the connections' threads.
 class HttpServer final : public httplib::Server {
 public:
     explicit HttpServer(const HttpLimits& limits);
-    /// Not without stop().
+    /// Call end() before, once serve() has succeeded.
     ~HttpServer() override;
 
-    /// Serves from then on. \return the port
+    /// Opens the port and serves from then on.
+    /// \return the port
     /// Errors: invalid_argument, already_exists.
     Result<std::uint16_t> serve(const std::string& address, std::uint16_t port);
-    /// Ends all connections, whatever they wait for, and waits for their threads. Once.
+    /// Ends all connections at once and waits for their threads. Call it once.
     void end();
 
 private:
@@ -40,7 +41,7 @@ private:
 
     const HttpLimits limits_;
     std::atomic<bool> ending_ = false;
-    std::atomic<bool> listened_ = false;  // and does no longer
+    std::atomic<bool> listened_ = false;  // serving has begun and ended again
     std::mutex mutex_;
     std::set<int> sockets_;
     std::jthread accepting_;

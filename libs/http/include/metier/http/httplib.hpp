@@ -2,5 +2,5 @@
 
 #include <httplib.h>
 
-// A macro of <resolv.h>, which is also a name in Eigen.
+// _res is a macro of <resolv.h> and a name in Eigen.
 #undef _res

@@ -20,16 +20,16 @@ class ServerCore;  // of src/
 /// Names on the way from a node to one below it.
 using BrowsePath = std::vector<QualifiedName>;
 
-/// The id a child gets unless told otherwise: in the parent's namespace `<parent>.<name>`; below a
-/// parent of namespace 0 `<name>` in the namespace of the BrowseName. Says where a node is, and
-/// stays the same when a server is started again.
+/// Default id of a child: `<parent>.<name>` in the parent's namespace; below a parent of namespace
+/// 0 `<name>` in the namespace of the BrowseName. It shows where a node is, and stays the same when
+/// a server is started again.
 NodeId childId(const NodeId& parent, const QualifiedName& browse_name);
 
-/// What every new node is given. The BrowseName also serves as DisplayName if that is empty.
+/// Attributes that every new node has. An empty DisplayName becomes the text of the BrowseName.
 struct NodeSpec {
     NodeId id;      ///< null: a string made of the parent's id and the BrowseName, see childId()
-    NodeId parent;  ///< null: hangs below nothing
-    NodeId reference = ids::kHasComponent;  ///< from the parent to it
+    NodeId parent;  ///< null: the node has no parent
+    NodeId reference = ids::kHasComponent;  ///< type of the reference from the parent to the node
     QualifiedName browse_name;
     LocalizedText display_name{};
     LocalizedText description{};
@@ -38,10 +38,10 @@ struct NodeSpec {
 /// Whether a new Object or Variable comes with the mandatory children of its type.
 enum class Children {
     mandatory,
-    none,  ///< the caller adds them all, which is several times faster; types are not checked
+    none,  ///< the caller adds them all: several times faster, but types are not checked
 };
 
-/// What values a Variable may hold.
+/// Type and dimensions of the values that a Variable may hold.
 struct VariableShape {
     NodeId data_type;
     std::int32_t value_rank = -1;  ///< as in VariableSpec
@@ -58,7 +58,7 @@ struct ObjectSpec {
     Children children = Children::mandatory;
 };
 
-/// What clients may do with the value of a Variable.
+/// Access of clients to the value of a Variable.
 enum class Access { read, read_write };
 
 struct VariableSpec {
@@ -72,23 +72,23 @@ struct VariableSpec {
     Children children = Children::mandatory;
 };
 
-/// Who calls which Method of which Object.
+/// Caller and target of a Method call.
 struct CallContext {
     const Session& session;
     NodeId object;
     NodeId method;
 };
 
-/// Does what a Method does. The stack has checked number and types of the arguments before,
-/// if the Method has InputArguments. Must return at once.
+/// Work of a Method. The stack has checked number and types of the arguments before, if the Method
+/// has InputArguments. Called on the server's thread; must return at once.
 using MethodHandler =
     std::function<Result<std::vector<Value>>(const CallContext&, std::span<const Value>)>;
 
-/// Who may call a Method of a closed server.
+/// Right that a session needs to call a Method of a closed server, and whether calls are audited.
 enum class MethodEffect {
-    commands,  ///< whose role commands; each call is audited
-    renews,    ///< whose role commands; called again and again, so only denials are audited
-    tells,     ///< everybody; not audited
+    commands,  ///< only roles that command; each call is audited
+    renews,    ///< only roles that command; repeated all the time, so only denials are audited
+    tells,     ///< reports only: all roles; not audited
 };
 
 struct MethodSpec {
@@ -98,22 +98,24 @@ struct MethodSpec {
     MethodHandler handler;
 };
 
-/// Who writes, and when the value was true by the writer's clock; nothing if it was not sent.
+/// Writer of a value, and the time at which the value was true, by the writer's clock; none if not
+/// sent.
 struct WriteContext {
     const Session& session;
     std::optional<UtcTime> source_time;
 };
 
-/// A Variable whose value lives elsewhere. Both must return at once.
+/// Source of a Variable's value that is kept elsewhere. Called on the server's thread; both
+/// functions must return at once.
 struct DataSource {
     std::function<DataValue(const Session&)> read;
-    /// Takes a client's value or refuses it; type and rank were checked before, but for Null,
-    /// which passes. None: the value is not writable.
+    /// Takes a client's value or refuses it. Type and rank were checked before, except for Null,
+    /// which is passed on. Empty: the value is not writable.
     std::function<Result<>(const WriteContext&, const Value&)> write;
 };
 
-/// Serves the values of many Variables, told apart by a tag; as DataSource, with a tenth of its
-/// memory.
+/// Source of the values of many Variables, which a tag distinguishes. Works as DataSource, with a
+/// tenth of its memory.
 class VariableHandler {
 public:
     virtual ~VariableHandler() = default;
@@ -121,23 +123,23 @@ public:
     virtual Result<> write(const WriteContext& writer, std::uint32_t tag, const Value& value) = 0;
 };
 
-/// What leads from a Variable to its handler.
+/// Link from a Variable to its handler.
 struct VariableSlot {
     VariableHandler* handler = nullptr;
     std::uint32_t tag = 0;
 };
 
-/// What a reference leads to.
+/// A reference of a node and its target.
 struct Reference {
     NodeId type;
     NodeId target;
     QualifiedName browse_name;
     LocalizedText display_name{};
     NodeClass node_class = NodeClass::unspecified;
-    NodeId type_definition;  ///< of Objects and Variables
+    NodeId type_definition;  ///< for Objects and Variables only
 };
 
-/// Which references are followed: of `type` and its subtypes, away from the node or to it.
+/// Selection of references: those of `type` and its subtypes, away from the node or to it.
 struct BrowseFilter {
     enum class Direction { forward, inverse };
     NodeId type = ids::kHierarchicalReferences;
@@ -153,7 +155,8 @@ enum class MethodNodes {
 /// The nodes of a server.
 ///
 /// Threading: the server's own thread; before start() the thread that created it. Nothing waits.
-/// Errors of every function: those of the table in status_code.hpp, saying what was tried.
+/// Errors of every function: those of the table in status_code.hpp; the text names the attempted
+/// action.
 class AddressSpace {
 public:
     explicit AddressSpace(ServerCore& core) : core_(core) {}
@@ -185,19 +188,23 @@ public:
     Result<LocalizedText> descriptionOf(const NodeId& id) const;
 
     Result<DataValue> read(const NodeId& variable) const;
-    /// Sets a value, good and as of now; Subscriptions are told. A Variable with a DataSource is
-    /// asked to take it, by a Session with the null id.
+    /// Sets a value with status Good and the present time; Subscriptions are notified. A Variable
+    /// with a DataSource gets the value through its `write`, with a Session of the null id.
     Result<> write(const NodeId& variable, const Value& value);
     Result<> write(const NodeId& variable, const DataValue& value);
 
+    /// Makes a Variable read and written through functions.
     Result<> setDataSource(const NodeId& variable, DataSource source);
-    /// `slot` stays where it is for as long as the server may be asked.
+    /// Makes a Variable read and written through a handler. `slot` must keep its address until the
+    /// server has stopped.
     Result<> setHandler(const NodeId& variable, VariableSlot& slot);
     Result<> setAccess(const NodeId& variable, Access access);
-    /// Gives a Method its work; for a shared Method node the context tells the Object.
+    /// Sets the work of a Method. For a Method node that several Objects share, the context has the
+    /// Object.
     Result<> setMethod(const NodeId& method, MethodHandler handler,
                        MethodEffect effect = MethodEffect::commands);
-    /// What clients read as UserExecutable. It forbids nothing: the handler answers why not.
+    /// Sets the answer to reads of UserExecutable. It forbids nothing: the handler must refuse the
+    /// call itself.
     Result<> setExecutable(const NodeId& method, std::function<bool(const Session&)> predicate);
     Result<> setEventNotifier(const NodeId& object, EventNotifier notifier);
     Result<> setDescription(const NodeId& id, const LocalizedText& text);

@@ -9,29 +9,29 @@
 
 namespace metier::opcua {
 
-/// An Error that keeps the StatusCode it came from. Converts to Error, and an Answer<T> to a
-/// Result<T>, where the StatusCode is of no interest.
+/// An Error that keeps the StatusCode from which it was made. Converts to Error, and an Answer<T>
+/// to a Result<T>, where the StatusCode does not matter.
 ///
-/// `status` is the peer's own code where the peer refused; `BadTimeout` where it did not answer
-/// in time; otherwise what the transport reported.
+/// `status` is the peer's own code where the peer refused, BadTimeout where it did not answer in
+/// time, and otherwise the code that the transport reported.
 struct Failure : Error {
     StatusCode status = status::kBadUnexpectedError;
-    /// What the peer had to say to each input argument of a Method it refused; often empty.
+    /// The peer's StatusCode for each input argument of a Method that it refused; often empty.
     std::vector<StatusCode> input_results;
-    /// What is known of the request.
+    /// Fate of the request, as far as it is known.
     enum class Delivery {
-        answered,  ///< the peer refused it, or there was none
-        not_sent,  ///< it never left this process: nothing happened, and nothing will
-        unknown,   ///< it was sent and nothing came back: the peer may have carried it out
+        answered,  ///< the peer answered, or no request was needed
+        not_sent,  ///< it never left this process: it has no effect, now or later
+        unknown,   ///< it was sent and no answer came: the peer may have carried it out
     };
     Delivery delivery = Delivery::answered;
 };
 
-/// What a peer answered, or why it did not.
+/// Answer of a peer, or the reason why there is none.
 template <typename T = void>
 using Answer = tl::expected<T, Failure>;
 
-/// A failed Answer that a StatusCode explains: "<doing>: BadOutOfRange".
+/// Makes a failed Answer from a StatusCode; text "<doing>: BadOutOfRange".
 inline tl::unexpected<Failure> failed(StatusCode status, std::string_view doing) {
     return tl::unexpected<Failure>(Failure{errorFrom(status, doing), status, {}});
 }

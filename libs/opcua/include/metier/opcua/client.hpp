@@ -22,8 +22,8 @@ namespace metier::opcua {
 
 class ClientCore;
 
-/// A person or program that the server knows by name. Over a connection without security the
-/// password travels as clear text, unless the server's policy for tokens asks for more.
+/// User name and password of a session. Over a connection without security the password travels as
+/// clear text, unless the server's policy for tokens encrypts it.
 struct UserName {
     std::string name;
     std::string password;
@@ -33,21 +33,22 @@ struct ClientOptions {
     std::string application_name = "metier client";
     std::string application_uri = "urn:metier:client";
     std::optional<UserName> user{};  ///< none: anonymous
-    /// None: without security. Else everything is signed and encrypted, the server's certificate
-    /// must be trusted, and application_uri is that of the own certificate. A server's certificate
-    /// that is not trusted is kept among those to decide on.
+    /// Certificate of this client; none: connections without security. With it everything is signed
+    /// and encrypted, the server's certificate must be trusted, and application_uri is taken from
+    /// the certificate. A server's certificate that is not trusted is stored for a later decision.
     std::optional<Credentials> security{};
     std::chrono::milliseconds connect_timeout{5'000};
-    /// Silence after which the server may forget this client; it is asked for something, and
-    /// given up if it does not answer, well before that. At least 2 s.
+    /// Silence after which the server may drop this session. Well before that the client sends a
+    /// request, and gives the connection up if there is no answer. At least 2 s.
     std::chrono::milliseconds session_timeout{30'000};
-    std::chrono::milliseconds call_timeout{5'000};  ///< of every call that names none of its own
+    std::chrono::milliseconds call_timeout{5'000};  ///< for every call without a timeout of its own
     std::chrono::milliseconds publishing_interval{100};
-    /// What to do when the connection breaks; none: it is lost for good, make a new Client.
+    /// Behaviour when the connection breaks; none: the connection is lost for good, make a new
+    /// Client.
     std::optional<ReconnectOptions> reconnect{};
 };
 
-/// How long one call may take; none: ClientOptions::call_timeout.
+/// Longest time that one call may take; none: ClientOptions::call_timeout.
 using Timeout = std::optional<std::chrono::milliseconds>;
 
 /// The attributes of nodes (OPC 10000-3, 5; numbers of OPC 10000-6, A.1).
@@ -77,38 +78,39 @@ struct ReadItem {
 struct WriteItem {
     NodeId node;
     Value value;
-    std::optional<UtcTime> source_time{};  ///< none: not sent, the server takes its own
-    std::uint64_t boot = 0;                ///< as MethodCall::boot
+    /// By the writer's clock; none: not sent, the server takes its own
+    std::optional<UtcTime> source_time{};
+    std::uint64_t boot = 0;  ///< as MethodCall::boot
 };
 
 struct MethodCall {
     NodeId object;
     NodeId method;
     std::vector<Value> inputs{};
-    /// Client::boot() when the NodeIds were looked up: refused if the server was started again
-    /// since, as they may name something else now. 0: sent in any case.
+    /// Value of Client::boot() when the NodeIds were looked up. If the server was started again
+    /// since, the call is refused, as the NodeIds may name other nodes now. 0: sent in any case.
     std::uint64_t boot = 0;
 };
 
-/// What a Method answered that was not refused.
+/// Answer to a Method call that was not refused.
 struct CallResult {
     StatusCode status;  ///< Good or Uncertain
     std::vector<StatusCode> input_results;
     std::vector<Value> outputs;
 };
 
-/// Which references of a node are asked for.
+/// Selection of a node's references.
 struct BrowseQuery {
     enum class Direction { forward, inverse, both };
 
     NodeId node;
     NodeId reference_type = ids::kHierarchicalReferences;  ///< with its subtypes; null: all
     Direction direction = Direction::forward;
-    std::vector<NodeClass> node_classes{};  ///< of the targets; empty: all
+    std::vector<NodeClass> node_classes{};  ///< node classes of the targets; empty: all
     std::uint32_t references_at_once = 0;   ///< per message, 0: as many as the server sends
 };
 
-/// One reference of a node, and what it leads to.
+/// One reference of a node, and its target.
 struct ReferenceDescription {
     NodeId reference_type;
     bool is_forward = true;
@@ -119,32 +121,33 @@ struct ReferenceDescription {
     NodeId type_definition;
 };
 
-/// A way along hierarchical references.
+/// A path along hierarchical references.
 struct RelativePath {
     NodeId start;
     std::vector<QualifiedName> names;
 };
 
-/// What a subscriber of events asks for.
+/// Selection of events for a subscriber.
 struct EventFilter {
-    /// Fields of BaseEventType and its subtypes by BrowsePath, such as {{0, "Message"}} or
-    /// {{0, "Transition"}, {0, "Number"}}; at least one. A server refuses, by name, a field that
-    /// none of its event types has.
+    /// Fields of BaseEventType and its subtypes by BrowsePath, such as {{0, "Message"}} or {{0,
+    /// "Transition"}, {0, "Number"}}; at least one. A server refuses a field that none of its event
+    /// types has, and names it.
     std::vector<std::vector<QualifiedName>> fields;
-    std::optional<NodeId> of_type{};    ///< only events of this type and its subtypes
-    std::uint32_t queue_size = 10'000;  ///< [events] the server may keep for us; it may keep less
+    std::optional<NodeId> of_type{};  ///< only events of this type and its subtypes
+    /// [events] that the server may keep for us; it may keep fewer
+    std::uint32_t queue_size = 10'000;
 };
 
-/// What a subscriber of events is told.
+/// Notification to a subscriber of events.
 struct EventNotice {
     enum class Kind {
-        event,     ///< `fields` holds a value per field asked for, Null where the event has none
-        overflow,  ///< events were lost: the server's queue, or a message, went missing
-        ended,     ///< nothing will come any more: `status` says why
-        /// The connection is lost, `status` says why; `resumed` or `ended` follows.
+        event,     ///< `fields` has a value per requested field, Null where the event has none
+        overflow,  ///< events were lost in the server's queue or on the way
+        ended,     ///< no further notification will come; `status` has the reason
+        /// The connection is lost, `status` has the reason; `resumed` or `ended` follows.
         interrupted,
-        /// Events come again. Those meanwhile come now if the server kept them for this session;
-        /// if not, `overflow` comes before.
+        /// Events come again. Events of the time between follow if the server kept them for this
+        /// session; if not, `overflow` comes before.
         resumed,
     };
 
@@ -153,16 +156,17 @@ struct EventNotice {
     StatusCode status;
 };
 
-/// What a subscriber of a Variable asks for.
+/// Settings of a subscription to a Variable.
 struct DataFilter {
     std::chrono::milliseconds sampling_interval{100};  ///< 0: as fast as the server can
     std::uint32_t queue_size = 1;                      ///< [values] kept between publications
 };
 
-/// Notifications of one node, for as long as it lives.
+/// Subscription to one node; it lasts as long as this object.
 ///
-/// Once the destructor has returned its callback does not run any more; it waits at most 5 s for
-/// a callback that runs at that moment. The server is told later, nobody waits for it.
+/// Once the destructor has returned, the callback does not run any more; the destructor waits at
+/// most 5 s for a callback that is running. The server is informed later, and nothing waits for
+/// that.
 ///
 /// Threading: one owner; may be destroyed on any thread, in a callback too, and after its Client.
 class Subscription {
@@ -177,37 +181,39 @@ private:
     Subscription(std::shared_ptr<ClientCore> core, std::uint32_t handle);
     void end() noexcept;
 
-    std::shared_ptr<ClientCore> core_;  // with the Client, whichever ends last
+    std::shared_ptr<ClientCore> core_;  // shared with the Client; the last one of them ends it
     std::uint32_t handle_ = 0;
 };
 
-/// One session with one OPC UA server, over a connection without security (SecurityPolicy None).
+/// One session with one OPC UA server; without ClientOptions::security over a connection of
+/// SecurityPolicy None.
 ///
-/// Every call has a deadline, and a broken connection ends all calls at once. Nothing is ever sent
-/// twice, nor after its deadline, nor kept for later: without a connection a call fails at once.
+/// Every call has a deadline, and a broken connection ends all calls at once. No request is sent
+/// twice, after its deadline, or kept for later: without a connection a call fails at once.
 ///
-/// With ClientOptions::reconnect it connects again by itself: to the same session where the server
-/// still has it, else to a new one. Subscriptions are taken up again or made anew, with the
-/// namespace indices that hold then; other NodeIds are the caller's to look up again when boot()
-/// has changed. A connection is also given up when the server is silent: an idle one is asked
-/// every 2 s, or every third of the session time-out if that is less.
+/// With ClientOptions::reconnect it connects again by itself: to the same session if the server
+/// still has it, else to a new one. Subscriptions continue or are made anew, with the namespace
+/// indices of that time; the caller must look up all other NodeIds again when boot() has changed. A
+/// connection is also given up when the server is silent: an idle server gets a request every 2 s,
+/// or every third of the session time-out if that is less.
 ///
 /// Errors of every call, besides those of the server: timeout (BadTimeout), connection_lost (also
 /// after close()), invalid_state (a waiting call from a callback of this client),
-/// resource_unavailable (2000 requests are unanswered). Failure::delivery tells whether the request
-/// left: after `unknown` a command may have been carried out, so ask before it is given again.
+/// resource_unavailable (2000 requests are unanswered). Failure::delivery says whether the request
+/// left: after `unknown` a command may have been carried out, so ask before you repeat it.
 ///
 /// Threading: any thread may call anything but the destructor, and many may at once. Waiting calls
-/// block theirs. One thread of its own serves the connection and runs all callbacks, which must
-/// neither wait nor throw: of this client they may use what ends in Async, state() and the
-/// destructor of a Subscription; waiting calls and close() are refused.
+/// block their thread. One thread of its own serves the connection and runs all callbacks, which
+/// must neither wait nor throw. Callbacks may use the functions of this client that end in Async,
+/// state() and the destructor of a Subscription; waiting calls and close() are refused there.
 class Client {
 public:
-    /// Errors: invalid_argument (the URL, a time that is not positive), connection_lost (nobody
+    /// Connects and activates a session; waits.
+    /// Errors: invalid_argument (the URL, a time that is not positive), connection_lost (no server
     /// there), access_denied (user or password), timeout.
     static Answer<std::unique_ptr<Client>> connect(const std::string& url,
                                                    ClientOptions options = {});
-    /// Closes. No callback may run it.
+    /// Closes the session. Must not run in a callback.
     ~Client();
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
@@ -224,45 +230,50 @@ public:
         closed,
     };
     State state() const noexcept;
-    /// Why there is no connection, or was none the last time; none: there always was one.
+    /// Reason why there is no connection, or why the last one was lost; none: no connection was
+    /// lost yet.
     std::optional<Failure> whyLost() const;
-    /// Which run of the server this client is connected to: 1 for the first, one more whenever the
-    /// server was started again. NodeIds hold for one of them.
+    /// Number of the server's run to which this client is connected: 1 for the first, one more
+    /// whenever the server was started again. NodeIds are valid for one run only.
     std::uint64_t boot() const noexcept;
     /// Waits until it is connected.
     /// Errors: timeout at the deadline; connection_lost (given up, closed); invalid_state.
     Answer<> awaitConnected(SteadyTime deadline);
 
-    /// What is to hear of each change of the connection, on the client's thread, which may not
-    /// wait there. Not called after close(). A later callback replaces an earlier one.
+    /// Sets the callback for changes of the connection. It runs on the client's thread and must not
+    /// wait. Not called after close(). A later callback replaces an earlier one.
     void onConnectionChange(std::function<void(const ConnectionChange&)> callback);
 
-    /// What is to happen once when the connection is lost for good; at once if it was already. Not
-    /// called after close(). A later callback replaces an earlier one.
+    /// Sets the callback for the final loss of the connection. It runs once, at once if the
+    /// connection is lost already. Not called after close(). A later callback replaces an earlier
+    /// one.
     void onConnectionLost(std::function<void(const Failure&)> callback);
 
+    /// Reads an attribute.
     /// Errors: the attribute's own StatusCode where Bad, such as not_found (BadNodeIdUnknown).
     Answer<Value> read(const NodeId& node, AttributeId attribute = AttributeId::value,
                        Timeout timeout = {});
     /// One DataValue per item, in order, with its own StatusCode.
     Answer<std::vector<DataValue>> readMany(std::vector<ReadItem> items, Timeout timeout = {});
 
+    /// Writes a Value.
     /// Errors: the node's own StatusCode where Bad, such as out_of_range or locked.
     Answer<> write(NodeId node, Value value, std::optional<UtcTime> source_time = {},
                    Timeout timeout = {});
     /// One StatusCode per item, in order.
     Answer<std::vector<StatusCode>> writeMany(std::vector<WriteItem> items, Timeout timeout = {});
 
-    /// Calls a Method. Errors: the Method's own StatusCode where Bad, such as invalid_state; what
-    /// it said to each argument is in Failure::input_results.
+    /// Calls a Method.
+    /// Errors: the Method's own StatusCode where Bad, such as invalid_state; Failure::input_results
+    /// has the codes of its arguments.
     Answer<CallResult> call(MethodCall method_call, Timeout timeout = {});
     Answer<CallResult> call(NodeId object, NodeId method, std::vector<Value> inputs = {});
 
-    /// All references asked for, over as many messages as it takes. References to nodes of other
+    /// Reads all selected references, in as many messages as needed. References to nodes of other
     /// servers are left out.
     Answer<std::vector<ReferenceDescription>> browse(BrowseQuery query, Timeout timeout = {});
 
-    /// The node at the end of a path; the first one if there are several.
+    /// Looks up the node at the end of a path; the first one if there are several.
     /// Errors: not_found (BadNoMatch; BadNodeIdUnknown for the start).
     Answer<NodeId> translate(const NodeId& start, std::vector<QualifiedName> names,
                              Timeout timeout = {});
@@ -270,30 +281,33 @@ public:
     Answer<std::vector<Answer<NodeId>>> translateMany(std::vector<RelativePath> paths,
                                                       Timeout timeout = {});
 
-    /// The server's NamespaceArray, read anew.
+    /// Reads the server's NamespaceArray; nothing is cached.
     Answer<std::vector<std::string>> namespaceArray(Timeout timeout = {});
+    /// Index of a namespace of the server.
     /// Errors: not_found.
     Answer<std::uint16_t> namespaceIndex(std::string_view uri, Timeout timeout = {});
 
     /// Whether this user may call the Method now.
     Answer<bool> readUserExecutable(const NodeId& method, Timeout timeout = {});
 
-    /// Writes without waiting; `done` hears the outcome exactly once, at the latest at the
-    /// deadline, on the client's thread. Writes are sent in the order of these calls.
-    /// Errors: connection_lost, here and at once: then `done` is not called.
+    /// Writes without waiting. `done` gets the outcome exactly once, at the latest at the deadline,
+    /// on the client's thread. Writes are sent in the order of these calls.
+    /// Errors: connection_lost, returned at once; then `done` is not called.
     Answer<> writeAsync(WriteItem item, std::function<void(Answer<>)> done, Timeout timeout = {});
-    /// As writeAsync(), for a Method.
+    /// Calls a Method without waiting; as writeAsync().
     Answer<> callAsync(MethodCall method_call, std::function<void(Answer<CallResult>)> done,
                        Timeout timeout = {});
 
-    /// Hears of the events of a notifier. The callback may run before this returns.
-    /// Errors: the server's, and invalid_argument for a field or filter that it rejects.
+    /// Subscribes to the events of a notifier. The callback runs on the client's thread, possibly
+    /// before this returns.
+    /// Errors: those of the server; invalid_argument for a field or filter that it rejects.
     Answer<Subscription> subscribeEvents(NodeId notifier, EventFilter filter,
                                          std::function<void(const EventNotice&)> callback,
                                          Timeout timeout = {});
-    /// Hears of a Variable's changes, its value now first. A lost value shows in the Overflow bit
-    /// of a StatusCode. An empty Value with a Bad one comes when connection or Subscription end; it
-    /// is the last notice unless the client reconnects. The callback may run before this returns.
+    /// Subscribes to changes of a Variable; its present value comes first. A lost value shows in
+    /// the Overflow bit of the next StatusCode. When connection or Subscription end, an empty Value
+    /// with a Bad status comes; it is the last notification unless the client reconnects. The
+    /// callback runs on the client's thread, possibly before this returns.
     Answer<Subscription> subscribeData(NodeId variable, DataFilter filter,
                                        std::function<void(const DataValue&)> callback,
                                        Timeout timeout = {});
@@ -303,7 +317,7 @@ private:
     template <typename Item>
     Answer<Subscription> subscribe(Item item, Timeout timeout);
 
-    std::shared_ptr<ClientCore> core_;  // with its Subscriptions, which may end later
+    std::shared_ptr<ClientCore> core_;  // shared with its Subscriptions, which may end later
 };
 
 }  // namespace metier::opcua

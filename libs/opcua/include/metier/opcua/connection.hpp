@@ -8,18 +8,19 @@
 
 namespace metier::opcua {
 
-/// How a Client comes back when its connection breaks.
+/// Reconnection of a Client whose connection broke.
 struct ReconnectOptions {
     std::chrono::milliseconds shortest_pause{200};   ///< before the first attempt
-    std::chrono::milliseconds longest_pause{2'000};  ///< the pauses double up to it
-    /// Each pause is shorter by up to this part of itself, by chance, so that many clients of one
-    /// server do not come back in step. 0 to 1.
+    std::chrono::milliseconds longest_pause{2'000};  ///< the pauses double up to this value
+    /// Random part, 0 to 1, by which each pause is shortened at most, so that many clients of one
+    /// server do not come back at the same time.
     double jitter = 0.25;
-    /// Given up after so long without a connection; none: tried until close().
+    /// Longest time without a connection, after which the client gives up; none: it tries until
+    /// close().
     std::optional<std::chrono::milliseconds> give_up_after{};
 };
 
-/// What has become of a Client's connection.
+/// Change of a Client's connection.
 struct ConnectionChange {
     enum class Kind {
         lost,      ///< broken, or silent for too long; `why`. Attempts to reconnect follow
@@ -30,8 +31,9 @@ struct ConnectionChange {
     Kind kind = Kind::lost;
     UtcTime time{};  ///< by this machine's clock
     Failure why{};
-    bool server_restarted = false;  ///< back: all that the server knew is gone, NodeIds may differ
-    /// back: the session is the one from before, and whatever it owned with it. If not, the server
+    /// With `back`: the server has forgotten all; NodeIds may differ
+    bool server_restarted = false;
+    /// With `back`: the session is the former one, with all that it owned. If not, the server
     /// treats the former session as gone, at the latest when it times out.
     bool same_session = false;
 };

@@ -12,9 +12,9 @@
 
 namespace metier::opcua {
 
-// Services that need no session (OPC 10000-4, 5.5). Each opens a connection for itself, without
-// security if nothing else is said. Threads: any; waits, at most `timeout` and about a second for
-// closing. What a peer says is text as it came: sanitise() it before it is shown.
+// Services that need no session (OPC 10000-4, 5.5). Each opens a connection of its own, without
+// security unless credentials are given. Threads: any; waits, at most `timeout` and about a second
+// for closing. Text is returned as the peer sent it: sanitise() it before it is shown.
 
 /// One way to reach a server (OPC 10000-4, 7.14).
 struct EndpointDescription {
@@ -24,14 +24,14 @@ struct EndpointDescription {
     std::string url;
     SecurityMode security_mode = SecurityMode::invalid;
     std::string security_policy_uri;
-    std::vector<TokenType> tokens;  ///< how a user may identify
+    std::vector<TokenType> tokens;  ///< ways in which a user may log in
     std::uint8_t security_level = 0;
 };
 
-/// What an application is to others (OPC 10000-4, 7.4).
+/// Kind of an application (OPC 10000-4, 7.4).
 enum class ApplicationType { server = 0, client = 1, client_and_server = 2, discovery_server = 3 };
 
-/// A server that a server knows of, itself included (OPC 10000-4, 7.2).
+/// A server that the asked server knows, itself included (OPC 10000-4, 7.2).
 struct ServerDescription {
     std::string application_uri;
     std::string product_uri;
@@ -40,7 +40,7 @@ struct ServerDescription {
     std::vector<std::string> discovery_urls;
 };
 
-/// Asks a server how it may be reached.
+/// Asks a server for its endpoints.
 /// Errors: as Client::connect().
 Answer<std::vector<EndpointDescription>> getEndpoints(
     const std::string& url, std::chrono::milliseconds timeout = std::chrono::seconds(5));
@@ -49,24 +49,25 @@ Answer<std::vector<EndpointDescription>> getEndpoints(
 Answer<std::vector<ServerDescription>> findServers(
     const std::string& url, std::chrono::milliseconds timeout = std::chrono::seconds(5));
 
-/// What a server tells a discovery server about itself (OPC 10000-4, 7.32).
+/// Registration of a server at a discovery server (OPC 10000-4, 7.32).
 struct ServerRegistration {
     enum class Presence {
         online,
-        offline,  ///< it is to be forgotten
+        offline,  ///< the registration is to be removed
     };
-    std::string application_uri;  ///< by which the discovery server tells servers apart
+    std::string application_uri;  ///< key of the server at the discovery server
     std::string product_uri = "urn:metier";
     std::string name;
-    std::vector<std::string> discovery_urls;  ///< where clients reach it, at least one
+    std::vector<std::string> discovery_urls;  ///< addresses for clients, at least one
     /// For RegisterServer2 (OPC 10000-12, annex D): "DA", "NA".
     std::vector<std::string> capabilities{"NA"};
     Presence presence = Presence::online;
 };
 
-/// Registers a server, or takes it out, by RegisterServer2, and by RegisterServer where the
-/// discovery server does not know the former.
-/// \param security whom the discovery server is to trust; none: a connection without security
+/// Registers a server, or removes its registration, by RegisterServer2; by RegisterServer where the
+/// discovery server does not know RegisterServer2.
+/// \param security certificate of this application and the discovery servers that it trusts; none:
+///                 a connection without security
 /// Errors: as Client::connect(); the discovery server's, such as invalid_argument.
 Answer<> registerServer(const std::string& url, const ServerRegistration& registration,
                         std::chrono::milliseconds timeout = std::chrono::seconds(5),

@@ -16,14 +16,14 @@ class ServerCore;  // of src/
 struct Event {
     NodeId source;               ///< SourceNode, an Object below Objects
     std::string source_name;     ///< SourceName
-    UtcTime time;                ///< when it happened
+    UtcTime time;                ///< time of the occurrence
     std::uint16_t severity = 0;  ///< 1 (least) .. 1000
     LocalizedText message;
-    std::vector<Value> fields;  ///< in the order the emitter was created with
+    std::vector<Value> fields;  ///< in the order of the field list given to create()
 };
 
-/// Who may read the fields of events. The stack sends an event to every subscriber: to others its
-/// fields are Null, the EventType too.
+/// Readers of the fields of events. The stack sends an event to every subscriber; a session that
+/// may not read it gets Null in all fields, EventType included.
 enum class EventAudience {
     everybody,
     auditors,  ///< sessions for which mayAudit()
@@ -51,12 +51,12 @@ public:
     EventEmitter(EventEmitter&&) noexcept;
     EventEmitter& operator=(EventEmitter&&) noexcept;
 
-    /// Raises the event on its source, on every notifier above it and on the Server object, and
-    /// has it published at once if the server is so configured.
-    /// \return its EventId; empty if nobody watches a notifier that it would reach: then nothing is
-    ///         raised
+    /// Raises the event on its source, on every notifier above it and on the Server object. It is
+    /// published at once if the server is so configured.
+    /// \return its EventId; empty if no client has subscribed to one of these notifiers: then
+    ///         nothing is raised
     /// Errors: invalid_argument (number of fields), type_mismatch (a field, named), not_found
-    ///         (source). Nothing is raised then.
+    /// (source). Nothing is raised then.
     Result<ByteString> emit(const Event& event);
 
 private:

@@ -12,20 +12,20 @@
 
 namespace metier::opcua {
 
-/// A server as mDNS tells of it (OPC 10000-12, annex C): service type `_opcua-tcp._tcp`.
+/// A server as announced by mDNS (OPC 10000-12, annex C): service type `_opcua-tcp._tcp`.
 struct MdnsService {
-    std::string name;  ///< of the instance, cut to 63 bytes; another one of that name gets a number
-    std::string host;  ///< where it is reached: an IPv4 address, or the name of a host
+    std::string name;  ///< instance name, cut to 63 bytes; a second one of that name gets a number
+    std::string host;  ///< IPv4 address or host name
     std::uint16_t port = 0;
-    std::string path = "/";   ///< of the endpoint, the TXT record `path`
-    std::string caps = "NA";  ///< the TXT record `caps`
+    std::string path = "/";   ///< path of the endpoint: the TXT record `path`
+    std::string caps = "NA";  ///< capabilities: the TXT record `caps`
 };
 
-/// Announces a server by the Avahi daemon of this machine, as soon as and as long as there is one.
+/// Announces a server through the Avahi daemon of this machine, whenever that is running.
 ///
-/// A server on a loopback address is announced on the loopback interface alone. Without Avahi
-/// nothing happens but a line in the log.
-/// Threading: a thread of its own talks to Avahi; the destructor waits for it, a fraction of a
+/// A server on a loopback address is announced on the loopback interface only. Without Avahi only a
+/// line is logged.
+/// Threading: a thread of its own talks to Avahi. The destructor waits for it, a fraction of a
 /// second unless D-Bus hangs.
 class MdnsAnnouncer {
 public:
@@ -39,8 +39,8 @@ private:
     std::jthread thread_;
 };
 
-/// Servers that mDNS tells of, by Avahi.
-/// Threads: any; waits, until Avahi has told all that it knows and at most `longest`.
+/// Lists the servers that are announced by mDNS, through Avahi.
+/// Threads: any; waits until Avahi has reported all that it knows, at most `longest`.
 /// Errors: not_found (no Avahi daemon).
 Result<std::vector<FoundServer>> browseMdns(
     std::chrono::milliseconds longest = std::chrono::milliseconds(1'500));

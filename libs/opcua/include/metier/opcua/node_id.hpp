@@ -14,7 +14,7 @@
 
 namespace metier::opcua {
 
-/// Bytes without a meaning to OPC UA.
+/// Bytes without a meaning to OPC UA (OPC 10000-6, 5.2.2.7).
 struct ByteString {
     std::vector<std::uint8_t> bytes;
 
@@ -33,10 +33,10 @@ struct Guid {
     friend auto operator<=>(const Guid&, const Guid&) = default;
 };
 
-/// Names a node of one server. The namespace index is that server's own: it differs between
-/// servers and may change when one restarts.
+/// Id of a node of one server. The namespace index is that server's own: it differs between servers
+/// and may change when one restarts.
 ///
-/// Threading: a value.
+/// Threading: a value type.
 class NodeId {
 public:
     using Identifier = std::variant<std::uint32_t, std::string, Guid, ByteString>;
@@ -59,9 +59,9 @@ public:
 
     std::uint16_t namespaceIndex() const noexcept { return namespace_index_; }
     const Identifier& identifier() const noexcept { return identifier_; }
-    /// Whether it is i=0, an empty string, ... in namespace 0, which names nothing.
+    /// Whether it is a null id: i=0, an empty string, ... in namespace 0.
     bool isNull() const;
-    /// The notation that parse() reads; text of the network is made printable.
+    /// Notation that parse() reads; text from the network is made printable.
     std::string toString() const;
     std::size_t hash() const noexcept;
 

@@ -15,20 +15,21 @@
 namespace metier::opcua {
 
 struct RegistrarOptions {
-    std::string discovery_url;                 ///< of the discovery server: "opc.tcp://host:4840"
-    opcua::ServerRegistration server;          ///< who registers
-    std::chrono::milliseconds period{30'000};  ///< between registrations that went well, > 0
-    std::chrono::milliseconds pause{5'000};    ///< after one that did not, > 0
-    std::chrono::milliseconds timeout{2'000};  ///< of each
-    std::chrono::milliseconds farewell{500};   ///< timeout of the last one, which takes it out
+    /// Address of the discovery server: "opc.tcp://host:4840"
+    std::string discovery_url;
+    opcua::ServerRegistration server;              ///< server to register
+    std::chrono::milliseconds period{30'000};      ///< from one success to the next attempt, > 0
+    std::chrono::milliseconds pause{5'000};        ///< from a failure to the next attempt, > 0
+    std::chrono::milliseconds timeout{2'000};      ///< longest time that one registration may take
+    std::chrono::milliseconds farewell{500};       ///< longest time that the final removal may take
     std::optional<opcua::Credentials> security{};  ///< as opcua::registerServer()
 };
 
-/// Keeps a server registered at one discovery server, and takes it out at its end.
+/// Keeps a server registered at one discovery server, and removes the registration at its end.
 ///
-/// Whatever the discovery server does, or does not, it is asked again, and nobody else waits.
-/// What changes is logged, once.
-/// Threading: a thread of its own registers. The destructor waits for it: at most a `timeout` and
+/// A failed registration is repeated for as long as this lives; only the registrar's own thread
+/// waits for it. A change between success and failure is logged once.
+/// Threading: a thread of its own registers. The destructor waits for it: at most `timeout` and
 /// `farewell`, and about a second for each to close its connection.
 class Registrar {
 public:
@@ -50,8 +51,8 @@ private:
 
     const RegistrarOptions options_;
     const Register register_;
-    bool registered_ = false;  // the last attempt went well; the thread's
-    bool complained_ = false;  // of the present series of failures; the thread's
+    bool registered_ = false;  // the last attempt succeeded; used by the thread only
+    bool complained_ = false;  // the present series of failures was logged; used by the thread only
     std::mutex mutex_;         // for the wait
     std::condition_variable_any wake_;
     std::jthread thread_;

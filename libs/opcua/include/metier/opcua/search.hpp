@@ -8,31 +8,33 @@
 
 namespace metier::opcua {
 
-/// A server that somebody told of. Nobody has asked it yet: it may be gone.
+/// A server that a discovery server or mDNS has listed. Nobody has connected to it yet: it may be
+/// gone.
 struct FoundServer {
     std::string url;      ///< "opc.tcp://host:port"
-    std::string name;     ///< of the application, printable; may be empty
-    std::string reported_by;  ///< address of a discovery server, or "mDNS"
+    std::string name;     ///< application name, printable; may be empty
+    std::string reported_by;  ///< source: address of a discovery server, or "mDNS"
 };
 
+/// Result of a search.
 struct Sighting {
-    std::vector<FoundServer> servers;  ///< each address once, by name and address
-    std::vector<Error> problems;       ///< whoever did not answer, and why
+    std::vector<FoundServer> servers;  ///< each address once, sorted by name and address
+    std::vector<Error> problems;       ///< one for each discovery server that did not answer
 };
 
-/// Adds what is not known yet by its address, in order of name and address.
+/// Adds the servers whose address is not in the list yet; keeps the order by name and address.
 void merge(std::vector<FoundServer>& servers, std::vector<FoundServer> more);
 
-/// Asks discovery servers, all at the same time, which servers they know. Discovery servers are
-/// left out, and of what one of them tells all but the first 1000.
+/// Asks discovery servers, all at the same time, for the servers that they know. Entries of
+/// discovery servers are left out; at most 1000 entries of each answer are used.
 /// Threads: any; waits, at most `timeout` and about a second.
 Sighting askDiscoveryServers(const std::vector<std::string>& urls,
                              std::chrono::milliseconds timeout = std::chrono::seconds(2));
 
 enum class Mdns { left_out, asked };
 
-/// The same, and mDNS at the same time if it is to be asked; that there is no Avahi daemon is no
-/// problem.
+/// Asks discovery servers and, if wanted, mDNS at the same time. A missing Avahi daemon is not
+/// reported as a problem.
 Sighting searchServers(const std::vector<std::string>& discovery_urls, Mdns mdns);
 
 }  // namespace metier::opcua

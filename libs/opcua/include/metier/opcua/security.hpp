@@ -12,54 +12,54 @@
 
 namespace metier::opcua {
 
-/// Who an application is, and whom it trusts.
+/// Certificate of an application, and the certificates that it trusts.
 struct Credentials {
-    /// Its certificate names the ApplicationUri.
+    /// Own certificate with its key; the certificate names the ApplicationUri.
     security::Identity identity;
-    /// Of a security::TrustStore, which is read again after changes.
+    /// Folder of a security::TrustStore; it is read again after changes.
     std::filesystem::path trust_folder;
-    /// Where the identity is kept, see security::loadIdentity(): each new connection of a client takes
-    /// the present one. Empty: `identity` for ever.
+    /// Folder of the identity, see security::loadIdentity(): each new connection of a client takes
+    /// the present one. Empty: `identity` is used for ever.
     std::filesystem::path identity_folder{};
 };
 
-/// Somebody who wants to log in, over a connection that is encrypted or signed.
+/// A request to log in, over a connection that is signed or signed and encrypted.
 struct Login {
-    std::string user;  ///< empty: it is the application itself
+    std::string user;  ///< empty: the application itself logs in, by its certificate
     std::string password;
     std::string thumbprint;   ///< of the application's certificate, which is trusted
     std::string certificate;  ///< in DER
 };
 
-/// As whom somebody was let in.
+/// User and role of a session that was accepted.
 struct Admission {
     std::string user;
     security::Role role = security::Role::observer;
 };
 
-/// Something that a session wanted to do and may not in its role.
+/// A call that the role of a session does not allow.
 struct Denial {
     Session session;
     NodeId object;
     NodeId method;
 };
 
-/// A peer whose certificate was refused. All text came from the peer, printable.
+/// A peer whose certificate was refused. All text came from the peer and was made printable.
 struct RefusedPeer {
     std::string der;
     security::CertificateRefusal refusal;
 };
 
-/// What makes a server closed: it serves over Basic256Sha256, Aes128_Sha256_RsaOaep and
-/// Aes256_Sha256_RsaPss, signed or signed and encrypted, and to users that it knows. Without
-/// security it answers FindServers and GetEndpoints only.
+/// Security of a closed server. It serves over Basic256Sha256, Aes128_Sha256_RsaOaep and
+/// Aes256_Sha256_RsaPss, signed or signed and encrypted, and only users that it knows. Without
+/// security it answers only FindServers and GetEndpoints.
 struct ServerSecurity {
     Credentials credentials;
-    /// As whom somebody may log in. This and the others on the server's thread: they must not wait.
+    /// Decides about a login. Called on the server's thread, as the next two: they must not wait.
     std::function<Result<Admission>(const Login&)> authenticate;
-    /// Told of each peer that is refused; may be empty.
+    /// Called for each peer whose certificate was refused; may be empty.
     std::function<void(const RefusedPeer&)> on_refused{};
-    /// Told of each Method that a session may not call; may be empty.
+    /// Called for each Method call that a role did not allow; may be empty.
     std::function<void(const Denial&)> on_denied{};
 };
 

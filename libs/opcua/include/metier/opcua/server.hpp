@@ -27,21 +27,21 @@
 
 namespace metier::opcua {
 
-/// When the notifications of an event leave the server.
+/// Time at which the notifications of an event leave the server.
 enum class EventPublishing {
     at_once,      ///< right after it was raised, whatever publishing interval a client asked for
     at_interval,  ///< strictly at the Subscription's publishing interval
 };
 
-/// What clients may ask of a server; beyond it they are refused or given less.
+/// Limits for the clients of a server; a request beyond them is refused or gets less.
 struct ServerLimits {
-    /// Connections, each with a SecureChannel or on the way to one. When all are taken, one without
-    /// a Session makes room for the next.
+    /// Connections, with or without a SecureChannel yet. When all are taken, one without a Session
+    /// is closed for the next.
     std::uint16_t secure_channels = 150;
-    /// How long a connection may be without a Session.
+    /// Longest time that a connection may be without a Session.
     std::chrono::milliseconds handshake_timeout{10'000};
     std::uint16_t sessions = 100;
-    /// Of one application, known by its certificate; for a closed server.
+    /// Sessions of one application, known by its certificate; only for a closed server.
     std::uint16_t sessions_per_application = 10;
     std::chrono::milliseconds session_timeout{60'000};
     std::uint32_t message_size = 1U << 20U;  ///< [byte]
@@ -50,7 +50,7 @@ struct ServerLimits {
     std::uint32_t subscriptions_per_session = 10;
     std::uint32_t monitored_items = 10'000;
     std::uint32_t monitored_items_per_subscription = 1'000;
-    std::uint32_t event_queue = 10'000;                    ///< of one monitored item
+    std::uint32_t event_queue = 10'000;                    ///< [events] per MonitoredItem
     std::chrono::milliseconds min_publishing_interval{5};  ///< the stack can do 5 ms
     std::chrono::milliseconds min_sampling_interval{5};    ///< the stack can do 5 ms
     std::chrono::milliseconds max_publishing_interval{10'000};
@@ -62,7 +62,7 @@ struct ServerLimits {
     std::uint32_t nodes_per_write = 200;
     std::uint32_t nodes_per_call = 10;
     std::uint32_t nodes_per_browse = 1'000;
-    std::uint32_t references_per_node = 1'000;  ///< of a Browse, at once
+    std::uint32_t references_per_node = 1'000;  ///< of one Browse answer
 };
 
 struct UserPassword {
@@ -70,10 +70,10 @@ struct UserPassword {
     std::string password;
 };
 
-/// What makes a server a Local Discovery Server (OPC 10000-12).
+/// Makes a server a Local Discovery Server (OPC 10000-12).
 struct DiscoveryService {
-    /// A server that did not renew its registration for so long is forgotten, within a second or
-    /// two; whole seconds, at least one.
+    /// A registration that is not renewed for that long is removed, within a second or two; whole
+    /// seconds, at least one.
     std::chrono::seconds forget_after{75};
 };
 
@@ -81,37 +81,37 @@ struct ServerOptions {
     std::string application_name = "metier";
     std::string application_uri = "urn:metier:server";
     std::uint16_t port = 4840;  ///< 0: a free one
-    /// Without security loopback addresses only.
+    /// Without security only loopback addresses are allowed.
     std::vector<std::string> bind_addresses{"127.0.0.1"};
-    /// None: the security of a lab, no encryption and anonymous users.
+    /// Security of a closed server; none: no encryption and anonymous users, for a lab.
     std::optional<ServerSecurity> security{};
-    /// NodeSets by short name: any of device, robotics, metier brings the whole skill model with
-    /// the official ones it stands on; iiwa, edo, universal_robots add the instances of a robot,
-    /// wsg50 those of a gripper.
+    /// NodeSets by short name. Any of device, robotics, metier brings the whole skill model with
+    /// the official NodeSets that it needs; iiwa, edo, universal_robots add the instances of a
+    /// robot, wsg50 those of a gripper.
     std::vector<std::string> nodesets;
     /// URIs of further namespaces, in the order of their indices.
     std::vector<std::string> namespaces;
-    /// Users of a lab besides the anonymous one.
+    /// Users besides the anonymous one; only without `security`.
     std::vector<UserPassword> users;
     EventPublishing event_publishing = EventPublishing::at_once;
-    /// Told what sessions and the server do, and what they were not let do; may be empty. On the
-    /// server's thread: it must not wait.
+    /// Called for each audit record: actions and refused attempts of sessions, and actions of the
+    /// server; may be empty. Runs on the server's thread and must not wait.
     std::function<void(const AuditRecord&)> on_audit{};
-    /// Others may register, and are told of by FindServers.
+    /// Lets other servers register here; FindServers lists them.
     std::optional<DiscoveryService> discovery{};
     ServerLimits limits;
     /// Shared with its other users, as spdlog does; null: spdlog's default logger.
     std::shared_ptr<spdlog::logger> logger;
 };
 
-/// What a server does; figures of at most the last 100 ms while its thread works.
+/// Figures of a server's load; at most 100 ms old while its thread works.
 struct ServerStatistics {
     std::size_t connections = 0;
     std::size_t sessions = 0;
     std::size_t queued_bytes = 0;  ///< [byte] waiting for peers to read
-    std::size_t waiting_work = 0;  ///< posted to the server's thread and not begun, now
+    std::size_t waiting_work = 0;  ///< posted to the server's thread and not begun
     std::uint64_t refused_connections = 0;
-    std::uint64_t cut_peers = 0;  ///< did not take what was sent to them
+    std::uint64_t cut_peers = 0;  ///< closed, since they did not read what was sent to them
 };
 
 /// A timer that is cancelled at the end of its life.
@@ -138,20 +138,20 @@ template <typename T>
 struct AsResult<Result<T>> {
     using Type = Result<T>;
 };
-/// What Server::call() makes of the result R or Result<R> of some work: Result<R>.
+/// Result type of Server::call() for work that returns R or Result<R>: Result<R>.
 template <typename Work>
 using ResultOf = typename AsResult<std::invoke_result_t<Work&>>::Type;
 
-/// An OPC UA server. With the security of a lab, its log says so when it starts.
+/// An OPC UA server. Without security it logs a warning when it starts.
 ///
-/// Threading: between start() and stop() one thread of its own does all work and makes all calls
-/// of handlers. Before, and after, the thread that created it stands in for it. Functions say
-/// which thread may call them.
+/// Threading: between start() and stop() one thread of its own does all work and calls all
+/// handlers. Before and after that, the thread that created it takes its place. Each function says
+/// which thread may call it.
 class Server {
 public:
     /// Errors: invalid_argument (an address that is not loopback, a limit of zero, a certificate
-    ///         that is not of the ApplicationUri), resource_unavailable (the trust folder),
-    ///         not_found (NodeSet), internal (the stack).
+    /// for another ApplicationUri), resource_unavailable (the trust folder), not_found (NodeSet),
+    /// internal (the stack).
     static Result<std::unique_ptr<Server>> create(ServerOptions options);
     /// Stops it.
     ~Server();
@@ -173,9 +173,9 @@ public:
     /// Work posted before start() runs after it. An exception is logged and goes no further.
     void post(std::function<void()> work);
 
-    /// Runs work on the server's thread and waits for its result, R or Result<R>. Any thread but
-    /// a cycle thread. At the deadline work that was not begun never will be; work that was goes
-    /// on alone, so it must own what it uses.
+    /// Runs work on the server's thread and waits for its result, R or Result<R>. Any thread but a
+    /// cycle thread. Work that has not begun at the deadline never will; work that has begun goes
+    /// on alone, so it must own all that it uses.
     /// Errors: timeout, cancelled (the server stopped), and the work's own.
     template <typename Work>
     ResultOf<Work> call(Work work, std::chrono::milliseconds deadline = std::chrono::seconds(5));
@@ -183,32 +183,32 @@ public:
     /// Runs work once, unless the handle is cancelled or destroyed before. Server's thread.
     [[nodiscard]] TimerHandle after(std::chrono::nanoseconds delay, std::function<void()> work);
 
-    /// Calls when a session ended, whether closed, timed out or at stop(). Handlers run on the
-    /// server's thread and stay for the server's life. Server's thread.
+    /// Calls the handler when a session has ended: closed, timed out or ended by stop(). Handlers
+    /// run on the server's thread and stay for the server's life. Server's thread.
     void onSessionClosed(std::function<void(const Session&)> handler);
 
-    /// The server's thread only.
+    /// The nodes of this server. Server's thread.
     AddressSpace& nodes();
-    /// Notes what the server did by itself, as an audit event and for on_audit. Server's thread.
+    /// Records an action of the server itself, as an audit event and for on_audit. Server's thread.
     void audit(const OwnAct& act);
 
-    /// Closes the sessions of which it says true. Server's thread.
+    /// Closes the sessions for which `which` returns true. Server's thread.
     void closeSessions(const std::function<bool(const Session&)>& which);
 
-    /// Goes on with another certificate and key for the same ApplicationUri. Connections that are
-    /// open stay until their next renewal, within ten minutes; then their clients connect again.
-    /// Server's thread.
+    /// Replaces certificate and key, for the same ApplicationUri. Open connections stay until their
+    /// next renewal, within ten minutes; then their clients connect again. Server's thread.
     /// Errors: invalid_argument (another ApplicationUri, a key that does not fit), invalid_state
     ///         (a server without security).
     Result<> renewIdentity(const security::Identity& identity);
 
-    /// When the server's thread was last seen working; it is at least every 100 ms. Any thread.
+    /// Time at which the server's thread last worked; it does at least every 100 ms. Any thread.
     SteadyTime lastTick() const noexcept;
+    /// Any thread.
     bool onServerThread() const noexcept;
     /// Any thread; does not wait for the server's.
     ServerStatistics statistics() const;
-    /// From an event until it was handed to the socket, for each Subscription that is told at once.
-    /// Any thread.
+    /// Times from raising an event to handing it to the socket, one per Subscription that is
+    /// notified at once. Any thread.
     const TimeHistogram& publishLatency() const noexcept;
 
 private:

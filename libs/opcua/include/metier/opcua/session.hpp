@@ -8,24 +8,24 @@
 namespace metier::opcua {
 
 /// A client's session as the server knows it. All text came from the client and is unchecked,
-/// but the user name and the thumbprint, which were. The null id stands for the server itself.
+/// except the user name and the thumbprint. The null id stands for the server itself.
 struct Session {
     NodeId id;
     std::string name;
     std::string application_uri;
     std::string application_name;
     std::string user;          ///< empty: anonymous
-    std::string thumbprint{};  ///< of the trusted certificate of its application; empty: none
-    /// What it may do; in a lab everybody is an engineer.
+    std::string thumbprint{};  ///< of its application's trusted certificate; empty: none
+    /// Role that decides about its rights; without security everybody is an engineer.
     security::Role role = security::Role::observer;
 };
 
-/// Whether a role may change anything: write Variables and call Methods that do more than tell.
+/// Whether a role may change anything: write Variables and call Methods that do more than report.
 constexpr bool mayCommand(security::Role role) noexcept {
     return role == security::Role::operator_ || role == security::Role::engineer;
 }
 
-/// Whether a role may read what others did: the content of audit events.
+/// Whether a role may read audit events, that is the actions of others.
 constexpr bool mayAudit(security::Role role) noexcept {
     return role == security::Role::engineer || role == security::Role::security_admin;
 }

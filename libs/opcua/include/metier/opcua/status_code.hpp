@@ -10,7 +10,7 @@ namespace metier::opcua {
 
 /// The 32-bit outcome of an OPC UA service or operation (OPC 10000-4, 7.39).
 ///
-/// Threading: a value.
+/// Threading: a value type.
 class StatusCode {
 public:
     constexpr StatusCode() = default;
@@ -19,7 +19,7 @@ public:
     constexpr std::uint32_t value() const noexcept { return value_; }
     constexpr bool isGood() const noexcept { return (value_ >> 30U) == 0; }
     constexpr bool isBad() const noexcept { return (value_ >> 31U) != 0; }
-    /// The symbol of the standard, `BadOutOfRange`; for an unknown code its hexadecimal value.
+    /// Symbol of the standard, `BadOutOfRange`; for an unknown code its hexadecimal value.
     std::string name() const;
 
     friend constexpr bool operator==(StatusCode, StatusCode) = default;
@@ -88,14 +88,15 @@ inline constexpr StatusCode kBadIdentityTokenInvalid{0x80200000};
 inline constexpr StatusCode kBadWriteNotSupported{0x80730000};
 }  // namespace status
 
-/// The one table of error codes: what a peer is told when a function of ours refuses.
+/// StatusCode that a peer gets for an error of this project: the only table of error codes.
 StatusCode statusFrom(Errc code) noexcept;
 
-/// The inverse: what a program does about a peer's refusal. Codes without an entry of their own
-/// are `connection_lost` for broken transports and sessions, otherwise `internal`.
+/// Error code for a peer's StatusCode, chosen by what a program can do about it. Codes without an
+/// entry of their own become connection_lost for broken transports and sessions, otherwise
+/// internal.
 Errc errcFrom(StatusCode code) noexcept;
 
-/// A refusal of the stack or of a peer as an Error: "<doing>: BadOutOfRange".
+/// Error for a refusal of the stack or of a peer; text "<doing>: BadOutOfRange".
 Error errorFrom(StatusCode code, std::string_view doing);
 
 }  // namespace metier::opcua

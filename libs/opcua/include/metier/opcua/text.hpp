@@ -5,8 +5,8 @@
 
 namespace metier::opcua {
 
-/// Text from the network made fit for logs, terminals and pages: well-formed UTF-8 without
-/// control characters. What does not fit becomes U+FFFD; all else is kept byte for byte.
+/// Makes text from the network fit for logs, terminals and pages: well-formed UTF-8 without control
+/// characters. Bytes that do not fit become U+FFFD; all else is kept byte for byte.
 ///
 /// Threading: any; pure.
 std::string sanitise(std::string_view text);

@@ -13,12 +13,12 @@ using metier::Range;
 using ThreeDFrame = metier::Frame;
 using ThreeDVector = metier::Vector3;
 
-/// A name that is unique among siblings; the index is a server's own.
+/// A name that is unique among siblings; the index belongs to one server's namespace table.
 struct QualifiedName {
     std::uint16_t namespace_index = 0;
     std::string name;
 
-    /// `2:Skills`; text of the network is made printable.
+    /// Text `2:Skills`; text from the network is made printable.
     std::string toString() const;
     friend bool operator==(const QualifiedName&, const QualifiedName&) = default;
     friend auto operator<=>(const QualifiedName&, const QualifiedName&) = default;
@@ -72,7 +72,7 @@ struct Argument {
     friend bool operator==(const Argument&, const Argument&) = default;
 };
 
-/// How a node takes part in the address space.
+/// Kind of a node (OPC 10000-3, 5).
 enum class NodeClass {
     unspecified = 0,
     object = 1,

@@ -22,7 +22,7 @@ struct ValueAccess;
 template <typename T, typename... Types>
 concept OneOf = (std::same_as<T, Types> || ...);
 
-/// What a Value can hold as a scalar. An enumeration of OPC UA travels as std::int32_t.
+/// Scalar types that a Value can hold. An enumeration of OPC UA travels as std::int32_t.
 template <typename T>
 concept ScalarType =
     OneOf<T, bool, std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
@@ -36,16 +36,16 @@ struct IsVectorOfScalars : std::false_type {};
 template <ScalarType T>
 struct IsVectorOfScalars<std::vector<T>> : std::true_type {};
 
-/// What a Value can hold: a scalar or a one-dimensional array of scalars.
+/// Types that a Value can hold: a scalar or a one-dimensional array of scalars.
 template <typename T>
 concept ValueType = ScalarType<T> || IsVectorOfScalars<T>::value;
 
 /// Any value of a Variable, argument or event field; owns what it holds.
 ///
-/// Structures unknown to this program stay what they are: they can be copied, compared, passed
-/// on and printed, but not taken apart.
+/// Structures that this program does not know keep their encoded form: they can be copied,
+/// compared, passed on and printed, but not taken apart.
 ///
-/// Threading: a value; may be handed from thread to thread.
+/// Threading: a value type; may be handed from thread to thread.
 class Value {
 public:
     /// The empty value, Null.
@@ -65,14 +65,14 @@ public:
     static Value of(std::string_view value);
     static Value of(const char* value) { return of(std::string_view(value)); }
 
-    /// What it holds, if it is of type T or of a subtype of a built-in one (Duration is read as
-    /// double); numbers are not converted. An enumeration is read as std::int32_t; an array without
-    /// elements or type as any vector.
+    /// Returns the content if it is of type T or of a subtype of a built-in type (Duration is read
+    /// as double); numbers are not converted. An enumeration is read as std::int32_t; an array
+    /// without elements or type is read as any vector.
     /// Errors: type_mismatch, naming both types.
     template <ValueType T>
     Result<T> as() const;
 
-    /// The rows of a Double matrix; none of Null.
+    /// Rows of a Double matrix; none for Null.
     /// Errors: type_mismatch.
     Result<std::vector<std::vector<double>>> asRows() const;
 
@@ -82,9 +82,9 @@ public:
     std::size_t size() const noexcept;
     /// The data type, e.g. `i=11` for Double; null when empty.
     NodeId dataType() const;
-    /// `Double`, `Double[6]`, `Null`: for messages.
+    /// Type for messages: `Double`, `Double[6]`, `Null`.
     std::string typeName() const;
-    /// For people: a string without quotes, everything else as toJson(). Always printable.
+    /// Text for people: a string without quotes, everything else as toJson(). Always printable.
     std::string toString() const;
     /// JSON (OPC 10000-6, 5.4, not reversible); always well-formed.
     std::string toJson() const;
@@ -102,7 +102,7 @@ private:
     alignas(std::max_align_t) std::byte native_[kNativeSize];
 };
 
-/// An entry of a list of named values; its name is qualified as OPC UA asks.
+/// An entry of a list of named values.
 struct KeyValue {
     QualifiedName key;
     Value value;
@@ -110,7 +110,7 @@ struct KeyValue {
     friend bool operator==(const KeyValue&, const KeyValue&) = default;
 };
 
-/// Who made a Program and who called it last (ProgramDiagnostic2DataType of OPC 10000-10, 5.2.8).
+/// Creator and last call of a Program (ProgramDiagnostic2DataType of OPC 10000-10, 5.2.8).
 struct ProgramDiagnostic {
     NodeId create_session_id;
     std::string create_client_name;
@@ -128,12 +128,12 @@ struct ProgramDiagnostic {
     friend bool operator==(const ProgramDiagnostic&, const ProgramDiagnostic&) = default;
 };
 
-/// A value together with what is known about it.
+/// A value with its status and times.
 struct DataValue {
     Value value;
     StatusCode status{};
-    UtcTime source_time{};  ///< when it was true; UtcTime{} if not given
-    UtcTime server_time{};  ///< when the server learned of it; UtcTime{} if not given
+    UtcTime source_time{};  ///< time at which it was true; UtcTime{} if not given
+    UtcTime server_time{};  ///< time at which the server got it; UtcTime{} if not given
 
     friend bool operator==(const DataValue&, const DataValue&) = default;
 };

@@ -6,12 +6,12 @@
 
 namespace metier::opcua_skill {
 
-/// Lets clients write WorldToRobotBase of an arm, the pose of the robot base frame in the world
-/// frame, as a whole; its parts follow and are not writable. A value that is not finite or outside
-/// the EURange of a part is refused with BadOutOfRange; each write, taken or refused, is audited.
-/// The pose is kept until the server ends.
+/// Lets clients write WorldToRobotBase of an arm as a whole: the pose of the robot base frame in
+/// the world frame. Its components follow and are not writable. A value that is not finite or
+/// outside the EURange of a component is refused with BadOutOfRange; each write, taken or refused,
+/// is audited. The pose is kept until the server ends.
 ///
-/// Before Server::start(); `server` must outlive its nodes.
+/// Call it before Server::start(); `server` must outlive its nodes.
 /// Errors: not_found, if the motion device has no WorldToRobotBase.
 Result<void> serveBasePlacement(opcua::Server& server, const MotionDeviceSystem& system);
 

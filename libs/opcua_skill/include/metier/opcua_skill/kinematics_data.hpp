@@ -8,9 +8,9 @@
 
 namespace metier::opcua_skill {
 
-/// What the Kinematics object of a motion device publishes and does not change while the server
-/// runs: enough for a client to compute poses, reach and limits of an arm it has never heard of.
-/// Lists hold one element per axis, axis 1 first.
+/// Values of the Kinematics object of a motion device that do not change while the server runs.
+/// They are enough for a client to compute poses, reach and limits of an arm that it does not know.
+/// Lists have one element per axis, axis 1 first.
 struct KinematicsData {
     opcua::ThreeDFrame base_from_first_joint;      ///< at joint position 0 [m, rad]
     opcua::ThreeDFrame last_joint_from_flange;     ///< [m, rad]
@@ -25,19 +25,20 @@ struct KinematicsData {
     std::vector<double> max_cartesian_velocity;    ///< [m/s], [rad/s]
     std::vector<double> max_cartesian_acceleration;  ///< [m/s²], [rad/s²]
     std::vector<double> max_cartesian_jerk;          ///< [m/s³], [rad/s³]
-    double cycle_time = 0;                           ///< of the controller [s]
-    std::vector<std::string> tool_frames;            ///< names that ToolFrame may hold
-    /// Greatest mass at the flange [kg], which OPC 40010-1 has in FlangeLoad; 0: unknown.
+    double cycle_time = 0;                           ///< period of the controller [s]
+    /// Names that the parameter ToolFrame may have
+    std::vector<std::string> tool_frames;
+    /// Greatest mass at the flange [kg], published as OPC 40010-1 FlangeLoad; 0: unknown.
     double payload = 0;
 
     std::size_t axisCount() const noexcept { return joint_axes.size(); }
     friend bool operator==(const KinematicsData&, const KinematicsData&) = default;
 };
 
-/// What the Kinematics object tells about the arm right now.
+/// Values of the Kinematics object that change while the arm works.
 struct KinematicsState {
     std::vector<double> joint_position;  ///< measured [rad]
-    opcua::ThreeDFrame pose;             ///< measured, base from flange [m, rad]
+    opcua::ThreeDFrame pose;             ///< measured, base_from_flange [m, rad]
     SafetyStateKind safety_state = SafetyStateKind::unknown;
     std::uint64_t missed_cycles = 0;  ///< since the server started
 };

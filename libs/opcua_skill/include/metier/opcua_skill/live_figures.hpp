@@ -12,42 +12,42 @@
 
 namespace metier::opcua_skill {
 
-// What changes all the time, as Variables of namespace `urn:metier:skills` that any client may read
-// or subscribe to. Each function is called on the server's thread whenever a client reads or is to
-// be told, and must return at once; what it has nothing for is BadNoCommunication.
+// Live values as Variables of namespace `urn:metier:skills`, which any client may read or subscribe
+// to. The server's thread calls a function whenever a client reads its value and at each sampling
+// of a subscription; it must return at once. A function without a result gives BadNoCommunication.
 // Threads: those of AddressSpace. Errors: those of AddressSpace::addVariable().
 
-/// What acts on a flange, in the axes of its sensor.
+/// Wrench at the flange, in the axes of the sensor.
 struct FlangeWrench {
     std::array<double, 3> force{};   ///< [N]
     std::array<double, 3> torque{};  ///< [N m]
 };
 
-/// How well the set-points of a position stream come, of the one that runs or else of the last.
+/// Timing of a position stream's set-points, of the stream that runs or else of the last one.
 struct StreamFigures {
-    double lag = 0.0;           ///< how much longer than PlayOutDelay the newest one waits [s]
+    double lag = 0.0;           ///< time by which the newest one waits longer than PlayOutDelay [s]
     double largest_lag = 0.0;   ///< since the stream's start [s]
-    double clock_step = 0.0;    ///< largest step of the client's clock; below 0: back [s]
-    std::uint64_t refused = 0;  ///< when they were written
-    std::uint64_t dropped = 0;  ///< for a time that was not after that of the one before
+    double clock_step = 0.0;    ///< largest step of the client's clock; negative: back [s]
+    std::uint64_t refused = 0;  ///< refused when they were written
+    std::uint64_t dropped = 0;  ///< dropped, since their time was not after that of the one before
 };
 
-/// How soon an arm would stand if it were halted now.
+/// Stop of an arm, if it were halted now.
 struct StoppingFigures {
-    double time = 0.0;      ///< [s]
-    double distance = 0.0;  ///< of its tool frame [m]
+    double time = 0.0;      ///< time until it stands [s]
+    double distance = 0.0;  ///< way of its tool frame [m]
 };
 
-/// An arm besides its KinematicsState. An empty function: the arm does not have it, and there is no
-/// Variable.
+/// Live values of an arm besides its KinematicsState. An empty function: the arm does not have the
+/// value, and no Variable is added.
 struct ArmFigures {
     /// CommandedJointPosition: the last set-point that the controller took [rad].
     std::function<std::optional<std::vector<double>>()> commanded_joint_position{};
-    /// Standstill: whether the measured arm stands.
+    /// Standstill: whether the measured arm does not move.
     std::function<std::optional<bool>()> standstill{};
     /// StoppingTime, StoppingDistance.
     std::function<std::optional<StoppingFigures>()> stopping{};
-    /// CycleJitter: how far cycles were off their period lately, in the mean [s].
+    /// CycleJitter: mean deviation of the latest cycles from their period [s].
     std::function<std::optional<double>()> cycle_jitter{};
     /// FlangeForce, FlangeTorque.
     std::function<std::optional<FlangeWrench>()> flange_wrench{};
@@ -55,11 +55,12 @@ struct ArmFigures {
     std::function<StreamFigures()> stream{};
 };
 
-/// \param kinematics of the arm's motion device
+/// Adds the Variables of an arm's live values.
+/// \param kinematics Kinematics object of the arm's motion device
 Result<void> publishArmFigures(opcua::AddressSpace& nodes, const opcua::NodeId& kinematics,
                                const ArmFigures& figures);
 
-/// A gripper now.
+/// Live values of a gripper.
 struct GripperFigures {
     double width = 0.0;  ///< between the jaws [m]
     double force = 0.0;  ///< on the part [N]
@@ -71,8 +72,8 @@ struct GripperKind {
     bool measures_force = false;
 };
 
-/// Adds GripperStroke, GripperWidth, GripperForce if it measures it, and PartHeld: whether the
-/// gripper holds a part, between the executions of its skills, too.
+/// Adds GripperStroke, GripperWidth, PartHeld and, if the gripper measures it, GripperForce.
+/// PartHeld shows whether the gripper holds a part, also between the executions of its skills.
 /// \param parent the object that the gripper's skills belong to
 Result<void> publishGripperFigures(opcua::AddressSpace& nodes, const opcua::NodeId& parent,
                                    const GripperKind& kind,

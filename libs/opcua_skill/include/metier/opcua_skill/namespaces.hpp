@@ -5,9 +5,9 @@
 
 namespace metier::opcua_skill {
 
-/// Of what metier adds to the published types of skills.
+/// Namespace of metier's additions to the published skill types.
 inline constexpr std::string_view kMetierUri = "urn:metier:skills";
-/// SkillStoppingEventType in that namespace.
+/// Numeric id of SkillStoppingEventType in that namespace.
 inline constexpr std::uint32_t kStoppingEventTypeId = 20344;
 
 }  // namespace metier::opcua_skill

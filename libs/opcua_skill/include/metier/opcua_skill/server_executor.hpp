@@ -10,9 +10,9 @@
 
 namespace metier::opcua_skill {
 
-/// The thread of an OPC UA server as the owner of Programs.
+/// Executor on the thread of an OPC UA server, for the Programs of that server.
 ///
-/// Shared with Executions, which may outlive the server: after close() it drops what it is given.
+/// Shared with Executions, which may outlive the server: after close() it drops posted work.
 class ServerExecutor final : public skill::Executor {
 public:
     /// `server` must live until close().
@@ -21,7 +21,7 @@ public:
     void post(std::function<void()> work) override;
     skill::Timer after(std::chrono::nanoseconds delay, std::function<void()> work) override;
 
-    /// From now on the server may go. Any thread.
+    /// Detaches the server, which may end from now on. Any thread.
     void close();
 
 private:

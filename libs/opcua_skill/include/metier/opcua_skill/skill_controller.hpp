@@ -8,26 +8,28 @@
 
 namespace metier::opcua_skill {
 
-/// A device that offers skills by itself, as a gripper does.
+/// A device that publishes skills by itself, such as a gripper.
 struct SkillController {
     opcua::NodeId controller;  ///< below DeviceSet, with ISkillControllerType
-    opcua::NodeId skills;      ///< holds the skills
+    opcua::NodeId skills;      ///< folder of its skills
 };
 
-/// Finds the one such device of a server's NodeSets.
+/// Finds the only such device of a server's NodeSets.
 /// Threads: those of AddressSpace.
 /// Errors: not_found.
 Result<SkillController> findSkillController(const opcua::AddressSpace& nodes);
 
-/// Makes an object the controller of skills: with both interfaces, the lease, and a folder for the
+/// Makes an object a controller of skills: adds both interfaces, the lease, and a folder for
 /// skills.
 /// \return the folder
 /// Errors: already_exists; not_found (NodeSets device and metier are needed).
 Result<opcua::NodeId> makeSkillController(opcua::AddressSpace& nodes,
                                           const opcua::NodeId& controller);
 
-/// Makes a controller of skills that belong to no device, below DeviceSet. Before Server::start().
-/// \param name its BrowseName; \param description for people
+/// Makes a controller below DeviceSet for skills that belong to no device. Call it before
+/// Server::start().
+/// \param name BrowseName of the controller
+/// \param description text for people
 /// Errors: as makeSkillController().
 Result<SkillController> publishSkillController(opcua::AddressSpace& nodes, const std::string& name,
                                                const std::string& description);

@@ -4,12 +4,12 @@
 
 namespace metier::opcua_skill {
 
-// Keys in the Parameters of StartWith that are no parameters: on whose behalf a skill is started.
-// A skill that has ExecutionRecords takes them.
+// Keys in the Parameters of StartWith that are not parameters of the skill: the execution on whose
+// behalf it is started. Skills with ExecutionRecords accept them.
 
-/// ExecutionId of the execution that starts the skill.
+/// ExecutionId of the starting execution.
 inline constexpr std::string_view kParentExecution = "ParentExecution";
-/// ApplicationUri of its server.
+/// ApplicationUri of the starting execution's server.
 inline constexpr std::string_view kParentServer = "ParentServer";
 
 }  // namespace metier::opcua_skill

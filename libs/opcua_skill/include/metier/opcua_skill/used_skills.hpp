@@ -8,30 +8,30 @@
 
 namespace metier::opcua_skill {
 
-/// A skill of another server that a skill runs.
+/// A skill of another server that a skill of this server uses.
 struct RemoteSkill {
-    std::string alias;         ///< as the user calls it
-    std::string endpoint_url;  ///< of its server
+    std::string alias;         ///< name that the using skill gives it
+    std::string endpoint_url;  ///< address of its server
     std::string name;          ///< BrowseName of the skill
     std::string type_name;     ///< BrowseName of its type
     std::string controller;    ///< BrowseName of its controller; empty: none
 };
 
-// Both add a reference UsesSkill from `user`, a skill object. Threads: those of AddressSpace.
-// Errors: not_found; already_exists.
+// Both functions add a reference UsesSkill from `user`, a skill object. Threads: those of
+// AddressSpace. Errors: not_found; already_exists.
 
 /// \param used a skill object of this server
 Result<void> publishUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
                         const opcua::NodeId& used);
-/// Makes an object that tells where the skill is, below `UsedSkills` of the user.
+/// Adds an object below `UsedSkills` of the user that holds the address of the used skill.
 Result<void> publishUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
                         const RemoteSkill& used);
 
-/// Tells that another skill is used by an alias that was published before.
+/// Replaces the address of the skill that is used by an alias published before.
 Result<void> updateUse(opcua::AddressSpace& nodes, const opcua::NodeId& user,
                        const RemoteSkill& used);
 
-/// The skill object of that name below a folder of skills.
+/// Finds the skill object of that name below a folder of skills.
 Result<opcua::NodeId> findSkillObject(const opcua::AddressSpace& nodes, const opcua::NodeId& skills,
                                       const std::string& name);
 

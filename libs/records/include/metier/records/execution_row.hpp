@@ -12,35 +12,37 @@
 
 namespace metier::records {
 
-/// State of an execution whose server died while it was under way: nobody knows how it ended.
+/// State of an execution whose server died while it was under way: its end is unknown.
 inline constexpr std::string_view kLost = "Lost";
 /// Reason of such an execution.
 inline constexpr std::string_view kServerLost = "ServerLost";
 
-/// One execution of a skill, whichever client started it. visitMembers() of members.hpp lists its
+/// One execution of a skill, started by any client. visitMembers() of members.hpp lists its
 /// members.
 ///
-/// Text may be anything: what is no UTF-8 becomes U+FFFD when it is written; names are cut after
-/// 300 bytes, ids and a reason's text after 2000, JSON after 1,000,000. States and reasons are the
-/// names that OPC UA clients see.
+/// Any text is accepted: bytes that are not UTF-8 become U+FFFD when it is written; names are cut
+/// after 300 bytes, ids and a reason's text after 2000, JSON after 1,000,000. States and reasons
+/// are the names that OPC UA clients see.
 struct ExecutionRow {
-    std::int64_t number = 0;      ///< within the store, from 1; 0: it is not in one yet
-    std::string id{};             ///< as its server names it; unique within a skill of a server
-    std::string server{};         ///< ApplicationUri
-    std::string server_name{};    ///< as its cell file names it
-    std::string skill{};          ///< BrowseName of the Program
-    std::string controller{};     ///< BrowseName of what the Program belongs to; may be empty
+    std::int64_t number = 0;    ///< number in the store, from 1; 0: it is not in one yet
+    std::string id{};           ///< id that its server gave it; unique within a skill of a server
+    std::string server{};       ///< ApplicationUri
+    std::string server_name{};  ///< its name in the cell file
+    std::string skill{};        ///< BrowseName of the Program
+    /// BrowseName of the object to which the Program belongs; may be empty
+    std::string controller{};
     std::string device{};         ///< the arm or gripper it moves; may be empty
     std::string parent{};         ///< id of the execution that started it; empty: a client did
     std::string parent_server{};  ///< ApplicationUri of the parent; empty: the same server
     std::string session{};        ///< id of the session that started it
-    std::string client_name{};    ///< as that session's client calls itself
+    std::string client_name{};    ///< name that the client of that session gave
     std::string user{};           ///< empty: anonymous
     std::string thumbprint{};     ///< of the client's certificate, hexadecimal; may be empty
     std::string parameters{};     ///< JSON object, a member for each parameter
-    std::string check{};          ///< JSON of what Check said before; may be empty
+    /// JSON of the answer to an earlier Check of the same parameters; may be empty
+    std::string check{};
     UtcTime started{};
-    UtcTime ended{};            ///< the epoch while it is under way
+    UtcTime ended{};            ///< UtcTime{} while it is under way
     std::string state{};        ///< "Running", "Suspended"; once over "Ready", "Halted" or kLost
     std::string reason{};       ///< "Finished", "ByClient", ...; may be empty
     std::string reason_text{};  ///< for a person; may be empty

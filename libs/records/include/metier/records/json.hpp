@@ -10,7 +10,7 @@
 
 namespace metier::records {
 
-/// "2026-11-22T09:30:00.125Z"; empty for the epoch, which means that there is none.
+/// Text "2026-11-22T09:30:00.125Z"; empty for UtcTime{}, which means none.
 std::string timeText(UtcTime time);
 
 /// A JSON object without line breaks, in UTF-8: the fields of Execution by their names, times as
@@ -18,7 +18,7 @@ std::string timeText(UtcTime time);
 /// as JSON, and its `duration` [s], null while it is under way.
 std::string toJson(const ExecutionRow& execution);
 
-/// All that is known of one execution.
+/// Complete record of one execution.
 struct Details {
     Execution execution{};
     std::vector<ExecutionRow> children{};

@@ -13,20 +13,20 @@
 
 namespace metier::records {
 
-/// A store that is opened when it is first used, and kept: opened anew once its file was replaced
-/// or its database was away.
+/// A store that is opened at its first use and kept open. It is opened anew when its file was
+/// replaced or its database was away.
 ///
 /// Threading: any number of threads, one after the other.
 class KeptStore {
 public:
-    /// Longest wait for others.
+    /// Longest wait for other threads.
     static constexpr std::chrono::seconds kPatience{10};
 
     /// \param url as Store::open() takes it
     explicit KeptStore(std::string url) : url_(std::move(url)) {}
 
-    /// The Result of work(Store&). After an error that may come from an old connection it is called
-    /// once more, with a new one.
+    /// Returns the Result of work(Store&). After an error that may come from an old connection,
+    /// `work` is called once more, with a new one.
     /// Errors: those of Store::open() and of `work`; resource_unavailable (kPatience passed).
     template <typename Work>
     auto use(Work work) -> std::invoke_result_t<Work, Store&> {
@@ -57,7 +57,7 @@ private:
     std::mutex mutex_;
     std::condition_variable given_back_;
     bool taken_ = false;
-    std::unique_ptr<Store> store_;  // used by who has taken it
+    std::unique_ptr<Store> store_;  // used by the thread that has taken it
 };
 
 }  // namespace metier::records

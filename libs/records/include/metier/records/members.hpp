@@ -10,20 +10,20 @@
 
 namespace metier::records {
 
-/// Table of the schema that has the column of a member.
+/// Table of the schema that has a member's column.
 enum class Table : std::uint8_t { executions, kinds, notes };
 
-/// Kind of a text, which says after how many bytes it is cut.
+/// Kind of a text; it decides after how many bytes the text is cut.
 enum class Form : std::uint8_t { name, key, json };
 
-/// Description of a member of Execution or Transition, the only one there is: JSON, SQL, the limits
-/// of texts and the memory that a record takes all come from it.
+/// Description of a member of Execution or Transition. JSON, SQL, the limits of texts and the
+/// memory that a record takes all use these descriptions.
 struct Member {
     std::string_view name;           ///< in JSON
     std::string_view column = name;  ///< in SQL
     Table table = Table::executions;
     Form form = Form::name;  ///< of a text
-    bool changes = false;    ///< in the table of executions, after the begin
+    bool changes = false;    ///< changes after the begin, in the table of executions
 };
 
 /// Calls visit(const Member&, T& member) for each member, in their order. T is std::string,
@@ -58,7 +58,7 @@ void visitMembers(E& execution, Visit visit) {
     visit(Member{.name = "missed_cycles", .changes = true}, execution.missed_cycles);
 }
 
-/// Does so for a transition.
+/// The same for a transition.
 template <typename T, typename Visit>
 requires std::same_as<std::remove_const_t<T>, Transition>
 void visitMembers(T& transition, Visit visit) {
@@ -71,7 +71,7 @@ void visitMembers(T& transition, Visit visit) {
     visit(Member{.name = "reason_text", .form = Form::key}, transition.reason_text);
 }
 
-/// Does so for an intermediate result, and for an outcome.
+/// The same for an intermediate result, and for an outcome.
 template <typename T, typename Visit>
 requires std::same_as<std::remove_const_t<T>, Intermediate>
 void visitMembers(T& intermediate, Visit visit) {

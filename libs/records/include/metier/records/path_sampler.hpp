@@ -15,17 +15,17 @@
 
 namespace metier::records {
 
-/// Records where an arm is while executions are under way: at their begin, at their end, and every
-/// 10 ms as long as it moves; an arm that stands is recorded once a second.
+/// Records the positions of an arm while executions are under way: at their begin, at their end,
+/// and every 10 ms while it moves; once a second while it stands.
 ///
-/// Threading: a thread of its own reads the arm's and the sensor's newest state, for which no cycle
-/// thread waits. begin() and end() from any thread; they wait for one reading of that thread at
-/// most.
+/// Threading: a thread of its own reads the newest state of arm and sensor; no cycle thread waits
+/// for it. begin() and end() may be called on any thread; they wait for at most one reading of that
+/// thread.
 class PathSampler {
 public:
     static constexpr std::chrono::milliseconds kPeriod{10};
 
-    /// \param arm      must outlive this, as the sensor and the recorder
+    /// \param arm      must outlive this, as must the sensor and the recorder
     /// \param sensor   may be null
     PathSampler(const device::Arm& arm, const device::ForceTorqueSensor* sensor,
                 Recorder& recorder);
@@ -33,9 +33,10 @@ public:
     PathSampler(const PathSampler&) = delete;
     PathSampler& operator=(const PathSampler&) = delete;
 
+    /// Starts recording for an execution.
     void begin(Recorder::Key key);
-    /// No sample of it comes after this.
-    /// \return cycles that the arm has missed since begin()
+    /// Stops recording for an execution; no sample of it comes after this.
+    /// \return number of cycles that the arm has missed since begin()
     std::uint64_t end(Recorder::Key key);
 
 private:
@@ -50,7 +51,7 @@ private:
         SteadyTime begin{};
         std::uint64_t missed_at_begin = 0;
         std::optional<Reading> sent{};     ///< the last sample
-        std::optional<Reading> skipped{};  ///< after it, and as good as the same
+        std::optional<Reading> skipped{};  ///< read after it, and nearly the same
     };
 
     void run(const std::stop_token& stop);

@@ -15,14 +15,14 @@ namespace metier::records {
 /// Threading: the Program's owner. Nothing waits for a disk.
 class ProgramRecorder final : private skill::ProgramObserver {
 public:
-    /// Place of the Program, as its records show it; texts may be empty.
+    /// Names under which the Program's records appear; may be empty.
     struct Place {
-        std::string server_name{};  ///< as its cell file names it
+        std::string server_name{};  ///< name of the server in the cell file
         std::string controller{};   ///< BrowseName of what the Program belongs to
         std::string device{};       ///< the arm or gripper it moves
     };
 
-    /// \param program must outlive this, as the recorder and the sampler
+    /// \param program must outlive this, as must the recorder and the sampler
     /// \param sampler of the arm that the Program moves; null: it moves none
     ProgramRecorder(skill::Program& program, Recorder& recorder, PathSampler* sampler, Place place);
     ~ProgramRecorder() override;
@@ -48,7 +48,7 @@ private:
     PathSampler* sampler_;
     const Place place_;
 
-    Recorder::Key key_ = 0;  ///< of the execution that is under way; 0: none, or dropped
+    Recorder::Key key_ = 0;  ///< key of the execution under way; 0: none, or it was dropped
     skill::State state_;     ///< after the last transition
     skill::SubState sub_state_ = skill::SubState::none;
     std::string step_;

@@ -33,10 +33,10 @@ struct Dropped {
 /// Whether records are written.
 enum class WriteState {
     writing,
-    failing,  ///< nothing can be written, or it takes too long: something is or may get lost
+    failing,  ///< nothing can be written, or writing takes too long: records are lost or may be
 };
 
-/// Alarm for the server's clients: once when recording fails, once when it works again.
+/// Report for the server's clients: sent once when recording fails, and once when it works again.
 struct WriteReport {
     WriteState write_state = WriteState::writing;
     std::string text{};  ///< for a person: the reason and what was lost, "records work again: ..."
@@ -46,28 +46,28 @@ struct WriteReport {
 /// Records the executions of one server. Every call returns at once, whatever the disk does.
 ///
 /// A thread of its own writes rows, at least every 500 ms: a crash of the server loses at most the
-/// last second. While the store cannot be opened or written, or more comes than can be written,
-/// records wait in a queue of a fixed size; beyond it new executions and events are dropped, of
-/// samples the oldest. An end is never dropped if its begin was not. Executions that dead servers
-/// left under way are closed as kLost when this opens the store, and every hour. The store is
-/// trimmed to its retention at the beginning and then every hour.
+/// last second. While the store cannot be opened or written, or is too slow, records wait in a
+/// queue of a fixed size. When it is full, new executions and events are dropped, and the oldest
+/// samples. An end is never dropped if its begin was not. Executions of servers that died are
+/// closed as kLost when this opens the store, and every hour. The store is trimmed to its retention
+/// at the start and then every hour.
 ///
 /// Threads: any, but no cycle thread (allocates, locks for a moment).
 class Recorder {
 public:
-    /// One execution of this recorder; 0: it was dropped, and all that follows of it is, too.
+    /// Key of one execution in this recorder; 0: it was dropped, and so is all that belongs to it.
     using Key = std::uint64_t;
 
     struct Options {
         std::string url{};     ///< as Store::open() takes it
-        std::string server{};  ///< ApplicationUri; nobody else records under it
+        std::string server{};  ///< ApplicationUri; no other recorder uses it
         Retention keep{};
-        /// On a thread of the recorder, at each change of its write_state. May be empty.
+        /// Called on a thread of the recorder, at each change of its write_state. May be empty.
         std::function<void(const WriteReport&)> on_write_state{};
         std::size_t most_waiting = 50'000'000;      ///< executions and events [byte]
         std::size_t most_waiting_samples = 16'384;  ///< about 230 byte each
-        /// Longest time without a write, because the disk hangs or others keep the store locked,
-        /// that is not reported as failing while nothing is lost: a busy machine is no fault.
+        /// Longest time without a write, since the disk hangs or others lock the store, that is not
+        /// reported as failing while nothing is lost: a busy machine is no fault.
         std::chrono::milliseconds patience{20'000};
     };
 
@@ -75,32 +75,32 @@ public:
     struct Status {
         WriteState write_state = WriteState::writing;
         std::size_t waiting = 0;          ///< executions and events that are not written yet
-        std::size_t waiting_samples = 0;  ///< as well
-        std::uint64_t written = 0;        ///< executions that began and are in the store
+        std::size_t waiting_samples = 0;  ///< samples that are not written yet
+        std::uint64_t written = 0;        ///< number of executions that are in the store
         Dropped dropped{};
     };
 
-    /// Does not wait for the store: one that cannot be opened is tried again and reported as
-    /// failing.
-    /// Errors: invalid_argument (no such URL, no server's name).
+    /// Returns without waiting for the store. A store that cannot be opened is tried again and
+    /// reported as failing.
+    /// Errors: invalid_argument (not a URL of a store, or no server name).
     static Result<std::unique_ptr<Recorder>> create(Options options);
-    /// Tries once to write what is waiting.
+    /// Tries once to write the waiting records.
     ~Recorder();
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
-    /// An execution begins; its server is Options::server whatever it says. Its state changes with
-    /// its transitions.
+    /// Begins an execution; its server is always Options::server. Its state follows from its
+    /// transitions.
     Key begin(Execution execution);
-    /// In the order of their times; the first 100,000 of an execution are kept.
+    /// Adds a transition, in the order of their times; the first 100,000 of an execution are kept.
     void transition(Key key, Transition transition);
     void intermediate(Key key, Intermediate intermediate);
     void sample(Key key, const PathSample& sample);
-    /// Nothing may follow of it any more.
+    /// Ends an execution; nothing of it may follow.
     void end(Key key, Outcome outcome);
 
-    /// Waits until readers see all that was recorded before; false at the deadline. For tests and
-    /// tools, not for servers.
+    /// Waits until readers see all that was recorded before. For tests and tools, not for servers.
+    /// \return false at the deadline
     bool flush(SteadyTime deadline);
     /// Threads: any.
     Status status() const;

@@ -16,7 +16,7 @@ namespace metier::records {
 
 class Database;
 
-/// Executions that are wanted. An empty member takes all; one that is not must fit as a whole.
+/// Filter for executions. An empty member accepts all; any other must match as a whole.
 struct Filter {
     std::string server{};  ///< ApplicationUri or name of the server
     std::string skill{};   ///< BrowseName
@@ -31,46 +31,47 @@ struct Filter {
     std::string text{};
 };
 
-/// A part of a list.
+/// Part of a list.
 struct Page {
-    std::int64_t before = 0;    ///< number of the last one of the page before; 0: the first page
-    std::uint32_t count = 100;  ///< most that are wanted, 1 to 10,000
+    /// Number of the last execution of the page before; 0: the first page
+    std::int64_t before = 0;
+    std::uint32_t count = 100;  ///< largest number of executions, 1 to 10,000
 };
 
 /// Executions, newest start first.
 struct Listing {
     std::vector<ExecutionRow> executions{};
-    bool more = false;  ///< older ones fit, too
+    bool more = false;  ///< there are older ones that match
 };
 
-/// Executions that came or changed.
+/// Executions that were added or changed.
 struct Changes {
     std::vector<ExecutionRow> executions{};  ///< as they are now, in the order of their last change
-    std::int64_t revision = 0;            ///< to go on from
+    std::int64_t revision = 0;            ///< pass it to the next call of changes()
 };
 
-/// Age and size up to which records are kept; 0: without bound.
+/// Age and size up to which records are kept; 0: no limit.
 struct Retention {
     std::chrono::hours age{24 * 90};      ///< since the start
-    std::uint64_t bytes = 2'000'000'000;  ///< in use by executions and their paths
+    std::uint64_t bytes = 2'000'000'000;  ///< size of executions and their paths
 };
 
-/// Whether a URL of Store::open() has a password in it, which a command line would show to every
+/// Whether a URL of Store::open() contains a password, which a command line would show to every
 /// user of the machine. Threads: any; pure.
 bool hasPassword(std::string_view url);
 
-/// The executions that servers have recorded, in a SQLite file or a PostgreSQL database with the
-/// same schema (docs/guide/history.md).
+/// Executions that servers have recorded, in a SQLite file or a PostgreSQL database with the same
+/// schema (docs/guide/history.md).
 ///
 /// Threading: one thread at a time; each thread opens its own. Calls wait for the disk or the
-/// database, so none belongs into a server's or a cycle's thread.
+/// database: do not call them on a server's or a cycle thread.
 /// Errors of every call: resource_unavailable (disk, lock), connection_lost (PostgreSQL),
 ///                       invalid_argument (damaged).
 class Store {
 public:
     enum class Access {
-        read,   ///< changes nothing; what does not exist is not_found
-        write,  ///< makes file and folder (for their owner alone), or the tables
+        read,   ///< changes nothing; a store that does not exist is not_found
+        write,  ///< creates file and folder (for their owner alone), or the tables
     };
 
     /// \param url a file, "sqlite:FILE", or "postgresql://USER@HOST/DATABASE" as libpq takes it
@@ -83,34 +84,36 @@ public:
     Store(const Store&) = delete;
     Store& operator=(const Store&) = delete;
 
-    /// \param number_or_id a number, or else an id; the newest one that has it
+    /// Finds an execution.
+    /// \param number_or_id a number, or else an id; the newest execution with that id is returned
     /// Errors: not_found.
     Result<ExecutionRow> find(std::string_view number_or_id);
-    /// An unknown Page::before gives nothing.
+    /// Lists executions, newest first. An unknown Page::before gives an empty list.
     Result<Listing> list(const Filter& filter, const Page& page);
-    /// Executions that the execution started, on whichever server, oldest first.
+    /// Executions that this execution started, on any server, oldest first.
     Result<std::vector<ExecutionRow>> children(std::int64_t number);
-    /// In the order of their times; nothing for an unknown number. The same for the next two.
+    /// Transitions, in the order of their times; empty for an unknown number. The next two do the
+    /// same.
     Result<std::vector<Transition>> transitions(std::int64_t number);
     Result<std::vector<Intermediate>> intermediates(std::int64_t number);
     Result<std::vector<PathSample>> path(std::int64_t number);
-    /// Executions that came or changed after `revision`, by any server; to be asked again and
-    /// again. \param revision of the last answer, or of latestRevision() to begin with. One that
-    /// this store
-    ///                 has not reached, of a store that was here before, gives none
+    /// Executions that any server added or changed after `revision`; to be called repeatedly.
+    /// \param revision that of the last answer; latestRevision() at first. A revision that this
+    ///                 store has not reached, as that of a replaced store, gives none
     Result<Changes> changes(std::int64_t revision, const Filter& filter = {},
                             std::uint32_t count = 1'000);
     Result<std::int64_t> latestRevision();
 
-    /// Removes the oldest executions that are over, a part at a time.
-    /// \return how many. Needs Access::write.
+    /// Removes the oldest executions that are over, a part at a time. Needs Access::write.
+    /// \return number of removed executions
     Result<std::uint64_t> retain(const Retention& keep, UtcTime now);
-    /// Space of executions and their paths [byte], about.
+    /// Approximate size of executions and their paths [byte].
     Result<std::uint64_t> bytes();
-    /// Writes a copy of all records, as they are at one moment, into a SQLite file that is made.
-    /// \return how many executions. Errors: already_exists; the file is removed after any other.
+    /// Writes a copy of all records, as they are at one moment, into a new SQLite file.
+    /// \return number of executions
+    /// Errors: already_exists; after any other error the file is removed.
     Result<std::uint64_t> exportTo(const std::string& file);
-    /// Whether another open() would lead to the same store: false once a file was removed or
+    /// Whether another open() would lead to the same store; false once its file was removed or
     /// replaced.
     bool isCurrent();
 

@@ -15,37 +15,40 @@
 
 namespace metier::robot_skills {
 
-/// All skills that an arm can have. A server offers those it wants to.
+/// All skills that an arm can have. A server publishes those that it wants.
 struct ArmSkills {
-    /// For the ProgramOptions of every skill of this arm: they exclude each other.
+    /// Put it into the ProgramOptions of every skill of this arm: they exclude each other.
     std::shared_ptr<skill::Resource> resource;
-    /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill; if the arm has a planner
-    /// or a sensor of force, CartesianLinearForceMoveSkill; CartesianPathMoveSkill.
+    /// CartesianPtp-, CartesianLinear-, JointPtp-, JointLinearMoveSkill;
+    /// CartesianLinearForceMoveSkill, if the arm has a planner or a force sensor;
+    /// CartesianPathMoveSkill.
     std::vector<std::unique_ptr<skill::Skill>> moves;
     std::unique_ptr<skill::Skill> position_stream;
-    /// How well the set-points of position_stream come; shared with the skill.
+    /// Timing of the set-points of position_stream; shared with the skill.
     std::shared_ptr<const StreamReport> stream_report;
-    /// How soon the moves would stand; shared with them.
+    /// Stopping time and way of the moves; shared with them.
     std::shared_ptr<const StoppingReport> stopping_report;
 };
 
-/// What there is of an arm; all must outlive its skills.
+/// Interfaces of an arm; all must outlive its skills.
 struct ArmDevices {
     device::Arm& arm;
-    /// Runs those moves that it can run as they were asked for, if there is one; all others are
-    /// set-points of metier's planner.
+    /// Runs the moves that it can run exactly as asked; metier plans all others and sends
+    /// set-points. Null: the controller has no planner.
     device::MotionPlanner* planner = nullptr;
-    /// Ends the force moves that are set-points. One that the planner runs is ended by the
-    /// controller's own force condition, which is nearer to the arm.
+    /// Ends the force moves that metier plans; null: none. A force move that the planner runs is
+    /// ended by the controller's own force condition, which is nearer to the arm.
     device::ForceTorqueSensor* sensor = nullptr;
 };
 
+/// Makes the skills of an arm.
 /// \param model, clock must outlive the skills
 /// Errors: invalid_argument if arm and model differ in their number of axes.
 Result<ArmSkills> makeArmSkills(const ArmDevices& devices, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream = {});
 
-/// All moves by set-points, no force move. \param arm must outlive the skills
+/// Makes the skills of an arm without planner and sensor: no force move.
+/// \param arm must outlive the skills
 Result<ArmSkills> makeArmSkills(device::Arm& arm, const motion::RobotModel& model,
                                 const Clock& clock, const PositionStreamOptions& stream = {});
 

@@ -10,19 +10,20 @@
 
 namespace metier::robot_skills {
 
-/// Tells all Programs of an arm or a gripper when it is gone: each is Halted, also from Ready. When
-/// its controller is in a stop or a fault, those that are Ready are Halted, too: Reset is the way
-/// back. Both also at once, if it is so already.
+/// Halts the Programs of an arm or a gripper when the device cannot be used. When the device is
+/// lost, all are Halted, also from Ready. When its controller is in a stop or a fault, those that
+/// are Ready are Halted, too; Reset leads back. Both also happen at once if the device is in such a
+/// state already.
 ///
 /// Threading: made and destroyed on the owner's thread.
 class DeviceWatch {
 public:
     /// \param arm      must outlive this
-    /// \param executor of the owner's thread; shared, since it is posted to from the device's
+    /// \param executor of the owner's thread; shared, since the device's thread posts to it
     /// \param programs must outlive this
     DeviceWatch(device::Arm& arm, std::shared_ptr<skill::Executor> executor,
                 std::vector<skill::Program*> programs);
-    /// The same for a gripper.
+    /// Watches a gripper in the same way.
     DeviceWatch(device::Gripper& gripper, std::shared_ptr<skill::Executor> executor,
                 std::vector<skill::Program*> programs);
 

@@ -11,23 +11,23 @@
 
 namespace metier::robot_skills {
 
-/// What the skills of a gripper take.
+/// Parameters of a gripper's skills.
 struct GripperParameters {
-    double force = 0.0;  ///< [N]; 0: the gripper's own
-    double width = 0.0;  ///< [m]; 0: not known (grasp), as far as it goes (release)
+    double force = 0.0;  ///< [N]; 0: the gripper's own default
+    double width = 0.0;  ///< [m]; 0: not known (grasp), as far as possible (release)
 };
 
-/// What they tell when they are done.
+/// Results of a gripper's skills.
 struct GripperResults {
-    double width_reached = 0.0;  ///< [m]
+    double width_reached = 0.0;  ///< measured [m]
     bool part_held = false;
 };
 
 const skill::FieldList<GripperResults>& gripperResultFields();
 
-/// All skills that a gripper can have. A server offers those it wants to.
+/// All skills that a gripper can have. A server publishes those that it wants.
 struct GripperSkills {
-    /// For the ProgramOptions of every skill of this gripper: they exclude each other.
+    /// Put it into the ProgramOptions of every skill of this gripper: they exclude each other.
     std::shared_ptr<skill::Resource> resource;
     /// Grasp-, Release-, MoveGripperSkill.
     std::vector<std::unique_ptr<skill::Skill>> skills;
@@ -36,17 +36,17 @@ struct GripperSkills {
 /// Makes the skills of a gripper with jaws.
 ///
 /// Start refuses a force or a width that the gripper cannot do, and a gripper that is not ready.
-/// Suspend stops the jaws, Resume asks for the same motion again, Halt stops them; they keep
-/// holding what they hold. A grasp that holds no part in the end is Halted with an error, also if
-/// the gripper tells success; so is a release that still holds one. Reset is
-/// device::Gripper::resetFault().
+/// Suspend and Halt stop the jaws, which keep holding a part; Resume asks for the same motion
+/// again. A grasp that holds no part at its end is Halted with an error, even if the gripper
+/// reports success; so is a release that still holds one. Reset is device::Gripper::resetFault().
 ///
 /// \param gripper must outlive the skills
 GripperSkills makeGripperSkills(device::Gripper& gripper);
 
-/// Makes the HoldGripperSkill: Running for as long as the gripper holds a part, Halted with an
-/// error within 20 ms after its state tells that the part is lost. It moves nothing, so it needs no
-/// resource, and others run beside it. It does not end by itself while the part is held: Halt it.
+/// Makes the HoldGripperSkill. It is Running for as long as the gripper holds a part, and Halted
+/// with an error within 20 ms after the gripper's state shows that the part is lost. It moves
+/// nothing, so it needs no resource, and other skills run beside it. It does not end by itself
+/// while the part is held: Halt it.
 ///
 /// Start and Resume are refused if no part is held.
 /// \param gripper must outlive the skill

@@ -5,9 +5,11 @@
 
 namespace metier::robot_skills {
 
-// The plan of each move skill: what Start calls, for whoever asks before. The parameters are those
-// that cartesianMoveFields() and jointMoveFields() have checked; `start` is where the arm stands
-// [rad]. Errors: a Refusal, whose error is the answer of Start. Threads: any; pure; allocates.
+// Plans of the move skills, exactly as Start makes them, for callers that want to know before. The
+// parameters must have passed cartesianMoveFields() or jointMoveFields(); `start` is the present
+// joint position [rad].
+// Errors: a Refusal; its error is the answer of Start.
+// Threads: any; pure; allocates.
 
 motion::Planned<motion::Trajectory> planCartesianPtp(const motion::RobotModel& model,
                                                      const motion::JointVector& start,
@@ -25,7 +27,7 @@ motion::Planned<motion::Trajectory> planJointLinear(const motion::RobotModel& mo
                                                     const motion::JointVector& start,
                                                     const JointMoveParameters& parameters);
 
-/// What planCartesianLinear() asks of the planner.
+/// Request that planCartesianLinear() makes to the planner.
 motion::LinRequest linRequest(const motion::JointVector& start,
                               const CartesianMoveParameters& parameters);
 

@@ -16,37 +16,38 @@ namespace metier::robot_skills {
 
 struct PositionStreamParameters {
     std::optional<std::vector<double>> target_joint_position{};  ///< [rad]; live
-    /// From the time a set-point is meant for until the arm is sent it [s], rounded up to cycles.
-    /// Not set: 20 ms, but at least three cycles. 0: every cycle takes the newest set-point.
+    /// Delay between the time for which a set-point is meant and the cycle in which the arm gets it
+    /// [s], rounded up to cycles. Not set: 20 ms, but at least three cycles. 0: every cycle sends
+    /// the newest set-point.
     std::optional<double> play_out_delay{};
-    /// Written true while the skill runs: no set-point comes any more. Live.
+    /// Written true after the last set-point, while the skill runs. Live.
     std::optional<bool> end_of_stream{};
 };
 
 struct PositionStreamOptions {
-    /// Silence of a moving stream that ends it [s]; at least 6 cycles are waited for. The arm goes
-    /// on to its last set-points meanwhile. A busy computer without a real-time kernel delays a
-    /// thread by some 50 ms.
+    /// Silence [s] that ends a stream while it moves; at least 6 cycles are waited for. The arm
+    /// goes on to its last set-points meanwhile. Do not make it much shorter: a busy computer
+    /// without a real-time kernel delays a thread by some 50 ms.
     double longest_silence = 0.15;
-    /// Most that the arm may be behind its client, besides PlayOutDelay [s]; at least
+    /// Largest time that the arm may be behind its client, besides PlayOutDelay [s]; at least
     /// longest_silence.
     double largest_lag = 0.25;
-    /// Where the skill reports how the set-points come; shared with whoever shows it.
+    /// Receives the timing of the set-points; shared with those who publish it.
     std::shared_ptr<StreamReport> report = std::make_shared<StreamReport>();
 };
 
 struct PositionStreamResults {
-    std::uint64_t set_points = 0;     ///< that were followed
-    std::uint64_t missed_cycles = 0;  ///< without a set-point in time, up to the last set-point
+    std::uint64_t set_points = 0;     ///< number of set-points that the arm followed
+    std::uint64_t missed_cycles = 0;  ///< cycles without a set-point in time, up to the last one
     double duration = 0.0;            ///< from Running to rest [s]
-    /// How its set-points came, from the start to the end (StreamReport::Figures).
+    /// Timing of its set-points from start to end (StreamReport::Figures).
     double largest_lag = 0.0;  ///< [s]
     double clock_step = 0.0;   ///< [s]
     std::uint64_t refused_set_points = 0;
     std::uint64_t dropped_set_points = 0;
 };
 
-/// The parameters as a server offers them for `model`, which must outlive the list.
+/// Fields of the parameters as a server publishes them for `model`, which must outlive the list.
 skill::FieldList<PositionStreamParameters> positionStreamFields(const motion::RobotModel& model);
 const skill::FieldList<PositionStreamResults>& positionStreamResultFields();
 

@@ -13,25 +13,26 @@
 
 namespace metier::robot_skills {
 
-/// Keeps the devices of a server from moving on while its thread does not work: a watchdog's thread
-/// stops them. What ran is then Halted; its text names the stall and its length.
+/// Stops the devices of a server when its thread hangs: a watchdog's own thread calls `stop`.
+/// Programs that ran are Halted then; their text names the stall and its length.
 ///
-/// Threading: made on the owner's thread before anything is started; ended by any thread before the
-/// owner's ends.
+/// Threading: create it on the owner's thread before anything is started; any thread may destroy
+/// it, before the owner's thread ends.
 class StallWatch {
 public:
     struct Setup {
-        std::string name;                ///< of the server, for texts
-        std::chrono::nanoseconds limit;  ///< longest time without a sign of the owner's thread, > 0
-        /// Stops every device at once, as Arm::stop(); any thread. Stays valid for the watch's
-        /// life. Empty: the server has no device, only skills that run others; these are halted
-        /// when its thread is back, since only it can ask for that.
+        std::string name;  ///< name of the server, for messages
+        /// Longest time without a sign of life of the owner's thread, > 0.
+        std::chrono::nanoseconds limit;
+        /// Stops every device at once, as Arm::stop(). Called on any thread; must stay valid for
+        /// the life of the watch. Empty: the server has no device, only skills that run others.
+        /// Only the server's thread can ask these to halt, so they are halted when it is back.
         std::function<void()> stop;
-        /// Logs one line. Any thread; must not wait for the owner's.
+        /// Logs one line. Called on any thread; must not wait for the owner's thread.
         std::function<void(const std::string&)> log;
     };
 
-    /// \param executor of the owner's thread; shared with what is posted there
+    /// \param executor of the owner's thread; shared with the work that is posted there
     /// \param programs must outlive the owner's thread
     /// \param clock    must outlive this
     StallWatch(Setup setup, std::shared_ptr<skill::Executor> executor,

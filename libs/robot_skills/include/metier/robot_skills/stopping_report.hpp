@@ -9,14 +9,14 @@
 
 namespace metier::robot_skills {
 
-/// How soon an arm would stand on its path if it were halted now: time and way of the set-points,
-/// which the measured arm follows by the lag of its controller.
+/// Stop of an arm on its path, if it were halted now: time [s] and way of the set-points. The
+/// measured arm follows them by the lag of its controller.
 ///
-/// Threading: read() on any thread; the others on whichever thread has the source of the
-/// set-points, the cycle thread while it is attached. Nobody locks or allocates.
+/// Threading: read() on any thread; the others on the thread that has the source of the set-points,
+/// which is the cycle thread while it is attached. Nothing locks or allocates.
 class StoppingReport {
 public:
-    /// The stop of the motion that metier plans and runs now; nothing without one.
+    /// Stop of the motion that metier plans and runs now; nothing if it runs none.
     std::optional<motion::StoppingEstimate> read() const noexcept {
         const auto now = newest_.read();
         return now.known ? std::optional(now.way) : std::nullopt;
@@ -32,7 +32,7 @@ private:
     device::SharedValue<Newest> newest_;
 };
 
-/// The same for an arm whose motion somebody else plans, from its measured velocity: each axis
+/// Stop of an arm whose motion the controller plans, computed from its measured velocity: each axis
 /// brakes with its own limits. The way is that of the flange.
 motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state, const motion::RobotModel& model);
 

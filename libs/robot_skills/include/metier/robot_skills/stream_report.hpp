@@ -9,36 +9,38 @@
 
 namespace metier::robot_skills {
 
-/// How well the set-points of a stream come, for its client: of the stream that runs, or else of
-/// the last one.
+/// Timing of a stream's set-points, for its client: of the stream that runs, or else of the last
+/// one.
 ///
 /// Threading: figures() and lastRefusal() on any thread. The cycle thread notes lag and dropped
-/// set-points, without a lock; the owner's thread notes all else.
+/// set-points, without a lock; the owner's thread notes everything else.
 class StreamReport {
 public:
     struct Figures {
-        /// How much longer than PlayOutDelay the newest set-point waits until the arm is sent it
+        /// Time by which the newest set-point waits longer than PlayOutDelay until the arm gets it
         /// [s]; at least 0.
         double lag = 0.0;
         double largest_lag = 0.0;  ///< since the start [s]
-        /// Largest step of the client's clock against this one between two set-points [s]; below 0:
-        /// back. One way that the network may delay set-points looks the same: after a pause.
+        /// Largest step of the client's clock against this clock between two set-points [s];
+        /// negative: the client's clock stepped back. A network that delays set-points after a
+        /// pause can look the same.
         double clock_step = 0.0;
-        std::uint64_t refused = 0;  ///< when they were written: not finite, out of range, too many
-        std::uint64_t dropped = 0;  ///< for a time that was not after that of the one before
+        std::uint64_t refused = 0;  ///< refused when written: not finite, out of range, too many
+        /// Dropped, since its time was not after that of the one before
+        std::uint64_t dropped = 0;
     };
 
     Figures figures() const noexcept {
         return {lag_.load(), largest_lag_.load(), clock_step_.load(), refused_.load(),
                 dropped_.load()};
     }
-    /// Why a set-point was refused last; empty if none was.
+    /// Reason of the last refusal of a set-point; empty: none was refused.
     std::string lastRefusal() const {
         const std::lock_guard lock(mutex_);
         return last_refusal_;
     }
 
-    /// A stream starts. Owner's thread, while no arm has it.
+    /// Resets the figures, as a stream starts. Owner's thread, while no arm has the stream.
     void restart() {
         lag_.store(0.0);
         largest_lag_.store(0.0);

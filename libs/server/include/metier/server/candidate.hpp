@@ -9,11 +9,11 @@
 
 namespace metier::server {
 
-/// A figure of an arm, and how it is known.
+/// A figure of an arm, with its source.
 struct KnownFigure {
     std::optional<double> value{};
-    /// Who published it, or why nobody does: "of iiwa, opc.tcp://..."; empty: the skill's own
-    /// server.
+    /// Publisher of the figure, or the reason why it is unknown: "of iiwa, opc.tcp://..."; empty:
+    /// the skill's own server.
     std::string note;
 };
 
@@ -23,23 +23,24 @@ struct KnownFigures {
     KnownFigure payload;  ///< [kg]
 };
 
-/// Figures of the arm that a skill moves by itself or, for a skill that runs others, of the arms
-/// that those move, over as many servers as it takes; the least of them.
+/// Figures of the arm that a skill moves itself or, for a skill that runs others, the least figures
+/// of all arms that those move, across servers.
 ///
-/// A figure is unknown if one of the arms does not publish it, or its server was not asked.
-/// \param servers all that were asked; \param server, skill which of them, both in range
-/// Threads: any; pure. A circle of skills ends it no later than each was looked at once.
+/// A figure is unknown if one of the arms does not publish it, or if its server was not asked.
+/// \param servers all servers that were asked
+/// \param server, skill indices of the skill, both in range
+/// Threads: any; pure. Skills that use each other in a circle are looked at once each.
 KnownFigures figuresOf(const std::vector<SurveyedServer>& servers, std::size_t server,
                        std::size_t skill);
 
-/// Whether a skill is a candidate for a task, and why.
+/// Judgement whether a skill fits a task, with the reasons.
 struct Verdict {
     bool fits = true;
-    /// One for each wish: "reach 0.85 m >= 0.5 m", with the note in brackets.
+    /// One reason per wish: "reach 0.85 m >= 0.5 m", with the note in brackets.
     std::vector<std::string> reasons;
 };
 
-/// Whether an arm has at least the figures that are wished. What is unknown does not fit.
+/// Checks that an arm has at least the wished figures. An unknown figure does not fit.
 Verdict judge(const ArmFigures& wishes, const KnownFigures& figures);
 
 }  // namespace metier::server

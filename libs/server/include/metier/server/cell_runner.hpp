@@ -13,15 +13,15 @@
 
 namespace metier::server {
 
-/// How a process is started.
+/// Command that starts a process.
 struct CellCommand {
     std::vector<std::string> words;  ///< the program and its arguments
-    /// With a free port: option by which the same command takes the port that it had before; empty:
-    /// it needs none.
+    /// For a process that chooses a free port: option by which a restart takes the same port again;
+    /// empty: none is needed.
     std::string option_for_port{};
 };
 
-/// Addresses of the processes of a cell that are ready, by name.
+/// Addresses of the ready processes of a cell, by name.
 struct CellAddresses {
     std::map<std::string, std::string> servers;  ///< opc.tcp://...
     std::map<std::string, std::string> controllers;
@@ -64,33 +64,33 @@ public:
     /// Called with a line for a person when a process has ended or is back.
     using OnChange = std::function<void(const std::string& text)>;
 
-    /// Starts the virtual controllers, the devices' servers, then what builds on them, and waits
-    /// until each is ready.
-    /// \param commands read only while this runs
+    /// Starts the virtual controllers, the devices' servers, then the servers that use them, and
+    /// waits until each is ready.
+    /// \param commands used only while this runs
     /// \param stop_descriptor ends the start when it becomes readable; -1: none
-    /// Errors: what the first server that was not ready in 30 s had to say; cancelled.
+    /// Errors: the output of the first server that was not ready within 30 s; cancelled.
     static Result<CellRunner> start(const cell::CellConfig& cell,
                                     const CellCommands& commands, int stop_descriptor,
                                     const OnReady& on_ready);
     CellRunner(CellRunner&&) noexcept;
     CellRunner& operator=(CellRunner&&) = delete;
-    /// Ends every process, those first that use others; a virtual controller once the servers are
-    /// gone. Takes 6 s at most; a process that takes longer is killed.
+    /// Ends every process: servers that use others first, virtual controllers last. Takes 6 s at
+    /// most; a process that takes longer is killed.
     ~CellRunner();
 
-    /// The servers, in the order in which they were started. They keep their addresses.
+    /// Servers in the order of their start. They keep their addresses after a restart.
     const std::vector<Running>& servers() const noexcept { return running_; }
     /// Addresses of the virtual controllers, by name.
     const std::map<std::string, std::string>& virtualControllers() const noexcept {
         return known_.controllers;
     }
 
-    /// A process that ended by itself, while the cell was to end with it.
+    /// A process that ended by itself, where the cell ends with it.
     struct Ended {
         std::string name;
         std::string how;  ///< "ended with status 1"
     };
-    /// Looks after the processes until the descriptor becomes readable.
+    /// Watches the processes until the descriptor becomes readable.
     /// \return nothing then; with OnFailure::end_cell the first process that ended
     std::optional<Ended> lookAfter(int wake_descriptor, OnFailure on_failure,
                                    const OnChange& on_change);
@@ -101,8 +101,8 @@ private:
     Result<void> startAll(const cell::CellConfig& cell, const CellCommands& commands,
                           int stop_descriptor, const OnReady& on_ready);
     std::optional<Ended> lookAtAll(OnFailure on_failure, const OnChange& on_change);
-    /// Waits for something to look at, or for the descriptor.
-    /// \return whether it was the descriptor
+    /// Waits until there is something to check, or until the descriptor becomes readable.
+    /// \return whether the descriptor became readable
     bool await(int wake_descriptor, SteadyTime deadline) const;
     void awaitEnds(CellRank least, SteadyTime deadline);
 

@@ -17,22 +17,23 @@ namespace metier::server {
 
 class ServerAccess;
 
-/// A Local Discovery Server (OPC 10000-12): servers register there, and clients ask it which there
-/// are.
+/// A Local Discovery Server (OPC 10000-12): servers register there, and clients ask it for the
+/// registered servers.
 ///
 /// Threading: one thread makes and ends it; a thread of its own serves.
 class DiscoveryServer {
 public:
     struct Options {
-        std::uint16_t port = 4840;              ///< as OPC 10000-12 has it; 0: a free one
-        std::string address = "127.0.0.1";      ///< to listen on; of loopback in an insecure lab
-        std::chrono::seconds forget_after{75};  ///< servers that did not renew; at least 1 s
+        std::uint16_t port = 4840;  ///< standard port of OPC 10000-12; 0: a free one
+        /// Address to listen on; in an insecure lab a loopback address
+        std::string address = "127.0.0.1";
+        std::chrono::seconds forget_after{75};  ///< time without renewal; at least 1 s
     };
 
-    /// Serves once this returns.
-    /// \param identity must outlive it
-    /// Errors: invalid_argument (the address), resource_unavailable (the port); as
-    ///         Security::openFolder().
+    /// Starts serving before it returns.
+    /// \param identity must outlive the result
+    /// Errors: invalid_argument (the address), resource_unavailable (the port); those of
+    /// Security::openFolder().
     static Result<std::unique_ptr<DiscoveryServer>> start(const Options& options,
                                                           const Identity& identity);
     ~DiscoveryServer();
@@ -49,7 +50,7 @@ private:
     std::unique_ptr<opcua::Server> server_;
 };
 
-/// The identity of a discovery server; one at another port is another application.
+/// Makes the identity of a discovery server. At another port it is another application.
 /// Errors: those of Identity::create().
 Result<Identity> identityOf(const DiscoveryServer::Options& options, const Security& security);
 

@@ -11,35 +11,38 @@
 
 namespace metier::server {
 
-/// How a process and those that it speaks to know each other, as the user of the process chose.
+/// Choice of the user how a process and its peers identify themselves.
 ///
 /// Threads: any. All functions read or write files.
 struct Security {
-    /// All connections without encryption, certificates and users, on this machine alone: for
+    /// Uses connections without encryption, certificates and users, on this machine only: for
     /// trials.
     bool insecure_lab = false;
     /// Folder of certificates, keys and users; empty: that of the user, ~/.config/metier.
     std::filesystem::path folder{};
 
-    /// Errors: as security::SecurityFolder::open(); resource_unavailable (nobody says where it is).
+    /// Opens the folder.
+    /// Errors: as security::SecurityFolder::open(); resource_unavailable (the user's folder is not
+    /// known).
     Result<security::SecurityFolder> openFolder() const;
-    /// The application of that name in the folder, which is made if it is not there.
+    /// Reads the certificate of the application with that name from the folder, or makes a new one.
     /// Errors: as openFolder(), security::SecurityFolder::identity().
     Result<opcua::Credentials> credentials(const std::string& name,
                                            const security::IdentityOptions& options) const;
 
-    /// Addresses at which servers were closed. Errors: resource_unavailable, as openFolder().
+    /// Addresses at which closed servers were met.
+    /// Errors: resource_unavailable; those of openFolder().
     Result<security::KnownServers> knownServers() const;
-    /// Whether a server at that address was closed before.
+    /// Whether a closed server was met at that address before.
     bool wasClosed(const std::string& url) const;
-    /// A connection with these options was made: if it is secure, no open server is believed at
-    /// that address from now on.
+    /// Notes that a connection with these options was made. If it is secure, a server without
+    /// security is refused at that address from now on.
     void noteConnected(const opcua::ClientOptions& options, const std::string& url) const;
-    /// A server of this process serves at that address without security: its user decided so, and
-    /// clients of the same folder need not wonder.
+    /// Notes that a server of this process serves without security at that address, as its user
+    /// decided: clients with the same folder accept that.
     void noteServedOpen(const std::string& url) const;
-    /// Errors: access_denied (a server was closed before at the address that an insecure lab is to
-    ///         speak to).
+    /// Checks that an insecure lab may connect to that address.
+    /// Errors: access_denied (a closed server was met there before).
     Result<void> checkOpen(const std::string& url) const;
 };
 
@@ -48,24 +51,24 @@ class ConnectionSecurity {
 public:
     virtual ~ConnectionSecurity() = default;
 
-    /// Adds certificate and user to the options; neither in an insecure lab.
-    /// Errors: access_denied (a lab, and the server there was closed before; for a command also: no
-    ///         password, or a server without security); those of Security; for a command, as
-    ///         opcua::getEndpoints().
-    /// Threads: any; reads files, and a command asks the server for its endpoints.
+    /// Adds certificate and user to the options; in an insecure lab, neither.
+    /// Errors: access_denied (a lab, and a closed server was met there before; for a command also:
+    /// no password, or a server without security); those of Security; for a command, those of
+    /// opcua::getEndpoints().
+    /// Threads: any; reads files; a command also asks the server for its endpoints.
     virtual Result<void> secure(opcua::ClientOptions& options, const std::string& url) const = 0;
-    /// A connection that secure() prepared was made. Threads: any; writes a file.
+    /// Notes that a connection prepared by secure() was made. Threads: any; writes a file.
     virtual void noteConnected(const opcua::ClientOptions& options,
                                const std::string& url) const = 0;
 };
 
-/// Name of a server to its clients and to the servers that it uses: a certificate of its own; in an
-/// insecure lab, none.
+/// Identity of a server towards its clients and towards the servers that it uses: a certificate of
+/// its own; in an insecure lab, none.
 ///
 /// Threads: any; it does not change.
 class Identity final : public ConnectionSecurity {
 public:
-    /// \param name of the application in the security folder
+    /// \param name name of the application in the security folder
     /// Errors: those of Security::credentials(); none in an insecure lab.
     static Result<Identity> create(Security security, const std::string& name,
                                    const security::IdentityOptions& options);

@@ -9,11 +9,11 @@
 
 namespace metier::server {
 
-/// Kinematics of a robot as its server publishes them. Threads: any; pure.
+/// Converts a robot model to the kinematics that its server publishes. Threads: any; pure.
 opcua_skill::KinematicsData toKinematicsData(const motion::RobotModel& model);
 
-/// The chain of an arm that its server publishes.
-/// \param current joint position [rad], as home position, which is not published
+/// Converts published kinematics to the description of a chain.
+/// \param current joint position [rad]; used as home position, which is not published
 /// Errors: not_supported (more axes than motion can plan for), invalid_argument (not finite).
 /// Threads: any; pure.
 Result<motion::ChainDescription> toChain(const opcua_skill::KinematicsData& data,

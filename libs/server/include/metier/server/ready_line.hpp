@@ -6,17 +6,17 @@
 
 namespace metier::server {
 
-/// The one line a server prints to standard output, once clients may connect.
+/// Line that a server prints to standard output once clients may connect.
 inline std::string readyLine(std::string_view url) {
     return "ready " + std::string(url);
 }
 
-/// The same of a virtual controller.
+/// Line that a virtual controller prints to standard output once drivers may connect.
 inline std::string readyVirtualLine(std::string_view address) {
     return "ready virtual " + std::string(address);
 }
 
-/// The address in a ready line of either kind; nothing if it is none.
+/// Address in a ready line of either kind; nothing for any other line.
 inline std::optional<std::string> addressOfReadyLine(std::string_view line) {
     constexpr std::string_view kServer = "ready opc.tcp://";
     constexpr std::string_view kVirtual = "ready virtual ";

@@ -12,40 +12,40 @@
 
 namespace metier::server {
 
-/// Surroundings of servers, besides their configuration. All of it must outlive them.
+/// Surroundings of servers, besides their configuration; must outlive them.
 struct Context {
     const Identity& identity;
-    std::span<const device::Driver> drivers;  ///< one of them has the device
-    const link::StopSignal& stop;          ///< ends a start that waits for other servers
+    std::span<const device::Driver> drivers;  ///< known drivers, including that of the device
+    const link::StopSignal& stop;             ///< ends a start that waits for other servers
 };
 
-/// A server of a cell: an OPC UA server with skills, and all that goes with it. Its destructor
-/// brakes what moves and ends it.
+/// A server of a cell: an OPC UA server with skills and all its services. Its destructor brakes the
+/// device and ends the server.
 ///
-/// Threading: one thread at a time makes, asks and ends it.
+/// Threading: create, use and destroy it on one thread at a time.
 class Server {
 public:
     virtual ~Server() = default;
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
 
-    /// Where it listens: "opc.tcp://127.0.0.1:4841".
+    /// Endpoint address: "opc.tcp://127.0.0.1:4841".
     virtual std::string url() const = 0;
 
 protected:
     Server() = default;
 };
 
-/// Starts a server of a cell; it serves once this returns. A server whose skills are those of
-/// others waits for these, 20 s at most.
-/// \param config with the addresses of all that it uses, see cell::CellConfig::resolved()
-/// Errors: what is wrong with the model, the driver, the NodeSet, the skills, the files, the port;
-///         a used server that cannot be reached; cancelled (a stop was asked for).
+/// Starts a server of a cell; it serves once this returns. A server that uses skills of other
+/// servers waits for these, 20 s at most.
+/// \param config with the addresses of all used servers, see cell::CellConfig::resolved()
+/// Errors: mistakes in model, driver, NodeSet, skills and files; a port that is taken; a used
+/// server that cannot be reached; cancelled (a stop was asked for).
 Result<std::unique_ptr<Server>> start(const cell::ServerConfig& config,
                                       const Context& context);
 
-/// The identity of a server: name, port and hosts of its configuration. A server at another port is
-/// another application.
+/// Makes the identity of a server from name, port and hosts of its configuration. A server at
+/// another port is another application.
 /// Errors: those of Identity::create().
 Result<Identity> identityOf(const cell::ServerConfig& config, const Security& security);
 

@@ -13,20 +13,20 @@
 
 namespace metier::server {
 
-/// Figures of an arm that a server publishes, or that are wanted of one; as far as known.
+/// Figures of an arm, published or wished, as far as they are known.
 struct ArmFigures {
     std::optional<double> reach{};    ///< farthest the flange can be from axis 2 [m]
     std::optional<double> payload{};  ///< greatest mass at the flange [kg]
 };
 
-/// A skill, as its server's address space tells.
+/// A skill as published in its server's address space.
 struct SurveyedSkill {
     client::SkillAddress address;
-    std::vector<std::string> types;  ///< its own, and those that it is derived from
+    std::vector<std::string> types;  ///< its own type, and those from which it is derived
     /// Purposes: identifiers of dictionary entries, its own, then those of its types.
     std::vector<std::string> terms{};
     std::vector<client::SkillUse> uses{};
-    ArmFigures arm{};  ///< of what it moves; of nothing that it uses
+    ArmFigures arm{};  ///< of the arm that it moves itself
 };
 
 struct SurveyedServer {
@@ -34,20 +34,21 @@ struct SurveyedServer {
     Result<std::vector<SurveyedSkill>> skills;
 };
 
-/// Asks servers for their skills, many at the same time. Whoever has not answered everything
-/// within `limit` has an error instead.
-/// Threads: any; waits, about a second longer than `limit` for each 32 servers at most.
+/// Asks servers for their skills, many at the same time. A server that has not answered completely
+/// within `limit` gets an error instead.
+/// Threads: any; waits, at most about a second longer than `limit` for each 32 servers.
 std::vector<SurveyedServer> survey(const std::vector<opcua::FoundServer>& servers,
                                    const ConnectionSecurity& security,
                                    std::chrono::milliseconds limit = std::chrono::seconds(2));
 
-/// Whether a skill is of a type, with or without its ending "Type", or of one derived from it; or
-/// a composed skill of that name.
+/// Whether a skill is of a type, written with or without the ending "Type", or of a derived one; or
+/// is a composed skill of that name.
 bool isA(const SurveyedSkill& skill, const std::string& type);
 
-/// The term of a skill that a wish names: by its whole identifier, "urn:metier:dictionary:grasp",
-/// or by the last part of it. Capitals do not matter, in the last part neither do "-", "_", spaces
-/// and the word "and": "Pick place" is "pick-and-place". Nothing if there is none.
+/// Finds the term of a skill that a wish names, by its whole identifier,
+/// "urn:metier:dictionary:grasp", or by the last part of it. Capitals do not matter; in the last
+/// part "-", "_", spaces and the word "and" do not matter either: "Pick place" matches
+/// "pick-and-place". Nothing if there is none.
 std::optional<std::string> termOf(const SurveyedSkill& skill, const std::string& wish);
 
 }  // namespace metier::server

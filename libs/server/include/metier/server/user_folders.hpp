@@ -5,13 +5,13 @@
 
 namespace metier::server {
 
-/// Where this user's programs keep what outlives them: $XDG_STATE_HOME/metier, else
-/// ~/.local/state/metier; empty if nobody says where that is.
+/// Folder for state of this user's programs that outlives them: $XDG_STATE_HOME/metier, else
+/// ~/.local/state/metier; empty if neither variable nor home is known.
 std::filesystem::path userStateFolder();
-/// Where this user's settings are: $XDG_CONFIG_HOME/metier, else ~/.config/metier; may be empty.
+/// Folder of this user's settings: $XDG_CONFIG_HOME/metier, else ~/.config/metier; may be empty.
 std::filesystem::path userConfigFolder();
 
-/// Name of this machine, as it calls itself; "localhost" if it does not. Threads: any.
+/// Host name of this machine; "localhost" if it has none. Threads: any.
 std::string hostName();
 
 }  // namespace metier::server

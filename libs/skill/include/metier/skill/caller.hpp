@@ -4,13 +4,17 @@
 
 namespace metier::skill {
 
-/// Who calls.
+/// Client session that calls a method or writes a value; all text as the client sent it, but the
+/// user and the thumbprint, which were checked.
 struct Caller {
+    /// Id of its OPC UA session, as text; unique while the session lasts.
     std::string session_id{};
     std::string client_name{};
     std::string user_name{};
-    std::string thumbprint{};  ///< of the certificate of its application; empty: none
-    /// A skill of this server that runs others: what it may do was decided at its own Start.
+    std::string thumbprint{};  ///< SHA-1 of its application's certificate, hexadecimal; empty: no
+                               ///< certificate
+    /// A skill of this server that runs others. Its rights were checked at its own Start, so they
+    /// are not checked again.
     bool of_this_server = false;
 };
 

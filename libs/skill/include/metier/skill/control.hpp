@@ -18,31 +18,32 @@
 
 namespace metier::skill {
 
-/// Who may command the skills of one controller, and whether that client is still there.
+/// The right to command the skills of one controller, and the check that its holder is still there.
 ///
 /// A client holds control by a lease, which ends unless heartbeats renew it, or by a lock, which
 /// only keeps others out. One session holds either or both; while it does, others are refused
-/// everything but Halt. A lease is the dead-man: when it runs out, or its session ends, the
-/// listeners are told and do what each execution asks for. A session whose lease ran out is refused
-/// everything but Halt until it takes a lease or the lock anew: what it sent before it knew, or
-/// what the network delivers late, moves nothing.
+/// everything but Halt. The lease is the dead-man switch: when it runs out, or its session ends,
+/// the listeners are notified and every execution of that session does what its start asked for. A
+/// session whose lease ran out is refused everything but Halt until it takes a lease or the lock
+/// anew: commands that it sent before it noticed, or that the network delivers late, move nothing.
 ///
 /// Threading: the owner's thread, which all its Programs share.
 class Control {
 public:
     static constexpr std::chrono::milliseconds kDefaultLease{1'000};
     static constexpr std::chrono::milliseconds kShortestLease{100};
+    /// Limits of a lease: default, shortest and longest.
     static constexpr std::chrono::milliseconds kLongestLease{3'600'000};
-    /// How long a lock lasts without a renewal.
+    /// Time after which a lock ends if it is not renewed.
     static constexpr std::chrono::milliseconds kLockTime{60'000};
 
-    /// Told when the holder of a lease is gone.
+    /// Observer of the loss of control. Called on the owner's thread.
     class Listener {
     public:
         virtual ~Listener() = default;
-        /// \param session that held the lease
-        /// \param action  that it asked for; skill_default if it left that to the skills
-        /// \param text    for the client
+        /// \param session id of the session that held the lease
+        /// \param action  as given to acquire(); skill_default leaves it to each skill
+        /// \param text    reason, for a person at the client
         virtual void onControlLost(std::string_view session, OwnerLossAction action,
                                    const std::string& text) = 0;
     };
@@ -52,12 +53,12 @@ public:
     Control(const Control&) = delete;
     Control& operator=(const Control&) = delete;
 
-    /// `listener` must be detached before it ends.
+    /// `listener` must be detached before its life ends.
     void attach(Listener& listener);
     void detach(Listener& listener);
 
     /// Takes the lease, or begins a new one if the caller holds it already.
-    /// \param lease until it ends without a heartbeat; 0: kDefaultLease
+    /// \param lease time until it ends without a heartbeat; 0: kDefaultLease
     /// \return the epoch, which names this time of control; never 0, unique across restarts
     /// Errors: locked; out_of_range (lease).
     Result<std::uint64_t> acquire(const Caller& caller, std::chrono::milliseconds lease,
@@ -69,6 +70,7 @@ public:
     /// Errors: as heartbeat().
     Result<void> release(const Caller& caller, std::uint64_t epoch);
 
+    /// Takes the lock for kLockTime.
     /// Errors: locked.
     Result<void> lock(const Caller& caller);
     /// Errors: invalid_state, if the caller does not hold the lock.
@@ -78,33 +80,33 @@ public:
     /// Errors: invalid_state, if nobody holds it.
     Result<void> breakLock();
 
-    /// Whether the caller may command.
+    /// Checks that the caller may command.
     /// Errors: locked, with the name of the holder, or because the caller's own lease ran out.
     Result<void> checkCommand(const Caller& caller) const;
-    /// Whether the caller may command and holds this epoch; 0: it need not hold one.
+    /// Checks that the caller may command and holds this epoch; 0: no epoch is needed.
     /// Errors: locked.
     Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
 
     /// The session has ended, and its lock and lease with it.
     void sessionClosed(std::string_view session_id);
 
-    /// Who holds the lease, or else the lock; empty session: nobody.
+    /// Holder of the lease, or else of the lock; empty session id: nobody.
     const Caller& holder() const noexcept;
-    /// Of the lease, or of the last one; 0 before the first.
+    /// Epoch of the present lease, or else of the last one; 0 before the first.
     std::uint64_t epoch() const noexcept { return epoch_; }
     /// Whether `session_id` holds the lease.
     bool leasedBy(std::string_view session_id) const noexcept;
-    /// Until the lease ends without a heartbeat; 0 if there is none.
+    /// Time until the lease ends without a heartbeat; 0 if there is no lease.
     std::chrono::nanoseconds leaseRemaining() const noexcept;
-    /// Leases that ended without being given back. Any thread.
+    /// Number of leases that ended without being given back. Threads: any.
     std::uint64_t losses() const noexcept { return losses_.load(std::memory_order_relaxed); }
     bool isLocked() const noexcept { return locked_; }
     const Caller& locker() const noexcept { return locker_; }
-    /// Until the lock ends without a renewal; 0 if there is none.
+    /// Time until the lock ends without a renewal; 0 if there is no lock.
     std::chrono::nanoseconds lockRemaining() const noexcept;
 
 private:
-    /// Whether nobody but the caller holds control.
+    /// Checks that nobody but the caller holds control.
     Result<void> checkFree(const Caller& caller) const;
     Result<void> checkHolds(const Caller& caller, std::uint64_t epoch) const;
     void armLease();

@@ -12,35 +12,44 @@
 
 namespace metier::skill {
 
-/// Who hears what an Execution tells; a Program. Called on the owner's thread.
+/// Receiver of the reports of an ExecutionHandle; a Program is one. Called on the owner's thread.
 class ExecutionSink {
 public:
     virtual ~ExecutionSink() = default;
+    /// The work is done and the device stands still.
     virtual void onFinish(ValueMap result) = 0;
+    /// The work ended in an error and the device stands still.
     virtual void onFail(Reason reason, std::string text) = 0;
-    /// \param stop_request which of the requests to stop is answered, see ExecutionCore
+    /// The device stands still, as asked.
+    /// \param stop_request number of the request to stop that this answers, see ExecutionCore
     virtual void onAtRest(std::uint32_t stop_request) = 0;
+    /// The work has a new intermediate result.
     virtual void onProgress(Value intermediate) = 0;
+    /// A sequence has entered a step.
     virtual void onStep(std::string name) = 0;
+    /// The work has started another skill.
     virtual void onStarted(StartedExecution child) = 0;
-    /// The name of the execution is on disk, or why it is not.
+    /// Outcome of writing the execution's name to disk.
     virtual void onNameKept(Result<void> kept) = 0;
+    /// The work asks to be suspended, as a client would.
     virtual void onSuspendAsked(std::string why) = 0;
 };
 
 struct ExecutionCore;
 
-/// Work's handle to the Program that runs it: by it the work tells what became of the work.
+/// Work's handle to the Program that runs it: the work reports the outcome and the progress of
+/// the work through it.
 ///
-/// Copies tell the same Program. Calls that come late, twice, or after the Program is gone change
-/// nothing. An empty handle ignores every call.
+/// All copies report to the same Program. Calls that come late, twice, or after the Program is gone
+/// change nothing. An empty handle ignores every call.
 /// Threading: any thread; nothing waits. All but id() allocate: not for a cycle thread.
 class ExecutionHandle {
 public:
     ExecutionHandle() = default;
     explicit ExecutionHandle(std::shared_ptr<ExecutionCore> core);
 
-    /// Unique over all executions, also across restarts; empty for an empty handle.
+    /// Id of this execution, unique over all executions, also across restarts; empty for an empty
+    /// handle.
     const std::string& id() const noexcept;
 
     /// The work is done and the device stands still: Running becomes Ready. A result that was not
@@ -52,15 +61,15 @@ public:
     void fail(Reason reason, std::string text) const;
     /// Answers ExecutionWork::suspend() or ExecutionWork::halt(): the device stands still now.
     void atRest() const;
-    /// The latest intermediate result; part of the following events.
+    /// Publishes the latest intermediate result; the following events carry it, too.
     void progress(Value intermediate) const;
-    /// The step that a sequence is in, shown as a sub-state of Executing.
+    /// Publishes the step that a sequence is in, as a sub-state of Executing.
     void step(std::string name) const;
-    /// Has the Program suspend the work, as a client's Suspend does: ExecutionWork::suspend() follows. While
-    /// it comes to rest already, or does not run, nothing changes.
+    /// Asks the Program to suspend the work, as a client's Suspend does; ExecutionWork::suspend() follows.
+    /// Nothing changes if the work is already coming to rest or does not run.
     /// \param why for a person: who brought a part of the work to rest
     void suspend(std::string why) const;
-    /// The work has another skill started, here or elsewhere.
+    /// Reports that the work has started another skill, here or on another server.
     void started(StartedExecution child) const;
 
 private:

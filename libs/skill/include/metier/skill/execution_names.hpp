@@ -16,36 +16,39 @@ namespace metier::skill {
 
 class NameWriter;
 
-/// The names that clients have given to executions, so that none of them ever starts twice: not
-/// after its record is forgotten, nor, with a file, after the server was started again.
+/// The names that clients gave to executions, so that no name ever starts twice: neither after its
+/// record was forgotten nor, with a file, after a restart of the server.
 ///
 /// Shared by the Programs of a server.
 /// Threading: the owner's thread, which never waits for the disk: a thread of its own writes a line
-/// per name. The system keeps the line should this process be killed; only a machine that loses its
-/// power may lose the last ones. The end waits for the write that is under way.
+/// per name. A line survives a kill of this process; only a machine that loses its power may lose
+/// the last lines. The destructor waits for the write that is under way.
 class ExecutionNames {
 public:
-    /// As many of the latest names are always known; older ones are forgotten, sooner or later.
+    /// Number of the latest names that are always known; older ones are forgotten sooner or later.
     static constexpr std::size_t kLeast = 100'000;
 
     struct Options {
         std::size_t least = kLeast;
-        /// While the disk takes longer for a name, no more are taken.
+        /// Longest time that the disk may take for one name; while it takes longer, new names are
+        /// refused.
         std::chrono::milliseconds longest_write{250};
     };
+    /// State of a new name.
     enum class Keeping {
         kept,
         under_way,  ///< on its way to the file
     };
-    /// Called once, on another thread: the name is in the file, or why not.
+    /// Called once, on the writing thread, when the name is in the file, or with the reason why it
+    /// is not.
     using OnKept = std::function<void(Result<void>)>;
 
-    /// Names that are kept as long as this lives.
+    /// Keeps names in memory only, as long as this object lives.
     explicit ExecutionNames(std::size_t least = kLeast);
-    /// Names that are kept in `file`; `options.least` of the latest are known.
+    /// Keeps names in `file`; the latest `options.least` of them are known.
     ExecutionNames(std::unique_ptr<NameFile> file, const Options& options);
-    /// Names that are kept in `file` (and, once that has grown, in `file`.old), which one server
-    /// has to itself. Missing folders are made.
+    /// Keeps names in `file` and, once that has grown, also in `file`.old; no other server may use
+    /// them. Missing folders are created.
     /// Errors: resource_unavailable (another server has the file open, or it cannot be written).
     static Result<std::unique_ptr<ExecutionNames>> open(const std::filesystem::path& file,
                                                         std::size_t least = kLeast);
@@ -53,13 +56,14 @@ public:
     ExecutionNames(const ExecutionNames&) = delete;
     ExecutionNames& operator=(const ExecutionNames&) = delete;
 
+    /// Whether an execution of this skill has had this name.
     bool knows(std::string_view skill, std::string_view name) const;
-    /// To be called before the execution begins: it must not before the name is kept. The name is
-    /// known from here on.
-    /// \param on_kept called only after `under_way`
-    /// Errors: resource_unavailable (the disk hangs); the name is not known then.
+    /// Adds a name. Call it before the execution begins, and begin the work only when the name is
+    /// kept. The name is known from this call on.
+    /// \param on_kept called only if the result is `under_way`
+    /// Errors: resource_unavailable (the disk hangs); then the name is not known.
     Result<Keeping> note(std::string_view skill, std::string_view name, OnKept on_kept);
-    /// A name that is not kept after all may be used again.
+    /// Removes a name that could not be kept; it may be used again.
     void forget(std::string_view skill, std::string_view name);
 
 private:
@@ -70,7 +74,7 @@ private:
     std::unique_ptr<NameWriter> writer_;  ///< null: in memory only
 };
 
-/// What a client is told of a name that is known while its execution is not any more.
+/// Text of the refusal of a start whose name is known although its execution is forgotten.
 std::string forgottenText(std::string_view name);
 
 }  // namespace metier::skill

@@ -14,22 +14,22 @@
 
 namespace metier::skill {
 
-/// What is kept of one execution.
+/// Facts that a server keeps of one execution.
 struct ExecutionRecord {
     std::string id{};
-    Caller client{};           ///< who started it
-    ParentExecution parent{};  ///< on whose behalf
-    /// Snapshot of Start; shared with whoever writes it down, and does not change.
+    Caller client{};           ///< client that started it
+    ParentExecution parent{};  ///< execution on whose behalf it was started
+    /// Parameters at Start. Shared with the recorder; does not change.
     std::shared_ptr<const ValueMap> parameters{};
-    State state = State::running;  ///< that it is in, or ended in
+    State state = State::running;  ///< present state, or the state in which it ended
     Reason reason = Reason::none;
     std::string reason_text{};
     UtcTime start_time{};
-    UtcTime end_time{};  ///< the epoch while it is not over
-    ValueMap result{};   ///< of an execution that finished
+    UtcTime end_time{};  ///< UtcTime{} while it is not over
+    ValueMap result{};   ///< empty unless it finished
 };
 
-/// The last executions of one Program; those before are forgotten.
+/// The last kMost executions of one Program; older ones are forgotten.
 ///
 /// Threading: the owner's thread.
 class ExecutionHistory {
@@ -40,9 +40,9 @@ public:
     const ExecutionRecord* find(std::string_view id) const noexcept;
     ExecutionRecord* find(std::string_view id) noexcept;
     void add(ExecutionRecord record);
-    /// The latest; there must be one.
+    /// The latest execution; there must be one.
     const ExecutionRecord& last() const noexcept { return records_.back(); }
-    /// The one that came `back` before the latest, or nullptr. Valid until the next add().
+    /// The execution `back` places before the latest, or nullptr. Valid until the next add().
     const ExecutionRecord* recent(std::size_t back) const noexcept {
         return back < records_.size() ? &records_[records_.size() - 1 - back] : nullptr;
     }

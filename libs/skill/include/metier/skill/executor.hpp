@@ -6,7 +6,7 @@
 
 namespace metier::skill {
 
-/// A piece of work that is still to come; destroying the Timer cancels it.
+/// A piece of work that will run later; destroying the Timer cancels it.
 ///
 /// Threading: the owner's thread.
 class Timer {
@@ -26,7 +26,7 @@ public:
     Timer(const Timer&) = delete;
     Timer& operator=(const Timer&) = delete;
 
-    /// After it the work does not begin any more.
+    /// Prevents the work from beginning. Does nothing to work that has begun, or on a second call.
     void cancel() {
         if (auto cancel = std::exchange(cancel_, nullptr)) {
             cancel();
@@ -39,8 +39,8 @@ private:
 
 /// The thread that owns Programs; in a server, the server thread.
 ///
-/// Shared by its Programs. Executions use it as long as it lives, so that it may die, and its queue
-/// with it, on any thread; once its own thread is gone it drops what it is given.
+/// Shared by the Programs and their Executions; whichever lets go last destroys it, and the work in
+/// its queue, on any thread. Once its own thread has ended it drops posted work.
 class Executor {
 public:
     virtual ~Executor() = default;

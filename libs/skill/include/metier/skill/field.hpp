@@ -37,42 +37,43 @@ inline constexpr Unit kMetrePerSecondSquared{"m/s²", "metre per second squared"
 inline constexpr Unit kRadianPerSecondSquared{"rad/s²", "radian per second squared", "2B"};
 inline constexpr Unit kKilogram{"kg", "kilogram", "KGM"};
 
-/// Where a field hangs below the skill's node.
+/// Place of a field below the skill's node.
 enum class Place : std::uint8_t {
     parameter_set,  ///< a parameter that published clients know
     options,        ///< a parameter that they do not know
     final_result,
 };
 
-/// When a parameter is taken.
+/// Time at which the value of a parameter is taken.
 enum class Input : std::uint8_t {
     snapshot,  ///< once, at Start
     live,      ///< at Start, and every write while Running goes to the work
 };
 
-/// How many elements a list (or characters a text) may have.
+/// Number of elements that a list, or of characters that a text, may have.
 struct LengthLimit {
     std::size_t least = 0;
     std::size_t most = std::numeric_limits<std::size_t>::max();
 };
 
-/// One parameter or result of a skill: what it is called, what it may hold.
+/// Description of one parameter or result of a skill: its name and the values that it may hold.
 struct Field {
     std::string name{};                ///< BrowseName, unique within the skill
     std::string description{};         ///< one line for a person
     ValueType type = ValueType::null;  ///< FieldList::add() fills it from the member
     Unit unit = kOne;
-    std::optional<Range> range{};         ///< for every number of the value; not for frames
+    std::optional<Range> range{};         ///< bounds every number of the value; not for frames
     std::optional<LengthLimit> length{};  ///< for lists and texts
-    Value default_value{};                ///< Null: a parameter that must be given before Start,
-    bool optional = false;                ///< unless it may stay Null
+    Value default_value{};                ///< used where the value is Null; Null: there is none
+    bool optional = false;                ///< false: a parameter without default must be given
     Place place = Place::parameter_set;
     Input input = Input::snapshot;
     std::function<Result<void>(const Value&)>
         extra_check{};  ///< after the checks above, never Null
 };
 
-/// Fields in their order. Copies share them, so that ten thousand skills of one type hold one list.
+/// An ordered list of fields. Copies share the list, so that ten thousand skills of one type need
+/// it only once.
 ///
 /// Threading: as std::shared_ptr; the fields themselves do not change.
 class Fields {
@@ -103,13 +104,13 @@ private:
         std::make_shared<const std::vector<Field>>();
 };
 
-/// Whether `value` may be written to `field`. Null always may: it stands for the default.
+/// Checks that `value` may be written to `field`. Null always may: it means the default.
 /// Errors:  type_mismatch; out_of_range (not finite, out of range, wrong length), with value, limit
-///          and unit; whatever extra_check says. The text begins with the field's name.
+/// and unit; any error of extra_check. The text begins with the field's name.
 /// Threads: any, if extra_check is pure.
 Result<void> checkValue(const Field& field, const Value& value);
 
-/// The value to use: `value`, or the default if it is Null.
+/// Returns `value`, or the field's default if `value` is Null.
 /// Errors: invalid_argument if both are Null and the field is not optional.
 Result<Value> valueOrDefault(const Field& field, const Value& value);
 

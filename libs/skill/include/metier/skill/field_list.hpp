@@ -51,8 +51,8 @@ public:
 
     const std::vector<Field>& fields() const noexcept { return fields_; }
 
-    /// The struct that `values` stand for. A name that is missing, or Null, means the default;
-    /// names that are not declared are passed over.
+    /// Makes the struct from `values`. A name that is missing, or Null, means the default; names
+    /// that are not declared are ignored.
     /// Errors: as checkValue(); invalid_argument if a value without default is missing.
     Result<T> read(const ValueMap& values) const {
         T target{};
@@ -68,7 +68,7 @@ public:
         return target;
     }
 
-    /// The members by name; an empty optional gives Null.
+    /// Returns the members by name; an empty optional gives Null.
     ValueMap write(const T& source) const {
         ValueMap values;
         for (std::size_t i = 0; i < fields_.size(); ++i) {

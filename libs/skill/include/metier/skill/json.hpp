@@ -13,14 +13,15 @@ namespace metier::skill {
 // any; pure.
 
 nlohmann::json toJson(const Value& value);
-/// An object with a member for each.
+/// An object with a member for each value.
 nlohmann::json toJson(const ValueMap& values);
 
-/// The same as text without line breaks, members in the order above and numbers as short as they
-/// can be: 1, not 1.0. A number that is not finite is null; what is no UTF-8 becomes U+FFFD.
+/// The same as text without line breaks. Members have the order above; numbers are as short as
+/// possible: 1, not 1.0. A number that is not finite becomes null, a byte that is not UTF-8 becomes
+/// U+FFFD.
 std::string jsonOf(const Value& value);
 std::string jsonOf(const ValueMap& values);
-/// A text with its quotes.
+/// JSON text of a string, with its quotes.
 std::string jsonText(std::string_view text);
 
 }  // namespace metier::skill

@@ -7,28 +7,28 @@
 
 namespace metier::skill {
 
-/// What a LambdaSkill does. Each is called on the owner's thread and must not block; one left out
-/// does what its comment says.
+/// The functions of a LambdaSkill. Each is called on the owner's thread and must not block. A
+/// function may be left out; its comment says what happens then.
 struct SkillFunctions {
-    /// Further checks of Start. Left out: none.
+    /// Makes further checks at Start. Left out: none.
     std::function<Result<void>(const ValueMap& parameters)> check{};
-    /// Begins the work. Left out: it is finished at once.
+    /// Begins the work. Left out: the work is finished at once.
     std::function<void(const ValueMap& parameters, const ExecutionHandle&)> start{};
-    /// Left out, or without resume: the skill cannot be suspended.
+    /// Suspend and resume the work. If one of them is left out, the skill cannot be suspended.
     std::function<Result<void>(const ExecutionHandle&)> suspend{};
     std::function<Result<void>(const ExecutionHandle&)> resume{};
-    /// Brakes. Left out: the work is at rest whenever it is asked.
+    /// Brakes. Left out: the work counts as at rest at once.
     std::function<void(const ExecutionHandle&)> halt{};
-    /// The device's own stop. Left out: nothing.
+    /// Stops by the device's own stop. Left out: nothing is done.
     std::function<void()> force_stop{};
-    /// Left out: every fault is gone.
+    /// Clears a fault. Left out: every fault counts as gone.
     std::function<Result<void>()> reset{};
 };
 
 /// A skill made of functions.
 class LambdaSkill final : public Skill {
 public:
-    /// description.suspendable is set by whether suspend and resume are given.
+    /// description.suspendable is overwritten: true if both suspend and resume are given.
     LambdaSkill(SkillDescription description, SkillFunctions functions);
 
     const SkillDescription& description() const override { return description_; }

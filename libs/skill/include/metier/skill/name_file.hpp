@@ -6,16 +6,16 @@
 
 namespace metier::skill {
 
-/// File of one line per name, which one server has to itself.
+/// A file with one line per name, used by one server only.
 ///
-/// Threading: one thread at a time; every call may wait for the disk, for however long it hangs.
+/// Threading: one thread at a time. Every call waits for the disk, without a limit if it hangs.
 class NameFile {
 public:
     virtual ~NameFile() = default;
-    /// Errors: resource_unavailable; nothing of the line is in the file then.
+    /// Appends one line.
+    /// Errors: resource_unavailable; then nothing of the line is in the file.
     virtual Result<void> append(const std::string& line) = 0;
-    /// Keeps the lines so far as the older ones, in place of those that were, and begins an empty
-    /// file.
+    /// Moves all lines to the older file, whose former lines are dropped, and begins an empty file.
     /// Errors: resource_unavailable.
     virtual Result<void> beginAnew() = 0;
 };

@@ -4,17 +4,17 @@
 
 namespace metier::skill {
 
-/// The execution that has started another one, as it says itself.
+/// The execution that started another one, as the starter claims; nobody checks it.
 struct ParentExecution {
-    std::string id{};      ///< empty: a client did
-    std::string server{};  ///< ApplicationUri; empty: of the same server
+    std::string id{};      ///< ExecutionId; empty: a client started it
+    std::string server{};  ///< its ApplicationUri; empty: the same server
 };
 
 /// An execution that another one has started.
 struct StartedExecution {
     std::string id{};
     std::string skill{};       ///< BrowseName
-    std::string server_url{};  ///< empty: of the same server
+    std::string server_url{};  ///< address of its server; empty: the same server
 };
 
 }  // namespace metier::skill

@@ -27,33 +27,33 @@ namespace metier::skill {
 struct ProgramOptions {
     /// The device that the skill needs for itself; empty: none. Shared by the Programs of a device.
     std::shared_ptr<Resource> resource{};
-    /// Who may command; empty: everybody. Shared by the Programs of a controller.
+    /// Right to command; empty: everybody may. Shared by the Programs of a controller.
     std::shared_ptr<Control> control{};
-    /// The names that executions have had; empty: the Program keeps its own, as long as it lives.
+    /// Names that executions have had; empty: the Program keeps its own, as long as it lives.
     /// Shared by the Programs of a server.
     std::shared_ptr<ExecutionNames> names{};
-    /// How long a session may leave a written parameter set without Start.
+    /// Longest time between a write to the parameter set and Start; then the binding ends.
     std::chrono::milliseconds configuration_timeout{10'000};
-    /// How long work may take to come to rest before the device's own stop is used.
+    /// Longest time that work may take to come to rest; then the device's own stop is used.
     std::chrono::milliseconds rest_deadline{5'000};
-    /// How long the name of an execution may take to be on disk before the execution is given up.
+    /// Longest time until the name of an execution is on disk; then the execution is given up.
     std::chrono::milliseconds name_deadline{1'000};
-    /// Who made the Program; empty: the server itself.
+    /// Client that made the Program; empty: the server itself.
     Caller creator{};
 };
 
-/// A Start that brings its parameters along.
+/// A Start that carries its parameters with it.
 struct StartRequest {
-    /// Names the execution, at most 128 characters; empty: the Program gives it a name.
+    /// Name of the execution, at most 128 characters; empty: the Program makes one.
     std::string execution_id{};
     ValueMap parameters{};  ///< by name; the others take their defaults
     OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
-    std::uint64_t epoch = 0;            ///< of the caller's lease; 0: it need not hold one
-    std::optional<UtcTime> deadline{};  ///< after which nothing is started any more
-    ParentExecution parent{};           ///< on whose behalf; told on, and believed by nobody
+    std::uint64_t epoch = 0;            ///< epoch of the caller's lease; 0: none is needed
+    std::optional<UtcTime> deadline{};  ///< refused after that time; none: no deadline
+    ParentExecution parent{};           ///< execution on whose behalf; passed on, never checked
 };
 
-/// The state machine of one skill, and the only one that changes its state.
+/// The state machine of one skill. Nothing else changes the state.
 ///
 /// It begins Ready. Halted and Suspended mean that the device stands still: Halt and Suspend of a
 /// running work return at once, and the transition follows when the work is at rest.
@@ -65,93 +65,96 @@ public:
     /// \param clock    must outlive the Program
     Program(ProgramOptions options, std::unique_ptr<Skill> skill,
             std::shared_ptr<Executor> executor, const Clock& clock);
-    /// Stops the device by ExecutionWork::forceStop() if the Program is Running. No transition is told.
-    /// Not from inside a call of its own to work or an observer.
+    /// Stops the device by ExecutionWork::forceStop() if the Program is Running; observers get no
+    /// transition. Must not be called from inside a call of its own to work or an observer.
     ~Program() override;
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
-    /// `observer` must outlive the Program or be detached. Not from inside a notification.
+    /// `observer` must outlive the Program or be detached. Not allowed from inside a notification.
     void attach(ProgramObserver& observer);
     void detach(ProgramObserver& observer);
 
-    /// Takes a parameter; Null means its default. Ready: binds the set to the caller's session
-    /// until Start, the session's end or the configuration timeout. Running: live parameters only.
-    /// \param meant_for when the writer meant a live value to hold, by its own clock
+    /// Writes a parameter; Null means its default. In Ready this binds the parameter set to the
+    /// caller's session until Start, the session's end or the configuration timeout. In Running
+    /// only live parameters may be written.
+    /// \param meant_for time for which a live value is meant, by the writer's clock
     /// Errors: not_found; type_mismatch, out_of_range; locked (bound to, or started by, another
     ///         session); invalid_state. The old value stays.
     Result<void> write(const Caller& caller, std::string_view parameter, Value value,
                        std::optional<UtcTime> meant_for = {});
-    /// The present value, Null if there is none.
+    /// Present value of a parameter; Null if there is none.
     /// Errors: not_found.
     Result<Value> read(std::string_view parameter) const;
 
     /// Checks the parameters as a whole and begins.
-    /// Errors: locked; resource_unavailable; invalid_argument (a parameter is missing); whatever
-    ///         Skill::prepare() says. Nothing has changed then, the written values stay.
+    /// Errors: locked; resource_unavailable; invalid_argument (a parameter is missing); any error
+    /// of Skill::prepare(). Nothing has changed then; the written values stay.
     Result<void> start(const Caller& caller);
-    /// Checks all given parameters, takes them and begins, or changes nothing. What the session has
-    /// written before is dropped.
-    /// \return the execution's id. An id that the Program knows already starts nothing: that
-    ///         execution, running or over, is the answer.
+    /// Checks all given parameters, takes them and begins, or changes nothing. Values that the
+    /// session has written before are dropped.
+    /// \return the execution's id. An id that the Program knows already starts nothing: the id of
+    ///         that execution, running or over, is returned.
     /// Errors: as start() and write(); locked (epoch); timeout (deadline); already_exists (an
-    ///         execution of that id has begun, and its record is gone).
+    /// execution of that id has begun, and its record is gone).
     Result<std::string> startWith(const Caller& caller, StartRequest request);
-    /// What startWith() would say now, and how the motion would be. Nothing changes.
+    /// Makes the checks of startWith() and describes the motion. Nothing changes.
     CheckReport check(const Caller& caller, const ValueMap& parameters);
-    /// What became of an execution; of the last ExecutionHistory::kMost.
+    /// Record of an execution; the last ExecutionHistory::kMost are kept.
     /// Errors: not_found.
     Result<ExecutionRecord> execution(std::string_view id) const;
-    /// The last executions; 0 the latest. Null if there were not as many. Valid until the next
-    /// one begins.
+    /// The last executions; 0 is the latest. Null if there were fewer. Valid until the next one
+    /// begins.
     const ExecutionRecord* recentExecution(std::size_t back) const noexcept {
         return history_.recent(back);
     }
 
-    /// Errors: not_supported; whatever ExecutionWork::suspend() says.
+    /// Asks the work to come to rest; Suspended follows at standstill.
+    /// Errors: not_supported (the skill cannot be suspended); any error of ExecutionWork::suspend().
     Result<void> suspend(const Caller& caller);
-    /// If the execution's owner is gone, the caller owns it from here on.
-    /// Errors: whatever ExecutionWork::resume() says; the Program stays Suspended.
+    /// Continues a suspended execution. If its owner is gone, the caller becomes its owner.
+    /// Errors: any error of ExecutionWork::resume(); the Program stays Suspended.
     Result<void> resume(const Caller& caller);
-    /// Allowed to any caller. A second Halt while the first is under way is accepted, too.
+    /// Brakes; Halted follows at standstill. Allowed to any caller, also while a Halt is under way.
     Result<void> halt(const Caller& caller);
-    /// From Halted, if the skill agrees; from Suspended, gives the execution up.
-    /// Errors: whatever Skill::reset() says; the Program stays Halted and tells why.
+    /// From Halted: becomes Ready if the skill agrees. From Suspended: gives the execution up.
+    /// Errors: any error of Skill::reset(); the Program stays Halted and shows the reason.
     Result<void> reset(const Caller& caller);
-    /// Whether `caller` could call `method` now.
+    /// Whether `caller` may call `method` now.
     bool executable(Method method, const Caller& caller) const;
 
-    /// A session has ended: its binding, if any, ends, and an execution that it owns has lost its
+    /// A session has ended: its binding of the parameters ends, and its execution has lost its
     /// owner.
     void sessionClosed(std::string_view session_id);
-    /// Whoever started the execution is gone: what happens is up to its start, then to `action`,
-    /// then to the skill.
+    /// The owner of the execution is gone. The start's OnOwnerLoss says what happens; if it left
+    /// that open, `action` does; else the skill.
     void ownerLost(std::string text, OwnerLossAction action = OwnerLossAction::skill_default);
-    /// The device is gone: Halted at once, from every state.
+    /// The device is lost: Halted at once, from every state.
     void deviceLost(std::string text);
-    /// Somebody else has told the device to stop: what runs is Halted for an error once it rests.
+    /// The device was stopped by somebody else: a running Program is Halted with an error at
+    /// standstill.
     void deviceStopped(std::string text);
-    /// The device does nothing until it is reset: a Ready Program is Halted for an error. One that
-    /// runs learns it from its motion; if that still ends Ready, it is Halted right after.
+    /// The device does nothing until it is reset: a Ready Program is Halted with an error. A
+    /// running one notices by its motion; if it still ends Ready, it is Halted right after.
     void deviceNotReady(std::string text);
     /// The device may be used again, without a Reset of this Program.
     void deviceReady();
 
-    /// Of the Program's thread.
+    /// Executor of the Program's thread.
     Executor& executor() const { return *executor_; }
     const SkillDescription& description() const { return description_; }
     State state() const noexcept { return state_; }
     SubState subState() const noexcept { return sub_state_; }
-    /// The step of a sequence; empty unless an execution is under way.
+    /// Present step of a sequence; empty unless an execution is under way.
     const std::string& step() const noexcept { return step_; }
-    /// The latest intermediate result; Null unless an execution is under way and has told one.
+    /// Latest intermediate result; Null unless an execution is under way and has reported one.
     const Value& intermediate() const noexcept { return intermediate_; }
-    /// The execution that is under way, or else the last one; empty before the first.
+    /// Id of the execution that is under way, or else of the last one; empty before the first.
     const std::string& executionId() const noexcept { return execution_id_; }
-    /// Why the Program is where it is: the reason of the last transition, or of a refused Reset.
+    /// Reason of the last transition, or of a refused Reset.
     Reason reason() const noexcept { return reason_; }
     const std::string& reasonText() const noexcept { return reason_text_; }
-    /// The last transition; nothing before the first.
+    /// Last transition; empty before the first.
     const std::optional<TransitionEvent>& lastTransition() const noexcept { return last_; }
     const Diagnostic& diagnostic() const noexcept { return diagnostic_; }
     /// Result of the last execution that finished, every declared field; Null before the first.
@@ -199,9 +202,9 @@ private:
     Result<void> startWithNow(const Caller& caller, StartRequest& request);
     Result<void> checkFree(const Caller& caller) const;
     Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
-    /// What a Start says of its execution.
+    /// Facts that a Start gives of its execution.
     struct Order {
-        std::string id{};  ///< empty: to be named
+        std::string id{};  ///< empty: the Program makes one
         OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
         ParentExecution parent{};
     };

@@ -13,19 +13,19 @@ namespace metier::skill {
 /// Threading: the owner's thread, which all its Programs share.
 class Resource {
 public:
-    /// \param name for texts: "arm ur5"
+    /// \param name for messages: "arm ur5"
     explicit Resource(std::string name) : name_(std::move(name)) {}
     Resource(const Resource&) = delete;
     Resource& operator=(const Resource&) = delete;
 
     const std::string& name() const noexcept { return name_; }
-    /// Who holds it; empty if nobody does.
+    /// Name of the holder; empty if nobody holds it.
     const std::string& holder() const noexcept { return holder_; }
 
-    /// Whether nobody holds it.
+    /// Checks that nobody holds it.
     /// Errors: resource_unavailable, with the holder's name.
     Result<void> checkFree() const;
-    /// Errors: resource_unavailable if it is held, also by `holder` itself.
+    /// Errors: resource_unavailable if it is held, even by `holder` itself.
     Result<void> acquire(std::string_view holder);
     void release() noexcept { holder_.clear(); }
 

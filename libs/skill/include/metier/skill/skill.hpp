@@ -15,100 +15,101 @@
 
 namespace metier::skill {
 
-/// What clients may know of a skill before they use it. Does not change.
+/// Facts that clients may know of a skill before they use it. Does not change.
 struct SkillDescription {
-    std::string name{};         ///< of the instance: "CartesianPtpMoveSkill"
-    std::string type{};         ///< of its type: "CartesianPtpMoveSkillType"
+    std::string name{};         ///< BrowseName of the instance: "CartesianPtpMoveSkill"
+    std::string type{};         ///< BrowseName of its type: "CartesianPtpMoveSkillType"
     std::string description{};  ///< one line for a person
     Fields parameters{};
     Fields results{};
-    std::vector<std::string> steps{};  ///< of a sequence, by name, in order
+    std::vector<std::string> steps{};  ///< names of a sequence's steps, in order
     bool suspendable = true;           ///< false: Suspend is refused with not_supported
-    /// What an execution does when its owner is gone, unless its Start says otherwise. Skills that
+    /// Action when the owner of an execution is gone, unless the Start says otherwise. Skills that
     /// move an arm halt.
     OwnerLossAction on_owner_loss = OwnerLossAction::keep_going;
 };
 
-/// What Start would say, and what it would do.
+/// Answer of Check: whether Start would succeed, and the motion that it would make.
 struct CheckReport {
     bool possible = true;
-    std::string reason{};                 ///< why not, with value, limit and unit
-    double first_failing_fraction = 1.0;  ///< of the path, 0 to 1; 1 if nothing fails
-    double planned_duration = 0.0;        ///< [s]; 0 if the skill cannot tell
-    /// Most that a Halt would need until the set-points stand, at any time of the motion [s], and
-    /// how far the tool frame goes meanwhile [m]; 0 if the skill cannot tell.
+    std::string reason{};                 ///< if not possible: why, with value, limit and unit
+    double first_failing_fraction = 1.0;  ///< fraction of the path, 0 to 1; 1 if nothing fails
+    double planned_duration = 0.0;        ///< [s]; 0 if the skill does not know it
+    /// Longest stop that a Halt could need at any time of the motion: time until the set-points
+    /// stand [s], and way of the tool frame meanwhile [m]. 0 if the skill does not know them.
     double stopping_time = 0.0;
     double stopping_distance = 0.0;
     /// Joint positions along the path, one row per sample [rad]; empty if the skill moves no arm.
     std::vector<std::vector<double>> joint_path{};
 };
 
-/// A value that was written while the skill runs.
+/// A value written while the skill runs.
 struct LiveValue {
     Value value;
-    std::optional<UtcTime> meant_for{};  ///< by the writer's clock; nothing if it did not say
+    std::optional<UtcTime> meant_for{};  ///< by the writer's clock; none if not sent
 };
 
 /// One execution of a skill, made by Skill::prepare().
 ///
-/// The Program destroys it once the execution has ended; the destructor lets go of the device,
-/// which then stands still (or has been stopped by forceStop()), and waits for the work's own
-/// threads. Threading: all calls come from the owner's thread and must not block; none from inside
+/// The Program destroys it once the execution has ended. The destructor releases the device, which
+/// then stands still (or was stopped by forceStop()), and waits for the work's own threads.
+/// Threading: all calls come from the owner's thread and must not block; no call comes from inside
 /// another.
 class ExecutionWork {
 public:
     virtual ~ExecutionWork() = default;
-    /// Begins the work. Running has been committed before. `execution` tells its outcome, also from
-    /// inside this call.
+    /// Begins the work; Running has been committed before. The outcome is reported through
+    /// `execution`, which may also be used inside this call.
     virtual void start(Execution execution) = 0;
     /// Asks to come to rest on the path; answered by ExecutionHandle::atRest(), finish() or fail().
-    /// Errors: nothing is stopped then, and the client gets the error.
+    /// Errors: reported to the client; then nothing is stopped.
     virtual Result<void> suspend() = 0;
     /// Goes on from rest, on the same path.
-    /// Errors: nothing moves then; if the arm was moved meanwhile, with the distance.
+    /// Errors: nothing moves then. If the arm was moved meanwhile, the text names the distance.
     virtual Result<void> resume() = 0;
     /// Brakes; answered by ExecutionHandle::atRest(), finish() or fail(). May follow suspend() before its
-    /// answer: then one answer is enough. Also called when a suspended execution is given up; then
-    /// no answer is needed and the work is destroyed next.
+    /// answer: then one answer is enough. Also called when a suspended execution is given up: then
+    /// no answer is needed, and the work is destroyed next.
     virtual void halt() = 0;
-    /// The device's own stop: the deadline to come to rest has passed, the device was lost, or the
-    /// Program is destroyed while it runs.
+    /// Uses the device's own stop: the deadline to come to rest has passed, the device was lost, or
+    /// the Program is destroyed while it runs.
     virtual void forceStop() noexcept = 0;
-    /// A client wrote a live parameter while this runs; it was checked.
-    /// Errors: the client gets the error.
+    /// Takes a live parameter that a client wrote while this runs; its field's checks have passed.
+    /// Errors: reported to the client.
     virtual Result<void> input(std::string_view parameter, const LiveValue& live) {
         static_cast<void>(live);
         return fail(Errc::not_supported, std::string(parameter) + " is not taken while Running");
     }
-    /// A live value was refused, by a check of its field or by input(). The client got the error.
+    /// Notes that a live value was refused, by a check of its field or by input(). The client got
+    /// the error.
     virtual void inputRefused(std::string_view parameter, const Error& why) {
         static_cast<void>(parameter);
         static_cast<void>(why);
     }
 };
 
-/// A skill: what it is, and how to begin. Owned by its Program.
+/// A skill: its description, and the way to begin an execution. Owned by its Program.
 ///
 /// Threading: all calls come from the owner's thread and must not block.
 class Skill {
 public:
     virtual ~Skill() = default;
-    /// The same for as long as the skill lives.
+    /// Returns the same description for as long as the skill lives.
     virtual const SkillDescription& description() const = 0;
     /// Makes all checks of Start, planning included; nothing moves.
     /// \param snapshot a value for every parameter, each checked; Null only for optional ones.
     ///                 Valid during the call.
-    /// Errors: Start is refused with it, and nothing has changed.
+    /// Errors: Start is refused with this error, and nothing has changed.
     virtual Result<std::unique_ptr<ExecutionWork>> prepare(const ValueMap& snapshot) = 0;
-    /// What prepare() would say to `snapshot`, without any effect.
-    /// Errors: as the report that it is not possible.
+    /// Makes the checks of prepare() for `snapshot`, without any effect.
+    /// Errors: reported to the client as: not possible, with the error's text.
     virtual Result<CheckReport> check(const ValueMap& snapshot) {
         const auto work = prepare(snapshot);
         return work ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(work.error()));
     }
-    /// Clears a fault, as far as the device agrees that it is gone. Does not wait for the device.
-    /// Errors: timeout: the device has begun and is not done, the next call gives its outcome; else
-    /// why not. The Program stays Halted and tells it.
+    /// Clears a fault, if the device agrees that it is gone. Does not wait for the device.
+    /// Errors: timeout: the device has begun and is not done; the next call gives its outcome. Any
+    /// other error: the Program stays Halted and shows it.
     virtual Result<void> reset() { return {}; }
 };
 

@@ -23,15 +23,15 @@ enum class TransitionNumber : std::uint32_t {
 
 enum class Method : std::uint8_t { start, suspend, resume, halt, reset, start_with };
 
-/// What an execution does when the client that commands it is gone.
+/// Action of an execution when the client that owns it is gone.
 enum class OwnerLossAction : std::uint8_t {
-    skill_default,  ///< what the skill's description says
+    skill_default,  ///< as the skill's description says
     halt,           ///< brake, then Halted
     suspend,        ///< brake on the path, then Suspended; Halt if the skill cannot be suspended
     keep_going,     ///< go on to the end
 };
 
-/// Why a transition happened.
+/// Cause of a transition.
 enum class Reason : std::uint8_t {
     none,
     finished,
@@ -58,7 +58,7 @@ enum class SubState : std::uint8_t {
     halted_limit,
 };
 
-/// The names that clients see: "Halted", "Start", "RunningToHalted", "ReadyConfigured", "ByClient".
+/// Names that clients see: "Halted", "Start", "RunningToHalted", "ReadyConfigured", "ByClient".
 std::string_view toString(State state) noexcept;
 std::string_view toString(TransitionNumber transition) noexcept;
 std::string_view toString(Method method) noexcept;
@@ -69,7 +69,7 @@ std::string_view toString(OwnerLossAction action) noexcept;
 State fromState(TransitionNumber transition) noexcept;
 State toState(TransitionNumber transition) noexcept;
 
-/// The Halted sub-state that tells of `reason`.
+/// Sub-state of Halted that shows `reason`.
 SubState haltedBecause(Reason reason) noexcept;
 
 }  // namespace metier::skill

@@ -12,7 +12,7 @@ namespace metier::skill {
 template <typename Parameters, typename Results>
 class TypedSkill : public Skill {
 public:
-    /// \param description its parameters and results are taken from the lists
+    /// \param description its parameters and results are replaced by those of the lists
     TypedSkill(SkillDescription description, FieldList<Parameters> parameters,
                FieldList<Results> results)
         : description_(std::move(description)),
@@ -38,14 +38,15 @@ public:
         return assess(parameters);
     }
 
-    /// For work: `execution.finish(skill.results().write(result))`. Lives as long as the skill.
+    /// Result fields, for work: `execution.finish(skill.results().write(result))`. Lives as long
+    /// as the skill.
     const FieldList<Results>& results() const noexcept { return results_; }
 
 protected:
-    /// As Skill::prepare().
+    /// Makes all checks of Start, planning included; as Skill::prepare().
     virtual Result<std::unique_ptr<ExecutionWork>> plan(const Parameters& parameters) = 0;
 
-    /// As Skill::check(); unless overridden it says no more than whether plan() succeeds.
+    /// Answers Check, as Skill::check(). The default only reports whether plan() succeeds.
     virtual Result<CheckReport> assess(const Parameters& parameters) {
         const auto work = plan(parameters);
         return work ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(work.error()));

@@ -16,7 +16,7 @@ using metier::Frame;
 using metier::Range;
 using metier::Vector3;
 
-/// What a parameter or a result can hold. monostate is Null: not set.
+/// Value of a parameter or a result. monostate is Null: not set.
 using Value = std::variant<std::monostate, bool, std::int32_t, std::uint32_t, std::uint64_t, double,
                            std::string, Frame, Vector3, std::vector<double>,
                            std::vector<std::string>, std::vector<Range>, std::vector<Frame>>;
@@ -49,10 +49,10 @@ inline bool isNull(const Value& value) noexcept {
     return std::holds_alternative<std::monostate>(value);
 }
 
-/// The enumerator's name, for texts.
+/// Name of the enumerator, for messages.
 std::string_view toString(ValueType type) noexcept;
 
-/// The value for a person: numbers in shortest form, lists in brackets, texts in quotes.
+/// Text for a person: numbers in shortest form, lists in brackets, texts in quotes.
 std::string toString(const Value& value);
 
 }  // namespace metier::skill

@@ -8,10 +8,12 @@
 
 namespace metier::skill {
 
-/// The inverse of skill::toJson(), for a field of that type. A frame may also be six numbers, a
-/// vector three, a range two; a whole number is taken for any type of number that can hold it. null
-/// is Null. Threads: any; pure. \param name of the field, for messages Errors: type_mismatch, with
-/// the name, what is expected and what was given.
+/// Reads a value of the given type: the inverse of skill::toJson(). A frame may also be a list of
+/// six numbers, a vector of three, a range of two. A whole number is taken for any type of number
+/// that can hold it. null is Null.
+/// \param name name of the field, for messages
+/// Errors: type_mismatch, with the name, the expected type and what was given.
+/// Threads: any; pure.
 Result<skill::Value> valueFrom(const nlohmann::json& json, skill::ValueType type,
                                std::string_view name);
 
