@@ -17,13 +17,13 @@
 #include <vector>
 
 #include "metier/base/queue.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/composition/definition_file.hpp"
 #include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
-#include "metier/client/remote_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/client/skill_handle.hpp"
 
 namespace metier::benchmarks {
 namespace {
@@ -56,7 +56,7 @@ public:
     /// A composed skill whose only used skill is that of `below`.
     void serveAbove(OneSkillServer& below, const std::string& text) {
         below_ = orThrow(client::RemoteServer::connect({.url = below.url(), .name = "below"},
-                                                             skills_->executor()));
+                                                       skills_->executor()));
         auto child = orThrow(below_->use(orThrow(below_->skills()).front(), name_));
         auto composed = orThrow(composition::compose(
             orThrow(composition::parseDefinition(text, name_)), {{"inner", child->description()}}));

@@ -8,6 +8,7 @@
 #include "bare.hpp"
 #include "both_sides.hpp"
 #include "metier/base/queue.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
@@ -15,7 +16,6 @@
 #include "metier/records/program_recorder.hpp"
 #include "metier/records/recorder.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/client/skill_finder.hpp"
 #include "recording_switch.hpp"
 
 namespace metier::benchmarks {

@@ -35,10 +35,10 @@
 #include <thread>
 
 #include "bare.hpp"
-#include "metier/opcua/client.hpp"
-#include "metier/link/child_process.hpp"
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/link/child_process.hpp"
+#include "metier/opcua/client.hpp"
 #include "server_process.hpp"
 #include "tap.hpp"
 

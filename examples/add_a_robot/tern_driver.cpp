@@ -16,9 +16,9 @@
 #include <thread>
 
 #include "metier/device/arm_core.hpp"
+#include "metier/device/driver.hpp"
 #include "metier/device/notifier.hpp"
 #include "metier/device/reset_slot.hpp"
-#include "metier/device/driver.hpp"
 #include "metier/link/back_off.hpp"
 #include "metier/link/tcp_link.hpp"
 

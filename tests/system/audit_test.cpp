@@ -9,8 +9,8 @@
 
 #include "discovered_cell.hpp"
 #include "installation.hpp"
-#include "metier/security/audit_log.hpp"
 #include "metier/client/control_handle.hpp"
+#include "metier/security/audit_log.hpp"
 #include "server_events.hpp"
 #include "small_disk.hpp"
 

@@ -43,8 +43,8 @@ link::ChildProcess farNamespace() {
     if (::unshare(CLONE_NEWNET) != 0) {
         throw std::system_error(errno, std::generic_category(), "a network namespace");
     }
-    auto child = link::ChildProcess::start(
-        {"unshare", "--net", "sh", "-c", "echo up; exec sleep infinity"});
+    auto child =
+        link::ChildProcess::start({"unshare", "--net", "sh", "-c", "echo up; exec sleep infinity"});
     if (!child || !child->readLine(soon())) {
         throw std::runtime_error("no second network namespace");
     }

@@ -143,8 +143,7 @@ class LoggedCell {
 public:
     explicit LoggedCell(const std::filesystem::path& file,
                         const std::vector<std::string>& more = {})
-        : process_(link::ChildProcess::start(commandFor(file, more),
-                                                link::ErrorOutput::with_output)
+        : process_(link::ChildProcess::start(commandFor(file, more), link::ErrorOutput::with_output)
                        .value()) {
         said_ = readTo("the cell is up");
     }
@@ -255,8 +254,7 @@ TEST(CellRestart, WaitsLongerAfterEveryEnd) {
 // The component of the iiwa and its gripper alone was taken for dead after 0.25 s.
 TEST(DemoCells, AllowEveryServerOfABusyComputerASecond) {
     for (const auto* file : {"demo.toml", "pick_and_place.toml"}) {
-        const auto cell =
-            cell::loadCell(std::filesystem::path(METIER_SOURCE_DIR) / "cells" / file);
+        const auto cell = cell::loadCell(std::filesystem::path(METIER_SOURCE_DIR) / "cells" / file);
         ASSERT_TRUE(cell) << cell.error().message;
         for (const auto& server : cell->servers) {
             EXPECT_EQ(server.stall_limit, 1.0) << file << ": " << server.name;
@@ -280,8 +278,7 @@ struct SilentPeer {
 /// A program that waits for `peer` ends within a second of SIGTERM.
 void expectPromptEnd(const std::vector<std::string>& arguments, SilentPeer& peer) {
     auto program =
-        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output)
-            .value();
+        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output).value();
     const auto caller = peer.awaitCaller();
     const auto processes = descendants(program.pid());
     const auto told = std::chrono::steady_clock::now();

@@ -115,8 +115,8 @@ TEST(Cli, CompletionScriptsParseInTheirShell) {
             EXPECT_THAT(script.output, HasSubstr(command));
         }
         const CellFile file(script.output);
-        auto checked = link::ChildProcess::start({"bash", "-n", file.name()},
-                                                    link::ErrorOutput::with_output);
+        auto checked =
+            link::ChildProcess::start({"bash", "-n", file.name()}, link::ErrorOutput::with_output);
         ASSERT_TRUE(checked);
         EXPECT_EQ(checked->waitUntil(inAMinute()), 0)
             << checked->readLine(inAMinute()).value_or("");
@@ -127,9 +127,9 @@ TEST(Cli, BashCompletesCommandsAndOptions) {
     const CellFile file(runMetier({"completion", "bash"}).output);
     const auto complete = [&](const std::string& words, const std::string& index) {
         auto shell = link::ChildProcess::start({"bash", "-c",
-                                                   "source " + file.name() + "; COMP_WORDS=(" +
-                                                       words + "); COMP_CWORD=" + index +
-                                                       "; _metier; echo \"${COMPREPLY[*]}\""});
+                                                "source " + file.name() + "; COMP_WORDS=(" + words +
+                                                    "); COMP_CWORD=" + index +
+                                                    "; _metier; echo \"${COMPREPLY[*]}\""});
         return shell->readLine(inAMinute()).value_or("");
     };
     EXPECT_EQ(complete("metier sq", "1"), "square");

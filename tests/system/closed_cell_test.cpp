@@ -214,10 +214,10 @@ TEST_F(ClosedCell, WarnsAMonthBeforeACertificateEnds) {
     const auto folder = security::SecurityFolder::open(here_.folder()).value();
     const auto now = std::chrono::system_clock::now();
     const auto ending = security::makeIdentity({.application_name = "metier iiwa",
-                                             .application_uri = "urn:test:metier:iiwa",
-                                             .hosts = {"localhost"},
-                                             .lifetime = std::chrono::days(29)},
-                                            now);
+                                                .application_uri = "urn:test:metier:iiwa",
+                                                .hosts = {"localhost"},
+                                                .lifetime = std::chrono::days(29)},
+                                               now);
     ASSERT_TRUE(security::saveIdentity(folder.identityFolder("iiwa"), *ending));
     auto serve =
         here_.command({"serve", simulatedCell().string(), "--server", "iiwa", "--port", "0"});

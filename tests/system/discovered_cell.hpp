@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "metier/opcua/discovery.hpp"
 #include "metier/link/child_process.hpp"
+#include "metier/opcua/discovery.hpp"
 #include "metier_program.hpp"
 
 namespace metier::system_tests {

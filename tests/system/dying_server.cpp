@@ -27,10 +27,9 @@ std::string freeAddress() {
 }
 
 link::ChildProcess startController(const std::string& file, const std::string& address) {
-    auto controller =
-        link::ChildProcess::start(
-            metierCommand({"virtual", "run", file, "controller", "--address", address}))
-            .value();
+    auto controller = link::ChildProcess::start(metierCommand({"virtual", "run", file, "controller",
+                                                               "--address", address}))
+                          .value();
     controller.readLine(inAMinute()).value();
     return controller;
 }
@@ -52,8 +51,7 @@ StartedServer DyingServer::start(const std::string& server,
     std::vector<std::string> arguments{"serve", file_, "--server", server};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto process =
-        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output)
-            .value();
+        link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output).value();
     const std::string ready = "ready ";
     std::string said;
     for (auto line = process.readLine(inAMinute()); line; line = process.readLine(inAMinute())) {

@@ -46,7 +46,9 @@ opcua::ClientOptions Installation::asCommand() const {
 
 std::string Installation::thumbprintOf(const std::string& application) const {
     const auto folder = security::SecurityFolder::open(folder_).value();
-    return security::loadIdentity(folder.identityFolder(application)).value().certificate.thumbprint();
+    return security::loadIdentity(folder.identityFolder(application))
+        .value()
+        .certificate.thumbprint();
 }
 
 }  // namespace metier::system_tests

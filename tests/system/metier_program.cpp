@@ -43,9 +43,9 @@ Finished runMetier(const std::vector<std::string>& arguments, Errors errors) {
 }
 
 Finished runToEnd(const std::vector<std::string>& command, Errors errors) {
-    auto child = orThrow(link::ChildProcess::start(
-        command, errors == Errors::with_output ? link::ErrorOutput::with_output
-                                               : link::ErrorOutput::inherited));
+    auto child = orThrow(link::ChildProcess::start(command, errors == Errors::with_output
+                                                                ? link::ErrorOutput::with_output
+                                                                : link::ErrorOutput::inherited));
     Finished finished;
     const auto deadline = inAMinute();
     auto line = child.readLine(deadline);
@@ -102,8 +102,7 @@ std::unique_ptr<opcua::Client> connectTo(const std::string& url) {
 }
 
 client::SkillHandle openSkill(opcua::Client& client, const std::string& name) {
-    return orThrow(
-        client::SkillHandle::open(client, orThrow(client::findSkill(client, name))));
+    return orThrow(client::SkillHandle::open(client, orThrow(client::findSkill(client, name))));
 }
 
 std::vector<double> jointPosition(opcua::Client& client, const client::SkillHandle& skill) {

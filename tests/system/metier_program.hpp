@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "metier/base/clock.hpp"
-#include "metier/opcua/client.hpp"
-#include "metier/link/child_process.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/link/child_process.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::system_tests {
 

@@ -63,7 +63,8 @@ class EchoSkill {
 public:
     explicit EchoSkill(BenchServer& bench) : bench_(bench) {
         skill::SkillFunctions functions;
-        functions.start = [this](const skill::ValueMap& given, const skill::ExecutionHandle& execution) {
+        functions.start = [this](const skill::ValueMap& given,
+                                 const skill::ExecutionHandle& execution) {
             starts_.push_back(
                 {numberIn(std::get<std::vector<double>>(given.at("TargetJointPosition"))),
                  numberIn(std::get<std::vector<double>>(given.at("MaxVelocity"))),

@@ -198,7 +198,7 @@ TEST(DiscoveryOnTheNetwork, FindsArmsAndBindsToTheOneThatIsThere) {
     ASSERT_TRUE(lds.awaitKnown("iiwa-b"));
     const auto far = [&](const std::vector<std::string>& arguments) {
         return link::ChildProcess::start(cable.atFarEnd(metierCommand(arguments)),
-                                            link::ErrorOutput::with_output)
+                                         link::ErrorOutput::with_output)
             .value();
     };
     const auto lds_url = Cable::addressOf(lds.url());

@@ -36,9 +36,9 @@ constexpr const char* kSkill = "JointPtpMoveSkill";
 class RunningCommand {
 public:
     explicit RunningCommand(const std::vector<std::string>& arguments)
-        : process_(link::ChildProcess::start(metierCommand(arguments),
-                                                link::ErrorOutput::with_output)
-                       .value()) {}
+        : process_(
+              link::ChildProcess::start(metierCommand(arguments), link::ErrorOutput::with_output)
+                  .value()) {}
 
     bool until(const std::string& words) {
         for (auto line = process_.readLine(inAMinute()); line;

@@ -36,7 +36,7 @@ public:
     }
     /// The newest record for which it says true, once there is one; throws after a minute.
     records::ExecutionRow await(const records::Filter& filter,
-                             const std::function<bool(const records::ExecutionRow&)>& is) const {
+                                const std::function<bool(const records::ExecutionRow&)>& is) const {
         const auto deadline = inAMinute();
         Queue<int> nothing(1);
         while (std::chrono::steady_clock::now() < deadline) {

@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kUp = "the cell is up; Ctrl-C ends it";
 
 link::ChildProcess startUp(const std::filesystem::path& file,
-                              const std::filesystem::path& endpoints,
-                              const std::vector<std::string>& more) {
+                           const std::filesystem::path& endpoints,
+                           const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"up", file.string(), "--free-ports", "--endpoints",
                                        endpoints.string()};
     arguments.insert(arguments.end(), more.begin(), more.end());

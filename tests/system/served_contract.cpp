@@ -23,10 +23,8 @@ opcua::Client& ServedContract::client() {
     return *client_;
 }
 
-client::SkillHandle ServedContract::openSkill(opcua::Client& client,
-                                                    const std::string& name) {
-    return orThrow(
-        client::SkillHandle::open(client, orThrow(client::findSkill(client, name))));
+client::SkillHandle ServedContract::openSkill(opcua::Client& client, const std::string& name) {
+    return orThrow(client::SkillHandle::open(client, orThrow(client::findSkill(client, name))));
 }
 
 client::SkillHandle ServedContract::openSkill(const std::string& name) {

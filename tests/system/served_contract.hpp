@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "metier/skill/lambda_skill.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/skill/lambda_skill.hpp"
 #include "served_skills.hpp"
 
 namespace metier::system_tests {

@@ -9,8 +9,8 @@
 #include <ostream>
 
 #include "dying_server.hpp"
-#include "metier/link/tcp_link.hpp"
 #include "metier/client/skill_finder.hpp"
+#include "metier/link/tcp_link.hpp"
 
 namespace metier::system_tests {
 namespace {

@@ -342,7 +342,7 @@ TEST_F(SkillContract, WrittenParametersFallBackAfterTheConfigurationTimeout) {
 class FunctionContract : public ServedContract {
 protected:
     client::SkillHandle serveSkill(skill::SkillFunctions functions,
-                                         skill::ProgramOptions options = {}) {
+                                   skill::ProgramOptions options = {}) {
         auto description = served::streamDescription();
         auto fields = description.parameters.toVector();
         fields.front().default_value = std::vector{0.0, 0.0};

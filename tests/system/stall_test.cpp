@@ -9,6 +9,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "metier/client/skill_finder.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/joint_simulator/robot_options.hpp"
 #include "metier/joint_simulator/simulator_drive.hpp"
 #include "metier/opcua/client.hpp"
@@ -16,8 +18,6 @@
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
 #include "metier/robot_skills/stall_watch.hpp"
-#include "metier/client/skill_finder.hpp"
-#include "metier/client/skill_handle.hpp"
 
 namespace metier::system_tests {
 namespace {

@@ -15,12 +15,12 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/queue.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -142,7 +142,8 @@ private:
         description.type = "PositionStreamSkillType";
         skill::SkillFunctions functions;
         if (number % 2 == 1) {
-            functions.start = [this](const skill::ValueMap&, const skill::ExecutionHandle& execution) {
+            functions.start = [this](const skill::ValueMap&,
+                                     const skill::ExecutionHandle& execution) {
                 finishing_.tryPush(execution);
             };
         }

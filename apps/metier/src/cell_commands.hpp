@@ -20,8 +20,7 @@ enum class Ports {
 class MetierCommands final : public server::CellCommands {
 public:
     /// \param cell must outlive this
-    MetierCommands(const cell::CellConfig& cell, Ports ports,
-                   const server::Security& security);
+    MetierCommands(const cell::CellConfig& cell, Ports ports, const server::Security& security);
 
     server::CellCommand of(const cell::VirtualController& controller,
                            const server::CellAddresses& known) const override;

@@ -25,7 +25,8 @@ Result<std::unique_ptr<records::Store>> openRecords(const std::string& url);
 /// with the longest name that is in those of its device and server.
 /// \param named by the user, instead; may be empty
 /// Errors: invalid_argument, as loadRobot(), or if no model is named so.
-Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution, const std::string& named);
+Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution,
+                                   const std::string& named);
 
 /// Where the axes were, as far as it was recorded; for the drawings.
 /// Errors: not_found (nothing was recorded), invalid_argument (too little, or other axes).

@@ -6,8 +6,8 @@
 
 #include "command_context.hpp"
 #include "metier/base/error.hpp"
-#include "metier/opcua/client.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::app {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/path_evaluation/drawing.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::app {
 

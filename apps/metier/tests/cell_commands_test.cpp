@@ -24,7 +24,7 @@ protected:
     }
     template <typename Kind>
     static cell::ServerConfig server(const std::string& name, Kind kind,
-                                              std::uint16_t port = 4841) {
+                                     std::uint16_t port = 4841) {
         cell::ServerConfig config;
         config.name = name;
         config.port = port;

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/field.hpp"
 #include "metier/skill/state.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::client {
 

@@ -5,11 +5,11 @@
 #include <future>
 
 #include "metier/base/queue.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/client/skill_handle.hpp"
 
 namespace metier::client {
 namespace {
@@ -69,7 +69,8 @@ protected:
                                                          .place = skill::Place::final_result}},
                                             .on_owner_loss = OwnerLossAction::halt};
         skill::SkillFunctions functions;
-        functions.start = [](const skill::ValueMap& given, const skill::ExecutionHandle& execution) {
+        functions.start = [](const skill::ValueMap& given,
+                             const skill::ExecutionHandle& execution) {
             const auto& target = std::get<std::vector<double>>(given.at("TargetJointPosition"));
             if (target.front() == 0.0) {
                 execution.finish({{"Duration", 0.25}});

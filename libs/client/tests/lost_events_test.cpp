@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "bench_server.hpp"
-#include "remote_skill/connection.hpp"
 #include "metier/client/remote_server.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
+#include "remote_skill/connection.hpp"
 #include "remote_skill/remote_used_skill.hpp"
 
 namespace metier::client {
@@ -29,7 +29,9 @@ protected:
     LostEvents() {
         skill::SkillFunctions functions;
         functions.start = [this](const skill::ValueMap& /*parameters*/,
-                                 const skill::ExecutionHandle& execution) { execution_ = execution; };
+                                 const skill::ExecutionHandle& execution) {
+            execution_ = execution;
+        };
         program_ = &bench_.addSkill(system_tests::benchDescription("MoveSkill"), functions);
         bench_.serve();
         connection_.emplace(RemoteServerOptions{.url = bench_.url(), .name = "other"},

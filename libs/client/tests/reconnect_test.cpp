@@ -6,12 +6,12 @@
 #include <mutex>
 
 #include "metier/base/queue.hpp"
+#include "metier/client/control_handle.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/opcua/server.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/opcua_skill/skill_server.hpp"
 #include "metier/skill/lambda_skill.hpp"
-#include "metier/client/control_handle.hpp"
-#include "metier/client/skill_handle.hpp"
 #include "tcp_relay.hpp"
 
 namespace metier::client {
@@ -87,7 +87,8 @@ public:
                                                                       .axis_names = {"A", "B"}})
                 .value();
         skill::SkillFunctions functions;
-        functions.start = [&works](const skill::ValueMap&, const skill::ExecutionHandle& execution) {
+        functions.start = [&works](const skill::ValueMap&,
+                                   const skill::ExecutionHandle& execution) {
             works.begin(execution);
         };
         functions.suspend = [](const skill::ExecutionHandle& execution) -> Result<void> {

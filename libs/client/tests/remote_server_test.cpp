@@ -9,8 +9,8 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "remote_skill/connection.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
+#include "remote_skill/connection.hpp"
 #include "remote_skill/remote_used_skill.hpp"
 #include "served_skills.hpp"
 
@@ -384,15 +384,16 @@ private:
         {
             const std::lock_guard lock(reported_mutex_);
             reported_.emplace_back(message.level,
-                               std::string(message.payload.data(), message.payload.size()));
+                                   std::string(message.payload.data(), message.payload.size()));
         }
         changed_.notify_all();
     }
     void flush_() override {}
     int countOf(const std::string& text, spdlog::level::level_enum least) const {
-        return static_cast<int>(std::count_if(reported_.begin(), reported_.end(), [&](const auto& line) {
-            return line.first >= least && line.second.find(text) != std::string::npos;
-        }));
+        return static_cast<int>(
+            std::count_if(reported_.begin(), reported_.end(), [&](const auto& line) {
+                return line.first >= least && line.second.find(text) != std::string::npos;
+            }));
     }
 
     std::mutex reported_mutex_;
@@ -445,11 +446,12 @@ TEST_F(LoggedRemoteUsedSkill, TellsALossOnceThatIsHeardOfInTwoWays) {
 /// A used skill that hears of no transition, as if all were lost on their way.
 class DeafUsedSkill : public RemoteUsedSkillTest {
 protected:
-    DeafUsedSkill() : connection_({.url = server().endpointUrl(), .name = "other"}, connect("deaf")) {
+    DeafUsedSkill()
+        : connection_({.url = server().endpointUrl(), .name = "other"}, connect("deaf")) {
         link_ = std::make_shared<UsedSkillLink>(executor_);
         deaf_.emplace(connection_, link_, "JointPtpMoveSkill of other", "here.Test");
-        auto opened = client::AsyncSkill::open(connection_.client(),
-                                                     remote_->skills().value().front(), {});
+        auto opened =
+            client::AsyncSkill::open(connection_.client(), remote_->skills().value().front(), {});
         const auto now = opened->now();
         deaf_->adopt(std::make_shared<OpenSkill>(OpenSkill{nullptr, std::move(*opened)}), *now);
         deaf_->begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
@@ -571,8 +573,7 @@ TEST_F(RemoteUsedSkillTest, IsLostWithItsEventsAndComesBackByItself) {
     RemoteUsedSkill used(connection, link, "JointPtpMoveSkill of other", "here.Test");
     const auto opened = connection.open(remote_->skills().value().front(), link).value();
     used.adopt(opened, opened->skill.now().value());
-    used.begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
-                listener_);
+    used.begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}}, listener_);
     ASSERT_TRUE(move_.hand->await("start"));
     connection.noteLoss(connection.client(), "its events have ended: BadTimeout");
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));

@@ -5,14 +5,14 @@
 #include <future>
 #include <memory>
 
-#include "metier/opcua/server.hpp"
-#include "metier/opcua_skill/motion_device_system.hpp"
-#include "metier/opcua_skill/skill_server.hpp"
-#include "metier/skill/lambda_skill.hpp"
 #include "metier/client/async_skill.hpp"
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/server.hpp"
+#include "metier/opcua_skill/motion_device_system.hpp"
+#include "metier/opcua_skill/skill_server.hpp"
+#include "metier/skill/lambda_skill.hpp"
 
 namespace metier::client {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "metier/composition/definition.hpp"
 #include "metier/cell/toml_file.hpp"
+#include "metier/composition/definition.hpp"
 
 namespace metier::composition {
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "metier/base/error.hpp"
-#include "metier/composition/definition.hpp"
 #include "metier/cell/toml_file.hpp"
+#include "metier/composition/definition.hpp"
 
 namespace metier::composition {
 

@@ -8,7 +8,7 @@ using skill::State;
 using skill::TransitionNumber;
 
 LocalUsedSkill::LocalUsedSkill(skill::Program& program, std::shared_ptr<skill::Executor> executor,
-                       skill::Caller caller)
+                               skill::Caller caller)
     : program_(program), executor_(std::move(executor)), caller_(std::move(caller)) {
     program_.attach(*this);
 }
@@ -48,7 +48,7 @@ void LocalUsedSkill::answer(std::function<void(Result<Answer>)> done, Answer ans
 }
 
 void LocalUsedSkill::check(const skill::ValueMap& parameters,
-                       std::function<void(Result<skill::CheckReport>)> done) {
+                           std::function<void(Result<skill::CheckReport>)> done) {
     answer(std::move(done), program_.check(caller_, parameters));
 }
 
@@ -94,7 +94,8 @@ UsedSkillEnd LocalUsedSkill::endOf(const skill::TransitionEvent& event) const {
         return {UsedSkillEnd::Kind::finished, program_.finalResult(), event.reason, {}};
     }
     if (event.to == State::ready) {
-        return {UsedSkillEnd::Kind::halted, {}, event.reason, "it was reset while it was suspended"};
+        return {
+            UsedSkillEnd::Kind::halted, {}, event.reason, "it was reset while it was suspended"};
     }
     return {UsedSkillEnd::Kind::halted, {}, event.reason, event.reason_text};
 }
@@ -117,9 +118,8 @@ void LocalUsedSkill::onTransition(const skill::TransitionEvent& event) {
 
 void LocalUsedSkill::onStopping(const skill::StoppingEvent& event) {
     if (!execution_.empty() && event.execution_id == execution_) {
-        post([stop = UsedSkillStop{event.to, event.reason, event.reason_text}](UsedSkillListener& to) {
-            to.onStopping(stop);
-        });
+        post([stop = UsedSkillStop{event.to, event.reason, event.reason_text}](
+                 UsedSkillListener& to) { to.onStopping(stop); });
     }
 }
 

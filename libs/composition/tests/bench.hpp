@@ -104,8 +104,8 @@ public:
         for (const auto& use : definition->uses) {
             const auto description =
                 use.type == "GraspSkillType" ? graspDescription() : moveDescription();
-            auto used =
-                std::make_unique<ScriptedUsedSkill>(description.name + " " + use.alias, description);
+            auto used = std::make_unique<ScriptedUsedSkill>(description.name + " " + use.alias,
+                                                            description);
             used_skills_[use.alias] = used.get();
             descriptions.emplace(use.alias, description);
             used_skills.emplace(use.alias, std::move(used));
@@ -116,8 +116,8 @@ public:
             throw std::invalid_argument(composition.error().message);
         }
         auto sequence =
-            std::make_unique<SequenceSkill>(std::move(*composition), std::move(used_skills), executor,
-                                            executor->clock(), "here.TestSkill");
+            std::make_unique<SequenceSkill>(std::move(*composition), std::move(used_skills),
+                                            executor, executor->clock(), "here.TestSkill");
         skill = sequence.get();
         program =
             std::make_unique<skill::Program>(skill::ProgramOptions{.rest_deadline = deadline},

@@ -20,7 +20,8 @@ class LocalUsedSkills : public ::testing::Test {
 protected:
     Program& addMove() {
         skill::SkillFunctions functions;
-        functions.start = [this](const ValueMap& parameters, const skill::ExecutionHandle& execution) {
+        functions.start = [this](const ValueMap& parameters,
+                                 const skill::ExecutionHandle& execution) {
             snapshot_ = parameters;
             execution_ = execution;
         };
@@ -47,8 +48,8 @@ protected:
             compose(parseDefinition(text, name + ".toml").value(), {{"inner", inner.description()}})
                 .value();
         std::map<std::string, std::unique_ptr<UsedSkill>> used_skills;
-        used_skills.emplace(
-            "inner", std::make_unique<LocalUsedSkill>(inner, executor_, skill::Caller{name, name, ""}));
+        used_skills.emplace("inner", std::make_unique<LocalUsedSkill>(
+                                         inner, executor_, skill::Caller{name, name, ""}));
         return add(std::make_unique<SequenceSkill>(std::move(composition), std::move(used_skills),
                                                    executor_, executor_->clock(), "here." + name));
     }

@@ -69,7 +69,8 @@ TEST(FailureOfAStep, TellsARefusedStartInTheWordsOfTheSkill) {
 TEST(FailureOfAStep, IsALostDeviceIfTheSkillIsLost) {
     Bench bench(kBoth);
     ASSERT_TRUE(bench.start());
-    bench["a"].listener->onEnd({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
+    bench["a"].listener->onEnd(
+        {UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
     bench["b"].halted();
     bench.run();
     EXPECT_EQ(bench.program->subState(), skill::SubState::halted_device_lost);
@@ -131,7 +132,8 @@ TEST(FailureOfAStep, WhileItIsHaltedIsNotTriedAgain) {
                 "[[step]]\nname = \"second\"\nrun = \"b\"\n");
     ASSERT_TRUE(bench.start());
     ASSERT_TRUE(bench.call(Method::halt));
-    bench["a"].listener->onEnd({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
+    bench["a"].listener->onEnd(
+        {UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
     bench.advance(0ms);
     EXPECT_THAT(bench["a"].heard(), ElementsAre("begin", "halt"));
     EXPECT_EQ(bench.program->subState(), skill::SubState::halted_by_client);
@@ -305,7 +307,8 @@ TEST(FailureOfAStep, IsASkillThatCannotBeReachedWhenItsTurnComes) {
 TEST(FailureOfAStep, ThatIsLostMayBeResetByTheNextStart) {
     Bench bench(kTwoSteps);
     ASSERT_TRUE(bench.start());
-    bench["a"].listener->onEnd({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
+    bench["a"].listener->onEnd(
+        {UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "no connection"});
     bench.run();
     ASSERT_EQ(bench.state(), "Halted");
     bench["a"].state_now = State::halted;

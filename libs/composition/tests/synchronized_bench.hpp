@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "metier/composition/synchronized_move_skill.hpp"
 #include "metier/skill/program.hpp"
 #include "metier/skill/testing/manual_executor.hpp"
 #include "metier/skill/testing/recording_observer.hpp"
-#include "metier/composition/synchronized_move_skill.hpp"
 #include "scripted_used_skill.hpp"
 
 namespace metier::composition {
@@ -43,10 +43,10 @@ public:
     Bench() {
         std::vector<Arm> arms;
         for (const std::string name : {"left", "right"}) {
-            auto pose = std::make_unique<ScriptedUsedSkill>("CartesianPtpMoveSkill of " + name,
-                                                        moveDescription("CartesianPtpMoveSkill"));
+            auto pose = std::make_unique<ScriptedUsedSkill>(
+                "CartesianPtpMoveSkill of " + name, moveDescription("CartesianPtpMoveSkill"));
             auto joint = std::make_unique<ScriptedUsedSkill>("JointPtpMoveSkill of " + name,
-                                                         moveDescription("JointPtpMoveSkill"));
+                                                             moveDescription("JointPtpMoveSkill"));
             arms_[name] = {pose.get(), joint.get()};
             arms.push_back({name, std::move(pose), std::move(joint)});
         }

@@ -74,7 +74,8 @@ TEST_F(SynchronizedStop, OneThatBrakesForAHaltHaltsTheOtherBeforeItStands) {
 }
 
 TEST_F(SynchronizedStop, OneThatIsLostHaltsTheOther) {
-    right().listener->onEnd({composition::UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "gone"});
+    right().listener->onEnd(
+        {composition::UsedSkillEnd::Kind::lost, {}, Reason::device_lost, "gone"});
     run();
     EXPECT_THAT(left().heard(), ElementsAre("halt"));
     left().halted();

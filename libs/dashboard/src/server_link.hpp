@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "board.hpp"
-#include "metier/dashboard/cell.hpp"
-#include "metier/opcua/client.hpp"
 #include "metier/client/async_skill.hpp"
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_finder.hpp"
+#include "metier/dashboard/cell.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::motion {
 class RobotModel;

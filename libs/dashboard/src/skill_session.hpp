@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "metier/opcua/client.hpp"
 #include "metier/client/async_skill.hpp"
+#include "metier/opcua/client.hpp"
 #include "server_link.hpp"
 
 namespace metier::dashboard {

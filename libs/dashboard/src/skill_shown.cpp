@@ -98,8 +98,8 @@ json fieldJson(const Field& field, const MovedArm& arm) {
     return shown;
 }
 
-json skillJson(const std::string& key, const std::string& server,
-               const client::AsyncSkill& skill, const MovedArm& arm) {
+json skillJson(const std::string& key, const std::string& server, const client::AsyncSkill& skill,
+               const MovedArm& arm) {
     const auto& address = skill.address();
     const auto& description = skill.description();
     return {{"key", key},

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "metier/skill/field.hpp"
 #include "metier/client/async_skill.hpp"
+#include "metier/skill/field.hpp"
 
 namespace metier::dashboard {
 

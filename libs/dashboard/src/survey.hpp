@@ -25,10 +25,8 @@ private:
     std::string uniqueKey(const client::SkillAddress& address) const;
     std::string addController(const client::SkillAddress& address);
     /// \param used server that the skill uses; empty: none
-    opcua::Answer<MovedArm> armOf(const client::SkillAddress& address,
-                                  const std::string& used);
-    opcua::Answer<MovedArm> addArm(const client::KinematicsNodes& nodes,
-                                   const std::string& used);
+    opcua::Answer<MovedArm> armOf(const client::SkillAddress& address, const std::string& used);
+    opcua::Answer<MovedArm> addArm(const client::KinematicsNodes& nodes, const std::string& used);
     /// Notes the other servers of the cell whose skills this one uses, and names the first.
     std::string noteUses(const client::SkillAddress& address);
     /// Largest width of the gripper [m]: as the server tells, else as its parameters may be.

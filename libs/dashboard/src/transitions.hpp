@@ -4,8 +4,8 @@
 #include <string>
 
 #include "board.hpp"
-#include "metier/opcua/client.hpp"
 #include "metier/client/async_skill.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::dashboard {
 

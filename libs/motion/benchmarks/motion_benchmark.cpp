@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "../tests/kdl_oracle.hpp"
-#include "metier/motion/motion_run.hpp"
 #include "metier/motion/force_limit.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "self_collision.hpp"

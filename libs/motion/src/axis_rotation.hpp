@@ -30,7 +30,8 @@ inline Eigen::Vector3d rotate(const Eigen::Vector3d& axis, const AxisRotation& t
     return turn.c * v + turn.s * axis.cross(v) + (1 - turn.c) * axis.dot(v) * axis;
 }
 
-inline Eigen::Matrix3d rotationMatrix(const Eigen::Vector3d& axis, const AxisRotation& turn) noexcept {
+inline Eigen::Matrix3d rotationMatrix(const Eigen::Vector3d& axis,
+                                      const AxisRotation& turn) noexcept {
     const Eigen::Vector3d scaled = (1 - turn.c) * axis;
     Eigen::Matrix3d r = scaled * axis.transpose();
     r.diagonal().array() += turn.c;
@@ -58,7 +59,8 @@ inline constexpr double kFree = 1e-10;
 /// The turn about `axis` that brings `from` as near as can be to `to`; `otherwise` where both are
 /// along the axis and any turn does.
 inline AxisRotation rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                        const Eigen::Vector3d& axis, const AxisRotation& otherwise) noexcept {
+                                    const Eigen::Vector3d& axis,
+                                    const AxisRotation& otherwise) noexcept {
     const double s = axis.dot(from.cross(to));
     const double c = from.dot(to) - axis.dot(from) * axis.dot(to);
     const double length = std::sqrt(s * s + c * c);
@@ -80,7 +82,8 @@ struct Plane {
 /// The turns about `axis` that bring `v` onto the plane. Where any turn does, `otherwise`; a miss
 /// by rounding counts as a touch.
 inline AxisRotations rotationsOntoPlane(const Plane& plane, const Eigen::Vector3d& v,
-                            const Eigen::Vector3d& axis, const AxisRotation& otherwise) noexcept {
+                                        const Eigen::Vector3d& axis,
+                                        const AxisRotation& otherwise) noexcept {
     const auto& [normal, distance, slack] = plane;
     constexpr double touch = 1e-11;
     constexpr double delicate_share = 1e-6;

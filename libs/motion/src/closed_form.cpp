@@ -29,10 +29,11 @@ struct ThreeAxes {
 };
 
 /// rotation = R(first) R(second) R(third). Where the outer axes align, `otherwise` is the first.
-Decomposition decompose(const Matrix3d& rotation, const ThreeAxes& axes, const AxisRotation& otherwise) {
+Decomposition decompose(const Matrix3d& rotation, const ThreeAxes& axes,
+                        const AxisRotation& otherwise) {
     const Vector3d image = rotation * axes.third;
-    const AxisRotations second =
-        rotationsOntoPlane({axes.first, axes.first.dot(image)}, axes.third, axes.second, AxisRotation{});
+    const AxisRotations second = rotationsOntoPlane({axes.first, axes.first.dot(image)}, axes.third,
+                                                    axes.second, AxisRotation{});
     const Vector3d across = axes.third.unitOrthogonal();
     const Vector3d across_image = rotation * across;
     Decomposition result;
@@ -40,7 +41,8 @@ Decomposition decompose(const Matrix3d& rotation, const ThreeAxes& axes, const A
     for (std::size_t i = 0; i < second.count; ++i) {
         const Vector3d turned = rotate(axes.second, second.value[i], axes.third);
         const bool free = axes.first.cross(turned).squaredNorm() < kFree * kFree;
-        const AxisRotation first = free ? otherwise : rotationBetween(turned, image, axes.first, otherwise);
+        const AxisRotation first =
+            free ? otherwise : rotationBetween(turned, image, axes.first, otherwise);
         const Vector3d back = rotate(axes.second, second.value[i].inverse(),
                                      rotate(axes.first, first.inverse(), across_image));
         const AxisRotation third = rotationBetween(across, back, axes.third, AxisRotation{});
@@ -87,7 +89,8 @@ PlanarPair solvePlanarPair(const ZeroPosition& zero, const Vector3d& p3e, const 
                            const AxisRotation& otherwise) {
     const Vector3d p23 = zero.point[2] - zero.point[1];
     const double distance = (end.squaredNorm() - p23.squaredNorm() - p3e.squaredNorm()) / 2;
-    const AxisRotations third = rotationsOntoPlane({p23, distance, zero.slack}, p3e, zero.axis[2], AxisRotation{});
+    const AxisRotations third =
+        rotationsOntoPlane({p23, distance, zero.slack}, p3e, zero.axis[2], AxisRotation{});
     PlanarPair pair;
     pair.delicate = third.delicate;
     for (std::size_t i = 0; i < third.count; ++i) {
@@ -247,8 +250,8 @@ ClosedFormSolutions solveThreeParallelAxes(const ZeroPosition& zero, const Close
 
     ClosedFormSolutions result;
     // axis[1] . R1^-1 x = offset, written as a plane for x turned back about axis 1.
-    const AxisRotations back1 =
-        rotationsOntoPlane({axis[1], offset, zero.slack}, from_first, axis[0], AxisRotation::of(-reference[0]));
+    const AxisRotations back1 = rotationsOntoPlane({axis[1], offset, zero.slack}, from_first,
+                                                   axis[0], AxisRotation::of(-reference[0]));
     if (back1.count == 0) {
         noteMiss(result, {"the wrist", 0, across(from_first, axis[0]), std::abs(offset)});
     }
@@ -310,7 +313,8 @@ ClosedFormSolutions solveSphericalWrist(const ZeroPosition& zero, const ClosedFo
         for (std::size_t m = 0; m < pair.count; ++m) {
             const Matrix3d wrist = rotationMatrix(axis[2], pair.third[m].inverse()) *
                                    (rotationMatrix(axis[1], pair.second[m].inverse()) * unturned);
-            const Decomposition wrists = decompose(wrist, wrist_axes, AxisRotation::of(reference[3]));
+            const Decomposition wrists =
+                decompose(wrist, wrist_axes, AxisRotation::of(reference[3]));
             const double q2 = pair.second[m].angle();
             const double q3 = pair.third[m].angle();
             for (std::size_t k = 0; k < wrists.count; ++k) {
@@ -380,7 +384,8 @@ ClosedFormSolutions solveArmAngle(const ZeroPosition& zero, const ClosedFormQuer
     const Vector3d fore = zero.point[4] - zero.point[3];
     const double distance =
         (shoulder_to_wrist.squaredNorm() - upper.squaredNorm() - fore.squaredNorm()) / 2;
-    const AxisRotations elbow = rotationsOntoPlane({upper, distance}, fore, axis[3], AxisRotation{});
+    const AxisRotations elbow =
+        rotationsOntoPlane({upper, distance}, fore, axis[3], AxisRotation{});
     ClosedFormSolutions result;
     if (elbow.count == 0) {
         noteLinks(result, shoulder_to_wrist.norm(), upper.norm(), fore.norm());
@@ -400,7 +405,8 @@ ClosedFormSolutions solveArmAngle(const ZeroPosition& zero, const ClosedFormQuer
         ArmHalves halves;
         halves.shoulder =
             decompose(shoulder, {axis[0], axis[1], axis[2]}, AxisRotation::of(query.reference[0]));
-        halves.wrist = decompose(wrist, {axis[4], axis[5], axis[6]}, AxisRotation::of(query.reference[4]));
+        halves.wrist =
+            decompose(wrist, {axis[4], axis[5], axis[6]}, AxisRotation::of(query.reference[4]));
         halves.q4 = elbow.value[i].angle();
         halves.delicate = elbow.delicate;
         addCombinations(result, halves);

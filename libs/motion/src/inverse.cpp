@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "closed_form.hpp"
-#include "metier/motion/rotation.hpp"
 #include "metier/motion/kinematics.hpp"
+#include "metier/motion/rotation.hpp"
 
 namespace metier::motion {
 

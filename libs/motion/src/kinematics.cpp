@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "closed_form.hpp"
 #include "axis_rotation.hpp"
+#include "closed_form.hpp"
 
 namespace metier::motion {
 
@@ -191,7 +191,8 @@ double Kinematics::redundancyAngle(const JointVector& q) const noexcept {
                               rotationMatrix(axis[1], AxisRotation::of(q[1])) *
                               rotationMatrix(axis[2], AxisRotation::of(q[2]));
     const Vector3d upper = zero_.point[3] - zero_.point[0];
-    const Vector3d line = upper + rotate(axis[3], AxisRotation::of(q[3]), zero_.point[4] - zero_.point[3]);
+    const Vector3d line =
+        upper + rotate(axis[3], AxisRotation::of(q[3]), zero_.point[4] - zero_.point[3]);
     const Vector3d normal = axis[3].cross(line);
     const ArmPlane plane = armPlane(shoulder * line);
     const Vector3d elbow = shoulder * (upper.dot(normal) < 0 ? Vector3d(-normal) : normal);

@@ -160,7 +160,7 @@ StoppingEstimate MotionRun::stoppingEstimate() const noexcept {
     const Seconds time = std::min(Seconds(halt.duration()), remaining());
     const SetPoint end = trajectory_.sampleOnPath({std::min(halt.end(), 1.0), 0.0, 0.0});
     return {time, motion::distanceBetween(trajectory_.toolPose(current_.position),
-                                            trajectory_.toolPose(end.position))};
+                                          trajectory_.toolPose(end.position))};
 }
 
 }  // namespace metier::motion

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "metier/motion/pose.hpp"
 #include "metier/motion/kinematics.hpp"
+#include "metier/motion/pose.hpp"
 #include "tool_path.hpp"
 
 namespace metier::motion {

@@ -9,7 +9,7 @@ namespace metier::motion {
 
 /// base_from_tool that a target stands for.
 motion::Pose absoluteTarget(const motion::Pose& start, const motion::Pose& target,
-                              TargetReference reference);
+                            TargetReference reference);
 
 /// Makes `path` the one of the tool frame from the start through all waypoints.
 /// \return why there is none, naming the waypoint

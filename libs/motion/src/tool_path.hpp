@@ -65,7 +65,7 @@ private:
     struct Piece {
         double begin = 0;
         double length = 0;
-        double whole = 0;     ///< length of a line with what its corners have taken
+        double whole = 0;   ///< length of a line with what its corners have taken
         motion::Pose pose;  ///< at the begin of a line, at the point of a corner
         Motion in;
         Motion out;  ///< of a corner

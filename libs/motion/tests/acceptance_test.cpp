@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "kdl_oracle.hpp"
-#include "metier/motion/rotation.hpp"
 #include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
@@ -37,8 +37,8 @@ LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
         q += 0.2 * unit(random);
     }
     request.target.translation = 0.15 * Eigen::Vector3d(unit(random), unit(random), unit(random));
-    request.target.rotation = motion::fromRotationVector(
-        0.4 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
+    request.target.rotation =
+        motion::fromRotationVector(0.4 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
     return request;
 }
 

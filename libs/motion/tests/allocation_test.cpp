@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "metier/base/testing/allocation_count.hpp"
-#include "metier/motion/motion_run.hpp"
 #include "metier/motion/force_limit.hpp"
+#include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "test_robots.hpp"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "metier/motion/rotation.hpp"
 #include "metier/motion/planner.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {

@@ -22,7 +22,7 @@ TEST(KinematicsVectors, ForwardAgreesWithEveryReferenceVector) {
         const RobotModel model = loadRobot(std::string(vector.robot));
         const auto& [w, x, y, z] = vector.quaternion_wxyz;
         const motion::Pose expected{Eigen::Vector3d(vector.position.data()),
-                                      Eigen::Quaterniond(w, x, y, z)};
+                                    Eigen::Quaterniond(w, x, y, z)};
         EXPECT_LT(poseError(model.kinematics().forward(vector.q), expected), 1e-11) << vector.robot;
     }
 }

@@ -128,8 +128,8 @@ LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
     }
     request.reference = TargetReference::relative_base;
     request.target.translation = 0.2 * Eigen::Vector3d(unit(random), unit(random), unit(random));
-    request.target.rotation = motion::fromRotationVector(
-        0.5 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
+    request.target.rotation =
+        motion::fromRotationVector(0.5 * Eigen::Vector3d(unit(random), unit(random), unit(random)));
     request.max_velocity = {0.25, 0.25, 0.25, 0.5, 0.5, 0.5};
     request.max_acceleration = {1.2, 1.2, 1.2, 2.5, 2.5, 2.5};
     return request;

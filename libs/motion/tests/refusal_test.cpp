@@ -5,8 +5,8 @@
 #include <chrono>
 #include <random>
 
-#include "metier/motion/rotation.hpp"
 #include "metier/motion/planner.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
@@ -48,7 +48,7 @@ TEST_P(UnreachableOf, ALineWhoseTargetIsOutOfReachSaysSoWithDistanceAndReach) {
             const motion::Pose start = kinematics_.forward(model_.home());
             const double before = plan.error().fraction - 1e-4;
             const motion::Pose inside{start.translation + before * length * direction,
-                                        start.rotation};
+                                      start.rotation};
             ASSERT_FALSE(kinematics_.outOfReach(inside, model_.home()));
         }
     }

@@ -62,7 +62,7 @@ TEST_P(ModelOf, KeepsItsNamesAndShapeWithAnotherChain) {
     EXPECT_EQ(changed->product(), model.product());
     EXPECT_EQ(changed->capsules().size(), model.capsules().size());
     EXPECT_NEAR(motion::distanceBetween(changed->kinematics().forward(model.home()),
-                                          model.kinematics().forward(model.home())),
+                                        model.kinematics().forward(model.home())),
                 0.001, 1e-12);
     chain.joints.pop_back();
     chain.home = motion::JointVector(chain.joints.size());

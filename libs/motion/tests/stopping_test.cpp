@@ -10,9 +10,9 @@
 #include <optional>
 #include <random>
 
-#include "metier/motion/rotation.hpp"
 #include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
+#include "metier/motion/rotation.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
@@ -165,7 +165,7 @@ protected:
         constexpr double step = 1e-5;
         later.next(Seconds(step));
         return motion::distanceBetween(plan.toolPose(execution.current().position),
-                                         plan.toolPose(later.current().position)) /
+                                       plan.toolPose(later.current().position)) /
                step;
     }
 

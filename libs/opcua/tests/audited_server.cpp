@@ -34,7 +34,7 @@ void addMethods(Server& server) {
 const security::Identity& serverIdentity() {
     static const auto identity =
         security::makeIdentity({.application_name = "server", .application_uri = "urn:test:server"},
-                            std::chrono::system_clock::now())
+                               std::chrono::system_clock::now())
             .value();
     return identity;
 }
@@ -50,8 +50,8 @@ Result<Admission> admit(const Login& login) {
     if (login.password != "secret") {
         return fail(Errc::access_denied, "wrong password");
     }
-    for (const auto role : {security::Role::observer, security::Role::operator_, security::Role::engineer,
-                            security::Role::security_admin}) {
+    for (const auto role : {security::Role::observer, security::Role::operator_,
+                            security::Role::engineer, security::Role::security_admin}) {
         if (login.user == security::toString(role)) {
             return Admission{login.user, role};
         }
@@ -63,7 +63,7 @@ Result<Admission> admit(const Login& login) {
 
 security::Identity AuditedServer::identityOf(const std::string& name) {
     return security::makeIdentity({.application_name = name, .application_uri = "urn:test:" + name},
-                               std::chrono::system_clock::now())
+                                  std::chrono::system_clock::now())
         .value();
 }
 

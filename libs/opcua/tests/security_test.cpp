@@ -7,10 +7,10 @@
 #include <map>
 #include <mutex>
 
+#include "common/peer_check.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua/discovery.hpp"
 #include "metier/opcua/server.hpp"
-#include "common/peer_check.hpp"
 
 namespace metier::opcua {
 namespace {
@@ -21,7 +21,7 @@ constexpr const char* kServerUri = "urn:test:server";
 
 security::Identity identityOf(const std::string& name) {
     return security::makeIdentity({.application_name = name, .application_uri = "urn:test:" + name},
-                               std::chrono::system_clock::now())
+                                  std::chrono::system_clock::now())
         .value();
 }
 
@@ -122,9 +122,9 @@ protected:
     std::mutex mutex_;
     std::vector<security::CertificateRefusal> refused_;
     std::map<std::string, security::Role> users_{{"observer", security::Role::observer},
-                                              {"operator", security::Role::operator_},
-                                              {"engineer", security::Role::engineer},
-                                              {"admin", security::Role::security_admin}};
+                                                 {"operator", security::Role::operator_},
+                                                 {"engineer", security::Role::engineer},
+                                                 {"admin", security::Role::security_admin}};
     std::vector<Denial> denials_;
     std::unique_ptr<Server> server_;
 };
@@ -307,7 +307,8 @@ TEST_F(ClosedServer, IsKeptToBeDecidedOnByAClientThatDoesNotKnowIt) {
 TEST_F(ClosedServer, GoesOnWithARenewedCertificate) {
     const auto before = connect(options()).value();
     const auto now = std::chrono::system_clock::now();
-    const auto renewed = security::makeSuccessor(serverIdentity(), std::chrono::days(10), now).value();
+    const auto renewed =
+        security::makeSuccessor(serverIdentity(), std::chrono::days(10), now).value();
     const auto done = server_->call([&] { return server_->renewIdentity(renewed); });
     ASSERT_TRUE(done) << done.error().message;
     const auto refused = connect(options());

@@ -108,7 +108,8 @@ void setConstants(KinematicsNodes& kinematics, const KinematicsData& data) {
 void wireState(KinematicsNodes& kinematics, const ReadState& state) {
     kinematics.live("ActualJointPosition", [state] { return Value::of(state().joint_position); });
     kinematics.liveFrame("ActualPose", [state] { return state().pose; });
-    kinematics.live("SafetyState", [state] { return Value::of(static_cast<std::int32_t>(state().safety_state)); });
+    kinematics.live("SafetyState",
+                    [state] { return Value::of(static_cast<std::int32_t>(state().safety_state)); });
     kinematics.live("MissedCycles", [state] { return Value::of(state().missed_cycles); });
 }
 

@@ -52,7 +52,8 @@ bool isAngle(Part part) {
 
 }  // namespace
 
-void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node, NodeRole node_role) {
+void NodeLimits::add(const opcua::AddressSpace& nodes, const opcua::NodeId& node,
+                     NodeRole node_role) {
     const auto limit = nodes.find(node, opcua::QualifiedName{0, "EURange"});
     if (!limit) {
         return;

@@ -53,10 +53,12 @@ constexpr std::array kFixedPaths{
     FixedPath{"CurrentStep", NodeKind::current_step},
     FixedPath{"Progress", NodeKind::progress},
     FixedPath{"ReadySubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::ready)},
-    FixedPath{"ReadySubStates/CurrentState/Id", NodeKind::sub_state_id, detailOf(skill::State::ready)},
+    FixedPath{"ReadySubStates/CurrentState/Id", NodeKind::sub_state_id,
+              detailOf(skill::State::ready)},
     FixedPath{"ReadySubStates/CurrentState/Number", NodeKind::sub_state_number,
               detailOf(skill::State::ready)},
-    FixedPath{"RunningSubStates/CurrentState", NodeKind::sub_state, detailOf(skill::State::running)},
+    FixedPath{"RunningSubStates/CurrentState", NodeKind::sub_state,
+              detailOf(skill::State::running)},
     FixedPath{"RunningSubStates/CurrentState/Id", NodeKind::sub_state_id,
               detailOf(skill::State::running)},
     FixedPath{"RunningSubStates/CurrentState/Number", NodeKind::sub_state_number,
@@ -141,17 +143,17 @@ struct FieldGroup {
 };
 
 constexpr std::array kGroups{
-    FieldGroup{"ParameterSet/", skill::Place::parameter_set, NodeKind::parameter, NodeKind::parameter_unit,
-               NodeKind::parameter_range},
+    FieldGroup{"ParameterSet/", skill::Place::parameter_set, NodeKind::parameter,
+               NodeKind::parameter_unit, NodeKind::parameter_range},
     FieldGroup{"Options/", skill::Place::options, NodeKind::parameter, NodeKind::parameter_unit,
                NodeKind::parameter_range},
-    FieldGroup{"FinalResultData/", skill::Place::final_result, NodeKind::result, NodeKind::result_unit,
-               NodeKind::result_range},
+    FieldGroup{"FinalResultData/", skill::Place::final_result, NodeKind::result,
+               NodeKind::result_unit, NodeKind::result_range},
 };
 
 /// Nothing for a unit or range that the field does not give: the type's own holds.
 std::optional<NodeRole> fieldRole(const FieldGroup& group, const skill::Field& field,
-                                    std::string_view below) {
+                                  std::string_view below) {
     if (below == "EngineeringUnits") {
         return field.unit == skill::kOne ? std::nullopt : std::optional(NodeRole{group.unit, 0, 0});
     }
@@ -253,8 +255,8 @@ bool isOptional(const SkillLayout& declared, const SkillLayout& instance, std::s
 }  // namespace
 
 Result<std::vector<UsedNode>> assignNodeRoles(const SkillLayout& layout,
-                                             const skill::SkillDescription& description,
-                                             const SkillLayout& declared) {
+                                              const skill::SkillDescription& description,
+                                              const SkillLayout& declared) {
     Assignment assignment(description);
     std::vector<UsedNode> used;
     for (std::size_t i = 0; i < layout.size(); ++i) {

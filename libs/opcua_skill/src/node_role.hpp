@@ -79,7 +79,7 @@ struct UsedNode {
 ///                 missing: results, and parameters that nobody need give. Empty: none may be
 /// Errors: not_found, naming every other field that the layout lacks.
 Result<std::vector<UsedNode>> assignNodeRoles(const SkillLayout& layout,
-                                             const skill::SkillDescription& description,
-                                             const SkillLayout& declared = {});
+                                              const skill::SkillDescription& description,
+                                              const SkillLayout& declared = {});
 
 }  // namespace metier::opcua_skill

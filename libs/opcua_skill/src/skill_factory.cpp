@@ -53,7 +53,8 @@ bool isRange(NodeKind kind) {
 }
 
 const skill::Field& fieldOf(const skill::SkillDescription& description, NodeRole node_role) {
-    const bool is_result = node_role.kind == NodeKind::result || node_role.kind == NodeKind::result_unit ||
+    const bool is_result = node_role.kind == NodeKind::result ||
+                           node_role.kind == NodeKind::result_unit ||
                            node_role.kind == NodeKind::result_range;
     return (is_result ? description.results : description.parameters)[node_role.field];
 }
@@ -321,8 +322,9 @@ Result<NodeId> SkillFactory::addNode(const Step& step, const NodeId& parent,
     spec.data_type = step.shape.data_type;
     spec.value_rank = step.shape.value_rank;
     spec.array_dimensions = step.shape.array_dimensions;
-    spec.access = step.node_role && step.node_role->kind == NodeKind::parameter ? opcua::Access::read_write
-                                                                        : opcua::Access::read;
+    spec.access = step.node_role && step.node_role->kind == NodeKind::parameter
+                      ? opcua::Access::read_write
+                      : opcua::Access::read;
     spec.children = opcua::Children::none;
     if (!step.node_role) {
         spec.value = step.value;

@@ -31,7 +31,8 @@ LocalizedText textOf(Name name) {
 
 const skill::Field& fieldOf(const skill::Program& program, NodeRole node_role) {
     const auto& description = program.description();
-    const bool is_result = node_role.kind == NodeKind::result || node_role.kind == NodeKind::result_unit ||
+    const bool is_result = node_role.kind == NodeKind::result ||
+                           node_role.kind == NodeKind::result_unit ||
                            node_role.kind == NodeKind::result_range;
     return (is_result ? description.results : description.parameters)[node_role.field];
 }
@@ -98,7 +99,8 @@ Result<void> SkillNode::bind(opcua::AddressSpace& nodes, const std::vector<Bound
     return {};
 }
 
-Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node, NodeRole node_role) {
+Result<void> SkillNode::bindNode(opcua::AddressSpace& nodes, const NodeId& node,
+                                 NodeRole node_role) {
     switch (node_role.kind) {
         case NodeKind::method:
             return bindMethod(nodes, node, static_cast<skill::Method>(node_role.detail));
@@ -169,11 +171,11 @@ DataValue SkillNode::read(const Session& session, std::uint32_t tag) const {
         case NodeKind::result:
             return {readResult(node_role), {}, {}, {}};
         case NodeKind::diagnostic:
-            return {
-                readDiagnostic(program_->diagnostic(), static_cast<DiagnosticItem>(node_role.detail)),
-                {},
-                {},
-                {}};
+            return {readDiagnostic(program_->diagnostic(),
+                                   static_cast<DiagnosticItem>(node_role.detail)),
+                    {},
+                    {},
+                    {}};
         case NodeKind::reason_text: {
             return {Value::of(readReason(session)), {}, {}, {}};
         }

@@ -80,7 +80,8 @@ private:
     void auditOwnAct(const skill::TransitionEvent& event);
     void raise(opcua::EventEmitter& emitter, const opcua::Event& occurrence);
     Result<void> call(const opcua::Session& session, skill::Method method);
-    Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node, NodeRole node_role);
+    Result<void> bindNode(opcua::AddressSpace& nodes, const opcua::NodeId& node,
+                          NodeRole node_role);
     Result<void> bindMethod(opcua::AddressSpace& nodes, const opcua::NodeId& node,
                             skill::Method method);
     Result<std::vector<opcua::Value>> startWith(const opcua::Session& session,

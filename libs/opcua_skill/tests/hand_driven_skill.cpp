@@ -111,7 +111,8 @@ Result<void> Hand::mayReset() const {
     return reset_answer_;
 }
 
-Result<std::unique_ptr<skill::ExecutionWork>> HandDrivenSkill::prepare(const skill::ValueMap& snapshot) {
+Result<std::unique_ptr<skill::ExecutionWork>> HandDrivenSkill::prepare(
+    const skill::ValueMap& snapshot) {
     METIER_TRY(hand_->prepared(snapshot));
     return std::make_unique<HandDrivenWork>(hand_);
 }

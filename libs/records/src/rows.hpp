@@ -14,7 +14,7 @@ namespace metier::records {
 
 /// Executions of the view `history` that meet `condition`, a WHERE clause without that word.
 Result<std::vector<ExecutionRow>> readExecutions(Database& database, std::string_view condition,
-                                              const std::vector<Cell>& values = {});
+                                                 const std::vector<Cell>& values = {});
 
 /// Kinds that are in the store, by all their texts; they are never removed.
 using KindCache = std::unordered_map<std::string, std::int64_t>;

@@ -90,8 +90,7 @@ TemporaryPostgres::~TemporaryPostgres() {
 }
 
 void TemporaryPostgres::run(const std::vector<std::string>& command) const {
-    auto child =
-        link::ChildProcess::start(unprivileged(command), link::ErrorOutput::with_output);
+    auto child = link::ChildProcess::start(unprivileged(command), link::ErrorOutput::with_output);
     std::string output;
     while (child) {
         const auto line = child->readLine(soon());
@@ -108,8 +107,8 @@ void TemporaryPostgres::run(const std::vector<std::string>& command) const {
 void TemporaryPostgres::start() {
     auto server =
         link::ChildProcess::start(unprivileged({programs_ / "postgres", "-D", folder_ / "data",
-                                                   "-k", folder_, "-c", "listen_addresses=", "-F"}),
-                                     link::ErrorOutput::with_output);
+                                                "-k", folder_, "-c", "listen_addresses=", "-F"}),
+                                  link::ErrorOutput::with_output);
     std::string output;
     while (server) {
         const auto line = server->readLine(soon());

@@ -9,7 +9,7 @@ namespace metier::robot_skills {
 class ControllerPlannedBench {
 public:
     explicit ControllerPlannedBench(const std::string& robot = "iiwa7",
-                          device::ForceTorqueSensor* sensor = nullptr)
+                                    device::ForceTorqueSensor* sensor = nullptr)
         : bench(robot, {}, [this, sensor](auto& arm, const auto& model) {
               planner_ = std::make_unique<SimulatedPlanner>(arm, model);
               return ArmDevices{arm, planner_.get(), sensor};

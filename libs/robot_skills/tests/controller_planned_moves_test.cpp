@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "metier/motion/frame.hpp"
 #include "controller_planned_bench.hpp"
+#include "metier/motion/frame.hpp"
 #include "moves/controller_planned_motion.hpp"
 
 namespace metier::robot_skills {
@@ -226,7 +226,7 @@ Result<ControllerPlannedMotion> askedFor(const motion::RobotModel& model, const 
     request.reference = motion::TargetReference::relative_tool;
     request.tool_frame = "pen";
     return controllerPlannedMotion({model, motion::planLin(model, request).value(),
-                          PathDeviationMeter::Path::cartesian_line, MoveParameters{}});
+                                    PathDeviationMeter::Path::cartesian_line, MoveParameters{}});
 }
 
 TEST(PlannedMoveOfATool, IsALineOfTheFlangeWhileTheOrientationStays) {

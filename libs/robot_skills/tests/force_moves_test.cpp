@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "controller_planned_bench.hpp"
 #include "given_sensor.hpp"
 #include "metier/base/testing/allocation_count.hpp"
-#include "controller_planned_bench.hpp"
 
 namespace metier::robot_skills {
 namespace {

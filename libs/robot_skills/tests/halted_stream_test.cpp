@@ -107,8 +107,7 @@ TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspended) {
 TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspendedInItsStopTime) {
     const double length = stopTimeFor(plan(), bench_.model(), 0.01);
     ASSERT_GT(length, 0.01);
-    expectTheSameMotionLater(
-        0.5, [&](MotionRun& execution) { execution.stopIn(Seconds(length)); });
+    expectTheSameMotionLater(0.5, [&](MotionRun& execution) { execution.stopIn(Seconds(length)); });
 }
 
 /// How far a joint position is from the straight line of a PTP, in the axis that is farthest off.

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 
 #include "bench.hpp"
+#include "controller_planned_bench.hpp"
 #include "metier/base/testing/allocation_count.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
-#include "controller_planned_bench.hpp"
 
 namespace metier::robot_skills {
 namespace {

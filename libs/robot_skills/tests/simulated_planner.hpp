@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "metier/device/motion_planner.hpp"
-#include "metier/motion/frame.hpp"
 #include "metier/joint_simulator/joint_simulator.hpp"
+#include "metier/motion/frame.hpp"
 #include "metier/motion/motion_run.hpp"
 #include "metier/motion/planner.hpp"
 

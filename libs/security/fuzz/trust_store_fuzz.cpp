@@ -28,7 +28,8 @@ void put(const fs::path& file, std::string_view content) {
 /// The first byte says which folder the rest is in.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const metier::fuzz::Scratch scratch("trust_store_fuzz");
-    static const auto own_folder = metier::security::fuzz::storeOfAnAuthority(scratch.path()).folder();
+    static const auto own_folder =
+        metier::security::fuzz::storeOfAnAuthority(scratch.path()).folder();
     static const auto peer = signedCertificate();
     static const std::array places{
         own_folder / "trusted/crl/input", own_folder / "issuers/certs/input",

@@ -16,26 +16,24 @@
 
 namespace metier::server {
 
-Result<std::unique_ptr<Server>> start(const cell::ServerConfig& config,
-                                      const Context& context) {
+Result<std::unique_ptr<Server>> start(const cell::ServerConfig& config, const Context& context) {
     using Started = Result<std::unique_ptr<Server>>;
-    return std::visit(
-        overloaded{[&](const cell::ArmServer& arm) -> Started {
-                       return ArmServer::start(config, arm, context);
-                   },
-                   [&](const cell::GripperServer& gripper) -> Started {
-                       return GripperServer::start(config, gripper, context);
-                   },
-                   [&](const cell::MoveComponent& move) -> Started {
-                       return MoveServer::start(config, move, context);
-                   },
-                   [&](const cell::CompositionServer& composition) -> Started {
-                       return CompositionServer::start(config, composition, context);
-                   },
-                   [&](const cell::SynchronizedServer& arms) -> Started {
-                       return SynchronizedServer::start(config, arms, context);
-                   }},
-        config.kind);
+    return std::visit(overloaded{[&](const cell::ArmServer& arm) -> Started {
+                                     return ArmServer::start(config, arm, context);
+                                 },
+                                 [&](const cell::GripperServer& gripper) -> Started {
+                                     return GripperServer::start(config, gripper, context);
+                                 },
+                                 [&](const cell::MoveComponent& move) -> Started {
+                                     return MoveServer::start(config, move, context);
+                                 },
+                                 [&](const cell::CompositionServer& composition) -> Started {
+                                     return CompositionServer::start(config, composition, context);
+                                 },
+                                 [&](const cell::SynchronizedServer& arms) -> Started {
+                                     return SynchronizedServer::start(config, arms, context);
+                                 }},
+                      config.kind);
 }
 
 Result<Identity> identityOf(const cell::ServerConfig& config, const Security& security) {

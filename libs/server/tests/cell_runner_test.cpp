@@ -34,8 +34,7 @@ public:
         known_of_[controller.name] = known;
         return {{"/proc/self/exe", "virtual", cell_.file.string(), controller.name}};
     }
-    CellCommand of(const cell::ServerConfig& server,
-                   const CellAddresses& known) const override {
+    CellCommand of(const cell::ServerConfig& server, const CellAddresses& known) const override {
         known_of_[server.name] = known;
         return {{"/proc/self/exe", "serve", cell_.file.string(), server.name}, "--again-at"};
     }

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "lab.hpp"
-#include "metier/server/discovery_server.hpp"
 #include "metier/client/skill_references.hpp"
+#include "metier/server/discovery_server.hpp"
 
 namespace metier::server::testing {
 namespace {
@@ -49,7 +49,7 @@ with.Target = { from = "Target" }
 )");
     }
     static cell::ServerConfig composed(std::vector<std::filesystem::path> files,
-                                                std::vector<cell::UsedServer> servers) {
+                                       std::vector<cell::UsedServer> servers) {
         cell::CompositionServer composition;
         composition.files = std::move(files);
         composition.servers = std::move(servers);
@@ -60,8 +60,7 @@ with.Target = { from = "Target" }
         const auto moved = move.run({{"Target", Value(kAway)}}, inAMinute());
         EXPECT_TRUE(moved) << moved.error().message;
     }
-    static std::vector<client::SkillUse> usesOf(opcua::Client& client,
-                                                       const std::string& skill) {
+    static std::vector<client::SkillUse> usesOf(opcua::Client& client, const std::string& skill) {
         const auto address = client::findSkill(client, skill).value();
         const auto reader = client::ReferenceReader::create(client).value();
         return reader.read(address.node).value().uses;
@@ -98,8 +97,7 @@ TEST_F(CompositionOfACell, IsRefusedWhereSeveralOfferItUnlessItNamesOne) {
     const auto left = serve(config("left", iiwa()));
     const auto right = serve(config("right", iiwa()));
     ASSERT_TRUE(left && right);
-    const std::vector<cell::UsedServer> both{{"left", left->url()},
-                                                      {"right", right->url()}};
+    const std::vector<cell::UsedServer> both{{"left", left->url()}, {"right", right->url()}};
     EXPECT_THAT(refusal(composed({swing()}, both)).message,
                 HasSubstr("uses.arm: several skills of type JointPtpMoveSkillType"));
     const auto server = serve(composed({swing("server = \"right\"")}, both));

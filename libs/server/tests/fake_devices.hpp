@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include "metier/device/driver.hpp"
 #include "metier/device/force_torque_sensor.hpp"
 #include "metier/device/gripper.hpp"
-#include "metier/device/driver.hpp"
 
 namespace metier::server::testing {
 

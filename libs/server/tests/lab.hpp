@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "fake_devices.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/server/server.hpp"
-#include "metier/client/skill_handle.hpp"
 
 namespace metier::server::testing {
 

@@ -59,8 +59,7 @@ TEST_F(MoveComponentOfACell, MovesTheArmOfAnotherServer) {
 }
 
 TEST_F(MoveComponentOfACell, IsRefusedWithoutItsRobot) {
-    const auto nobody =
-        config("move", cell::MoveComponent{.robot = "opc.tcp://127.0.0.1:1"});
+    const auto nobody = config("move", cell::MoveComponent{.robot = "opc.tcp://127.0.0.1:1"});
     EXPECT_THAT(refusal(nobody).message, HasSubstr("opc.tcp://127.0.0.1:1: "));
 }
 

@@ -30,7 +30,7 @@ SurveyedSkill composed(const std::string& name, std::vector<client::SkillUse> us
 }
 
 client::SkillUse at(const std::string& server, const std::string& name = "PtpSkill",
-                           const std::string& controller = "Arm") {
+                    const std::string& controller = "Arm") {
     return {"opc.tcp://" + server, name, controller, {1, 99}};
 }
 

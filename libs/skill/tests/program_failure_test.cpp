@@ -58,7 +58,9 @@ TEST(Failure, ThrownByStartStopsTheDeviceAndHalts) {
 TEST(Failure, ThrownByHaltStopsTheDeviceAndHalts) {
     ProgramBench bench;
     bench.enter(State::running);
-    bench.script->on_stop = [](const ExecutionHandle&) { throw std::runtime_error("brake broken"); };
+    bench.script->on_stop = [](const ExecutionHandle&) {
+        throw std::runtime_error("brake broken");
+    };
     EXPECT_TRUE(bench.program->halt(kAlice));
     EXPECT_EQ(bench.program->subState(), SubState::halted_error);
     EXPECT_THAT(bench.script->calls, ElementsAre("halt", "forceStop", "destroyed"));
@@ -78,7 +80,9 @@ TEST(Failure, ThrownBySuspendRefusesIt) {
 TEST(Failure, ThrownWhileGivingUpASuspendedExecutionStopsTheDevice) {
     ProgramBench bench;
     bench.enter(State::suspended);
-    bench.script->on_stop = [](const ExecutionHandle&) { throw std::runtime_error("brake broken"); };
+    bench.script->on_stop = [](const ExecutionHandle&) {
+        throw std::runtime_error("brake broken");
+    };
     EXPECT_TRUE(bench.program->halt(kAlice));
     EXPECT_THAT(bench.script->calls, ElementsAre("halt", "forceStop", "destroyed"));
     EXPECT_EQ(bench.program->state(), State::halted);

@@ -45,7 +45,9 @@ TEST(Transition, OneWaitsUntilTheDeviceAgreesAndSaysWhyNot) {
 
 TEST(Transition, TwoIsCommittedBeforeTheWorkStarts) {
     ProgramBench bench;
-    bench.script->on_start = [&](const ExecutionHandle&) { bench.observer.log.emplace_back("body"); };
+    bench.script->on_start = [&](const ExecutionHandle&) {
+        bench.observer.log.emplace_back("body");
+    };
     ASSERT_TRUE(bench.program->start(kAlice));
     EXPECT_THAT(bench.observer.log, ElementsAre("sub-state Executing", "reason ByClient",
                                                 "diagnostic Start", "ReadyToRunning", "body"));

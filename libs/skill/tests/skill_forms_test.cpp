@@ -50,9 +50,10 @@ TEST(LambdaSkill, WithoutFunctionsFinishesAtOnceAndCannotBeSuspended) {
 }
 
 TEST(LambdaSkill, PassesParametersAndResult) {
-    Bench bench(lambdaSkill({.start = [](const ValueMap& parameters, const ExecutionHandle& execution) {
-        execution.finish({{"Blinked", parameters.at("Times")}});
-    }}));
+    Bench bench(
+        lambdaSkill({.start = [](const ValueMap& parameters, const ExecutionHandle& execution) {
+            execution.finish({{"Blinked", parameters.at("Times")}});
+        }}));
     ASSERT_TRUE(bench.program.write(kClient, "Times", 7));
     ASSERT_TRUE(bench.program.start(kClient));
     bench.executor->run();

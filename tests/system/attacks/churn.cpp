@@ -23,7 +23,7 @@ constexpr const char* kPassword = "secret";
 security::Identity identityOf(const std::string& name) {
     return orThrow(
         security::makeIdentity({.application_name = name, .application_uri = "urn:bench:" + name},
-                            std::chrono::system_clock::now()));
+                               std::chrono::system_clock::now()));
 }
 
 void trustIn(const std::filesystem::path& folder, const security::Identity& peer) {
@@ -32,15 +32,16 @@ void trustIn(const std::filesystem::path& folder, const security::Identity& peer
 
 /// A server that trusts the operator, whom it is trusted by, and lets in whoever knows the
 /// password.
-BenchOptions closed(const std::filesystem::path& folder, const security::Identity& operator_identity) {
+BenchOptions closed(const std::filesystem::path& folder,
+                    const security::Identity& operator_identity) {
     std::filesystem::remove_all(folder);
     const auto server = identityOf("server");
     trustIn(folder / "server", operator_identity);
     trustIn(folder / "client", server);
     const auto authenticate = [](const opcua::Login& login) -> Result<opcua::Admission> {
-        return login.password == kPassword
-                   ? Result<opcua::Admission>(opcua::Admission{login.user, security::Role::operator_})
-                   : fail(Errc::access_denied, "wrong password");
+        return login.password == kPassword ? Result<opcua::Admission>(opcua::Admission{
+                                                 login.user, security::Role::operator_})
+                                           : fail(Errc::access_denied, "wrong password");
     };
     BenchOptions options;
     options.application_uri = kServerUri;

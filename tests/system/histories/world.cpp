@@ -102,7 +102,8 @@ World::~World() {
 
 skill::SkillFunctions World::functionsOf(Side& side, bool may_be_suspended) {
     skill::SkillFunctions functions;
-    functions.start = [&side](const skill::ValueMap& given, const skill::ExecutionHandle& execution) {
+    functions.start = [&side](const skill::ValueMap& given,
+                              const skill::ExecutionHandle& execution) {
         side.execution = execution;
         side.speed = std::get<double>(given.at("SpeedOverride"));
     };

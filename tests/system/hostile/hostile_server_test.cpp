@@ -7,12 +7,12 @@
 #include <functional>
 
 #include "answers.hpp"
-#include "metier/opcua/client.hpp"
-#include "metier/opcua/discovery.hpp"
 #include "metier/client/control_handle.hpp"
 #include "metier/client/kinematics_reader.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/client.hpp"
+#include "metier/opcua/discovery.hpp"
 
 namespace metier::hostile {
 namespace {

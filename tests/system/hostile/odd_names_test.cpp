@@ -7,10 +7,10 @@
 
 #include "../bench_server.hpp"
 #include "../metier_program.hpp"
-#include "metier/opcua/text.hpp"
 #include "metier/client/control_handle.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/text.hpp"
 
 namespace metier::hostile {
 namespace {

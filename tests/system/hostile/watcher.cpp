@@ -14,8 +14,8 @@ namespace {
 using system_tests::orThrow;
 
 client::SkillHandle guardedSkill(opcua::Client& client) {
-    return orThrow(client::SkillHandle::open(
-        client, orThrow(client::findSkill(client, "Guarded"))));
+    return orThrow(
+        client::SkillHandle::open(client, orThrow(client::findSkill(client, "Guarded"))));
 }
 
 /// It waits long, so that it can tell how long a late answer took.

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "metier/opcua/client.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::hostile {
 

@@ -20,16 +20,16 @@
 
 #include "../bench_server.hpp"
 #include "../hostile/target_process.hpp"
-#include "metier/link/child_process.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/link/child_process.hpp"
 
 namespace {
 
 using namespace metier;
 using namespace std::chrono_literals;
-using hostile::TargetProcess;
 using client::SkillHandle;
+using hostile::TargetProcess;
 using system_tests::orThrow;
 
 constexpr double kLimit = 1'024.0;      // [kB]

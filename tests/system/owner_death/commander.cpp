@@ -20,9 +20,9 @@ namespace metier::system_tests {
 namespace {
 
 using namespace std::chrono_literals;
+using client::SkillHandle;
 using opcua::NodeId;
 using opcua::Value;
-using client::SkillHandle;
 
 constexpr int kBeatsPerLease = 4;
 
@@ -113,8 +113,8 @@ public:
     Commander(opcua::Client& client, const CommanderOrder& order)
         : client_(client),
           order_(order),
-          skill_(orThrow(
-              SkillHandle::open(client, orThrow(client::findSkill(client, order.skill))))),
+          skill_(
+              orThrow(SkillHandle::open(client, orThrow(client::findSkill(client, order.skill))))),
           lease_(client, skill_.address().controller()->node, order.lease,
                  static_cast<std::int32_t>(order.on_loss)) {}
 

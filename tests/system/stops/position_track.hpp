@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "metier/base/clock.hpp"
-#include "metier/opcua/client.hpp"
 #include "metier/client/kinematics_reader.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::system_tests {
 

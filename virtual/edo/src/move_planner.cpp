@@ -34,8 +34,8 @@ motion::Pose interpolate(const motion::Pose& from, const motion::Pose& to, doubl
 }  // namespace
 
 struct MovePlanner::Way {
-    double length = 0.0;                       // [m]
-    double angle = 0.0;                        // [rad]
+    double length = 0.0;                     // [m]
+    double angle = 0.0;                      // [rad]
     std::function<motion::Pose(double)> at;  // flange, from 0 to 1
 };
 

@@ -34,8 +34,7 @@ public:
     CartesianPose cartesian(const AxisValues& position) const;
     motion::Pose baseFromFlange(const AxisValues& position) const;
     /// Errors: unreachable.
-    Result<AxisValues> inverse(const AxisValues& near,
-                               const motion::Pose& base_from_flange) const;
+    Result<AxisValues> inverse(const AxisValues& near, const motion::Pose& base_from_flange) const;
     const AxisLimits& limits() const { return limits_; }
 
 private:

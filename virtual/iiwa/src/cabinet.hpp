@@ -8,7 +8,7 @@ namespace metier::virtual_iiwa {
 /// The cabinet that the robot application runs on.
 struct Cabinet {
     Arm arm;
-    motion::Wrench wrench{};         ///< from outside on the flange, in the flange frame
+    motion::Wrench wrench{};           ///< from outside on the flange, in the flange frame
     motion::JointVector torque_noise;  ///< of this cycle [Nm]
     bool emergency_stop = false;
     bool enabled = true;

@@ -13,8 +13,8 @@ namespace metier::virtual_iiwa {
 
 namespace {
 
-using motion::Pose;
 using motion::JointVector;
+using motion::Pose;
 using motion::ScalarLimits;
 
 // A model's limits are those to plan with; the drives give more.

@@ -10,8 +10,8 @@ namespace metier::virtual_iiwa {
 
 namespace {
 
-using motion::Pose;
 using motion::JointVector;
+using motion::Pose;
 using Arguments = std::array<double, 7>;
 
 constexpr double kMillimetre = 1e-3;

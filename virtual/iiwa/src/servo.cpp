@@ -8,8 +8,8 @@ namespace metier::virtual_iiwa {
 
 namespace {
 
-using motion::Pose;
 using motion::JointVector;
+using motion::Pose;
 using motion::ScalarLimits;
 
 // What a dimension gets that does not exist.

@@ -60,7 +60,7 @@ std::vector<std::byte> encodeState(const StateNumbers& state, Precision precisio
 
 motion::Pose toPose(const std::array<double, 6>& xyzabc) {
     return motion::toPose({xyzabc[0] * kMillimetre, xyzabc[1] * kMillimetre,
-                             xyzabc[2] * kMillimetre, xyzabc[5], xyzabc[4], xyzabc[3]});
+                           xyzabc[2] * kMillimetre, xyzabc[5], xyzabc[4], xyzabc[3]});
 }
 
 std::array<double, 6> toNumbers(const motion::Pose& pose) {

@@ -13,8 +13,8 @@
 namespace metier::virtual_iiwa {
 namespace {
 
-using motion::Pose;
 using motion::JointVector;
+using motion::Pose;
 
 class ArmTest : public ::testing::Test {
 protected:

@@ -34,8 +34,7 @@ constexpr std::array kStatuses{
                 status::kTemperature},
 };
 
-Unit readUnit(const cell::Settings& settings, std::string_view name,
-              std::span<const Unit> units) {
+Unit readUnit(const cell::Settings& settings, std::string_view name, std::span<const Unit> units) {
     const auto wanted = settings.textOr(name, std::string(units.front().name));
     const auto found = std::ranges::find(units, wanted, &Unit::name);
     if (found != units.end()) {

@@ -319,10 +319,9 @@ std::optional<Vector6> LineServo::next(const JointState& now, double step) {
     }
     const Twist change = wanted(way, step) - *twist_;
     *twist_ += change.norm() > most ? Twist(change * (most / change.norm())) : change;
-    const motion::Pose next{
-        base_from_tool.translation + twist_->head<3>() * step,
-        motion::fromRotationVector(twist_->tail<3>() * (step / kTurnRadius)) *
-            base_from_tool.rotation};
+    const motion::Pose next{base_from_tool.translation + twist_->head<3>() * step,
+                            motion::fromRotationVector(twist_->tail<3>() * (step / kTurnRadius)) *
+                                base_from_tool.rotation};
     return axesAt(*tool_, next, now.position);
 }
 

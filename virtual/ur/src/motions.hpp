@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "metier/motion/pose.hpp"
 #include "metier/motion/kinematics.hpp"
+#include "metier/motion/pose.hpp"
 #include "robot_state.hpp"
 
 namespace metier::virtual_ur {

@@ -42,7 +42,6 @@ struct RobotOptions {
 
 /// \param model of six axes; outlives what is made of the options
 /// Errors: invalid_argument with all that is wrong; README.md has the settings.
-Result<RobotOptions> readOptions(const cell::Settings& settings,
-                                 const motion::RobotModel& model);
+Result<RobotOptions> readOptions(const cell::Settings& settings, const motion::RobotModel& model);
 
 }  // namespace metier::virtual_ur

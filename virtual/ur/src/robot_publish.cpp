@@ -32,8 +32,7 @@ ToolMotion toolMotion(const ToolKinematics& tool, const JointState& joints) {
     const Eigen::Vector3d turn = flange.tail<3>();
     const Eigen::Vector3d linear = flange.head<3>() + turn.cross(arm);
     const motion::Pose base_from_tool =
-        motion::Pose{base_from_flange.translation,
-                       Eigen::Quaterniond(base_from_flange.rotation)} *
+        motion::Pose{base_from_flange.translation, Eigen::Quaterniond(base_from_flange.rotation)} *
         tool.flange_from_tool;
     return {toVector(base_from_tool),
             {linear.x(), linear.y(), linear.z(), turn.x(), turn.y(), turn.z()}};

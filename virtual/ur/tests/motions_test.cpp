@@ -242,8 +242,8 @@ TEST(Motions, ALineServoTakesOverFromAMovingArmWithoutAJump) {
     } while (drive.now.velocity != Vector6{} && drive.cycles < 1000);
     EXPECT_LT(drive.cycles, 1000U);
     EXPECT_LT(drive.hardest, 10.0);
-    EXPECT_LT(motion::distanceBetween(
-                  model.kinematics().forward(toJointVector(drive.now.position)), target),
+    EXPECT_LT(motion::distanceBetween(model.kinematics().forward(toJointVector(drive.now.position)),
+                                      target),
               1e-8);
 }
 

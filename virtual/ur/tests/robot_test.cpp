@@ -424,12 +424,11 @@ TEST(Robot, ModelsOfAnotherKindAndWrongSettingsAreRefused) {
     const auto iiwa = modelOf("iiwa7");
     EXPECT_FALSE(readOptions({}, iiwa));
     const auto ur5 = modelOf("ur5");
-    const auto options =
-        readOptions(cell::Settings("cell.toml:3: x",
-                                            {{"series", std::string("f")},
-                                             {"unlock_delai", 1.0},
-                                             {"start", std::vector{9.0, 0.0, 0.0, 0.0, 0.0, 0.0}}}),
-                    ur5);
+    const auto options = readOptions(
+        cell::Settings("cell.toml:3: x", {{"series", std::string("f")},
+                                          {"unlock_delai", 1.0},
+                                          {"start", std::vector{9.0, 0.0, 0.0, 0.0, 0.0, 0.0}}}),
+        ur5);
     ASSERT_FALSE(options);
     EXPECT_THAT(options.error().message,
                 testing::AllOf(testing::HasSubstr("series"), testing::HasSubstr("unlock_delai"),

@@ -45,11 +45,11 @@ public:
               "primary_read_only_port", "secondary_read_only_port", "realtime_read_only_port"}) {
             settings.emplace(port, 0.0);
         }
-        controller_ = virtual_controller::urController()
-                          .start({context_, "arm", "127.0.0.1",
-                                  cell::Settings("test", std::move(settings)), &model_,
-                                  faults, world_})
-                          .value();
+        controller_ =
+            virtual_controller::urController()
+                .start({context_, "arm", "127.0.0.1", cell::Settings("test", std::move(settings)),
+                        &model_, faults, world_})
+                .value();
         thread_ = std::jthread([this](const std::stop_token& stop) {
             const std::stop_callback end(stop, [this] { context_.stop(); });
             context_.run();

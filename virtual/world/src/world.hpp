@@ -17,10 +17,10 @@ using virtual_controller::WorldReport;
 
 /// A box that can be gripped along its x axis.
 struct Part {
-    Eigen::Vector3d size;             ///< [m]
+    Eigen::Vector3d size;           ///< [m]
     motion::Pose world_from_part;   ///< of its centre
-    double mass = 0.0;                ///< [kg]
-    std::string held_by{};            ///< the gripper's controller; empty: nobody
+    double mass = 0.0;              ///< [kg]
+    std::string held_by{};          ///< the gripper's controller; empty: nobody
     motion::Pose jaws_from_part{};  ///< while it is held
 };
 
@@ -79,8 +79,7 @@ private:
         double time = 0.0;  ///< its controller's own, of `contact` [s]
     };
     const Mount& mountOf(const std::string& controller) const;
-    void moveArm(const std::string& controller, const motion::Pose& base_from_flange,
-                 double time);
+    void moveArm(const std::string& controller, const motion::Pose& base_from_flange, double time);
     std::optional<double> grip(const std::string& controller, const WorldReport& report);
     bool isBetween(const motion::Pose& world_from_jaws, double jaw_width, const Part& part) const;
     void release(Part& part) const;

@@ -58,9 +58,9 @@ TEST(WorldServer, TakesAnArmsSpeedFromItsOwnTimeHoweverQuicklyItsReportsCome) {
     for (double time = 0.0; most < 5'000 * 0.9 * depth; time += 0.001) {
         ASSERT_LT(std::chrono::steady_clock::now(), deadline);
         const double x = std::min(speed * time, depth);
-        arm.report({.time = time,
-                    .base_from_flange =
-                        motion::Pose{{0.6 + x, 0, 0.5}, Eigen::Quaterniond::Identity()}});
+        arm.report(
+            {.time = time,
+             .base_from_flange = motion::Pose{{0.6 + x, 0, 0.5}, Eigen::Quaterniond::Identity()}});
         host->context().run_one_for(100ms);
         const double force = arm.effect().wrench.force.norm();
         EXPECT_LE(force, 5'000 * x + 50 * speed + 1e-6) << x << " m behind the wall";

@@ -33,8 +33,8 @@ opcua::Sighting searchFor(const FindOptions& options) {
     if (everywhere) {
         asked.emplace_back(kLocalDiscovery);
     }
-    auto sighting = opcua::searchServers(
-        asked, everywhere ? opcua::Mdns::asked : opcua::Mdns::left_out);
+    auto sighting =
+        opcua::searchServers(asked, everywhere ? opcua::Mdns::asked : opcua::Mdns::left_out);
     std::vector<opcua::FoundServer> given;
     for (const auto& url : options.at) {
         given.push_back({url, "", "command line"});

@@ -7,14 +7,14 @@
 #include <optional>
 #include <string>
 
-#include "remote_arm/wake_up.hpp"
 #include "metier/base/clock.hpp"
+#include "metier/client/kinematics_reader.hpp"
+#include "metier/client/remote_arm.hpp"
+#include "metier/client/skill_handle.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua_skill/kinematics_data.hpp"
-#include "metier/client/remote_arm.hpp"
-#include "metier/client/kinematics_reader.hpp"
-#include "metier/client/skill_handle.hpp"
+#include "remote_arm/wake_up.hpp"
 
 namespace metier::client {
 

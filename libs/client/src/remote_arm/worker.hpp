@@ -7,13 +7,13 @@
 #include <thread>
 #include <utility>
 
-#include "remote_arm/wake_up.hpp"
+#include "metier/client/remote_arm.hpp"
 #include "metier/device/arm.hpp"
 #include "metier/device/reset_slot.hpp"
 #include "metier/device/safety_publisher.hpp"
 #include "metier/device/shared_value.hpp"
-#include "metier/client/remote_arm.hpp"
 #include "remote_arm/stream_session.hpp"
+#include "remote_arm/wake_up.hpp"
 
 namespace metier::client {
 

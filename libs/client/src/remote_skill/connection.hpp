@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "metier/opcua/client.hpp"
-#include "metier/client/remote_server.hpp"
 #include "metier/client/async_skill.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::client {
 
@@ -74,11 +74,12 @@ private:
     void work(const std::stop_token& stop);
     void watch(opcua::Client& client);
     client::AsyncSkill::Watch watchFor(const opcua::Client& client,
-                                             const std::shared_ptr<UsedSkillLink>& link);
+                                       const std::shared_ptr<UsedSkillLink>& link);
     void lose(const std::string& why);
     /// Whether all is there again.
     bool reconnect();
-    /// Has the used skill of a use go on with the present session; nothing if its skill is not there.
+    /// Has the used skill of a use go on with the present session; nothing if its skill is not
+    /// there.
     std::function<void()> adoptionOf(const Use& use);
     /// Warns of a reason that is not the last one of its kind; the log of what comes again and
     /// again is for those who look for it.

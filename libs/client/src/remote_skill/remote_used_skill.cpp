@@ -9,15 +9,15 @@
 
 namespace metier::client {
 
+using client::AsyncSkill;
 using composition::UsedSkillListener;
 using skill::Method;
 using skill::Reason;
 using skill::State;
 using skill::TransitionNumber;
-using client::AsyncSkill;
 
-RemoteUsedSkill::RemoteUsedSkill(Connection& connection, std::shared_ptr<UsedSkillLink> link, std::string name,
-                         std::string origin)
+RemoteUsedSkill::RemoteUsedSkill(Connection& connection, std::shared_ptr<UsedSkillLink> link,
+                                 std::string name, std::string origin)
     : connection_(connection),
       link_(std::move(link)),
       name_(std::move(name)),
@@ -80,7 +80,7 @@ void RemoteUsedSkill::lost(const std::string& why) {
 }
 
 void RemoteUsedSkill::check(const skill::ValueMap& parameters,
-                        std::function<void(Result<skill::CheckReport>)> done) {
+                            std::function<void(Result<skill::CheckReport>)> done) {
     using Report = Result<skill::CheckReport>;
     const auto told = [link = link_, done = std::move(done)](Report report) {
         link->post([done, report = std::move(report)](RemoteUsedSkill& /*used*/) { done(report); });
@@ -179,8 +179,8 @@ void RemoteUsedSkill::haltLeftOver(const std::string& id) {
     static_cast<void>(command(Method::halt));
 }
 
-void RemoteUsedSkill::withReason(std::string otherwise,
-                             std::function<void(RemoteUsedSkill&, const AsyncSkill::Now&)> then) {
+void RemoteUsedSkill::withReason(
+    std::string otherwise, std::function<void(RemoteUsedSkill&, const AsyncSkill::Now&)> then) {
     connection_.run(
         [skill = skill_, link = link_, otherwise = std::move(otherwise), then = std::move(then)] {
             auto read = skill ? skill->skill.now() : opcua::Answer<AsyncSkill::Now>();
@@ -214,8 +214,10 @@ void RemoteUsedSkill::onTransition(const skill::TransitionEvent& event) {
         case TransitionNumber::running_to_ready:
             return finished();
         case TransitionNumber::suspended_to_ready:
-            return end(
-                {UsedSkillEnd::Kind::halted, {}, event.reason, "it was reset while it was suspended"});
+            return end({UsedSkillEnd::Kind::halted,
+                        {},
+                        event.reason,
+                        "it was reset while it was suspended"});
         default:
             return end({UsedSkillEnd::Kind::halted, {}, event.reason, event.reason_text});
     }
@@ -233,7 +235,8 @@ void RemoteUsedSkill::onMissed() {
         return;  // once it is back, it is looked at
     }
     if (execution_.empty()) {
-        withReason({}, [](RemoteUsedSkill& used, const AsyncSkill::Now& now) { used.refresh(now); });
+        withReason({},
+                   [](RemoteUsedSkill& used, const AsyncSkill::Now& now) { used.refresh(now); });
     } else if (!started_) {
         missed_ = true;
     } else {
@@ -248,7 +251,7 @@ void RemoteUsedSkill::onMissed() {
 }
 
 void RemoteUsedSkill::caughtUp(const std::string& id,
-                           const opcua::Answer<skill::ExecutionRecord>& record) {
+                               const opcua::Answer<skill::ExecutionRecord>& record) {
     if (execution_ != id) {
         return;
     }
@@ -281,8 +284,10 @@ void RemoteUsedSkill::tellMissed(const skill::ExecutionRecord& record) {
             if (record.reason == Reason::finished) {
                 return end({UsedSkillEnd::Kind::finished, record.result});
             }
-            return end(
-                {UsedSkillEnd::Kind::halted, {}, record.reason, "it was reset while it was suspended"});
+            return end({UsedSkillEnd::Kind::halted,
+                        {},
+                        record.reason,
+                        "it was reset while it was suspended"});
         case State::halted:
             reason_text_ = record.reason_text;
             return end({UsedSkillEnd::Kind::halted, {}, record.reason, record.reason_text});
@@ -303,10 +308,10 @@ void RemoteUsedSkill::finished() {
                     return;
                 }
                 used.end(record ? UsedSkillEnd{UsedSkillEnd::Kind::finished, record->result}
-                                 : UsedSkillEnd{UsedSkillEnd::Kind::lost,
-                                            {},
-                                            Reason::device_lost,
-                                            "its result: " + record.error().message});
+                                : UsedSkillEnd{UsedSkillEnd::Kind::lost,
+                                               {},
+                                               Reason::device_lost,
+                                               "its result: " + record.error().message});
             });
         });
     if (!sent) {
@@ -345,12 +350,12 @@ Result<void> RemoteUsedSkill::command(Method method) {
 }
 
 void RemoteUsedSkill::refused(Method method, const std::string& id, const opcua::Failure& failure) {
-    withReason(failure.message,
-               [method, id, code = failure.code](RemoteUsedSkill& used, const AsyncSkill::Now& now) {
-                   if (used.listener_ != nullptr && !id.empty() && used.execution_ == id) {
-                       used.listener_->onRefused(method, {code, now.reason_text});
-                   }
-               });
+    withReason(failure.message, [method, id, code = failure.code](RemoteUsedSkill& used,
+                                                                  const AsyncSkill::Now& now) {
+        if (used.listener_ != nullptr && !id.empty() && used.execution_ == id) {
+            used.listener_->onRefused(method, {code, now.reason_text});
+        }
+    });
 }
 
 Result<void> RemoteUsedSkill::suspend() {
@@ -400,15 +405,15 @@ void RemoteUsedSkill::wasReset(std::uint64_t call, const opcua::Answer<>& answer
         tellReset({});
         return;
     }
-    withReason(answer.error().message,
-               [call, code = answer.error().code](RemoteUsedSkill& used, const AsyncSkill::Now& now) {
-                   if (used.reset_ != call) {
-                       return;
-                   }
-                   const bool ready = now.state == State::ready;  // somebody else was quicker
-                   used.state_ = ready ? now.state : used.state_;
-                   used.tellReset(ready ? Result<void>{} : fail(code, now.reason_text));
-               });
+    withReason(answer.error().message, [call, code = answer.error().code](
+                                           RemoteUsedSkill& used, const AsyncSkill::Now& now) {
+        if (used.reset_ != call) {
+            return;
+        }
+        const bool ready = now.state == State::ready;  // somebody else was quicker
+        used.state_ = ready ? now.state : used.state_;
+        used.tellReset(ready ? Result<void>{} : fail(code, now.reason_text));
+    });
 }
 
 void RemoteUsedSkill::tellReset(const Result<void>& outcome) {

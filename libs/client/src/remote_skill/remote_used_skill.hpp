@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "remote_skill/connection.hpp"
 #include "metier/composition/used_skill.hpp"
+#include "remote_skill/connection.hpp"
 
 namespace metier::client {
 
@@ -20,7 +20,7 @@ public:
     /// \param name       for texts
     /// \param origin     as the ids of executions begin that are begun here
     RemoteUsedSkill(Connection& connection, std::shared_ptr<UsedSkillLink> link, std::string name,
-                std::string origin);
+                    std::string origin);
     ~RemoteUsedSkill() override;
     RemoteUsedSkill(const RemoteUsedSkill&) = delete;
     RemoteUsedSkill& operator=(const RemoteUsedSkill&) = delete;

@@ -8,8 +8,8 @@
 
 namespace metier::composition {
 
-using composition::UsedSkillEnd;
 using composition::ClockOffset;
+using composition::UsedSkillEnd;
 using skill::CheckReport;
 using skill::Reason;
 

@@ -130,7 +130,7 @@ private:
     Stage stage_ = Stage::idle;
     bool rest_asked_ = false;
     bool halt_asked_ = false;
-    JointPath joint_path_;                ///< as first asked for; its end is the target
+    JointPath joint_path_;   ///< as first asked for; its end is the target
     double shortest_ = 0.0;  ///< [s]
     double braking_ = 0.0;   ///< at the end of the shortest motion [s]
     composition::ClockOffset offset_;

@@ -70,8 +70,8 @@ std::string offPath(const JointPath& path, const std::vector<double>& now) {
         least = off.by < least.by ? off : least;
     }
     return least.by <= kOffPath ? ""
-                               : fmt::format("axis {} by {:.4f} rad, limit {} rad", least.axis + 1,
-                                             least.by, kOffPath);
+                                : fmt::format("axis {} by {:.4f} rad, limit {} rad", least.axis + 1,
+                                              least.by, kOffPath);
 }
 
 }  // namespace metier::composition

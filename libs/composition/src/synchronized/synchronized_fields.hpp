@@ -1,7 +1,7 @@
 #pragma once
 
-#include "metier/skill/field_list.hpp"
 #include "metier/composition/synchronized_move_skill.hpp"
+#include "metier/skill/field_list.hpp"
 
 namespace metier::composition {
 

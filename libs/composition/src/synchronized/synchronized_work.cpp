@@ -96,7 +96,8 @@ void SynchronizedWork::begin() {
     }
     double stop_time = 0.0;
     for (const auto& arm_move : arm_moves_) {
-        stop_time = arrived(*arm_move) ? stop_time : std::max(stop_time, arm_move->stopTime(duration));
+        stop_time =
+            arrived(*arm_move) ? stop_time : std::max(stop_time, arm_move->stopTime(duration));
     }
     const auto time = options_.clock.utcNow() + std::chrono::duration_cast<UtcTime::duration>(
                                                     nanoseconds(options_.start_delay));
@@ -199,8 +200,7 @@ void SynchronizedWork::deadlinePassed() {
     if (phase_ == Phase::stopping) {
         const auto text =
             fmt::format("{} did not come to rest within {} s after Halt", names, kRestTime.count());
-        failure_ =
-            ArmFailure{skill::Reason::error, failure_ ? failure_->text + "; " + text : text};
+        failure_ = ArmFailure{skill::Reason::error, failure_ ? failure_->text + "; " + text : text};
         stopped();
         return;
     }
@@ -288,13 +288,15 @@ Results resultsOf(const std::vector<const ArmMove*>& arm_moves) {
     if (arm_moves.empty()) {
         return results;
     }
-    const auto start = spreadOf(arm_moves, [](const ArmMove& arm_move) { return arm_move.startTime(); });
-    const auto end = spreadOf(arm_moves, [](const ArmMove& arm_move) { return arm_move.endTime(); });
+    const auto start =
+        spreadOf(arm_moves, [](const ArmMove& arm_move) { return arm_move.startTime(); });
+    const auto end =
+        spreadOf(arm_moves, [](const ArmMove& arm_move) { return arm_move.endTime(); });
     results.skew_at_start = start.last - start.first;
     results.skew_at_end = end.last - end.first;
-    results.largest_skew =
-        std::max({results.skew_at_start, results.skew_at_end,
-                  twoLargest(arm_moves, [](const ArmMove& arm_move) { return arm_move.lateness(); })});
+    results.largest_skew = std::max(
+        {results.skew_at_start, results.skew_at_end,
+         twoLargest(arm_moves, [](const ArmMove& arm_move) { return arm_move.lateness(); })});
     results.clock_uncertainty = twoLargest(arm_moves, [](const ArmMove& arm_move) {
         return std::chrono::duration<double>(arm_move.clockOffset().uncertainty).count();
     });

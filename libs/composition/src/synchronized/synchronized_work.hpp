@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "synchronized/arm_move.hpp"
 #include "metier/skill/execution_handle.hpp"
 #include "metier/skill/skill.hpp"
+#include "synchronized/arm_move.hpp"
 
 namespace metier::composition {
 

@@ -27,8 +27,7 @@ Result<void> StartUp::ended(Result<void> how) noexcept {
     return how;
 }
 
-std::optional<Result<void>> StartUp::tick(const MachineState& machine, SteadyTime now,
-                                           Wire& wire) {
+std::optional<Result<void>> StartUp::tick(const MachineState& machine, SteadyTime now, Wire& wire) {
     switch (step_) {
         case Step::idle:
             return std::nullopt;
@@ -58,7 +57,7 @@ std::optional<Result<void>> StartUp::tick(const MachineState& machine, SteadyTim
 }
 
 std::optional<Result<void>> StartUp::decide(const MachineState& machine, SteadyTime now,
-                                             Wire& wire) {
+                                            Wire& wire) {
     if (machine.state == MachineState::command && command_.empty()) {
         command_ = "command of somebody else";
         step_ = Step::executing;
@@ -91,7 +90,7 @@ std::optional<Result<void>> StartUp::decide(const MachineState& machine, SteadyT
 }
 
 void StartUp::send(std::string_view what, const std::string& text, const MachineState& machine,
-                    Wire& wire) {
+                   Wire& wire) {
     command_ = what;
     sent_in_ = machine.state;
     step_ = Step::sent;

@@ -80,7 +80,8 @@ public:
 private:
     void ask(Input& input) {
         if (input.next() % 2 == 0) {
-            static_cast<void>(commander_.attach(std::make_shared<TurningSource>(input.number(0.01))));
+            static_cast<void>(
+                commander_.attach(std::make_shared<TurningSource>(input.number(0.01))));
             return;
         }
         device::ControllerPlannedMotion motion;

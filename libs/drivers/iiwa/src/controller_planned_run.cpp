@@ -84,7 +84,7 @@ std::string toString(const Miss& miss) {
 }
 
 void ControllerPlannedRun::begin(const Request& request, const CabinetState& now,
-                       const CabinetSettings& settings) noexcept {
+                                 const CabinetSettings& settings) noexcept {
     *this = ControllerPlannedRun();
     start_ = now.position;
     progress_ = now.position;
@@ -105,7 +105,8 @@ Command ControllerPlannedRun::moveCommand(const Request& request) noexcept {
     return movePose(motion::toFrame(target_));
 }
 
-void ControllerPlannedRun::requireSettings(const Request& request, const CabinetSettings& settings) noexcept {
+void ControllerPlannedRun::requireSettings(const Request& request,
+                                           const CabinetSettings& settings) noexcept {
     const auto& motion = request.motion;
     const auto require = [&](const Command& command) { settings.require(command, list_); };
     require(chooseInterface(Interface::standard));
@@ -146,7 +147,7 @@ Command ControllerPlannedRun::command() const noexcept {
 }
 
 bool ControllerPlannedRun::take(const Command& sent, const CabinetState& answer, double step,
-                      CabinetSettings& settings) noexcept {
+                                CabinetSettings& settings) noexcept {
     note(answer);
     switch (phase_) {
         case Phase::telling:
@@ -177,7 +178,7 @@ void ControllerPlannedRun::note(const CabinetState& answer) noexcept {
 }
 
 bool ControllerPlannedRun::told(const Command& sent, const CabinetState& answer,
-                      CabinetSettings& settings) noexcept {
+                                CabinetSettings& settings) noexcept {
     if (!answer.executed) {
         settings.refused(sent);
         end_.command = sent;

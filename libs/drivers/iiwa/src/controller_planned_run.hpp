@@ -4,8 +4,8 @@
 
 #include "cabinet_settings.hpp"
 #include "metier/device/motion_planner.hpp"
-#include "metier/motion/pose.hpp"
 #include "metier/iiwa_driver/wire.hpp"
+#include "metier/motion/pose.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -54,7 +54,7 @@ public:
     struct Request {
         const device::ControllerPlannedMotion& motion;
         motion::Pose flange_from_tool;  ///< what the cabinet adds to the flange in its poses
-        double force_tolerance = 10.0;    ///< of the cabinet's estimate [N]
+        double force_tolerance = 10.0;  ///< of the cabinet's estimate [N]
     };
 
     /// \param now the newest state, in which no motion is under way

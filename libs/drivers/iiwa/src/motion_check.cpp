@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "metier/iiwa_driver/wire.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/motion/rotation.hpp"
-#include "metier/iiwa_driver/wire.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -76,7 +76,8 @@ Result<void> checkFlange(const motion::RobotModel& model, const Frame& target) {
 
 }  // namespace
 
-Result<void> checkMotion(const motion::RobotModel& model, const device::ControllerPlannedMotion& motion) {
+Result<void> checkMotion(const motion::RobotModel& model,
+                         const device::ControllerPlannedMotion& motion) {
     if (motion.path == device::ControllerPlannedMotion::Path::line && !motion.target_flange) {
         return fail(Errc::invalid_argument, "a line needs a pose as its target");
     }

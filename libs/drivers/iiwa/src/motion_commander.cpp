@@ -33,7 +33,8 @@ motion::JointVector toVector(const device::JointArray& joints) noexcept {
 
 }  // namespace
 
-MotionCommander::MotionCommander(device::ArmInfo info, const motion::RobotModel& model, const MotionCommanderOptions& options)
+MotionCommander::MotionCommander(device::ArmInfo info, const motion::RobotModel& model,
+                                 const MotionCommanderOptions& options)
     : core_(std::move(info)),
       model_(model),
       options_(options),
@@ -156,7 +157,8 @@ void MotionCommander::beginWhatIsAsked() noexcept {
     }
 }
 
-void MotionCommander::take(const Command& sent, const CabinetState& answer, SteadyTime now) noexcept {
+void MotionCommander::take(const Command& sent, const CabinetState& answer,
+                           SteadyTime now) noexcept {
     const double step = std::chrono::duration<double>(now - last_answer_).count();
     last_answer_ = now;
     note(answer, now);
@@ -230,7 +232,8 @@ void MotionCommander::missedCycles(std::uint64_t count) noexcept {
     skipped_ = static_cast<int>(std::min<std::uint64_t>(count, kMostSkipped));
 }
 
-bool MotionCommander::takePlanned(const Command& sent, const CabinetState& answer, double step) noexcept {
+bool MotionCommander::takePlanned(const Command& sent, const CabinetState& answer,
+                                  double step) noexcept {
     if (readiness_.notReady()) {
         planned_.stop(RunEnd::Cause::not_ready);
     }
@@ -251,7 +254,7 @@ bool MotionCommander::takePlanned(const Command& sent, const CabinetState& answe
 }
 
 std::optional<EndCause> MotionCommander::takeServo(const Command& sent, const CabinetState& answer,
-                                         double step) noexcept {
+                                                   double step) noexcept {
     if (readiness_.notReady()) {
         servo_.stop();
     }

@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
+#include "controller_planned_run.hpp"
 #include "metier/device/arm_core.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/device/request_slot.hpp"
 #include "metier/motion/robot_model.hpp"
-#include "controller_planned_run.hpp"
 #include "readiness.hpp"
 #include "servo_run.hpp"
 
@@ -29,7 +29,8 @@ struct MotionCommanderOptions {
 class MotionCommander {
 public:
     /// \param model must outlive the commander
-    MotionCommander(device::ArmInfo info, const motion::RobotModel& model, const MotionCommanderOptions& options);
+    MotionCommander(device::ArmInfo info, const motion::RobotModel& model,
+                    const MotionCommanderOptions& options);
 
     device::ArmCore& core() noexcept { return core_; }
     const device::ArmCore& core() const noexcept { return core_; }
@@ -54,7 +55,8 @@ public:
 
     // ---- any thread ----
     Result<void> attach(std::shared_ptr<device::SetPointSource> source);
-    Result<void> move(const device::ControllerPlannedMotion& motion, device::MotionPlanner::Done done);
+    Result<void> move(const device::ControllerPlannedMotion& motion,
+                      device::MotionPlanner::Done done);
     void stopMotion() noexcept { slot_.stop(); }
     Result<void> resetFault();
     /// The notifier's thread alone.

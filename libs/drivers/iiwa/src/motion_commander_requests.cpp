@@ -21,7 +21,8 @@ Result<void> MotionCommander::attach(std::shared_ptr<device::SetPointSource> sou
     return core_.attach(std::move(source));
 }
 
-Result<void> MotionCommander::move(const device::ControllerPlannedMotion& motion, device::MotionPlanner::Done done) {
+Result<void> MotionCommander::move(const device::ControllerPlannedMotion& motion,
+                                   device::MotionPlanner::Done done) {
     const std::lock_guard lock(admission_);
     const auto safety = core_.safety();
     if (safety.state != SafetyState::normal) {

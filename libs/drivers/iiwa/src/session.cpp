@@ -48,7 +48,7 @@ void Session::serve(link::TcpLink& link, const std::stop_token& stop) {
     }
     const auto* hint = answered_ ? "" : " before its first state: does it use another precision?";
     clients_.commander.lost(fmt::format("{}: cabinet {}{}", clients_.commander.core().info().name,
-                                    served.error().message, hint));
+                                        served.error().message, hint));
     clients_.signal();
     pause(stop);
 }
@@ -62,9 +62,9 @@ Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         METIER_TRY(keepGuard(link));
         const auto command = commander.command();
-        METIER_ASSIGN(
-            const auto answer,
-            exchange(link, command, commander.settlingIn() ? kFirstTimeout : options_.answer_timeout));
+        METIER_ASSIGN(const auto answer,
+                      exchange(link, command,
+                               commander.settlingIn() ? kFirstTimeout : options_.answer_timeout));
         const auto now = steady_clock::now();
         clients_.force.take(answer, now);
         commander.take(command, answer, now);

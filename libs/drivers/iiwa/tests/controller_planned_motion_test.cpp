@@ -3,14 +3,14 @@
 #include <atomic>
 
 #include "arm_bench.hpp"
-#include "metier/motion/frame.hpp"
 #include "controller_planned_run.hpp"
+#include "metier/motion/frame.hpp"
 
 namespace metier::iiwa_driver {
 namespace {
 
-using device::MotionOutcome;
 using device::ControllerPlannedMotion;
+using device::MotionOutcome;
 using device::SafetyState;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -1,9 +1,9 @@
 // A motion of the cabinet's planner, with the cabinet and the time moved by hand.
 #include <gmock/gmock.h>
 
+#include "controller_planned_run.hpp"
 #include "hand_moved.hpp"
 #include "metier/motion/frame.hpp"
-#include "controller_planned_run.hpp"
 
 namespace metier::iiwa_driver {
 namespace {

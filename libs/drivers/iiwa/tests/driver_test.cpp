@@ -19,8 +19,7 @@ protected:
     Result<device::OpenDevice> open(Values values) {
         values.try_emplace("port", 0.0);
         return device::iiwaDriver().open(
-            {"arm", "127.0.0.1", cell::Settings("cell.toml: arm", std::move(values)),
-             &model});
+            {"arm", "127.0.0.1", cell::Settings("cell.toml: arm", std::move(values)), &model});
     }
     const motion::RobotModel model = iiwa7();
 };

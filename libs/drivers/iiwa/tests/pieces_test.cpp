@@ -10,8 +10,8 @@
 #include "flange_force.hpp"
 #include "metier/motion/frame.hpp"
 #include "motion_check.hpp"
-#include "run_outcome.hpp"
 #include "readiness.hpp"
+#include "run_outcome.hpp"
 
 namespace metier::iiwa_driver {
 namespace {
@@ -233,9 +233,8 @@ TEST_F(MotionCheckTest, ATargetPoseIsFinite) {
 TEST(SameFlange, MayBeTwoMillimetresAndTenMilliradiansOff) {
     const motion::Pose here = motion::Pose::identity();
     const auto off = [](double distance, double angle) {
-        return motion::Pose{
-            {0.0, distance, 0.0},
-            Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()))};
+        return motion::Pose{{0.0, distance, 0.0},
+                            Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()))};
     };
     EXPECT_TRUE(checkSameFlange(here, off(0.0019, 0.0099)));
     EXPECT_THAT(checkSameFlange(here, off(0.0021, 0.0)).error().message,

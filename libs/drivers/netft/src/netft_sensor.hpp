@@ -7,8 +7,8 @@
 #include <string>
 
 #include "calibration.hpp"
-#include "metier/device/force_torque_sensor.hpp"
 #include "metier/device/driver.hpp"
+#include "metier/device/force_torque_sensor.hpp"
 
 namespace metier::netft_driver {
 

@@ -6,8 +6,8 @@
 
 namespace metier::ur_driver {
 
-using motion::Pose;
 using motion::ChainDescription;
+using motion::Pose;
 using motion::RobotModel;
 
 namespace {
@@ -58,7 +58,7 @@ double flangeDistance(const RobotModel& first, const RobotModel& second) {
         auto q = first.home();
         q.view().array() += offset;
         largest = std::max(largest, motion::distanceBetween(first.kinematics().forward(q),
-                                                              second.kinematics().forward(q)));
+                                                            second.kinematics().forward(q)));
     }
     return largest;
 }

@@ -18,8 +18,7 @@ std::int32_t wholeNumber(const cell::Settings& settings, std::string_view name,
     return static_cast<std::int32_t>(number);
 }
 
-std::uint16_t port(const cell::Settings& settings, std::string_view name,
-                   std::uint16_t fallback) {
+std::uint16_t port(const cell::Settings& settings, std::string_view name, std::uint16_t fallback) {
     return static_cast<std::uint16_t>(wholeNumber(settings, name, fallback, 65535));
 }
 

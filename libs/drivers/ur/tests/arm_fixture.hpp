@@ -37,8 +37,8 @@ protected:
         for (const auto& [name, value] : changed) {
             values[name] = value;
         }
-        auto opened = device::urDriver().open(
-            {"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
+        auto opened =
+            device::urDriver().open({"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
         ASSERT_TRUE(opened) << opened.error().message;
         device_ = std::move(*opened);
     }

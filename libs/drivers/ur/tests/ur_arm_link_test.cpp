@@ -24,8 +24,8 @@ TEST_F(ArmTest, SilenceDuringAMotionDisconnectsAtOnce) {
 TEST_F(ArmTest, SilenceIsNoticedWithinThreeCycles) {
     auto values = fake_.settings();
     values.erase("link_timeout");
-    auto opened = device::urDriver().open(
-        {"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
+    auto opened =
+        device::urDriver().open({"ur5", "127.0.0.1", cell::Settings("test", values), &model_});
     ASSERT_TRUE(opened);
     std::promise<std::string> lost;
     const auto registration = opened->arm->onSafetyChange([&](const device::Safety& safety) {

@@ -136,7 +136,7 @@ TEST_F(ArmTest, UsesTheKinematicsAndLimitsThatTheControllerTells) {
     EXPECT_FALSE(device_.model->capsules().empty());
     const auto& home = model_.home();
     EXPECT_GT(motion::distanceBetween(device_.model->kinematics().forward(home),
-                                        model_.kinematics().forward(home)),
+                                      model_.kinematics().forward(home)),
               1e-3);
     EXPECT_NEAR(device_.model->limits(0).velocity, 180.0 / 191.0, 1e-9);
     ASSERT_TRUE(becomes(SafetyState::normal));

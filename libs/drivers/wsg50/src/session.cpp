@@ -61,8 +61,8 @@ Result<void> Wsg50Gripper::Session::ask(MotionKind kind, const device::GripperRe
             safety.text);
     }
     const auto motion = motionFor(kind, request, options_, known_.read());
-    const auto asked =
-        motion.and_then([&](const Motion& checked) { return slot_.post(checked, std::move(done)); });
+    const auto asked = motion.and_then(
+        [&](const Motion& checked) { return slot_.post(checked, std::move(done)); });
     return asked ? asked : fail(asked.error().code, named(asked.error().message));
 }
 
@@ -230,7 +230,7 @@ void Wsg50Gripper::Session::onSafety(device::Safety safety) {
 
 void Wsg50Gripper::Session::onMotionEnd(Result<device::GripperOutcome> outcome) {
     slot_.end(outcome ? std::move(outcome)
-                            : fail(outcome.error().code, named(outcome.error().message)));
+                      : fail(outcome.error().code, named(outcome.error().message)));
     notifier_.signal();
 }
 

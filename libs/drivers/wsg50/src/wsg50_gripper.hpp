@@ -7,8 +7,8 @@
 #include <string>
 
 #include "conversation.hpp"
-#include "metier/device/gripper.hpp"
 #include "metier/device/driver.hpp"
+#include "metier/device/gripper.hpp"
 
 namespace metier::wsg50_driver {
 

@@ -8,8 +8,8 @@
 #include <cstdio>
 
 #include "common/convert.hpp"
-#include "metier/opcua/text.hpp"
 #include "common/security_config.hpp"
+#include "metier/opcua/text.hpp"
 
 namespace metier::opcua {
 

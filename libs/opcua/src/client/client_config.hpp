@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "metier/opcua/client.hpp"
 #include "common/peer_check.hpp"
+#include "metier/opcua/client.hpp"
 
 namespace metier::opcua {
 

@@ -3,9 +3,9 @@
 #include <open62541/client.h>
 #include <open62541/server.h>
 
+#include "common/peer_check.hpp"
 #include "metier/base/error.hpp"
 #include "metier/opcua/security.hpp"
-#include "common/peer_check.hpp"
 
 namespace metier::opcua {
 

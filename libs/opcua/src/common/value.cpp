@@ -10,8 +10,8 @@
 
 #include "common/convert.hpp"
 #include "common/dimensions.hpp"
-#include "metier/opcua/text.hpp"
 #include "common/native.hpp"
+#include "metier/opcua/text.hpp"
 
 namespace metier::opcua {
 

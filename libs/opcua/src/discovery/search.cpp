@@ -10,8 +10,8 @@
 #include <tuple>
 #include <utility>
 
-#include "metier/opcua/mdns.hpp"
 #include "metier/opcua/discovery.hpp"
+#include "metier/opcua/mdns.hpp"
 #include "metier/opcua/text.hpp"
 
 namespace metier::opcua {

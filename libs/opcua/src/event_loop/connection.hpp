@@ -8,11 +8,11 @@
 #include <string>
 
 #include "event_loop.hpp"
+#include "fair_queue.hpp"
 #include "inbox.hpp"
 #include "message_counter.hpp"
 #include "response_gate.hpp"
 #include "send_queue.hpp"
-#include "fair_queue.hpp"
 
 namespace metier::opcua {
 

@@ -7,10 +7,10 @@
 #include <unordered_map>
 
 #include "connection.hpp"
+#include "fair_queue.hpp"
 #include "listener.hpp"
 #include "publisher.hpp"
 #include "reactor.hpp"
-#include "fair_queue.hpp"
 
 namespace metier::opcua {
 

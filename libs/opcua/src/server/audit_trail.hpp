@@ -5,11 +5,11 @@
 #include <span>
 #include <string_view>
 
-#include "server/audit_events.hpp"
 #include "metier/opcua/address_space.hpp"
 #include "metier/opcua/audit.hpp"
 #include "metier/opcua/security.hpp"
 #include "metier/opcua/server.hpp"
+#include "server/audit_events.hpp"
 #include "server/rate_limit.hpp"
 
 namespace metier::opcua {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "common/convert.hpp"
-#include "server/nodesets.hpp"
 #include "common/security_config.hpp"
+#include "server/nodesets.hpp"
 
 namespace metier::opcua {
 

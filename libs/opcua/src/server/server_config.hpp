@@ -2,8 +2,8 @@
 
 #include <open62541/server.h>
 
-#include "metier/opcua/server.hpp"
 #include "common/peer_check.hpp"
+#include "metier/opcua/server.hpp"
 
 namespace metier::opcua {
 

@@ -6,9 +6,9 @@
 
 #include "common/convert.hpp"
 #include "common/guard.hpp"
+#include "common/security_config.hpp"
 #include "metier/opcua/text.hpp"
 #include "server/nodesets.hpp"
-#include "common/security_config.hpp"
 #include "server/server_config.hpp"
 
 namespace metier::opcua {

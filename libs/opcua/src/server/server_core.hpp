@@ -11,13 +11,13 @@
 #include <unordered_map>
 #include <vector>
 
-#include "server/audit_trail.hpp"
-#include "event_loop/event_loop.hpp"
-#include "server/event_watch.hpp"
 #include "common/log_bridge.hpp"
-#include "metier/opcua/server.hpp"
-#include "server/node_hooks.hpp"
 #include "common/peer_check.hpp"
+#include "event_loop/event_loop.hpp"
+#include "metier/opcua/server.hpp"
+#include "server/audit_trail.hpp"
+#include "server/event_watch.hpp"
+#include "server/node_hooks.hpp"
 #include "server/pending_timers.hpp"
 #include "server/sessions.hpp"
 #include "server/stack_methods.hpp"

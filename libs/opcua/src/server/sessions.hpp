@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "server/application_sessions.hpp"
 #include "metier/opcua/server.hpp"
+#include "server/application_sessions.hpp"
 #include "server/unused_sessions.hpp"
 
 namespace metier::opcua {

@@ -82,7 +82,8 @@ public:
         : gripper_(gripper), executor_(std::move(executor)) {}
 
     const skill::SkillDescription& description() const override { return description_; }
-    Result<std::unique_ptr<skill::ExecutionWork>> prepare(const skill::ValueMap& /*none*/) override {
+    Result<std::unique_ptr<skill::ExecutionWork>> prepare(
+        const skill::ValueMap& /*none*/) override {
         return checkHeld(gripper_).map([this]() -> std::unique_ptr<skill::ExecutionWork> {
             return std::make_unique<HoldWork>(gripper_, executor_);
         });

@@ -26,6 +26,7 @@ struct ControllerPlannedRequest {
 /// Duration, a StartTime, a StopTime, a lower MaxAcceleration, a line that only turns, on which the
 /// tool frame would leave its line or the elbow turns, and a motion too slow to tell from
 /// standstill.
-Result<device::ControllerPlannedMotion> controllerPlannedMotion(const ControllerPlannedRequest& request);
+Result<device::ControllerPlannedMotion> controllerPlannedMotion(
+    const ControllerPlannedRequest& request);
 
 }  // namespace metier::robot_skills

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "moves/move_skill.hpp"
-#include "moves/controller_planned_work.hpp"
 #include "moves/controller_planned_motion.hpp"
+#include "moves/controller_planned_work.hpp"
+#include "moves/move_skill.hpp"
 #include "moves/streamed_move.hpp"
 
 namespace metier::robot_skills {
@@ -30,9 +30,9 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
         }
         auto move = std::make_shared<ControllerPlannedMove>(
             ControllerPlannedMove::Setup{arm.arm, arm.clock, trajectory, path, end, tellMoveDone});
-        return std::make_unique<ControllerPlannedWork>(ControllerPlannedWork::Devices{arm.arm, arm.planner},
-                                             std::move(*motion), std::move(move),
-                                             toolDistance(trajectory));
+        return std::make_unique<ControllerPlannedWork>(
+            ControllerPlannedWork::Devices{arm.arm, arm.planner}, std::move(*motion),
+            std::move(move), toolDistance(trajectory));
     };
     return makeMove<Parameters>({arm.arm, arm.model, arm.clock, make_work}, std::move(variant));
 }

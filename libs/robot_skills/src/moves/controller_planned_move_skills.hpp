@@ -33,12 +33,13 @@ struct PlanningArm {
 /// its motion is what was asked for, else the arm takes metier's set-points. The latter run a move
 /// with Duration, StartTime, a MaxAcceleration below the robot's own, a line that only turns, on
 /// which the elbow turns or the tool frame would leave its line, and a motion of less than 0.002
-/// rad/s (controller_planned_motion.hpp). The controller may not be faster than the plan; a move to joints
-/// must end at them, else it fails.
+/// rad/s (controller_planned_motion.hpp). The controller may not be faster than the plan; a move to
+/// joints must end at them, else it fails.
 ///
 /// Suspend and Halt brake and are answered at standstill, whoever runs the move. Resume goes on to
 /// the same target, from where the arm stands; it is refused if an axis was moved by over 2 mrad.
 /// Errors: invalid_argument if arm and model differ in their number of axes.
-Result<std::vector<std::unique_ptr<skill::Skill>>> makeControllerPlannedMoveSkills(const PlanningArm& arm);
+Result<std::vector<std::unique_ptr<skill::Skill>>> makeControllerPlannedMoveSkills(
+    const PlanningArm& arm);
 
 }  // namespace metier::robot_skills

@@ -4,18 +4,18 @@
 #include <functional>
 #include <memory>
 
-#include "moves/arm_work.hpp"
 #include "metier/base/clock.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/trajectory.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
+#include "moves/arm_work.hpp"
 #include "moves/move_variant.hpp"
 
 namespace metier::robot_skills {
 
 /// Tells an execution of a motion that its controller has ended at the target or by a force.
-using TellMove =
-    std::function<void(const skill::ExecutionHandle&, const MoveResults&, const device::MotionOutcome&)>;
+using TellMove = std::function<void(const skill::ExecutionHandle&, const MoveResults&,
+                                    const device::MotionOutcome&)>;
 
 /// tell.finish(): for moves that know no force.
 void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results,
@@ -79,8 +79,8 @@ public:
     };
 
     /// \param motion what `move` stands for
-    ControllerPlannedWork(Devices devices, device::ControllerPlannedMotion motion, std::shared_ptr<ControllerPlannedMove> move,
-                ToolDistance tool_distance);
+    ControllerPlannedWork(Devices devices, device::ControllerPlannedMotion motion,
+                          std::shared_ptr<ControllerPlannedMove> move, ToolDistance tool_distance);
     /// Stops the motion if it still runs.
     ~ControllerPlannedWork() override;
     ControllerPlannedWork(const ControllerPlannedWork&) = delete;

@@ -19,8 +19,8 @@ namespace metier::robot_skills {
 ///
 /// A controller watches the axes of the flange: each axis of the base frame that has a limit must
 /// be one of the flange's, within 1 degree, for the whole motion. ForcesMax is then measured along
-/// the flange's axes, too. What else it cannot do: makeControllerPlannedMoveSkills(). Without a sensor Start
-/// refuses with not_supported what the controller cannot do.
+/// the flange's axes, too. What else it cannot do: makeControllerPlannedMoveSkills(). Without a
+/// sensor Start refuses with not_supported what the controller cannot do.
 Result<std::unique_ptr<skill::Skill>> makeControllerPlannedForceMoveSkill(const PlanningArm& arm);
 
 /// An arm and what measures the force at its flange; all must outlive the skill.

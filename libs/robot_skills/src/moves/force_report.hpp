@@ -11,7 +11,7 @@ namespace metier::robot_skills {
 
 /// What a force move met, in the base frame.
 struct MetForce {
-    motion::Wrench contact;                           ///< at the end
+    motion::Wrench contact;                             ///< at the end
     Eigen::Vector3d largest = Eigen::Vector3d::Zero();  ///< along each axis, without sign [N]
     bool exceeded = false;                              ///< ended the motion
 };

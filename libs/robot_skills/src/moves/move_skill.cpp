@@ -12,7 +12,7 @@ constexpr std::size_t kPreviewPoints = 50;
 ToolDistance toolDistance(const motion::Trajectory& trajectory) {
     return [trajectory](const device::JointArray& a, const device::JointArray& b) {
         return motion::distanceBetween(trajectory.toolPose(toVector(a)),
-                                         trajectory.toolPose(toVector(b)));
+                                       trajectory.toolPose(toVector(b)));
     };
 }
 

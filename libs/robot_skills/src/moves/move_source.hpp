@@ -3,10 +3,10 @@
 #include <memory>
 #include <string>
 
-#include "moves/motion_run_source.hpp"
 #include "metier/motion/motion_run.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
 #include "metier/robot_skills/stopping_report.hpp"
+#include "moves/motion_run_source.hpp"
 #include "moves/path_deviation.hpp"
 #include "moves/settling.hpp"
 #include "moves/timetable.hpp"

@@ -7,7 +7,8 @@
 
 namespace metier::robot_skills {
 
-motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state, const motion::RobotModel& model) {
+motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state,
+                                            const motion::RobotModel& model) {
     motion::StoppingEstimate way;
     if (state.standstill || state.velocity.size() != model.axisCount() ||
         state.position.size() != model.axisCount()) {
@@ -26,7 +27,7 @@ motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state, const
     }
     const auto& kinematics = model.kinematics();
     way.distance = motion::distanceBetween(kinematics.forward(toVector(state.position)),
-                                             kinematics.forward(end));
+                                           kinematics.forward(end));
     return way;
 }
 

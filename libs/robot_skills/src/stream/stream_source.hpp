@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "moves/motion_run_source.hpp"
 #include "metier/motion/stream_follower.hpp"
 #include "metier/robot_skills/position_stream_skill.hpp"
 #include "metier/robot_skills/stream_report.hpp"
+#include "moves/motion_run_source.hpp"
 #include "moves/settling.hpp"
 #include "stream/stream_input.hpp"
 

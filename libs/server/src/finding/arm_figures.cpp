@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "metier/server/kinematics_conversion.hpp"
 #include "metier/client/kinematics_reader.hpp"
+#include "metier/server/kinematics_conversion.hpp"
 
 namespace metier::server {
 namespace {

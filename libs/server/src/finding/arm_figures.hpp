@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/server/skill_survey.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::server {
 

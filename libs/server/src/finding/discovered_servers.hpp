@@ -6,8 +6,8 @@
 
 #include "finding/skill_matching.hpp"
 #include "metier/base/error.hpp"
-#include "metier/composition/definition.hpp"
 #include "metier/cell/cell.hpp"
+#include "metier/composition/definition.hpp"
 #include "metier/opcua/search.hpp"
 #include "metier/server/identity.hpp"
 
@@ -23,7 +23,7 @@ struct DiscoveredServer {
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
 std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discovery,
-                                                     const std::vector<std::string>& but);
+                                                 const std::vector<std::string>& but);
 
 /// Those that answer within 2 s, by name and address, with what they offer.
 /// \param but addresses to leave out

@@ -5,8 +5,8 @@
 
 #include "finding/arm_figures.hpp"
 #include "metier/base/error.hpp"
-#include "metier/composition/definition.hpp"
 #include "metier/client/skill_finder.hpp"
+#include "metier/composition/definition.hpp"
 
 namespace metier::server {
 

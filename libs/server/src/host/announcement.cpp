@@ -52,8 +52,8 @@ Announcement::Announcement(const cell::ServerConfig& config, const Identity& ide
         const auto& host = config.discovery.announce_as;
         mdns_ = std::make_unique<opcua::MdnsAnnouncer>(
             opcua::MdnsService{.name = config.name,
-                                   .host = host.empty() ? config.address : host,
-                                   .port = portOf(url)});
+                               .host = host.empty() ? config.address : host,
+                               .port = portOf(url)});
     }
 }
 

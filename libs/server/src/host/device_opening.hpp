@@ -20,8 +20,7 @@ struct DeviceUser {
 /// Opens the device that a cell file names.
 /// Errors: invalid_argument (unknown driver with the known ones, settings),
 ///         already_exists (another process of this machine has the device; names its pid).
-Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice,
-                                      const DeviceUser& user);
+Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice, const DeviceUser& user);
 
 /// Waits until the device is ready: at most 10 s for its controller's answer, and 2 s more for its
 /// safety state to be normal. Logs why it is not.

@@ -35,8 +35,7 @@ bool isFree(const std::string& address, std::uint16_t port) {
 
 }  // namespace
 
-Result<std::optional<link::NameLock>> lockPort(const cell::ServerConfig& config,
-                                                  uid_t own) {
+Result<std::optional<link::NameLock>> lockPort(const cell::ServerConfig& config, uid_t own) {
     if (config.port == 0) {
         return std::optional<link::NameLock>();
     }

@@ -18,6 +18,6 @@ namespace metier::server {
 /// \param own user of this process
 /// Errors: as link::NameLock::take(), while the port is taken.
 Result<std::optional<link::NameLock>> lockPort(const cell::ServerConfig& config,
-                                                  uid_t own = geteuid());
+                                               uid_t own = geteuid());
 
 }  // namespace metier::server

@@ -15,9 +15,9 @@
 #include "metier/base/error.hpp"
 #include "metier/opcua/security.hpp"
 #include "metier/opcua/server.hpp"
-#include "metier/server/identity.hpp"
 #include "metier/security/login_guard.hpp"
 #include "metier/security/security_folder.hpp"
+#include "metier/server/identity.hpp"
 
 namespace metier::server {
 
@@ -46,8 +46,8 @@ public:
     void follow(opcua::Server& server);
 
 private:
-    ServerAccess(opcua::Credentials own, security::SecurityFolder folder, security::LoginGuard logins,
-                 security::TrustStore store);
+    ServerAccess(opcua::Credentials own, security::SecurityFolder folder,
+                 security::LoginGuard logins, security::TrustStore store);
     Result<opcua::Admission> authenticate(const opcua::Login& login);
     bool isTrustedStill(const std::string& thumbprint);
     std::optional<security::Role> roleNow(const std::string& user, const std::string& thumbprint);
@@ -61,7 +61,7 @@ private:
     /// Contents of the security folder besides users and trusted certificates.
     struct Folder {
         Result<security::Identity> identity;
-        std::map<std::string, security::Role> roles;         ///< by thumbprint
+        std::map<std::string, security::Role> roles;      ///< by thumbprint
         std::filesystem::file_time_type latest_change{};  ///< of what decides on rights
     };
     std::shared_ptr<const Folder> read() const;

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "host/server_alarm.hpp"
-#include "metier/security/audit_log.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
 #include "metier/opcua/server.hpp"
+#include "metier/security/audit_log.hpp"
 #include "metier/skill/executor.hpp"
 
 namespace metier::server {

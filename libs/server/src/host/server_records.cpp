@@ -15,8 +15,8 @@ records::Retention retentionOf(const cell::Records& config) {
 
 }  // namespace
 
-Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
-    const cell::ServerConfig& config, const std::string& server) {
+Result<std::unique_ptr<ServerRecords>> ServerRecords::open(const cell::ServerConfig& config,
+                                                           const std::string& server) {
     if (config.records.url.empty()) {
         return nullptr;
     }
@@ -26,8 +26,9 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(
          .server = server,
          .keep = retentionOf(config.records),
          .on_write_state = [&alarm = made->alarm_](const records::WriteReport& report) {
-             alarm.tell(report.write_state == records::WriteState::failing ? ServerAlarm::Kind::begins
-                                                                  : ServerAlarm::Kind::over,
+             alarm.tell(report.write_state == records::WriteState::failing
+                            ? ServerAlarm::Kind::begins
+                            : ServerAlarm::Kind::over,
                         report.text);
          }});
     if (!recorder) {

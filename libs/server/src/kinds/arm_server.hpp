@@ -30,8 +30,7 @@ public:
 private:
     ArmServer(std::unique_ptr<const motion::RobotModel> file_model, device::OpenDevice device,
               std::optional<device::OpenDevice> sensor, std::unique_ptr<SkillHost> host);
-    Result<void> offer(const cell::ServerConfig& config,
-                       const cell::ArmServer& arm);
+    Result<void> offer(const cell::ServerConfig& config, const cell::ArmServer& arm);
     Result<void> offerSkills(const opcua_skill::MotionDeviceSystem& system,
                              const cell::ArmServer& config);
 

@@ -8,10 +8,10 @@
 #include "host/skill_host.hpp"
 #include "kinds/rebinder.hpp"
 #include "metier/base/error.hpp"
-#include "metier/composition/definition.hpp"
 #include "metier/cell/cell.hpp"
-#include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/client/remote_server.hpp"
+#include "metier/composition/definition.hpp"
+#include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/server/server.hpp"
 
 namespace metier::server {
@@ -23,12 +23,13 @@ class CompositionServer final : public Server {
 public:
     /// \param composition of `config`
     /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
-    /// Errors: what is wrong with the files; a used skill server that cannot be reached; a used skill
+    /// Errors: what is wrong with the files; a used skill server that cannot be reached; a used
+    /// skill
     ///         that nobody or, unless discovered, more than one server offers; the port; cancelled
     ///         (a stop was asked for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
-        const cell::ServerConfig& config,
-        const cell::CompositionServer& composition, const Context& context);
+        const cell::ServerConfig& config, const cell::CompositionServer& composition,
+        const Context& context);
 
     ~CompositionServer() override;
 
@@ -36,9 +37,8 @@ public:
 
 private:
     class Roles;
-    CompositionServer(const cell::ServerConfig& config,
-                      cell::CompositionServer composition, const Identity& identity,
-                      std::unique_ptr<SkillHost> host);
+    CompositionServer(const cell::ServerConfig& config, cell::CompositionServer composition,
+                      const Identity& identity, std::unique_ptr<SkillHost> host);
     Result<void> connect(const std::vector<cell::UsedServer>& servers);
     Result<void> offer(std::vector<composition::Definition> definitions,
                        const link::StopSignal& stop);

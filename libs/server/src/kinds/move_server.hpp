@@ -52,8 +52,7 @@ private:
         Result<ConnectedRobot> connectAny() const;
     };
 
-    MoveServer(cell::ServerConfig config, RobotSearch search,
-               std::unique_ptr<RobotMoves> moves);
+    MoveServer(cell::ServerConfig config, RobotSearch search, std::unique_ptr<RobotMoves> moves);
 
     void run(const std::stop_token& stop);
     bool awaitNext(const std::stop_token& stop);

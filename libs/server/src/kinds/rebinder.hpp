@@ -12,10 +12,10 @@
 
 #include "finding/discovered_servers.hpp"
 #include "metier/base/clock.hpp"
-#include "metier/composition/sequence_skill.hpp"
 #include "metier/cell/cell.hpp"
-#include "metier/opcua/address_space.hpp"
 #include "metier/client/remote_server.hpp"
+#include "metier/composition/sequence_skill.hpp"
+#include "metier/opcua/address_space.hpp"
 #include "metier/skill/executor.hpp"
 
 namespace metier::server {
@@ -76,7 +76,7 @@ private:
     std::vector<SkillBinding> bindings_;
     std::vector<Former> formers_;
     std::string reported_;  // the last complaint, which is not repeated
-    std::mutex mutex_;  // for the wait
+    std::mutex mutex_;      // for the wait
     std::condition_variable_any wake_;
     std::jthread thread_;
 };

@@ -6,8 +6,8 @@
 #include "host/skill_host.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
-#include "metier/motion/robot_model.hpp"
 #include "metier/client/remote_arm.hpp"
+#include "metier/motion/robot_model.hpp"
 #include "metier/server/identity.hpp"
 #include "metier/skill/execution_names.hpp"
 

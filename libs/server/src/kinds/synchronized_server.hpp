@@ -7,10 +7,10 @@
 #include "host/skill_host.hpp"
 #include "metier/base/error.hpp"
 #include "metier/cell/cell.hpp"
-#include "metier/opcua_skill/used_skills.hpp"
 #include "metier/client/remote_server.hpp"
-#include "metier/server/server.hpp"
 #include "metier/composition/synchronized_move_skill.hpp"
+#include "metier/opcua_skill/used_skills.hpp"
+#include "metier/server/server.hpp"
 
 namespace metier::server {
 
@@ -20,11 +20,12 @@ namespace metier::server {
 class SynchronizedServer final : public Server {
 public:
     /// \param arms of `config`
-    /// Errors: a used skill server that cannot be reached, or has no arm, or several, whose moves take a
+    /// Errors: a used skill server that cannot be reached, or has no arm, or several, whose moves
+    /// take a
     ///         start time; the port.
-    static Result<std::unique_ptr<SynchronizedServer>> start(
-        const cell::ServerConfig& config, const cell::SynchronizedServer& arms,
-        const Context& context);
+    static Result<std::unique_ptr<SynchronizedServer>> start(const cell::ServerConfig& config,
+                                                             const cell::SynchronizedServer& arms,
+                                                             const Context& context);
 
     std::string url() const override { return host_->url(); }
 
@@ -32,11 +33,10 @@ private:
     SynchronizedServer(const Identity& identity, std::unique_ptr<SkillHost> host)
         : identity_(identity), host_(std::move(host)) {}
     Result<void> offer(const std::string& name, const cell::SynchronizedServer& config);
-    Result<composition::Arm> connect(const cell::UsedServer& used,
-                                           const std::string& component);
+    Result<composition::Arm> connect(const cell::UsedServer& used, const std::string& component);
     Result<std::unique_ptr<composition::UsedSkill>> use(client::RemoteServer& server,
-                                                    const std::string& type,
-                                                    const std::string& component);
+                                                        const std::string& type,
+                                                        const std::string& component);
 
     const Identity& identity_;
     std::vector<std::unique_ptr<client::RemoteServer>> servers_;

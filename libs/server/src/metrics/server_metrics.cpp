@@ -41,8 +41,8 @@ void addDevice(TextPage& page, const std::string& name, SafetyState now) {
 
 }  // namespace
 
-Result<std::unique_ptr<ServerMetrics>> ServerMetrics::start(
-    const cell::ServerConfig& config, Watched watched) {
+Result<std::unique_ptr<ServerMetrics>> ServerMetrics::start(const cell::ServerConfig& config,
+                                                            Watched watched) {
     std::unique_ptr<ServerMetrics> made(new ServerMetrics(config, std::move(watched)));
     auto endpoint = MetricsEndpoint::start({.address = config.metrics->host,
                                             .port = config.metrics->port,

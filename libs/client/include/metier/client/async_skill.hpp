@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/execution_record.hpp"
 #include "metier/skill/program.hpp"
 #include "metier/skill/program_observer.hpp"
 #include "metier/skill/skill.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::client {
 

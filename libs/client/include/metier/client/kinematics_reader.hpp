@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/opcua_skill/kinematics_data.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::client {
 

@@ -8,11 +8,11 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/base/error.hpp"
+#include "metier/client/async_skill.hpp"
+#include "metier/client/skill_finder.hpp"
 #include "metier/composition/used_skill.hpp"
 #include "metier/opcua/security.hpp"
 #include "metier/skill/executor.hpp"
-#include "metier/client/async_skill.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::client {
 
@@ -34,8 +34,8 @@ class UsedSkillLink;
 
 /// A skill that was opened and has no used skill yet; moved from open() to used().
 struct PendingUse {
-    std::shared_ptr<UsedSkillLink> link;   // shared with what is on its way to the used skill
-    std::shared_ptr<OpenSkill> skill;  // shared with the work that waits for the server
+    std::shared_ptr<UsedSkillLink> link;  // shared with what is on its way to the used skill
+    std::shared_ptr<OpenSkill> skill;     // shared with the work that waits for the server
     client::AsyncSkill::Now now;
     std::string name;
     std::string origin;
@@ -74,7 +74,7 @@ public:
     /// \return a used skill, for the executor's thread; must end before this
     /// Errors: not_supported, if the skill lacks StartWith or GetExecution; those of the server.
     Result<std::unique_ptr<composition::UsedSkill>> use(const client::SkillAddress& skill,
-                                                    std::string origin);
+                                                        std::string origin);
 
     /// use() in two parts, for an executor that is at work: open() waits, on any thread but the
     /// executor's; used() does not wait and must be called on the executor's thread.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "metier/client/skill_finder.hpp"
 #include "metier/opcua/client.hpp"
 #include "metier/skill/field.hpp"
 #include "metier/skill/field_list.hpp"
@@ -16,7 +17,6 @@
 #include "metier/skill/program_observer.hpp"
 #include "metier/skill/state.hpp"
 #include "metier/skill/value.hpp"
-#include "metier/client/skill_finder.hpp"
 
 namespace metier::client {
 

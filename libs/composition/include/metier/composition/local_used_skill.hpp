@@ -18,7 +18,7 @@ public:
     /// \param program must outlive this
     /// \param caller  client as which the composed skill commands the Program
     LocalUsedSkill(skill::Program& program, std::shared_ptr<skill::Executor> executor,
-               skill::Caller caller);
+                   skill::Caller caller);
     ~LocalUsedSkill() override;
     LocalUsedSkill(const LocalUsedSkill&) = delete;
     LocalUsedSkill& operator=(const LocalUsedSkill&) = delete;

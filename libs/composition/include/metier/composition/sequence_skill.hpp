@@ -5,8 +5,8 @@
 #include <string>
 
 #include "metier/base/clock.hpp"
-#include "metier/composition/used_skill.hpp"
 #include "metier/composition/composition.hpp"
+#include "metier/composition/used_skill.hpp"
 #include "metier/skill/executor.hpp"
 #include "metier/skill/skill.hpp"
 
@@ -35,7 +35,8 @@ public:
     /// \param origin   names the component, the skill, and this run of the component, so that no id
     ///                 occurs twice: "pick-server.PickPlaceSkill~3f09a2"
     /// \param clock    must outlive this
-    SequenceSkill(Composition composition, std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
+    SequenceSkill(Composition composition,
+                  std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                   std::shared_ptr<skill::Executor> executor, const Clock& clock,
                   std::string origin);
     ~SequenceSkill() override;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "metier/motion/pose.hpp"
 #include "metier/motion/joint_vector.hpp"
+#include "metier/motion/pose.hpp"
 
 namespace metier::motion {
 

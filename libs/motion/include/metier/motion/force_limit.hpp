@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "metier/base/error.hpp"
-#include "metier/motion/twist.hpp"
 #include "metier/motion/trajectory.hpp"
+#include "metier/motion/twist.hpp"
 
 namespace metier::motion {
 

@@ -9,9 +9,9 @@
 #include <variant>
 
 #include "metier/base/error.hpp"
-#include "metier/motion/pose.hpp"
 #include "metier/motion/chain.hpp"
 #include "metier/motion/joint_vector.hpp"
+#include "metier/motion/pose.hpp"
 
 namespace metier::motion {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/motion/pose.hpp"
 #include "metier/motion/motion_run.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/motion/trajectory.hpp"
 
@@ -156,7 +156,7 @@ void synchronise(std::vector<Trajectory>& trajectories);
 struct Feasibility {
     std::optional<Refusal> refusal;    ///< reason against it; none: it can start
     Seconds duration{0};               ///< duration of the motion, if it can start
-    StoppingEstimate longest_stop{};        ///< longest time and way that halt() would need at any
+    StoppingEstimate longest_stop{};   ///< longest time and way that halt() would need at any
                                        ///< moment
     std::vector<JointVector> preview;  ///< joint positions along the path, both ends included [rad]
 };

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <memory>
 
-#include "metier/motion/pose.hpp"
 #include "metier/motion/joint_vector.hpp"
+#include "metier/motion/pose.hpp"
 #include "metier/motion/profile.hpp"
 
 namespace metier::motion {

@@ -11,8 +11,8 @@ namespace metier::opcua {
 /// A server that a discovery server or mDNS has listed. Nobody has connected to it yet: it may be
 /// gone.
 struct FoundServer {
-    std::string url;      ///< "opc.tcp://host:port"
-    std::string name;     ///< application name, printable; may be empty
+    std::string url;          ///< "opc.tcp://host:port"
+    std::string name;         ///< application name, printable; may be empty
     std::string reported_by;  ///< source: address of a discovery server, or "mDNS"
 };
 

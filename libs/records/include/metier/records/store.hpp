@@ -47,7 +47,7 @@ struct Listing {
 /// Executions that were added or changed.
 struct Changes {
     std::vector<ExecutionRow> executions{};  ///< as they are now, in the order of their last change
-    std::int64_t revision = 0;            ///< pass it to the next call of changes()
+    std::int64_t revision = 0;               ///< pass it to the next call of changes()
 };
 
 /// Age and size up to which records are kept; 0: no limit.

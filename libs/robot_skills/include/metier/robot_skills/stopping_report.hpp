@@ -34,6 +34,7 @@ private:
 
 /// Stop of an arm whose motion the controller plans, computed from its measured velocity: each axis
 /// brakes with its own limits. The way is that of the flange.
-motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state, const motion::RobotModel& model);
+motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state,
+                                            const motion::RobotModel& model);
 
 }  // namespace metier::robot_skills

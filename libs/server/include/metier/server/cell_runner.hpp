@@ -37,8 +37,7 @@ public:
     virtual CellCommand of(const cell::VirtualController& controller,
                            const CellAddresses& known) const = 0;
     /// \param known all virtual controllers, and the servers that this one uses
-    virtual CellCommand of(const cell::ServerConfig& server,
-                           const CellAddresses& known) const = 0;
+    virtual CellCommand of(const cell::ServerConfig& server, const CellAddresses& known) const = 0;
 };
 
 class CellMember;
@@ -69,9 +68,8 @@ public:
     /// \param commands used only while this runs
     /// \param stop_descriptor ends the start when it becomes readable; -1: none
     /// Errors: the output of the first server that was not ready within 30 s; cancelled.
-    static Result<CellRunner> start(const cell::CellConfig& cell,
-                                    const CellCommands& commands, int stop_descriptor,
-                                    const OnReady& on_ready);
+    static Result<CellRunner> start(const cell::CellConfig& cell, const CellCommands& commands,
+                                    int stop_descriptor, const OnReady& on_ready);
     CellRunner(CellRunner&&) noexcept;
     CellRunner& operator=(CellRunner&&) = delete;
     /// Ends every process: servers that use others first, virtual controllers last. Takes 6 s at

@@ -41,8 +41,7 @@ protected:
 /// \param config with the addresses of all used servers, see cell::CellConfig::resolved()
 /// Errors: mistakes in model, driver, NodeSet, skills and files; a port that is taken; a used
 /// server that cannot be reached; cancelled (a stop was asked for).
-Result<std::unique_ptr<Server>> start(const cell::ServerConfig& config,
-                                      const Context& context);
+Result<std::unique_ptr<Server>> start(const cell::ServerConfig& config, const Context& context);
 
 /// Makes the identity of a server from name, port and hosts of its configuration. A server at
 /// another port is another application.

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "metier/base/error.hpp"
-#include "metier/opcua/search.hpp"
-#include "metier/server/identity.hpp"
 #include "metier/client/skill_finder.hpp"
 #include "metier/client/skill_references.hpp"
+#include "metier/opcua/search.hpp"
+#include "metier/server/identity.hpp"
 
 namespace metier::server {
 

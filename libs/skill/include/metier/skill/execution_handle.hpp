@@ -65,9 +65,9 @@ public:
     void progress(Value intermediate) const;
     /// Publishes the step that a sequence is in, as a sub-state of Executing.
     void step(std::string name) const;
-    /// Asks the Program to suspend the work, as a client's Suspend does; ExecutionWork::suspend() follows.
-    /// Nothing changes if the work is already coming to rest or does not run.
-    /// \param why for a person: who brought a part of the work to rest
+    /// Asks the Program to suspend the work, as a client's Suspend does; ExecutionWork::suspend()
+    /// follows. Nothing changes if the work is already coming to rest or does not run. \param why
+    /// for a person: who brought a part of the work to rest
     void suspend(std::string why) const;
     /// Reports that the work has started another skill, here or on another server.
     void started(StartedExecution child) const;

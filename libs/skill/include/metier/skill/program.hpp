@@ -110,7 +110,8 @@ public:
     }
 
     /// Asks the work to come to rest; Suspended follows at standstill.
-    /// Errors: not_supported (the skill cannot be suspended); any error of ExecutionWork::suspend().
+    /// Errors: not_supported (the skill cannot be suspended); any error of
+    /// ExecutionWork::suspend().
     Result<void> suspend(const Caller& caller);
     /// Continues a suspended execution. If its owner is gone, the caller becomes its owner.
     /// Errors: any error of ExecutionWork::resume(); the Program stays Suspended.

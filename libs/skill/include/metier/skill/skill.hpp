@@ -67,9 +67,9 @@ public:
     /// Goes on from rest, on the same path.
     /// Errors: nothing moves then. If the arm was moved meanwhile, the text names the distance.
     virtual Result<void> resume() = 0;
-    /// Brakes; answered by ExecutionHandle::atRest(), finish() or fail(). May follow suspend() before its
-    /// answer: then one answer is enough. Also called when a suspended execution is given up: then
-    /// no answer is needed, and the work is destroyed next.
+    /// Brakes; answered by ExecutionHandle::atRest(), finish() or fail(). May follow suspend()
+    /// before its answer: then one answer is enough. Also called when a suspended execution is
+    /// given up: then no answer is needed, and the work is destroyed next.
     virtual void halt() = 0;
     /// Uses the device's own stop: the deadline to come to rest has passed, the device was lost, or
     /// the Program is destroyed while it runs.
