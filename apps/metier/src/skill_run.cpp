@@ -10,6 +10,7 @@
 
 #include "metier/client/control_handle.hpp"
 #include "metier/client/skill_handle.hpp"
+#include "metier/skill/json.hpp"
 #include "metier/skill/values.hpp"
 #include "printable.hpp"
 
