@@ -7,11 +7,13 @@
 #include <chrono>
 #include <functional>
 #include <random>
+#include <stdexcept>
 #include <utility>
 
 #include "bench_server.hpp"
+#include "hostile/raw_socket.hpp"
 #include "metier/skill/execution_names.hpp"
-#include "relay.hpp"
+#include "tcp_relay.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -24,16 +26,34 @@ constexpr const char* kMetierUri = "urn:metier:skills";
 constexpr std::size_t kKept = 32;  // of each kind of spoils
 constexpr std::uint32_t kLeaseMs = 3'600'000;
 
+/// Sends bytes to a server as a client of its own would, and reads until the server closes.
+/// \return what it answered within half a minute
+std::string sendAlone(std::uint16_t port, const std::string& bytes) {
+    constexpr auto patience = 30s;
+    hostile::RawSocket socket;
+    if (!socket.connect(port)) {
+        throw std::runtime_error("nobody listens for the replayed connection");
+    }
+    socket.send(bytes, patience);
+    socket.endSending();
+    std::string answer;
+    const auto deadline = steady_clock::now() + patience;
+    while (socket.isOpen() && steady_clock::now() < deadline) {
+        socket.receive(answer, 1s);
+    }
+    return answer;
+}
+
 /// Something that a client once sent, and that must not count again.
 struct Spoils {
     std::uint64_t boot = 0;
     std::string name{};
     std::uint64_t epoch = 0;
-    Bytes connection{};  ///< all of it, from its first byte to the command
-    Bytes command{};     ///< the command alone
+    std::string connection{};  ///< all of it, from its first byte to the command
+    std::string command{};     ///< the command alone
 };
 
-/// One life of the server, with a client through a Relay and one without.
+/// One life of the server, with a client through a relay and one without.
 class Boot {
 public:
     explicit Boot(const std::filesystem::path& names)
@@ -48,7 +68,7 @@ public:
         heartbeat_ = bench_.controllerNode(kMetierUri, {"Heartbeat"});
         release_ = bench_.controllerNode(kMetierUri, {"ReleaseControl"});
         bench_.serve();
-        relay_ = std::make_unique<Relay>(bench_.port());
+        relay_ = std::make_unique<testing::TcpRelay>(bench_.port());
         direct_ = connectAs(bench_.url(), "bob");
         reconnect();
     }
@@ -59,7 +79,7 @@ public:
     }
     opcua::Client& direct() { return *direct_; }
     opcua::Client& relayed() { return *relayed_; }
-    Relay& relay() { return *relay_; }
+    testing::TcpRelay& relay() { return *relay_; }
     std::uint16_t port() const { return bench_.port(); }
 
     struct Start {
@@ -133,7 +153,7 @@ private:
     opcua::NodeId acquire_;
     opcua::NodeId heartbeat_;
     opcua::NodeId release_;
-    std::unique_ptr<Relay> relay_;
+    std::unique_ptr<testing::TcpRelay> relay_;
     std::unique_ptr<opcua::Client> direct_;
     std::unique_ptr<opcua::Client> relayed_;
 };
@@ -186,10 +206,10 @@ private:
     /// Keeps the bytes of what `command` sends over the relay.
     template <typename Command>
     void record(Boot& boot, Command command) {
-        const auto before = static_cast<std::ptrdiff_t>(boot.relay().sent().size());
+        const auto before = boot.relay().sent().size();
         command();
         Spoils spoils{.boot = report_.boots, .connection = boot.relay().sent()};
-        spoils.command.assign(spoils.connection.begin() + before, spoils.connection.end());
+        spoils.command = spoils.connection.substr(before);
         keep(std::move(spoils), bytes_);
     }
 

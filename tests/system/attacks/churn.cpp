@@ -6,9 +6,9 @@
 #include <future>
 #include <vector>
 
-#include "../relay.hpp"
 #include "metier/security/identity.hpp"
 #include "metier/security/trust_store.hpp"
+#include "tcp_relay.hpp"
 
 namespace metier::system_tests {
 namespace {
@@ -77,12 +77,11 @@ opcua::ClientOptions Churn::clientOf(const security::Identity& identity) const {
 
 /// HEL and OPN of a client whose certificate the server does not know.
 std::string Churn::firstWordsOfAStranger() const {
-    Relay relay(server_.port());
+    testing::TcpRelay relay(server_.port());
     if (opcua::Client::connect(relay.url(), clientOf(identityOf("stranger")))) {
         throw std::runtime_error("the server lets a stranger in");
     }
-    const auto sent = relay.sent();
-    return {sent.begin(), sent.end()};
+    return relay.sent();
 }
 
 Churn::Connecting Churn::connectAgainAndAgain(const std::string& url, SteadyTime end) const {

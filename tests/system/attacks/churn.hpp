@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "../cable.hpp"
+#include "cable.hpp"
 #include "halt_meter.hpp"
 #include "metier/base/wake_up_delay.hpp"
 #include "siege.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "../bench_server.hpp"
-#include "../cable.hpp"
 #include "attack.hpp"
+#include "cable.hpp"
 #include "halt_meter.hpp"
 #include "metier/base/wake_up_delay.hpp"
 #include "metier/link/child_process.hpp"

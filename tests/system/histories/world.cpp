@@ -84,7 +84,7 @@ World::World()
     }
     findNodes();
     bench_.serve();
-    relay_ = std::make_unique<Relay>(bench_.port());
+    relay_ = std::make_unique<testing::TcpRelay>(bench_.port());
     for (std::size_t i = 0; i < kClients; ++i) {
         connect(i);
     }
@@ -410,7 +410,7 @@ void World::happen(const Step& step) {
             static_cast<void>(clients_.at(step.client)->close());
             return connect(step.client);
         case Act::cut_connection:
-            relay_->cut();
+            relay_->interrupt();
             return connect(step.client);
         case Act::fault_stays:
         case Act::fault_is_gone:

@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "../bench_server.hpp"
-#include "../relay.hpp"
 #include "hand_time.hpp"
 #include "metier/skill/program_observer.hpp"
 #include "model.hpp"
+#include "tcp_relay.hpp"
 
 namespace metier::system_tests {
 
-/// A server with two skills, three clients that command it, carol through a Relay, and one that
+/// A server with two skills, three clients that command it, carol through a relay, and one that
 /// looks on. Time stands until a step moves it. The work of the skills do what steps say.
 ///
 /// Threading: one thread takes steps.
@@ -77,7 +77,7 @@ private:
     std::shared_ptr<HandTime> time_;
     std::array<Side, kSkills> sides_;  // also while the server closes its sessions
     BenchServer bench_;
-    std::unique_ptr<Relay> relay_;
+    std::unique_ptr<testing::TcpRelay> relay_;
     std::array<std::unique_ptr<opcua::Client>, kClients> clients_;
     std::array<std::uint64_t, kClients> epochs_{};
     std::unique_ptr<opcua::Client> onlooker_;

@@ -95,6 +95,10 @@ void RawSocket::send(std::string_view bytes, std::chrono::milliseconds longest) 
     }
 }
 
+void RawSocket::endSending() {
+    ::shutdown(descriptor_, SHUT_WR);
+}
+
 void RawSocket::receive(std::string& into, std::chrono::milliseconds longest) {
     std::array<char, 65'536> buffer;  // NOLINT(*-member-init): filled by recv
     if (longest.count() > 0 && isOpen()) {

@@ -29,6 +29,8 @@ public:
 
     /// Gives up, and closes, if the peer does not take it all in time, or has closed.
     void send(std::string_view bytes, std::chrono::milliseconds longest);
+    /// Reports to the peer that nothing more follows; it may still send.
+    void endSending();
     /// Appends what has come, or comes in time; closes if the peer has.
     void receive(std::string& into, std::chrono::milliseconds longest);
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "../cable.hpp"
 #include "../metier_program.hpp"
+#include "cable.hpp"
 #include "commander.hpp"
 #include "metier/base/queue.hpp"
 #include "metier/base/wake_up_delay.hpp"

@@ -30,6 +30,8 @@ public:
     void pass();
     /// All connections are closed, and new ones at once.
     void cut();
+    /// All connections are closed; new ones are passed on.
+    void interrupt();
     /// Connections stay open and new ones open, but every byte is swallowed.
     void stall();
 
@@ -41,6 +43,12 @@ public:
     void cutAt(std::string bytes, Moment moment);
     /// Waits until cutAt() has cut; false at the deadline.
     bool awaitCut(SteadyTime deadline);
+
+    /// Bytes that the newest client has sent over its connection.
+    std::string sent() const;
+    /// Sends more to the server over the newest connection, between two messages of its client.
+    /// \return false if that connection is closed
+    bool inject(const std::string& bytes);
 
 private:
     enum class Mode { pass, cut, stall };
@@ -62,7 +70,7 @@ private:
     int listener_ = -1;
     int wake_ = -1;
     std::uint16_t port_ = 0;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable cut_;
     Mode mode_ = Mode::pass;
     bool stopping_ = false;
@@ -70,6 +78,8 @@ private:
     Moment moment_ = Moment::before;
     bool triggered_ = false;
     std::map<int, Wire> wires_;  // by the client's socket
+    int newest_ = -1;            // the client's socket of the newest connection
+    std::string sent_;           // by that client
     std::jthread thread_;
 };
 

@@ -126,6 +126,24 @@ void TcpRelay::stall() {
     set(Mode::stall);
 }
 
+void TcpRelay::interrupt() {
+    const std::lock_guard lock(mutex_);
+    mode_ = Mode::pass;
+    closeAll();
+    ::eventfd_write(wake_, 1);
+}
+
+std::string TcpRelay::sent() const {
+    const std::lock_guard lock(mutex_);
+    return sent_;
+}
+
+bool TcpRelay::inject(const std::string& bytes) {
+    const std::lock_guard lock(mutex_);
+    const auto wire = wires_.find(newest_);
+    return wire != wires_.end() && sendAll(wire->second.server, bytes);
+}
+
 void TcpRelay::cutAt(std::string bytes, Moment moment) {
     const std::lock_guard lock(mutex_);
     trigger_ = std::move(bytes);
@@ -183,7 +201,11 @@ void TcpRelay::accept() {
         reset(client);
         return;
     }
+    const int on = 1;
+    ::setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     wires_[client] = {client, server, false};
+    newest_ = client;
+    sent_.clear();
 }
 
 /// Takes what has come from one end of a wire; false if that end is closed.
@@ -203,6 +225,9 @@ bool TcpRelay::move(Wire& wire, int from) {
         mode_ = Mode::cut;
     } else if (!sendAll(from == wire.client ? wire.server : wire.client, bytes)) {
         return false;
+    }
+    if (wire.client == newest_ && from == newest_) {
+        sent_ += bytes;
     }
     if (must_cut) {
         // What was sent to the server arrives, although the wire ends now.
