@@ -33,7 +33,7 @@ std::filesystem::path emptyFolder() {
     return folder;
 }
 
-std::vector<std::string> waysOf(const RecordFile& file, const Execution& record) {
+std::vector<std::string> waysOf(const RecordFile& file, const ExecutionRow& record) {
     std::vector<std::string> ways;
     const auto transitions = file.open()->transitions(record.number);
     EXPECT_TRUE(transitions);
@@ -57,7 +57,7 @@ protected:
         return {{"TargetJointPosition", target}, {"SpeedOverride", speed}};
     }
     /// The path of a record begins and ends there [rad, axis 1], without a gap on the way.
-    void expectPath(const Execution& record, double from, double to) const {
+    void expectPath(const ExecutionRow& record, double from, double to) const {
         const auto path = file_.open()->path(record.number);
         ASSERT_TRUE(path);
         ASSERT_GE(path->size(), 3U);
@@ -287,9 +287,9 @@ TEST_F(RecordedComposition, HasItsChildrenOnOtherServersAndTheyHaveTheirParents)
     const auto store = file_.open();
     // WaveSkill runs ThereAndBackSkill of the same server, that SwingSkill of another one, and
     // that the move of a third.
-    std::vector<Execution> level{top};
+    std::vector<ExecutionRow> level{top};
     for (const auto* skill : {"ThereAndBackSkill", "SwingSkill", kMove}) {
-        std::vector<Execution> below;
+        std::vector<ExecutionRow> below;
         for (const auto& parent : level) {
             const auto children = store->children(parent.number);
             ASSERT_TRUE(children);

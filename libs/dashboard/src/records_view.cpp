@@ -160,7 +160,7 @@ RecordsView::RecordsView(std::string url, Board& board)
       board_(board),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
-json RecordsView::recordJson(const Execution& execution) const {
+json RecordsView::recordJson(const ExecutionRow& execution) const {
     const auto arm = board_.armOf(execution.server, execution.controller, execution.skill);
     auto shown = objectOf(execution);
     shown["arm"] = arm.empty() ? json() : json(arm);
@@ -180,7 +180,7 @@ Reply RecordsView::list(const httplib::Request& request) {
         return errorReply(listing.error());
     }
     auto list = json::array();
-    for (const auto& execution : listing ? listing->executions : std::vector<Execution>()) {
+    for (const auto& execution : listing ? listing->executions : std::vector<ExecutionRow>()) {
         list.push_back(recordJson(execution));
     }
     return {200, {{"records", std::move(list)}, {"more", listing && listing->more}}};

@@ -30,7 +30,7 @@ std::string contains(std::string_view column, std::string_view text, Values& val
 /// All names that a text is looked for in: "server || ' ' || skill".
 std::string allNames() {
     std::vector<std::string_view> columns;
-    const Execution execution;
+    const ExecutionRow execution;
     visitMembers(execution, [&columns](const Member& member, const auto& /*value*/) {
         if (member.table == Table::kinds) {
             columns.push_back(member.column);

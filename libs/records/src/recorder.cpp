@@ -59,7 +59,7 @@ public:
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    Key begin(Execution execution);
+    Key begin(ExecutionRow execution);
     template <typename Event>
     void put(Key key, Event event);
     void sample(const KeyedSample& sample);
@@ -124,7 +124,7 @@ Recorder::Impl::~Impl() {
     watcher_ = {};
 }
 
-Recorder::Key Recorder::Impl::begin(Execution execution) {
+Recorder::Key Recorder::Impl::begin(ExecutionRow execution) {
     Message message{.content = std::make_unique<ExecutionRow>(std::move(execution))};
     const auto size = sizeOf(message);
     const std::lock_guard lock(mutex_);
@@ -374,7 +374,7 @@ Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
 Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Recorder::~Recorder() = default;
 
-Recorder::Key Recorder::begin(Execution execution) {
+Recorder::Key Recorder::begin(ExecutionRow execution) {
     return impl_->begin(std::move(execution));
 }
 

@@ -30,7 +30,7 @@ using Wanted = bool (*)(const Member&);
 
 /// Appends the columns of the members that are wanted.
 std::vector<std::string> columnsOf(Wanted wanted, std::vector<std::string> columns = {}) {
-    const Execution execution;
+    const ExecutionRow execution;
     visitMembers(execution, [&](const Member& member, const auto& /*value*/) {
         if (wanted(member)) {
             columns.emplace_back(member.column);

@@ -37,7 +37,7 @@ public:
 private:
     /// An execution that is under way, or over and not written yet.
     struct Active {
-        Execution execution{};
+        ExecutionRow execution{};
         std::int64_t parts = 0;
         std::size_t events_kept = 0;
         std::vector<Event> events{};  // that are not written yet

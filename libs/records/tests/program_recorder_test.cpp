@@ -32,7 +32,7 @@ struct RecordedProgram : ::testing::Test {
         description.results = {{.name = "Length", .type = skill::ValueType::number}};
         return description;
     }
-    Execution only() {
+    ExecutionRow only() {
         const auto listed = file.store()->list({}, {});
         EXPECT_TRUE(listed);
         EXPECT_EQ(listed->executions.size(), 1U);

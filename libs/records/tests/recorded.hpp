@@ -34,8 +34,8 @@ inline std::filesystem::path testFolder() {
 }
 
 /// An execution of the arm ur5 that begins at(0).
-inline Execution moveOf(const std::string& id, UtcTime started = at(0)) {
-    Execution e;
+inline ExecutionRow moveOf(const std::string& id, UtcTime started = at(0)) {
+    ExecutionRow e;
     e.id = id;
     e.server_name = "ur5";
     e.skill = "JointPtpMoveSkill";

@@ -12,7 +12,7 @@ public:
     LambdaWork(const SkillFunctions& functions, ValueMap parameters)
         : functions_(functions), parameters_(std::move(parameters)) {}
 
-    void start(Execution execution) override {
+    void start(ExecutionHandle execution) override {
         execution_ = std::move(execution);
         if (functions_.start) {
             functions_.start(parameters_, execution_);
@@ -38,7 +38,7 @@ public:
 private:
     const SkillFunctions& functions_;
     const ValueMap parameters_;
-    Execution execution_;
+    ExecutionHandle execution_;
 };
 
 }  // namespace

@@ -33,7 +33,7 @@ struct Script {
     std::vector<std::string> refusals{};  ///< of live values
     std::optional<UtcTime> meant_for{};   ///< of the last live value
     ValueMap snapshot{};
-    Execution execution{};
+    ExecutionHandle execution{};
     int bodies_alive = 0;
 };
 
@@ -49,7 +49,7 @@ public:
     ScriptedWork(const ScriptedWork&) = delete;
     ScriptedWork& operator=(const ScriptedWork&) = delete;
 
-    void start(Execution execution) override {
+    void start(ExecutionHandle execution) override {
         script_->calls.emplace_back("start");
         script_->execution = std::move(execution);
         if (script_->on_start) {

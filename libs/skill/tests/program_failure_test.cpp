@@ -357,7 +357,7 @@ TEST(ProgramEnd, CancelsItsTimers) {
 }
 
 TEST(EmptyExecution, IgnoresEveryCall) {
-    const Execution nobody;
+    const ExecutionHandle nobody;
     nobody.finish();
     nobody.fail(Reason::error, "");
     nobody.atRest();

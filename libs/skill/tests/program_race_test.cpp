@@ -26,7 +26,7 @@ public:
     ThreadedWork(const ThreadedWork&) = delete;
     ThreadedWork& operator=(const ThreadedWork&) = delete;
 
-    void start(Execution execution) override {
+    void start(ExecutionHandle execution) override {
         worker_ =
             std::jthread([this, execution](const std::stop_token& stop) { work(stop, execution); });
     }

@@ -410,7 +410,7 @@ private:
                          .rest_deadline = kRestDeadline},
                         weldDescription(),
                         executor_};
-    Execution earlier_;
+    ExecutionHandle earlier_;
     std::map<std::string, std::uint64_t> epochs_;
 };
 

@@ -143,7 +143,7 @@ private:
     public:
         DrillWork(const DrillSkill& skill, const Drill& parameters)
             : skill_(skill), parameters_(parameters) {}
-        void start(Execution execution) override {
+        void start(ExecutionHandle execution) override {
             execution.finish(skill_.results().write({.depth = parameters_.depth}));
         }
         Result<void> suspend() override { return {}; }

@@ -60,14 +60,14 @@ Result<records::Filter> filterOf(const HistoryOptions& options) {
     return filter;
 }
 
-std::string durationOf(const Execution& e) {
+std::string durationOf(const ExecutionRow& e) {
     return e.isOver()
                ? fmt::format("{:.3f} s", std::chrono::duration<double>(e.ended - e.started).count())
                : "-";
 }
 
 /// "Halted (Error): axis 2: ..."
-std::string outcomeOf(const Execution& e) {
+std::string outcomeOf(const ExecutionRow& e) {
     auto text = e.state;
     if (!e.reason.empty()) {
         text += fmt::format(" ({})", e.reason);
@@ -75,12 +75,12 @@ std::string outcomeOf(const Execution& e) {
     return e.reason_text.empty() ? text : text + ": " + e.reason_text;
 }
 
-std::string serverOf(const Execution& e) {
+std::string serverOf(const ExecutionRow& e) {
     return e.server_name.empty() ? e.server : e.server_name;
 }
 
 /// A line of the list.
-void printLine(const Execution& e, const HistoryOptions& options) {
+void printLine(const ExecutionRow& e, const HistoryOptions& options) {
     if (options.json) {
         fmt::print("{}\n", printable(records::toJson(e)));
         return;
@@ -246,7 +246,7 @@ void printDetails(const records::Details& details) {
 Exit runShow(const HistoryOptions& options) {
     const auto store = openRecords(options.records);
     const auto execution =
-        store ? (*store)->find(options.id) : Result<Execution>(fail(store.error()));
+        store ? (*store)->find(options.id) : Result<ExecutionRow>(fail(store.error()));
     const auto details = execution ? records::detailsOf(**store, execution->number)
                                    : Result<records::Details>(fail(execution.error()));
     if (!details) {
@@ -300,7 +300,7 @@ struct TraceOptions {
 Exit runTrace(const TraceOptions& options) {
     const auto store = openRecords(options.records);
     const auto execution =
-        store ? (*store)->find(options.id) : Result<Execution>(fail(store.error()));
+        store ? (*store)->find(options.id) : Result<ExecutionRow>(fail(store.error()));
     const auto trace = execution ? records::chromeTrace(**store, execution->number)
                                  : Result<std::string>(fail(execution.error()));
     if (!trace) {

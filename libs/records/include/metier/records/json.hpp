@@ -20,7 +20,7 @@ std::string toJson(const ExecutionRow& execution);
 
 /// Complete record of one execution.
 struct Details {
-    Execution execution{};
+    ExecutionRow execution{};
     std::vector<ExecutionRow> children{};
     std::vector<Transition> transitions{};
     std::vector<Intermediate> intermediates{};

@@ -91,7 +91,7 @@ public:
 
     /// Begins an execution; its server is always Options::server. Its state follows from its
     /// transitions.
-    Key begin(Execution execution);
+    Key begin(ExecutionRow execution);
     /// Adds a transition, in the order of their times; the first 100,000 of an execution are kept.
     void transition(Key key, Transition transition);
     void intermediate(Key key, Intermediate intermediate);

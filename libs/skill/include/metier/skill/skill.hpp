@@ -60,7 +60,7 @@ public:
     virtual ~ExecutionWork() = default;
     /// Begins the work; Running has been committed before. The outcome is reported through
     /// `execution`, which may also be used inside this call.
-    virtual void start(Execution execution) = 0;
+    virtual void start(ExecutionHandle execution) = 0;
     /// Asks to come to rest on the path; answered by ExecutionHandle::atRest(), finish() or fail().
     /// Errors: reported to the client; then nothing is stopped.
     virtual Result<void> suspend() = 0;

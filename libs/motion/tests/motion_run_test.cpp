@@ -67,7 +67,7 @@ TEST_P(ExecutionOf, SuspendsAndResumesAnywhereOnThePath) {
     }
 }
 
-TEST(Execution, StopsFromAQuarterOfAMetrePerSecondWithinThreeTenthsOfASecond) {
+TEST(MotionRun, StopsFromAQuarterOfAMetrePerSecondWithinThreeTenthsOfASecond) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
     MotionRun execution(trajectory);
@@ -87,7 +87,7 @@ TEST(Execution, StopsFromAQuarterOfAMetrePerSecondWithinThreeTenthsOfASecond) {
     EXPECT_FALSE(execution.finished());
 }
 
-TEST(Execution, BrakesWithTheFirstSetPointAfterAStopOrHalt) {
+TEST(MotionRun, BrakesWithTheFirstSetPointAfterAStopOrHalt) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
     for (const auto brake : {&MotionRun::stop, &MotionRun::halt}) {
@@ -172,7 +172,7 @@ TEST_F(StopInATime, FollowsAHaltAndAResume) {
     EXPECT_FALSE(execution_.finished());
 }
 
-TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
+TEST(MotionRun, OverrideChangesTheSpeedButNotThePath) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.2);
     MotionRun execution(trajectory);
@@ -190,7 +190,7 @@ TEST(Execution, OverrideChangesTheSpeedButNotThePath) {
     EXPECT_GT(cycles * kCycle.count(), trajectory.duration().count());
 }
 
-TEST(Execution, OverrideOfZeroStandsOnThePathUntilItIsRaised) {
+TEST(MotionRun, OverrideOfZeroStandsOnThePathUntilItIsRaised) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.1);
     MotionRun execution(trajectory);
@@ -209,7 +209,7 @@ TEST(Execution, OverrideOfZeroStandsOnThePathUntilItIsRaised) {
     EXPECT_TRUE(execution.finished());
 }
 
-TEST(Execution, ALateCycleStaysOnTheTimeBase) {
+TEST(MotionRun, ALateCycleStaysOnTheTimeBase) {
     const RobotModel model = loadRobot("ur5");
     const Trajectory trajectory = lineOf(model, 0.1);
     MotionRun execution(trajectory);
@@ -281,7 +281,7 @@ TEST_F(LateCycle, AtRestMeansNothing) {
     EXPECT_FALSE(execution_.stoppedLate());
 }
 
-TEST(Execution, AMotionOfNoLengthIsFinishedAtOnce) {
+TEST(MotionRun, AMotionOfNoLengthIsFinishedAtOnce) {
     const RobotModel model = loadRobot("ur5");
     MotionRun execution(lineOf(model, 0.0));
     execution.next(kCycle);
