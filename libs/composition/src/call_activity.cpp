@@ -53,12 +53,12 @@ void CallActivity::unpark() {
 
 void CallActivity::launch() {
     reset_pause_.cancel();
-    const auto& used = run_.used(step_.use);
+    const auto& bound = run_.used(step_.use);
     if (const auto available = used().available(); !available) {
         over(failure(Reason::device_lost, "cannot be reached: " + available.error().message));
     } else if (used().state() != State::halted) {
         begin();
-    } else if (used.mayReset()) {
+    } else if (bound.mayReset()) {
         askReset();
     } else {
         over(failure(Reason::error,

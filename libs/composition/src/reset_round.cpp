@@ -60,13 +60,13 @@ private:
 ResetRound::ResetRound(Run& run, std::function<void()> done) : run_(run), done_(std::move(done)) {}
 ResetRound::~ResetRound() = default;
 
-void ResetRound::start(BoundSkills& used) {
-    for (auto& [alias, each] : used) {
-        const auto& used = *each.skill;
-        if (!each.halted_by_us || !used.available() || used.state() != skill::State::halted) {
+void ResetRound::start(BoundSkills& skills) {
+    for (auto& [alias, bound] : skills) {
+        const auto& used = *bound.skill;
+        if (!bound.halted_by_us || !used.available() || used.state() != skill::State::halted) {
             continue;
         }
-        auto one = std::make_unique<One>(run_, each, *this);
+        auto one = std::make_unique<One>(run_, bound, *this);
         if (one->ask()) {
             open_.push_back(std::move(one));
         }

@@ -26,7 +26,7 @@ public:
     ResetRound& operator=(const ResetRound&) = delete;
 
     /// Once.
-    void start(BoundSkills& used);
+    void start(BoundSkills& skills);
 
 private:
     class One;

@@ -73,9 +73,9 @@ SequenceSkill::SequenceSkill(Composition composition,
       clock_(clock),
       origin_(std::move(origin)) {
     for (const auto& use : composition_.definition.uses) {
-        auto& used = used_[use.alias];
-        used = BoundSkill{std::move(used_skills.at(use.alias)), use.reset};
-        unheard_.emplace(use.alias, std::make_unique<Unheard>(used));
+        auto& bound = used_[use.alias];
+        bound = BoundSkill{std::move(used_skills.at(use.alias)), use.reset};
+        unheard_.emplace(use.alias, std::make_unique<Unheard>(bound));
     }
     collectNeeded(composition_.definition.root.steps, needed_);
 }
@@ -83,14 +83,14 @@ SequenceSkill::SequenceSkill(Composition composition,
 SequenceSkill::~SequenceSkill() = default;
 
 Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
-    const auto& used = used_.find(alias)->second;
-    const auto& used = *used.skill;
+    const auto& bound = used_.find(alias)->second;
+    const auto& used = *bound.skill;
     if (const auto available = used.available(); !available) {
         return fail(available.error().code,
                     fmt::format("{} ({}) cannot be reached: {}", used.name(), alias,
                                 available.error().message));
     }
-    if (used.state() == State::halted && !used.mayReset()) {
+    if (used.state() == State::halted && !bound.mayReset()) {
         return fail(Errc::invalid_state,
                     fmt::format("{} ({}) is Halted: {}; reset it, or write reset = true in "
                                 "[uses.{}]",
@@ -115,9 +115,9 @@ Result<std::unique_ptr<skill::ExecutionWork>> SequenceSkill::prepare(
 Descriptions SequenceSkill::descriptionsWith(
     const std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills) const {
     Descriptions descriptions;
-    for (const auto& [alias, used] : used_) {
+    for (const auto& [alias, bound] : used_) {
         const auto other = used_skills.find(alias);
-        const auto& used = other == used_skills.end() ? *used.skill : *other->second;
+        const auto& used = other == used_skills.end() ? *bound.skill : *other->second;
         descriptions.emplace(alias, used.description());
     }
     return descriptions;
@@ -135,17 +135,17 @@ Result<void> SequenceSkill::rebind(std::map<std::string, std::unique_ptr<UsedSki
     METIER_ASSIGN(auto composed, compose(composition_.definition, descriptionsWith(used_skills)));
     composition_ = std::move(composed);
     for (auto& [alias, used] : used_skills) {
-        auto& used = used_.find(alias)->second;
-        std::swap(used.skill, used);
-        used.halted_by_us = false;
+        auto& bound = used_.find(alias)->second;
+        std::swap(bound.skill, used);
+        bound.halted_by_us = false;
     }
     return {};
 }
 
 Result<void> SequenceSkill::reset() {
-    for (auto& [alias, used] : used_) {
-        auto& used = *used.skill;
-        if (!used.mayReset() || !used.available() || used.state() != State::halted) {
+    for (auto& [alias, bound] : used_) {
+        auto& used = *bound.skill;
+        if (!bound.mayReset() || !used.available() || used.state() != State::halted) {
             continue;
         }
         if (const auto asked = used.reset(*unheard_.at(alias)); !asked) {

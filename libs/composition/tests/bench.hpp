@@ -89,7 +89,7 @@ name = "first"
 run = "b"
 )";
 
-/// A composed skill over scripted used_skills; the test moves the time and everything else.
+/// A composed skill over scripted used skills; the test moves the time and everything else.
 class Bench {
 public:
     /// \param text a composition file; what it uses by the type GraspSkillType grasps, all else

@@ -81,7 +81,7 @@ Result<void> serveBasePlacement(opcua::Server& server, const MotionDeviceSystem&
     const auto placement = std::make_shared<Placement>(Placement{server, node});
     return forEachPart(nodes, node, [&](const NodeId& variable, Part part) {
         placement->limits.add(nodes, variable,
-                              {Role::parameter, static_cast<std::uint8_t>(part), 0});
+                              {NodeKind::parameter, static_cast<std::uint8_t>(part), 0});
         opcua::DataSource source{
             [placement, part](const opcua::Session& /*reader*/) {
                 return opcua::DataValue{partOf(placement->pose, part), {}, {}, {}};

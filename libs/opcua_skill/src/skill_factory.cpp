@@ -59,7 +59,7 @@ const skill::Field& fieldOf(const skill::SkillDescription& description, NodeRole
     return (is_result ? description.results : description.parameters)[node_role.field];
 }
 
-/// Which nodes of a layout an instance has: the mandatory ones, those with a node_role, and what
+/// Which nodes of a layout an instance has: the mandatory ones, those with a role, and what
 /// these hang below.
 std::vector<bool> neededNodes(const SkillLayout& layout, const std::vector<UsedNode>& used) {
     std::vector<bool> needed(layout.size());

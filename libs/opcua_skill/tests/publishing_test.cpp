@@ -156,7 +156,7 @@ TEST_F(Publishing, TheSystemIsFoundByItsTypes) {
 
 TEST_F(Publishing, KinematicsAreReadBack) {
     ASSERT_TRUE(publishKinematics(server().nodes(), system(), twoAxes(), [] {
-        return KinematicsState{{0.5, -0.5}, {1, 2, 3, 0, 0, 0}, 1, 7};
+        return KinematicsState{{0.5, -0.5}, {1, 2, 3, 0, 0, 0}, SafetyStateKind::normal, 7};
     }));
     serve();
     const auto client = connect();

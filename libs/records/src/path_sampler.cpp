@@ -103,7 +103,7 @@ PathSampler::Reading PathSampler::read() const {
     Reading reading{.arm = arm_.state(), .time = std::chrono::steady_clock::now()};
     if (sensor_ != nullptr) {
         const auto sample = sensor_->sample();
-        if (sample.write_state == device::SafetyState::normal) {
+        if (sample.health == device::SafetyState::normal) {
             reading.force = sample;
         }
     }

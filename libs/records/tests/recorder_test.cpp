@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-/// Reports of a recorder on its write_state.
+/// Reports of a recorder on whether it writes.
 class Alarms {
 public:
     std::function<void(const WriteReport&)> listener() {

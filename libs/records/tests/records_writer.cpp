@@ -1,7 +1,7 @@
 // A server that records executions one after another, for tests that kill it or run several.
 // Arguments: store, ApplicationUri, how many executions (0: until it is killed).
 // After each one that was given to the recorder, a line with its id and the time [us since 1970];
-// "ready" comes first, and "write_state TEXT" whenever that changes.
+// "ready" comes first, and "health TEXT" whenever that changes.
 #include <fmt/format.h>
 
 #include <chrono>

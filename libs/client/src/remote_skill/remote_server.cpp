@@ -63,7 +63,7 @@ Result<std::unique_ptr<composition::UsedSkill>> RemoteServer::use(const client::
                                                                   std::string origin) {
     auto opened = open(skill, std::move(origin));
     return opened
-               ? used(std::move(*opened))
+               ? usedSkill(std::move(*opened))
                : Result<std::unique_ptr<composition::UsedSkill>>(fail(std::move(opened.error())));
 }
 
@@ -79,7 +79,7 @@ Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::st
                       std::move(origin)};
 }
 
-std::unique_ptr<composition::UsedSkill> RemoteServer::used(PendingUse use) {
+std::unique_ptr<composition::UsedSkill> RemoteServer::usedSkill(PendingUse use) {
     auto used = std::make_unique<RemoteUsedSkill>(worker_->connection, use.link,
                                                   std::move(use.name), std::move(use.origin));
     used->adopt(use.skill, use.now);

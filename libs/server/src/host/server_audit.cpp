@@ -51,7 +51,7 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const cell::ServerConfig&
         {.file = config.state_folder / "audit" /
                  fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
          .on_write_state = [&audit = *audit](security::WriteState state, const std::string& why) {
-             audit.tell(health, why);
+             audit.tell(state, why);
          }});
     if (!log) {
         return fail(log.error());

@@ -35,7 +35,7 @@ std::string namesOf(const std::vector<composition::Use>& uses) {
 
 }  // namespace
 
-/// Finds the used_skills of one definition and what to publish of them.
+/// Finds the used skills of one definition and what to publish of them.
 class CompositionServer::Roles {
 public:
     Roles(CompositionServer& server, const Definition& definition)

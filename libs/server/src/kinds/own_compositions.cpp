@@ -91,10 +91,10 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
     METIER_ASSIGN(const auto chosen, chooseAll(definition, host.skills().programs(), server));
     const auto executor = host.skills().executor();
     composition::Descriptions descriptions;
-    std::map<std::string, std::unique_ptr<composition::Child>> children;
+    std::map<std::string, std::unique_ptr<composition::UsedSkill>> used_skills;
     for (const auto& [alias, program] : chosen) {
         descriptions.emplace(alias, program->description());
-        children.emplace(alias, std::make_unique<composition::LocalChild>(
+        used_skills.emplace(alias, std::make_unique<composition::LocalUsedSkill>(
                                     *program, executor,
                                     skill::Caller{.session_id = "composition " + name,
                                                   .client_name = name,
@@ -107,7 +107,7 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
     auto origin = fmt::format("{}.{}~{}", server, name, newLife());
     const auto published = host.skills().publish(
         skills,
-        std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(children),
+        std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(used_skills),
                                                      executor, host.clock(), std::move(origin)),
         options);
     return published ? publishUses(host, skills, name, chosen) : fail(published.error());

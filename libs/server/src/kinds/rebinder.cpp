@@ -22,7 +22,7 @@ constexpr auto kLongestTurn = 5s;  // until the executor gets to something
 
 }  // namespace
 
-/// A server that was given up, with the used_skills that watch what still runs there.
+/// A server that was given up, with the used skills that watch what still runs there.
 struct Rebinder::Former {
     std::shared_ptr<client::RemoteServer> server;
     std::shared_ptr<UsedSkills> used_skills;
@@ -114,13 +114,13 @@ Result<void> Rebinder::moveTo(const DiscoveredServer& other, SkillBinding& bindi
     return exchange(parts, binding);
 }
 
-/// On the executor's thread: the used_skills are made, and change places with those of before.
+/// On the executor's thread: the used skills are made, and take the places of the former ones.
 Result<void> Rebinder::exchange(Exchange& parts, SkillBinding& binding) {
     const auto former = binding.server;
     auto done = onExecutor([this, &parts, &binding]() -> Result<void> {
         auto& used_skills = *parts.used_skills;
         for (auto& [alias, use] : parts.pending) {
-            used_skills.emplace(alias, parts.server->skill(std::move(use)));
+            used_skills.emplace(alias, parts.server->usedSkill(std::move(use)));
         }
         // A server that came back in the meantime stays.
         auto rebound = binding.server->awaySince()

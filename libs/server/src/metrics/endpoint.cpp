@@ -18,7 +18,7 @@ http::HttpLimits limits() {
     http::HttpLimits limits;
     limits.connections = 8;
     limits.tabs = 0;
-    limits.work_bytes = 0;
+    limits.body_bytes = 0;
     limits.request_time = 2s;
     limits.send_time = 2s;
     return limits;

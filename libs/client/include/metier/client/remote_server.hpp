@@ -32,7 +32,7 @@ struct RemoteServerOptions {
 struct OpenSkill;
 class UsedSkillLink;
 
-/// A skill that was opened and has no used skill yet; moved from open() to used().
+/// A skill that was opened and has no used skill yet; moved from open() to usedSkill().
 struct PendingUse {
     std::shared_ptr<UsedSkillLink> link;  // shared with what is on its way to the used skill
     std::shared_ptr<OpenSkill> skill;     // shared with the work that waits for the server
@@ -51,11 +51,11 @@ struct PendingUse {
 /// executor's. A thread of its own connects again.
 class RemoteServer {
 public:
-    /// \param executor runs on the thread that owns the used_skills
+    /// \param executor runs on the thread that owns the used skills
     /// Errors: connection_lost, timeout, access_denied, with the address.
     static Result<std::unique_ptr<RemoteServer>> connect(RemoteServerOptions options,
                                                          std::shared_ptr<skill::Executor> executor);
-    /// Destroy it after its used_skills.
+    /// Destroy it after its used skills.
     ~RemoteServer();
 
     const std::string& url() const noexcept;
@@ -77,9 +77,9 @@ public:
                                                         std::string origin);
 
     /// use() in two parts, for an executor that is at work: open() waits, on any thread but the
-    /// executor's; used() does not wait and must be called on the executor's thread.
+    /// executor's; usedSkill() does not wait and must be called on the executor's thread.
     Result<PendingUse> open(const client::SkillAddress& skill, std::string origin);
-    std::unique_ptr<composition::UsedSkill> used(PendingUse use);
+    std::unique_ptr<composition::UsedSkill> usedSkill(PendingUse use);
 
 private:
     class Worker;
