@@ -7,7 +7,7 @@
 #include <new>
 
 namespace {
-// Of one thread, so that the other threads of a test do not count.
+// Count of one thread, so that the other threads of a test do not count.
 thread_local std::size_t allocations = 0;
 }  // namespace
 

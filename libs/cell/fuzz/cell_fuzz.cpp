@@ -1,4 +1,5 @@
-// Takes any text for a cell file, and each of its settings for whatever a driver may ask for.
+// Parses any text as a cell file, and reads each of its settings as every type that a driver may
+// ask for.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -123,7 +123,7 @@ void readKind(const TomlTable& table, const std::filesystem::path& folder, Serve
     }
 }
 
-/// What a cell says for all its servers.
+/// Values of a cell for all its servers.
 struct Shared {
     Discovery discovery;
     Records records;

@@ -11,12 +11,12 @@
 
 namespace metier::cell {
 
-// What several parts of a cell file have in common. What is wrong is noted in the table.
+// Reading of keys that several parts of a cell file have in common. Errors are noted in the table.
 
-/// Whether it is an address of a server, and not its name.
+/// Reports whether the text is the address of a server, not its name.
 bool isAddress(const std::string& server);
 
-/// What "discover" means instead of a server: any that is found.
+/// Word in place of a server's name: any server that discovery finds.
 constexpr const char* kDiscover = "discover";
 
 /// A file below `folder`, absolute.
@@ -38,14 +38,13 @@ double secondsWithin(const TomlTable& table, std::string_view key, double preset
 /// One text, or a list of them.
 std::vector<std::string> textOrTexts(const TomlTable& table, std::string_view key);
 
-/// How others find a server.
-/// \param preset what the cell says, for a server
 /// The table `[records]` of a cell. A file is relative to `folder`.
 Records readRecords(const TomlTable& cell, const std::filesystem::path& folder);
 /// The key `metrics` of a server.
 std::optional<HttpAddress> readMetrics(const TomlTable& table);
 
-/// How others find a server.
+/// Reads the ways in which others find a server.
+/// \param preset values of the cell, for a server; they hold for missing keys
 Discovery readDiscovery(const TomlTable& table, Discovery preset);
 
 }  // namespace metier::cell

@@ -9,7 +9,8 @@
 namespace metier::cell {
 namespace {
 
-// Arms are told of a start that is nearer too late, of a later one with more doubt [s].
+// Bounds of the start delay [s]: a nearer start may reach an arm too late, a later one is less
+// certain.
 constexpr double kShortestStartDelay = 0.05;
 constexpr double kLongestStartDelay = 30.0;
 // A shorter absence is that of a server that is started again [s].

@@ -7,7 +7,8 @@
 
 namespace metier::cell {
 
-// Servers whose skills are made of those of others. What is wrong is noted in the table.
+// Reading of servers whose skills are made of skills of other servers. Errors are noted in the
+// table.
 
 MoveComponent readMove(const TomlTable& table);
 CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder);

@@ -68,7 +68,7 @@ void readLimit(const TomlTable& table, const LimitKind& kind, std::vector<Limit>
     }
 }
 
-/// Of two limits that are both set, the first may not be over the second.
+/// Checks two limits: if both are set, the first may not exceed the second.
 void checkOrder(const TomlTable& table, const std::vector<Limit>& limits, std::string_view low,
                 std::string_view high) {
     const auto lower = valueOf(limits, low);

@@ -7,7 +7,7 @@
 
 namespace metier::cell {
 
-/// The limits of a server, from its table `limits`. What is wrong is noted in the table.
+/// Reads the limits of a server from its table `limits`. Errors are noted in the table.
 std::vector<Limit> readLimits(const TomlTable& table);
 
 }  // namespace metier::cell

@@ -29,7 +29,8 @@ struct TomlFile::Impl {
     // Line numbers order the report as a reader goes through the file.
     std::multimap<toml::source_index, std::string> problems = {};
     std::vector<std::unique_ptr<const TomlTable::Impl>> tables = {};
-    std::unordered_map<const toml::table*, const TomlTable::Impl*> views = {};  // of tables
+    std::unordered_map<const toml::table*, const TomlTable::Impl*> views =
+        {};  // views by their tables
     std::vector<std::unique_ptr<const TomlValue::Impl>> values = {};
 
     // Out of line: TomlTable::Impl is complete only below.
@@ -131,7 +132,8 @@ TomlFile::Impl::Impl(std::string file_name, toml::table table)
 
 TomlFile::Impl::~Impl() = default;
 
-/// One view of each table, so that it is known what was asked for, however often it is opened.
+/// Opens the one view of a table. Each table has one, so that the keys read are known however often
+/// it is opened.
 TomlTable TomlFile::Impl::open(const toml::table* table, std::string path) {
     if (const auto known = views.find(table); known != views.end()) {
         return TomlTable(known->second);

@@ -75,7 +75,7 @@ TEST(SafetyPublisher, LetsAListenerOwnAnotherRegistration) {
     EXPECT_EQ(heard.texts.size(), 1U);
 }
 
-// For the thread sanitizer: a driver sets, its notifier tells, clients ask and come and go.
+// For the thread sanitizer: a driver sets, its notifier dispatches, clients ask and come and go.
 TEST(SafetyPublisher, MayBeUsedByManyThreads) {
     SafetyPublisher publisher{{SafetyState::disconnected, "not connected yet", false}};
     std::atomic<int> told{0};

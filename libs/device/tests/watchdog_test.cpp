@@ -17,8 +17,8 @@ using namespace std::chrono_literals;
 
 constexpr std::chrono::nanoseconds kLimit = 250ms;
 
-/// A watched thread, played by the test, that has ticked once. The watchdog's own thread looks,
-/// too, whenever it likes: how often devices are told to stop is not counted, all else is.
+/// A watched thread, played by the test, that has ticked once. The watchdog's own thread checks at
+/// any time, too: the number of stops is not counted, everything else is.
 class WatchedThread : public ::testing::Test {
 protected:
     WatchedThread() { clock_.advance(1s); }
@@ -34,7 +34,7 @@ protected:
                 .noticed = [this](std::chrono::nanoseconds) { ++noticed_; }};
     }
 
-    /// What the watched thread finds in its queue once it works again.
+    /// Runs the closures in the watched thread's queue, as when it works again.
     void runPosted() {
         std::vector<std::function<void()>> work;
         {

@@ -110,7 +110,7 @@ void endLink(int& descriptor) noexcept {
 
 /// Lets go of all that the owner has open: it must end with the owner, not with the guard.
 [[noreturn]] void becomeGuard(int channel, const Beats& beats, int period_ms) noexcept {
-    setsid();  // what a terminal does to its programs is not for the guard
+    setsid();  // signals of a terminal to its programs must not reach the guard
     prctl(PR_SET_NAME, "metier-guard");
     constexpr int kChannel = 0;
     dup2(channel, kChannel);

@@ -19,8 +19,8 @@ namespace metier::link {
 namespace {
 
 constexpr std::size_t kReadable = 80;
-// Each process that was refused takes one place, since nobody accepts; beyond, the error does not
-// tell who has the name.
+// Each refused process takes one place, since no connection is accepted. If all are taken, the
+// error does not name the holder.
 constexpr int kQueue = 4096;
 
 struct Address {
@@ -48,7 +48,7 @@ int newSocket() {
     return socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 }
 
-/// The process that listens there, without its help; nothing if it does not tell.
+/// The process that listens there, from the kernel; nothing if that is not known.
 std::optional<ucred> holderOf(const Address& address) {
     const int asking = newSocket();
     ucred peer{};

@@ -22,7 +22,8 @@ void StartWatch::watch(const StopSignal& signal) {
     if (over_.wait(signal) || over_.waitUntil(std::chrono::steady_clock::now() + kOrderly)) {
         return;
     }
-    std::fputs("metier: stopped before it was ready\n", stderr);  // which may be gone
+    std::fputs("metier: stopped before it was ready\n", stderr);  // stderr may be closed: the
+                                                                  // result is ignored
     std::_Exit(EXIT_FAILURE);
 }
 

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLimit = 100ms;
-// Of an owner that works, on a machine that may let it wait for long.
+// Limit for an owner that works, on a machine that may make it wait for long.
 constexpr auto kPatient = 1000ms;
 constexpr auto kNever = 1h;
 

@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Of this test alone, on a machine that runs others.
+/// Name used by this test alone, on a machine that runs other tests, too.
 std::string nameOf(const std::string& test) {
     return test + " " + std::to_string(getpid());
 }

@@ -225,7 +225,7 @@ void planLine(benchmark::State& state, const std::string& robot) {
     }
 }
 
-/// What KDL needs for a set-point of the same line: position on it and LMA from the one before.
+/// Time of KDL for a set-point of the same line: position on it, and LMA from the set-point before.
 void sampleLineKdl(benchmark::State& state, const std::string& robot) {
     const RobotModel model = load(robot);
     const KdlOracle oracle(model.chain());

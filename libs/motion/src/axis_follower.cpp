@@ -37,7 +37,7 @@ double decayed(const ScalarState& error, double decay, double cycle) noexcept {
     return decay * (3 * error.position - decay * (3 * before - decay * earlier));
 }
 
-/// Whether an error can fade with `decay` without more than `jerk` on the way.
+/// Reports whether an error can fade with `decay` without more than `jerk` on the way.
 bool fades(ScalarState error, double decay, double jerk, double cycle) noexcept {
     constexpr int lookahead = 8;
     for (int i = 0; i < lookahead; ++i) {
@@ -94,7 +94,7 @@ ScalarState atInstant(const ScalarState& state, double cycle) noexcept {
     return {state.position, state.velocity + state.acceleration * cycle / 2, state.acceleration};
 }
 
-/// Where a motion ends that brakes at once.
+/// End position of a motion that brakes at once.
 double stopPosition(const ScalarState& state, const ScalarLimits& limits, double cycle) noexcept {
     return Profile::brake(atInstant(state, cycle), limits).end();
 }
@@ -156,7 +156,7 @@ JerkRange beforePositionLimits(const ScalarState& now, const FollowerLimits& lim
     return range;
 }
 
-/// What the limits allow, but for rounding.
+/// Range of jerk that the limits allow, except for rounding.
 JerkRange exactRange(const ScalarState& now, const FollowerLimits& limits, double cycle) noexcept {
     return beforePositionLimits(now, limits,
                                 allowedJerk(now, shareOf(limits, 1 + kRounding), cycle), cycle);

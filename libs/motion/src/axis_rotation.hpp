@@ -49,7 +49,8 @@ inline Eigen::Matrix3d rotationMatrix(const Eigen::Vector3d& axis,
 struct AxisRotations {
     std::array<AxisRotation, 2> value;
     std::size_t count = 0;
-    /// So near a double root that rounding shows in the result: polish it.
+    /// Set if a double root is so near that rounding shows in the result, which then needs
+    /// refining.
     bool delicate = false;
 };
 

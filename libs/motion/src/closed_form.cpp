@@ -76,7 +76,7 @@ double across(const Vector3d& v, const Vector3d& axis) {
     return axis.cross(v).norm();
 }
 
-/// What is common to the arms whose axes 2 and 3 are parallel: two links in a plane.
+/// Common part of arms whose axes 2 and 3 are parallel: two links in a plane.
 struct PlanarPair {
     std::array<AxisRotation, 2> second;
     std::array<AxisRotation, 2> third;
@@ -104,7 +104,7 @@ PlanarPair solvePlanarPair(const ZeroPosition& zero, const Vector3d& p3e, const 
 
 struct Target {
     Matrix3d turned;  ///< rotation of the flange against its zero position
-    Vector3d wrist;   ///< where the last axes meet
+    Vector3d wrist;   ///< point at which the last axes meet
 };
 
 Target targetOf(const ZeroPosition& zero, const Transform& base_from_flange, std::size_t last) {

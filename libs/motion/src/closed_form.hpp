@@ -4,7 +4,7 @@
 
 namespace metier::motion {
 
-/// Which closed form fits the chain; moves `zero.point` to where its axes meet.
+/// Finds the closed form that fits the chain; moves `zero.point` to the points where axes meet.
 IkKind recogniseStructure(std::size_t axis_count, ZeroPosition& zero);
 
 /// Brings six axes that have nearly the structure of three_parallel_axes, as those of a calibrated
@@ -12,11 +12,11 @@ IkKind recogniseStructure(std::size_t axis_count, ZeroPosition& zero);
 /// \return false, and `zero` unchanged, if they are farther off
 bool idealise(ZeroPosition& zero);
 
-/// What the closed forms are asked.
+/// Query for a closed form.
 struct ClosedFormQuery {
     Transform base_from_flange;
-    JointVector reference;        ///< for axes the pose leaves free [rad]
-    double redundancy_angle = 0;  ///< of an arm_angle chain [rad]
+    JointVector reference;        ///< values of axes that the pose leaves free [rad]
+    double redundancy_angle = 0;  ///< arm angle, for an arm_angle chain [rad]
 };
 
 /// Joint positions and which of them rounding may have touched.

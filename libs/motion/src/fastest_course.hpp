@@ -10,7 +10,7 @@ namespace metier::motion {
 /// A stretch of a path whose speed is to be found.
 struct Course {
     const std::vector<double>& places;       ///< path parameters of the knots
-    const std::vector<SpeedBounds>& bounds;  ///< at the knots
+    const std::vector<SpeedBounds>& bounds;  ///< bounds at the knots
     /// Most that the square of the path parameter's speed may be at each knot, > 0.
     std::vector<double> ceiling;
     std::size_t first = 0;  ///< knot before which the speed stays the same
@@ -20,7 +20,7 @@ struct Course {
 /// Speed of the path parameter at a knot.
 struct CourseSpeed {
     double square = 0;
-    double slope = 0;  ///< of half the square, by the path parameter
+    double slope = 0;  ///< slope of half the square, by the path parameter
 };
 
 /// The speeds at all knots with which the path takes the least time, while every bound keeps

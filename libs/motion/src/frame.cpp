@@ -6,7 +6,7 @@
 namespace metier::motion {
 
 namespace {
-/// Below this cosine of b, a and c cannot be told apart: the matrix entries are rounding noise.
+/// Below this cosine of b, a and c cannot be separated: the matrix entries are rounding noise.
 constexpr double kGimbalLock = 1e-9;
 }  // namespace
 

@@ -22,7 +22,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 /// A solution this close beyond a limit is on it [rad].
 constexpr double kLimitRounding = 1e-10;
-/// What a solution must fulfil, position [m] and rotation [rad].
+/// Largest error of a solution, position [m] and rotation [rad].
 constexpr double kResidual = 1e-10;
 constexpr double kNumericResidual = 1e-9;
 constexpr int kIterations = 40;
@@ -69,7 +69,7 @@ ClosedFormSolutions solveClosedForm(IkKind kind, const ZeroPosition& zero,
     return {};
 }
 
-/// Whether a solution, each axis in (-pi, pi], is among them already.
+/// Reports whether a solution, each axis in (-pi, pi], is among the solutions already.
 bool contains(const JointSolutions& solutions, const JointVector& other) noexcept {
     constexpr double same = 1e-6;  // [rad]
     return std::any_of(solutions.begin(), solutions.end(), [&](const JointVector& solution) {

@@ -89,7 +89,7 @@ std::string_view toString(IkKind kind) noexcept {
 
 Kinematics::Kinematics(const ChainDescription& chain) : axis_count_(chain.joints.size()) {
     fixed_rotation_.fill(Eigen::Quaterniond::Identity());
-    Matrix3d from_axis = Matrix3d::Identity();  // of the joint before: joint_from_z_axis_frame
+    Matrix3d from_axis = Matrix3d::Identity();  // joint_from_z_axis_frame of the joint before
     Transform zero;
     for (std::size_t i = 0; i < axis_count_; ++i) {
         const JointDescription& joint = chain.joints[i];

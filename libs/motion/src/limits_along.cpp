@@ -13,8 +13,8 @@ namespace {
 constexpr int kRounds = 8;
 // Parts of the way that speeds up or brakes, each looked at with its largest speed.
 constexpr int kParts = 6;
-// Shares of what is left of the jerk limit that an acceleration in a bend of the path may take; the
-// quickest way of these is taken.
+// Shares of the remaining jerk limit for an acceleration in a bend of the path; the quickest of
+// these is used.
 constexpr std::array kBendShares{0.35, 0.6, 0.85};
 // Shares of a limit that a planned motion leaves beside what its bends take.
 constexpr double kLeftAcceleration = 0.3;
@@ -26,7 +26,7 @@ void raise(double& value, double candidate) noexcept {
     value = std::max(value, candidate);
 }
 
-/// Whether the bend of the path around a knot drives an axis on: braking only takes that away.
+/// Reports whether the bend of the path around a knot speeds an axis up: braking only reduces that.
 bool isDrivenOn(const std::vector<SpeedBounds>& bounds, std::size_t knot, std::size_t axis) {
     const std::size_t last = std::min(knot + 1, bounds.size() - 1);
     for (std::size_t k = knot == 0 ? 0 : knot - 1; k <= last; ++k) {

@@ -10,8 +10,8 @@
 
 namespace metier::motion {
 
-/// How hard a parameter along a path, the path parameter or the clock, may speed up and brake at
-/// each place so that axes and tool frame keep their limits.
+/// Limits of a parameter along a path (the path parameter or the clock): how hard it may speed up
+/// and brake at each place so that axes and tool frame keep their limits.
 ///
 /// Threading: immutable; brake() and toRest() neither allocate, lock nor throw.
 class LimitsAlong {
@@ -36,7 +36,7 @@ public:
     /// \param at where the places are, rising
     LimitsAlong(std::vector<double> at, std::vector<Place> places)
         : at_(std::move(at)), places_(std::move(places)) {}
-    /// The robot's own limits along the path parameter, whatever a motion was planned with.
+    /// The robot's own limits along the path parameter, independent of the limits of the plan.
     static LimitsAlong ofRobot(const RobotModel& model, const JointLine& line);
     static LimitsAlong ofRobot(const RobotModel& model, const JointPath& path);
     static Share shareOf(const SpeedBound& bound) noexcept;
@@ -54,11 +54,11 @@ public:
     LimitsAlong slowed(double factor) const;
 
 private:
-    /// How much of the limits may be used.
+    /// Share of the limits that may be used.
     struct Use {
-        double velocity = 0;    ///< of the parameter [1/s]
-        double factor = 1;      ///< of the limits
-        double bend_share = 0;  ///< of what is left of the jerk, by an acceleration in a bend
+        double velocity = 0;    ///< speed of the parameter [1/s]
+        double factor = 1;      ///< multiple of the limits
+        double bend_share = 0;  ///< share of the remaining jerk for an acceleration in a bend
     };
 
     Place worst(double from, double to) const noexcept;

@@ -11,11 +11,12 @@ namespace metier::motion {
 namespace {
 
 constexpr std::size_t kMostKnots = 4096;
-/// So many are enough to see whether another arm angle helps.
+/// Number of knots that is enough to see whether another arm angle helps.
 constexpr std::size_t kKnotsToTryWith = 512;
 /// A longer step between knots asks for more of them [rad].
 constexpr double kJointStep = 0.06;
-/// So does a step that differs more than this from what the steps before let expect [rad].
+/// A step that deviates more than this from the one expected by the steps before also asks for more
+/// knots [rad].
 constexpr double kJointBend = 0.004;
 /// A step that stays longer than this, however dense the knots, is a jump [rad].
 constexpr double kJump = 0.2;
@@ -81,7 +82,7 @@ Refusal jump(const TrackRequest& request, const JointVector& from, const JointVe
     return refusal;
 }
 
-/// Where a path is farthest out of reach, and from where on it is.
+/// Place at which a path is farthest out of reach, and the first place out of reach.
 struct Gap {
     ReachMiss worst;
     double begin = 0;
@@ -119,8 +120,8 @@ Refusal unreachable(std::string_view where, const ReachMiss& miss, double begin)
     return refusal;
 }
 
-/// Told before anything is tracked: near the end of its reach an arm is singular too, but that is
-/// not what the caller has to know.
+/// Refuses a target out of reach before anything is tracked: near the end of its reach an arm is
+/// singular, too, but the caller has to know the reach.
 std::optional<Refusal> refuseUnreachableTarget(const TrackRequest& request) {
     const auto miss = missAt(request, 1.0);
     if (!miss) {

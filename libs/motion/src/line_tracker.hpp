@@ -6,13 +6,14 @@
 
 namespace metier::motion {
 
-/// What a joint path along a tool path is found with.
+/// Parameters of the search for a joint path along a tool path.
 struct TrackRequest {
     const RobotModel* model = nullptr;
     FlangePath path;
     JointVector start;
     AxisBounds bounds;
-    std::optional<double> end_arm_angle;  ///< of an arm that has one; else kept or moved if needed
+    std::optional<double> end_arm_angle;  ///< arm angle at the end; empty: the present one is kept,
+                                          ///< or moved if needed
 };
 
 /// The joint path along the tool path without jumps, or where and why there is none.

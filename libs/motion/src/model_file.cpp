@@ -1,4 +1,4 @@
-// Reads models/*.toml; models/README.md tells every key.
+// Reads models/*.toml; models/README.md lists every key.
 
 #include <algorithm>
 #include <numbers>
@@ -46,7 +46,7 @@ std::size_t index(const TomlTable& table, std::string_view key, std::size_t end)
     return static_cast<std::size_t>(table.integerOr(key, 0, 0, static_cast<std::int64_t>(end) - 1));
 }
 
-/// How an angle stands in the file: `key` in rad or `key`_deg in degrees.
+/// Keys of an angle in the file: `key` in rad or `key`_deg in degrees.
 struct AngleKey {
     std::string key;
     double factor = 1;
@@ -94,7 +94,7 @@ Pose turnAbout(const Eigen::Vector3d& axis, double angle) {
     return {Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis))};
 }
 
-/// What a joint's row says: the joint itself and what follows it.
+/// Content of a joint's row: the joint itself and the transform after it.
 struct JointRow {
     JointDescription joint;
     Pose before;  ///< turns the joint frame by the row's offset

@@ -79,7 +79,7 @@ void MotionRun::brake(double factor) noexcept {
     }
 }
 
-/// Runs to the end of the path, from whatever state.
+/// Runs to the end of the path, from any state.
 void MotionRun::goOn() noexcept {
     const ScalarState now = onClock();
     if (override_ <= 0) {

@@ -12,8 +12,8 @@ constexpr std::size_t kStencil = 5;
 /// Factors of five values with which they sum up to their value and first three derivatives.
 using Weights = std::array<std::array<double, kStencil>, 4>;
 
-/// For values at `places`, by distance from the place that is meant; those of the polynomial
-/// through them (Fornberg, Mathematics of Computation 51, 1988, pp. 699-706).
+/// Weights of values at `places`, which are distances from the place in question: derivatives of
+/// the polynomial through them (Fornberg, Mathematics of Computation 51, 1988, pp. 699-706).
 Weights weightsOf(const std::array<double, kStencil>& places) noexcept {
     Weights w{};
     w[0][0] = 1;

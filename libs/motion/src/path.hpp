@@ -28,8 +28,8 @@ struct JointLine {
 struct FlangePath {
     ToolPath tool;
     motion::Pose tool_from_flange;
-    double arm_angle = 0;       ///< at the start [rad]
-    double arm_angle_turn = 0;  ///< from start to end [rad]
+    double arm_angle = 0;       ///< arm angle at the start [rad]
+    double arm_angle_turn = 0;  ///< change of the arm angle from start to end [rad]
 
     motion::Pose at(double s) const noexcept { return tool.at(s) * tool_from_flange; }
     double armAngleAt(double s) const noexcept { return arm_angle + s * arm_angle_turn; }
@@ -53,7 +53,7 @@ public:
     const ToolPath& tool() const noexcept { return flange_.tool; }
     const std::vector<double>& places() const noexcept { return places_; }
     const std::vector<JointVector>& knots() const noexcept { return knots_; }
-    /// At the knots.
+    /// Derivatives at the knots.
     const std::vector<JointDerivatives>& derivatives() const noexcept { return derivatives_; }
     /// Exact position; derivatives interpolated.
     PathPoint at(double s, const Kinematics& kinematics) const noexcept;

@@ -69,7 +69,7 @@ Trajectory planJointLine(const RobotModel& model, const PtpRequest& request,
 
 /// Refuses a motion in which two links would touch, nearer than they are at its start.
 Planned<Trajectory> withoutCollision(const RobotModel& model, Trajectory trajectory) {
-    constexpr double step = 0.03;       // of the axis that moves most [rad]
+    constexpr double step = 0.03;       // step of the axis that moves most [rad]
     constexpr double worsening = 1e-3;  // [m]
     const SelfCollision collision(model);
     const auto at_start = collision.nearest(trajectory.start());

@@ -63,7 +63,7 @@ ScalarState apply(ScalarState state, const VelocityChange& change) noexcept {
     return state;
 }
 
-/// Where the motion ends that goes to velocity `peak` and then straight to rest.
+/// End position of the motion that goes to velocity `peak` and then straight to rest.
 double endWithPeak(const ScalarState& start, double peak, const ScalarLimits& limits) noexcept {
     ScalarState state = apply(start, planVelocityChange(start, peak, limits));
     state.velocity = peak;

@@ -16,7 +16,7 @@ struct LinkPair {
     double distance = 0;
 };
 
-/// Tells whether links of an arm touch each other, by the capsules of its model.
+/// Checks whether links of an arm touch each other, by the capsules of its model.
 ///
 /// Links fewer than three joints apart are not compared: they touch by construction.
 /// Threading: immutable, any thread; checking does not allocate.
@@ -40,7 +40,7 @@ private:
     Kinematics kinematics_;
     std::vector<Capsule> capsules_;
     std::vector<std::string> names_;
-    std::vector<Pair> pairs_;  ///< of capsules_
+    std::vector<Pair> pairs_;  ///< pairs of indices of capsules_
 };
 
 /// Distance of two line segments [m].

@@ -39,7 +39,7 @@ std::vector<SpeedBounds> axisBounds(const RobotModel& model, const JointPath& pa
 
 /// The axis that holds the path back most.
 struct SpeedBottleneck {
-    double share = 1;  ///< of the requested speed that the slowest place allows
+    double share = 1;  ///< share of the requested speed that the slowest place allows
     std::size_t axis = 0;
     std::size_t knot = 0;
 };

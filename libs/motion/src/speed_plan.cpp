@@ -20,7 +20,7 @@ constexpr double kBendJerk = 0.65;
 constexpr double kMapShare = 0.8;
 /// An even speed is good enough if it takes at most this many times the least possible time.
 constexpr double kGoodEnough = 1.15;
-/// How much more a path may bend than its knots show: times the second derivative, and by that
+/// Margins for the bending of a path between its knots: a factor of the second derivative, and a
 /// share of the third derivative's change from knot to knot.
 constexpr double kUnseenSecond = 1.02;
 constexpr double kUnseenThird = 0.5;
@@ -191,17 +191,17 @@ public:
             include(profile.duration() + u * (profile.steadyTo() - profile.duration()));
         }
     }
-    /// How many times as long it has to take.
+    /// Factor by which the duration has to grow.
     double factor() const noexcept { return factor_; }
 
 private:
     /// Positions are taken at no more places than this from knot to knot.
     static constexpr double kMostSteps = 64;
-    /// How much more jerk there may be than positions at steps show, where they show too much. A
+    /// Factor by which the jerk may exceed what positions at steps show, if these show too much. A
     /// clock that changes its speed at exactly the jerk limit is not slowed down for it.
     static constexpr double kBetween = 1.03;
 
-    /// When the clock is there [s].
+    /// Time at which the clock has this value [s].
     double timeAt(double clock) const noexcept {
         const Profile& profile = plan_.profile;
         const double steady = profile.at(profile.steadyFrom()).position;
@@ -219,7 +219,7 @@ private:
         return high;
     }
 
-    /// From one time to another [s], between two knots.
+    /// Checks from one time to another [s], between two knots.
     void check(double from, double to) {
         constexpr int parts = 4;
         double share = 0;
@@ -356,7 +356,7 @@ std::optional<SpeedPlan> planVarying(const Course& course) {
         slope.push_back(at.slope);
     }
     SpeedMap map = SpeedMap::varying(course.places, speed, slope);
-    // Where the speed changes too steeply from knot to knot, its square has no course between them.
+    // If the speed changes too steeply from knot to knot, its square has no course between them.
     if (!std::isfinite(map.end())) {
         return std::nullopt;
     }

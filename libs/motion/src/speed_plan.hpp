@@ -10,11 +10,11 @@
 
 namespace metier::motion {
 
-/// How fast a path is run.
+/// Planned speed along a path.
 struct SpeedPlan {
     SpeedMap map;
-    LimitsAlong clock;    ///< how quickly the clock may change its speed
-    double velocity = 1;  ///< of the clock
+    LimitsAlong clock;    ///< limits for changes of the clock's speed
+    double velocity = 1;  ///< speed of the clock
     Profile profile;      ///< the clock's run
 
     /// The same slowed down by `factor` >= 1.

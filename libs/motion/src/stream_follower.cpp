@@ -315,7 +315,8 @@ void StreamFollower::follow(const Targets& targets) noexcept {
 
 void StreamFollower::take(std::size_t axis, const ScalarState& next) noexcept {
     const JointLimits& limits = limits_[axis];
-    now_.position[axis] = std::clamp(next.position, limits.lower, limits.upper);  // of rounding
+    now_.position[axis] =
+        std::clamp(next.position, limits.lower, limits.upper);  // removes rounding errors
     now_.velocity[axis] = next.velocity;
     now_.acceleration[axis] = next.acceleration;
 }
@@ -410,9 +411,8 @@ void StreamFollower::playNewest() noexcept {
     brakeForSilence();
 }
 
-/// What the last cycle played is known better now, or was of another time. Where that is as much as
-/// a good part of a cycle's way, the targets were elsewhere but went the same way; else it is
-/// noise.
+/// Corrects the targets by the stream's position that is known now for the time played last. A
+/// difference that is a large part of a cycle's way shifts all targets; a smaller one is noise.
 void StreamFollower::correctTargets() noexcept {
     const double cycle = options_.cycle.count();
     const JointVector known = play(played_);

@@ -12,7 +12,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Cartesian jerk limit as a multiple of a lowered acceleration limit [1/s].
 constexpr double kJerkPerAcceleration = 20.0;
 
-/// How fast the path parameter may change so that `vector` does not by more than `limit`.
+/// Largest change of the path parameter at which `vector` changes by no more than `limit`.
 double perLength(double limit, const Eigen::Vector3d& vector) {
     const double length = vector.norm();
     if (length == 0) {
@@ -110,7 +110,7 @@ double addToolBounds(const RobotModel& model, const PathRequest& request, const 
         const double s = path.places()[k];
         double velocity = linear.velocity;
         double angular_velocity = angular.velocity;
-        // Where one line gives way to the next the slower one counts.
+        // At the border of two lines the slower one counts.
         for (const double beside : {path.places()[k == 0 ? 0 : k - 1],
                                     path.places()[std::min(k + 1, bounds.size() - 1)]}) {
             const double near = s + 1e-3 * (beside - s);

@@ -21,8 +21,8 @@ constexpr double kLongestTurn = 0.03;       // [rad]
 constexpr double kFewestStepsOfAPath = 16;  // without corners
 constexpr double kFewestStepsOfACorner = 16;
 constexpr double kFewestStepsOfALine = 4;  // between corners
-constexpr double kShortestStep = 1e-12;    // of the path
-/// How much longer steps may become beside a corner, per way to it.
+constexpr double kShortestStep = 1e-12;    // shortest step along the path
+/// Growth of the steps beside a corner, per distance to it.
 constexpr double kGrowth = 0.4;
 
 /// The smooth step from 0 to 1, its first two derivatives and its integral.
@@ -50,7 +50,7 @@ ToolDerivatives scaled(const ToolDerivatives& d, double length) noexcept {
     return {d.first * length, d.second * length * length, d.third * length * length * length};
 }
 
-/// Where a function of one minimum is least.
+/// Place of the minimum of a function that has only one.
 template <typename Function>
 double leastBetween(double low, double high, const Function& function) noexcept {
     constexpr int steps = 60;
@@ -243,7 +243,7 @@ ToolDerivatives ToolPath::rotationAt(double s) const noexcept {
     }
     const Fade f = fade((s * length_ - piece.begin) / piece.length);
     ToolDerivatives d = cornerDerivatives(piece.in.spin, piece.out.spin, f, piece.length);
-    // Where both rotations run at once, one turns the axis of the other.
+    // If both rotations run at once, one turns the axis of the other.
     d.second += piece.in.spin.norm() * piece.out.spin.norm();
     return scaled(d, length_);
 }

@@ -8,7 +8,7 @@
 
 namespace metier::motion {
 
-/// How the tool frame moves at a place of the path, by the path parameter; lengths of vectors.
+/// Derivatives of the tool frame by the path parameter at a place of the path; lengths of vectors.
 struct ToolDerivatives {
     double first = 0;
     double second = 0;
@@ -36,7 +36,7 @@ public:
 
     bool isPoint() const noexcept { return length_ == 0; }
     bool isLine() const noexcept { return pieces_.size() == 1; }
-    /// Of all lines [m] and of all rotations [rad].
+    /// Sum of all lines [m] and of all rotations [rad].
     double distance() const noexcept { return distance_; }
     double angle() const noexcept { return angle_; }
     /// Path parameters from 0 to 1 that show how the path bends: no two more than a step apart,
@@ -47,7 +47,8 @@ public:
     motion::Pose at(double s) const noexcept;
     ToolDerivatives translationAt(double s) const noexcept;
     ToolDerivatives rotationAt(double s) const noexcept;
-    /// Which of the lines (0 the first) a place belongs to; corners to the slower half each.
+    /// Line (0: the first) to which a place belongs. The first half of a corner belongs to the line
+    /// before it, the second half to the line after it.
     std::size_t lineAt(double s) const noexcept;
     /// The path parameter where the path is nearest.
     double nearest(const motion::Pose& pose) const noexcept;
@@ -66,9 +67,9 @@ private:
         double begin = 0;
         double length = 0;
         double whole = 0;   ///< length of a line with what its corners have taken
-        motion::Pose pose;  ///< at the begin of a line, at the point of a corner
+        motion::Pose pose;  ///< pose at the begin of a line, or at the point of a corner
         Motion in;
-        Motion out;  ///< of a corner
+        Motion out;  ///< motion at the end of a corner
         bool corner = false;
         std::size_t line = 0;
     };

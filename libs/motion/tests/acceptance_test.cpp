@@ -42,7 +42,7 @@ LinRequest randomLin(const RobotModel& model, std::mt19937_64& random) {
     return request;
 }
 
-/// How far the joint line between two samples is off the path [m].
+/// Largest distance from the path of the joint line between two samples [m].
 double farthestHalfWay(const Trajectory& plan, double cycle) {
     double worst = 0;
     for (double t = 0; t < plan.duration().count(); t += cycle) {

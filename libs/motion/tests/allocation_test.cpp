@@ -1,4 +1,4 @@
-// What the cycle thread calls must not allocate: operator new is counted here.
+// Functions that the cycle thread calls must not allocate: operator new is counted here.
 
 #include <gtest/gtest.h>
 

@@ -86,7 +86,7 @@ TEST_P(CalibratedArmOf, FindsAllSolutionsOfEveryPoseWithin1e8) {
         }
     }
     EXPECT_LT(worst, 1e-8);
-    // Where two solutions meet, the nominal arm may have none while the calibrated one has, or the
+    // If two solutions meet, the nominal arm may have none although the calibrated one has, or the
     // other way round.
     EXPECT_LE(without_original, 20 * scaled(500) / 100);
     EXPECT_NEAR(static_cast<double>(found) / static_cast<double>(expected), 1.0, 0.02);

@@ -77,7 +77,7 @@ TEST_P(KinematicsOf, EverySolutionReachesThePoseAndOneIsTheOriginalPosition) {
             worst = std::max(worst, poseError(kinematics_.forward(solution), pose));
             nearest = std::min(nearest, maxDifference(solution, q));
         }
-        // Where axes align, rounding of the pose moves them by its square root.
+        // If axes align, a rounding error of the pose moves them by its square root.
         without_original += nearest > 1e-4 ? 1 : 0;
     }
     EXPECT_LT(worst, 1e-10);

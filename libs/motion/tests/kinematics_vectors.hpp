@@ -7,7 +7,7 @@
 
 namespace metier::motion {
 
-/// Where a flange is at a joint position: made by two independent implementations.
+/// Flange pose at a joint position, computed by two independent implementations.
 struct KinematicsVector {
     std::string_view robot;
     JointVector q;

@@ -11,7 +11,7 @@ namespace metier::motion {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// How many times the optimum a path may take.
+/// Largest duration of a path, as a multiple of the optimum.
 constexpr double kBar = 1.5;
 
 PathWaypoint line(double y, double z, double blend_radius, double max_velocity = 0) {

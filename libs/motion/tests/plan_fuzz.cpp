@@ -54,7 +54,7 @@ std::string toString(const PathWaypoint& waypoint) {
 
 }  // namespace
 
-/// What the tool frame may do.
+/// Limits of the tool frame.
 struct ToolLimits {
     double velocity = std::numeric_limits<double>::infinity();
     double angular_velocity = std::numeric_limits<double>::infinity();

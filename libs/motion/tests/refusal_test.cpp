@@ -1,4 +1,4 @@
-// What the planner refuses, and what it says about it.
+// Refusals of the planner, and their texts.
 
 #include <gmock/gmock.h>
 

@@ -27,7 +27,7 @@ double shortestStop(double v, double a, double most_acceleration, double most_je
         v = -v;
         a = -a;
     }
-    const double peak = std::sqrt(std::max(most_jerk * v + a * a / 2, 0.0));  // of a triangle
+    const double peak = std::sqrt(std::max(most_jerk * v + a * a / 2, 0.0));  // peak of a triangle
     if (peak <= most_acceleration) {
         return std::abs(a + peak) / most_jerk + peak / most_jerk;
     }
@@ -132,18 +132,18 @@ private:
     std::mt19937_64 random_;
 };
 
-/// How a motion came to rest.
+/// Way in which a motion came to rest.
 struct Stop {
     double time = 0;       ///< [s]
-    double possible = 0;   ///< what the limits of axes and tool frame allow [s]
-    double announced = 0;  ///< what stoppingEstimate() said before [s]
+    double possible = 0;   ///< shortest time that the limits of axes and tool frame allow [s]
+    double announced = 0;  ///< time that stoppingEstimate() announced before [s]
     double farther = 0;    ///< beyond the distance that stoppingEstimate() said [m]
 };
 
 class StoppingOf : public EachRobot {
 protected:
-    /// What the robot's own limits allow from here: each axis by itself, and the tool frame's
-    /// speed along its path.
+    /// Shortest time to rest by the robot's own limits from here: each axis by itself, and the tool
+    /// frame's speed along its path.
     double possible(const Trajectory& plan, const MotionRun& execution) const {
         const SetPoint& now = execution.current();
         double longest = 0;

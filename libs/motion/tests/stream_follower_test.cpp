@@ -155,7 +155,7 @@ TEST_P(FullLimitStreamOf, IsFollowedWithoutOvershootAndWithoutMoreJerkThanItsOwn
             jerk = std::max(jerk, std::abs(j) / (cycle * cycle * cycle) / model_.limits(axis).jerk);
         }
     }
-    EXPECT_LT(off, 2e-6);  // of its start, when nothing is known yet of what comes
+    EXPECT_LT(off, 2e-6);  // error at the start, when no further set-point is known yet
     EXPECT_LE(jerk, 1 + 2e-6);
     EXPECT_LE(maxDifference(last[0], target), 1e-9);
 }

@@ -12,7 +12,7 @@ using motion::Seconds;
 using motion::Trajectory;
 
 constexpr std::size_t kWindow = 7;
-constexpr int kCoefficients = 4;  // of a cubic
+constexpr int kCoefficients = 4;  // number of coefficients of a cubic
 /// Over less time a difference of accelerations is rounding only [s].
 constexpr double kShortest = 1e-7;
 

@@ -16,7 +16,7 @@ namespace {
 using motion::RobotModel;
 
 constexpr double kWidth = 1000;
-constexpr double kLeft = 70;         // of the panels over time [px]
+constexpr double kLeft = 70;         // left edge of the panels over time [px]
 constexpr double kPanelWidth = 560;  // the same
 constexpr double kPanelHeight = 104;
 constexpr double kPanelPitch = 150;
@@ -27,9 +27,9 @@ constexpr double kViewHeight = 186;
 constexpr double kViewPitch = 250;
 constexpr double kTableTop = 908;
 constexpr double kRow = 20;
-constexpr double kTolerance = 0.1;     // of a simplified curve [px]
-constexpr double kHighestShare = 2.5;  // what is farther beyond a limit is cut off
-constexpr double kRoom = 1.1;          // of an axis, above what it shows
+constexpr double kTolerance = 0.1;     // largest error of a simplified curve [px]
+constexpr double kHighestShare = 2.5;  // curves farther beyond a limit are cut off
+constexpr double kRoom = 1.1;          // range of an axis, as a multiple of the largest value
 
 constexpr std::string_view kStyle =
     R"(text{font-family:system-ui,sans-serif;font-size:12px;fill:#52606d}
@@ -47,7 +47,7 @@ constexpr std::string_view kStyle =
 .start{fill:#1f2933}.end{fill:#ffffff;stroke:#1f2933;stroke-width:2}
 )";
 
-/// How a quantity is called and where its panel is.
+/// Name of a quantity and the place of its panel.
 struct PanelText {
     Quantity quantity;
     std::string_view name;

@@ -29,7 +29,7 @@ Result<std::vector<double>> numbersOf(std::string_view line) {
     return values;
 }
 
-/// Appends to the record, or tells why not.
+/// Appends to the record, or returns the reason why not.
 Result<void> append(MotionRecord& record, double time, std::span<const double> joints) {
     METIER_ASSIGN(auto position, JointVector::from(joints));
     if (!std::isfinite(time)) {

@@ -62,7 +62,7 @@ Square squareAt(const Candidate& candidate, double side) {
     return square;
 }
 
-/// How far the position is from the nearest joint limit: 1 in the middle, 0 at a limit.
+/// Room to the nearest joint limit: 1 in the middle of the range, 0 at a limit.
 double limitRoom(const Kinematics& arm, const JointVector& q) {
     double room = 1.0;
     for (std::size_t axis = 0; axis < q.size(); ++axis) {

@@ -35,7 +35,7 @@ public:
     void circle(Spot centre, double radius, std::string_view style);
     void polyline(std::span<const Spot> spots, std::string_view style);
     void polygon(std::span<const Spot> spots, std::string_view style);
-    /// What is drawn until endClip() is seen inside of the box only.
+    /// Limits the following drawing to the inside of the box, until endClip().
     void beginClip(const Box& box);
     void endClip();
 

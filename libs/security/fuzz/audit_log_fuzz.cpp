@@ -1,4 +1,4 @@
-// A log that is read, gone on with, and read again, whatever its file holds.
+// Fuzzes a log: a file with any content is read, continued, and read again.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

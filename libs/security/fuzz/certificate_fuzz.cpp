@@ -1,4 +1,4 @@
-// What a peer presents as its certificate, to a store that trusts an authority.
+// Fuzzes the certificate of a peer, checked by a store that trusts an authority.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -21,7 +21,7 @@ bool isPrintable(const std::string& text) {
     return true;
 }
 
-/// Whatever was taken can be told, compared and taken again.
+/// Checks that an accepted certificate can be printed, compared and parsed again.
 void use(const Certificate& certificate, std::string_view sent) {
     const auto again = Certificate::fromDer(certificate.der());
     const bool told = isPrintable(certificate.subject()) && isPrintable(certificate.issuer()) &&

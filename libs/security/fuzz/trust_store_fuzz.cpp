@@ -1,4 +1,4 @@
-// Files in the folders of a store: revocation lists and certificates that somebody put there.
+// Fuzzes files in the folders of a store: revocation lists and certificates that anybody put there.
 #include <array>
 #include <cstddef>
 #include <cstdint>

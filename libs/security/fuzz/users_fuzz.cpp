@@ -1,4 +1,4 @@
-// A file of users: what is taken is written and read again as it was.
+// Fuzzes a file of users: an accepted one is written and read again unchanged.
 #include <sys/stat.h>
 
 #include <cstddef>

@@ -65,7 +65,7 @@ Verdict checkUse(const Certificate& certificate, X509* parsed) {
                         "is not for digital signatures and key encipherment");
 }
 
-/// Whether a list here, signed by the issuer that is known here, names it.
+/// Reports whether a stored revocation list, signed by the known issuer, names the certificate.
 bool isRevoked(X509* parsed, const TrustStore::Holdings& holdings) {
     bool revoked = false;
     holdings.forEach([&](const Certificate& one) {

@@ -5,7 +5,7 @@
 
 namespace metier::security {
 
-/// Whether a certificate is trusted, strong enough, for the right use, and in its time.
+/// Checks that a certificate is trusted, strong enough, meant for this use and valid at this time.
 tl::expected<void, CertificateRefusal> checkCertificate(const Certificate& certificate,
                                                         const TrustStore::Holdings& holdings,
                                                         UtcTime now);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view kChainKey = ",\"chain\":\"";
 constexpr std::string_view kEnd = "\"}";
-// Peers choose their names: a line stays far shorter than what is read of a log's end.
+// Peers choose their names: with this bound a line stays far shorter than the part of a log's end
+// that is read.
 constexpr std::size_t kLongestValue = 1'000;
 
 std::string sha256(std::string_view text) {
@@ -34,7 +35,7 @@ std::string timeText(UtcTime time) {
     return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(time)), rest);
 }
 
-/// Of the line without its chain, which begins behind a comma.
+/// Chain value of a line without its chain, which begins behind a comma.
 std::string chainOf(std::string_view body, std::string_view chain_before) {
     return sha256(fmt::format("{}\n{}", chain_before, body));
 }
@@ -46,8 +47,8 @@ std::optional<std::string> textIn(const nlohmann::ordered_json& json, std::strin
                                                      : std::nullopt;
 }
 
-/// Where the chain value of a line begins behind its text: `,"chain":"`, 64 digits, `"}` and no
-/// more. Nothing, if the line ends otherwise.
+/// Position behind the text of a line, at which its chain value begins: `,"chain":"`, 64 digits,
+/// `"}` and no more. Nothing if the line ends in another way.
 std::optional<std::size_t> endOfBody(std::string_view text) {
     const auto tail = kChainKey.size() + kNoChain.size() + kEnd.size();
     if (text.size() < tail || !text.ends_with(kEnd) ||

@@ -9,7 +9,7 @@
 
 namespace metier::security {
 
-/// What the first line is chained to.
+/// Chain value before the first line of a log.
 inline constexpr std::string_view kNoChain =
     "0000000000000000000000000000000000000000000000000000000000000000";
 
@@ -29,7 +29,7 @@ struct ReadLine {
     std::uint64_t number = 0;
     std::string time;
     std::string chain;
-    std::string after;  ///< of the first line of a part: the chain value of the part before
+    std::string after;  ///< in the first line of a part: last chain value of the part before
 };
 /// Nothing unless it is just as chainLine() wrote it after that one.
 std::optional<ReadLine> readLine(std::string_view text, std::string_view chain_before);

@@ -16,7 +16,7 @@ namespace metier::security {
 namespace {
 
 constexpr mode_t kOwnerOnly = 0600;
-constexpr off_t kLongestLine = 65'536;  // that is looked at, from the end
+constexpr off_t kLongestLine = 65'536;  // length examined from the end of the file
 
 tl::unexpected<Error> failed(const std::filesystem::path& path) {
     return fail(Errc::resource_unavailable,
@@ -28,19 +28,19 @@ Descriptor openPart(const std::filesystem::path& path) {
 }
 
 void makeFolder(const std::filesystem::path& folder) {
-    std::error_code ignored;  // who opens the file is told what is wrong
+    std::error_code ignored;  // a later open of the file reports the error
     if (std::filesystem::create_directories(folder, ignored)) {
         std::filesystem::permissions(folder, std::filesystem::perms::owner_all, ignored);
     }
 }
 
-/// How a part ends.
+/// End of a part.
 struct End {
     std::optional<ReadLine> line;  ///< none: the part is empty
     std::size_t dropped = 0;       ///< [byte] cut off behind it
 };
 
-/// Cuts off what is behind the last whole line.
+/// Cuts off the bytes behind the last whole line.
 Result<End> readEnd(const Descriptor& part, const std::filesystem::path& path) {
     const off_t size = ::lseek(part.get(), 0, SEEK_END);
     if (size < 0) {
@@ -160,7 +160,7 @@ Result<void> AuditLog::File::write(const std::vector<Entry>& entries) {
     const off_t size = ::lseek(part_.get(), 0, SEEK_END);
     const auto path = partOf(log_, part_number_);
     auto batch = chained(entries, size == 0);
-    // What went out of a batch that failed would be there twice later.
+    // The written part of a failed batch is removed; otherwise it would be in the file twice later.
     const auto undone = [&] {
         auto error = failed(path);
         return ::ftruncate(part_.get(), size) == 0 ? error : failed(path);

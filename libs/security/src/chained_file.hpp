@@ -28,7 +28,7 @@ private:
     int value_;
 };
 
-/// The last part of a log, open to append; nobody else has the log open.
+/// The last part of a log, open for appending; no other process has the log open.
 ///
 /// Threading: one thread.
 class AuditLog::File {
@@ -50,7 +50,7 @@ public:
 private:
     File(std::filesystem::path log, std::uintmax_t part_size) noexcept
         : log_(std::move(log)), part_size_(part_size) {}
-    /// Lines to write, and what is true once they are.
+    /// Lines to write, and the state of the chain after they are written.
     struct Batch {
         std::string text;
         std::uint64_t number = 0;

@@ -47,7 +47,7 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
     return files;
 }
 
-/// Those that are certificates; they are told apart by their content.
+/// Files that are certificates, recognised by their content.
 std::vector<Certificate> certificatesIn(const fs::path& folder) {
     std::vector<Certificate> found;
     for (const auto& file : filesIn(folder)) {

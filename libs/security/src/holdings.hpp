@@ -20,16 +20,16 @@ constexpr const char* kRejected = "rejected";
 
 /// The first thousand, by name.
 std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder);
-/// Those of the files that are certificates; they are told apart by their content.
+/// Certificates among the files of a folder, recognised by their content.
 std::vector<Certificate> certificatesIn(const std::filesystem::path& folder);
 
-/// What the folders hold when they are looked at.
+/// Content of the folders at one moment.
 struct TrustStore::Holdings {
     /// Nothing, of no folder: never current.
     Holdings() = default;
     explicit Holdings(const std::filesystem::path& folder);
 
-    /// Whether nothing was added, renamed or removed since.
+    /// Reports whether no file was added, renamed or removed since.
     bool isCurrent() const;
     bool trusts(const Certificate& certificate) const;
     bool trustsOneOf(const STACK_OF(X509) * chain) const;

@@ -33,7 +33,8 @@ bool isAddress(const std::string& host) {
     return !host.empty() && host.find_first_not_of("0123456789.") == std::string::npos;
 }
 
-/// As the configuration language of OpenSSL has it; what could end an element is refused.
+/// Alternative names in the configuration language of OpenSSL; characters that could end an element
+/// are refused.
 Result<std::string> alternativeNames(const IdentityOptions& options) {
     auto names = "URI:" + options.application_uri;
     for (const auto& host : options.hosts) {
@@ -60,7 +61,7 @@ bool addExtension(X509* certificate, int kind, const std::string& value) {
     return extension && X509_add_ext(certificate, extension.get(), -1) == 1;
 }
 
-/// What OPC 10000-6, 6.2.2 wants of the certificate of an application.
+/// Adds the extensions that OPC 10000-6, 6.2.2 demands of an application's certificate.
 bool addExtensions(X509* certificate) {
     return addExtension(certificate, NID_subject_key_identifier, "hash") &&
            addExtension(certificate, NID_authority_key_identifier, "keyid:always") &&

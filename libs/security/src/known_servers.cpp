@@ -51,7 +51,7 @@ fs::path KnownServers::fileOf(const std::string& url) const {
 
 bool KnownServers::isClosed(const std::string& url) const {
     std::error_code error;
-    // What cannot be looked at may be there.
+    // A file that cannot be examined may exist.
     return fs::exists(fileOf(url), error) || (error && error != std::errc::not_a_directory);
 }
 

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kFreeAttempts = 5;
-constexpr int kManyAttempts = 20;  // of one application
+constexpr int kManyAttempts = 20;  // wrong passwords of one application
 constexpr auto kMemory = 10min;
 constexpr auto kFirstPause = 1s;
 constexpr auto kLongestPause = 60s;
@@ -27,7 +27,7 @@ std::filesystem::file_time_type changeOf(const std::filesystem::path& file) {
     return error ? std::filesystem::file_time_type::min() : time;
 }
 
-/// For names that nobody has: the answer takes as long.
+/// Hash for unknown user names, so that their answer takes as long.
 const std::string& hashOfNobody() {
     static const auto hash = hashPassword("nobody's").value_or("");
     return hash;
@@ -92,7 +92,8 @@ Result<void> LoginGuard::checkBar(const Who& who) const {
                 fmt::format("too many wrong passwords: wait {:.0f} s", std::ceil(wait.count())));
 }
 
-/// A name that nobody has goes first: guesses at others stay counted whatever is made up.
+/// Forgets one entry, an unknown user name first: so invented names do not end the counting of
+/// guesses at real users.
 void LoginGuard::forgetOne(const UserTable& users) {
     const auto isLess = [&](const auto& left, const auto& right) {
         const auto isKept = [&](const std::string& user) {

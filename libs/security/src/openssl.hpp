@@ -33,7 +33,7 @@ std::string derOf(X509* certificate);
 
 /// A BIO that reads `text`, which must outlive it.
 BioPtr reading(std::string_view text);
-/// What was written to a memory BIO.
+/// Bytes that were written to a memory BIO.
 std::string textOf(BIO* bio);
 
 /// The file, up to 64 kB; empty if there is none.

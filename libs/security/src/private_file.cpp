@@ -81,7 +81,7 @@ Result<void> writeWhole(const std::filesystem::path& file, std::string_view cont
                         Readers readers) {
     METIER_TRY(makeFolder(file.parent_path()));
     auto pattern = file.string() + ".XXXXXX";
-    const Descriptor descriptor(::mkstemp(pattern.data()));  // for its owner alone
+    const Descriptor descriptor(::mkstemp(pattern.data()));  // accessible to its owner only
     if (descriptor.number() < 0) {
         return failed(file, errno);
     }

@@ -10,8 +10,8 @@ namespace metier::security {
 
 enum class Readers { owner, everybody };
 
-/// Writes a file whole or not at all: whoever reads sees what was there before or what is new, also
-/// after a loss of power. Missing folders are made, for their owner alone.
+/// Writes a file whole or not at all: a reader sees the old or the new content, also after a loss
+/// of power. Missing folders are made, accessible to their owner only.
 /// Errors: resource_unavailable.
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
                         Readers readers);

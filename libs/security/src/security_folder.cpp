@@ -65,7 +65,7 @@ Result<Identity> SecurityFolder::makeKnown(Identity identity) {
     return identity;
 }
 
-/// It is known before it is saved: whoever finds it saved may rely on that.
+/// The identity is made known before it is saved, so that a saved identity is always known.
 Result<Identity> SecurityFolder::identity(const std::string& name, const IdentityOptions& options,
                                           UtcTime now) {
     METIER_TRY(checkName(name));

@@ -130,7 +130,7 @@ void TrustStore::keepRejected(const Certificate& certificate) const {
         std::error_code error;
         fs::remove(files[i], error);
     }
-    // A folder that cannot be written refuses all the same; the log tells of the refusal.
+    // The certificate is refused also if the folder cannot be written; the log reports the refusal.
     static_cast<void>(writeWhole(file, certificate.der(), Readers::everybody));
 }
 

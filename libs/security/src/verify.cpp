@@ -40,7 +40,7 @@ public:
     const Verified& verified() const noexcept { return verified_; }
 
 private:
-    /// Where a part begins that is looked at without the one before.
+    /// Begins with a part that is checked without the part before it.
     void begin(std::string_view text) {
         const auto line = readLastLine(text);
         const bool continued = line && !line->after.empty();

@@ -9,7 +9,7 @@
 
 namespace metier::security {
 
-/// What a certificate for a test is like.
+/// Properties of a certificate for a test.
 struct Wanted {
     std::string name = "robot";
     std::string uri = "urn:robot";

@@ -66,7 +66,7 @@ TEST_F(Trust, IsNotGivenByAnEmptyOrUnknownName) {
 }
 
 TEST_F(Trust, IsNotGivenByANameThatSeveralBeginWith) {
-    // Of 17 thumbprints two begin with the same hexadecimal digit.
+    // Two of 17 thumbprints begin with the same hexadecimal digit.
     std::string shared;
     std::vector<Certificate> made;
     for (int i = 0; shared.empty() && i < 17; ++i) {

@@ -10,7 +10,7 @@ namespace metier::virtual_controller {
 /// Threading: the thread that runs the io_context.
 class OpenConnections final : public asio::execution_context::service {
 public:
-    static asio::execution_context::id id;  // as asio finds it
+    static asio::execution_context::id id;  // identifies the service for Asio
 
     explicit OpenConnections(asio::execution_context& context)
         : asio::execution_context::service(context) {}

@@ -176,7 +176,7 @@ void TcpConnection::onRead(const asio::error_code& error, std::size_t count) {
     if (owner_ == nullptr) {
         return;
     }
-    // What comes over a cut cable is lost.
+    // Bytes that come over a cut cable are lost.
     if (!owner_->faults.cut.load() && owner_->handlers.on_data) {
         owner_->handlers.on_data(*this, std::span(incoming_).first(count));
     }

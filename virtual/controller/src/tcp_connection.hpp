@@ -18,7 +18,7 @@ namespace metier::virtual_controller {
 
 class TcpConnection;
 
-/// Whoever has connections: a port that listens, or one that dials.
+/// Owner of connections: a listening port, or a dialer.
 class TcpConnectionOwner {
 public:
     TcpConnectionOwner(LinkFaults& link_faults, TcpServer::Handlers what_to_do)
@@ -29,7 +29,7 @@ public:
     LinkFaults& faults;
     const TcpServer::Handlers handlers;
 
-    /// Makes a peer of a socket, tells of it, and reads.
+    /// Makes a peer of a socket, reports it, and reads from it.
     void take(asio::ip::tcp::socket socket);
     /// A connection is lost.
     void remove(const TcpConnection* peer);
@@ -40,7 +40,8 @@ protected:
 
 private:
     std::vector<std::shared_ptr<TcpConnection>> peers_;  // shared with their own operations
-    OpenConnections* open_ = nullptr;                    // of the io_context; null before the first
+    OpenConnections* open_ = nullptr;                    // connections of the io_context; nullptr
+                                                         // before the first
 };
 
 /// One connection. It keeps itself alive while an operation of it is under way.

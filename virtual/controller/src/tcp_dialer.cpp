@@ -75,7 +75,8 @@ private:
     tcp::endpoint from_;
     tcp::endpoint to_;
     std::function<void(const Error&)> on_failed_;
-    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // tells late handlers
+    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // shows late handlers whether the
+                                                                  // dialer still exists
 };
 
 Result<asio::ip::address> parseAddress(const std::string& text) {

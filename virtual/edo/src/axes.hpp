@@ -41,7 +41,7 @@ motion::JointVector armRadians(const AxisValues& values);
 /// Puts six axes [rad] into `values`; the gripper's stays.
 void setArm(AxisValues& values, const motion::JointVector& radians);
 
-/// Whether the axis (from 0) is in the mask.
+/// Reports whether the axis (from 0) is in the mask.
 constexpr bool inMask(std::uint64_t mask, std::size_t axis) {
     return ((mask >> axis) & 1U) != 0;
 }

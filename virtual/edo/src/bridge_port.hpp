@@ -29,7 +29,7 @@ public:
 
     /// Resets every connection.
     void disconnectAll();
-    /// Who connects from now on talks to `bridge`, which outlives the port.
+    /// Connects new clients to `bridge` from now on; it must outlive the port.
     void serve(Rosbridge& bridge) { bridge_ = &bridge; }
 
     std::uint16_t port() const { return server_->port(); }

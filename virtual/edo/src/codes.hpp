@@ -28,7 +28,7 @@ enum class Opcode : std::uint8_t {
     emergency_stop = 7,
 };
 
-/// What the low four bits of a joint's commandFlag acknowledge.
+/// Commands that the low four bits of a joint's commandFlag acknowledge.
 enum class Acknowledge : std::uint8_t {
     nothing = 0,
     init = 1,
@@ -83,12 +83,12 @@ enum class FeedbackType : std::int8_t {
     executed = 2,
 };
 
-/// What a MovementFeedback says beside its type.
+/// Data of a MovementFeedback, besides its type.
 enum class FeedbackData : std::int8_t {
     undefined_command = -101,
     uninitialised = -102,
     move_failed = -103,
-    /// Of the trajectory library: incomplete or inconsistent motion.
+    /// Error of the trajectory library: incomplete or inconsistent motion.
     no_motion = -76,
     none = 0,
     move_ended = 1,

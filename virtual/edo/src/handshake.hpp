@@ -9,9 +9,9 @@ namespace metier::virtual_edo {
 /// Longest HTTP request that is read.
 inline constexpr std::size_t kLongestRequest = 16'384;
 
-/// What a server answers to the HTTP request that asks for a WebSocket.
+/// Answer of a server to the HTTP request for a WebSocket.
 struct HandshakeAnswer {
-    std::string response;   ///< to be sent
+    std::string response;   ///< text to send
     bool accepted = false;  ///< otherwise the connection is to be closed after the response
 };
 

@@ -12,7 +12,7 @@ constexpr int kPulseCycles = 30;
 
 // Dead time between a target and the axis.
 constexpr std::size_t kDelayCycles = 1;
-// What an axis can do beyond its limit, so that late set-points can be caught up.
+// Factor by which an axis can exceed its limit to catch up with late set-points.
 constexpr double kReserve = 1.25;
 // An axis so far behind opens its power stage [deg].
 constexpr double kFollowingError = 2.0;

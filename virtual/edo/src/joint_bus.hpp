@@ -11,7 +11,7 @@
 
 namespace metier::virtual_edo {
 
-/// What one joint reports.
+/// Report of one joint.
 struct JointReport {
     double position = 0.0;  ///< [deg], the gripper [mm]
     double velocity = 0.0;  ///< per second
@@ -21,9 +21,9 @@ struct JointReport {
     bool has(JointFlag flag) const { return ((flags >> static_cast<unsigned>(flag)) & 1U) != 0; }
 };
 
-/// What all joints report in one cycle.
+/// Reports of all joints in one cycle.
 struct BusReport {
-    std::uint64_t mask = 0;  ///< which of them have reported
+    std::uint64_t mask = 0;  ///< joints that have reported
     std::vector<JointReport> joints;
 };
 
@@ -60,9 +60,9 @@ public:
     /// Nothing while the bus is silent.
     std::optional<BusReport> report() const;
 
-    /// Whether the last step() made a pose the zero of some axis.
+    /// Reports whether the last step() set the zero of some axis.
     bool justCalibrated() const { return just_calibrated_; }
-    /// Where the axes really are, whatever the calibration says.
+    /// True position of the axes, independent of the calibration.
     AxisValues truePosition() const;
     bool grips() const { return grips_; }
     bool isBraked() const;

@@ -12,7 +12,7 @@
 
 namespace metier::virtual_edo {
 
-/// What the state machine acts on.
+/// Parts of the robot on which the state machine acts.
 class MachinePeers {
 public:
     virtual ~MachinePeers() = default;
@@ -30,8 +30,9 @@ public:
     virtual void onBraked() = 0;
 };
 
-/// The robot's state machine: what is allowed when, and who acknowledges it. A command that is not
-/// valid in a state is dropped without a word, as the robot does.
+/// State machine of the robot: decides which commands are allowed in which state, and how they are
+/// acknowledged. A command that is not valid in a state is dropped without an answer, as the robot
+/// does.
 ///
 /// Time passes by step(), one cycle of 10 ms each.
 ///
@@ -42,7 +43,7 @@ public:
     /// \param peers outlives the machine
     explicit Machine(MachinePeers& peers) : peers_(peers) {}
 
-    /// As after a start-up that went well, with so many axes.
+    /// Sets the state as after a successful start-up with this number of axes.
     void makeReady(std::size_t axes);
 
     void onInit(std::uint8_t mode, std::uint64_t mask);
@@ -108,7 +109,7 @@ private:
 
     MachinePeers& peers_;
     MachineState state_ = MachineState::init;
-    MachineState previous_ = MachineState::init;  // to return to from command and jog
+    MachineState previous_ = MachineState::init;  // state to which command and jog return
     std::uint32_t opcode_ = 0;
     std::size_t axes_ = 0;
     std::array<int, kMostAxes> unheard_{};  // cycles

@@ -120,7 +120,7 @@ void Machine::onFeedback(Feedback feedback) {
         return;
     }
     if (state_ != MachineState::calibrated && state_ != MachineState::move) {
-        return;  // nobody forwards it
+        return;  // it is not forwarded
     }
     if (feedback.type == FeedbackType::executed) {
         onExecuted(feedback);

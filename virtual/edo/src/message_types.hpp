@@ -32,10 +32,10 @@ public:
     /// Service types have two: "edo_core_msgs/ControlSwitch.Request" and ".Response".
     bool has(std::string_view type) const { return types_.contains(type); }
 
-    /// The whole message with its fields in order: what is missing gets its default.
-    /// An unknown field, a value of another type or beyond its range refuse the whole message; an
-    /// integer may stand for a float, a float never for an integer; uint8[] may be base64 or a
-    /// list. Errors: type_mismatch, with rosbridge's words; not_found (no such type).
+    /// Completes a message, with its fields in order: missing fields get their defaults. A message
+    /// with an unknown field, or with a value of another type or beyond its range, is refused as a
+    /// whole. An integer may stand for a float, a float never for an integer; uint8[] may be base64
+    /// or a list. Errors: type_mismatch, with rosbridge's words; not_found (no such type).
     Result<Json> complete(std::string_view type, const Json& message) const;
 
     /// The arguments of a service call: an object as in complete(), or a list of the fields'

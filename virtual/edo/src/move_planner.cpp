@@ -20,7 +20,7 @@ constexpr double kAngleStep = 0.005;
 constexpr double kSlowest = 0.02;
 // The longest way that a linear jog looks ahead [m].
 constexpr double kJogReach = 1.0;
-// A jog's least value that counts, and what is left of a stroke at its end [deg], [mm].
+// Smallest value of a jog that counts, and margin at the end of a stroke [deg], [mm].
 constexpr double kLeastJog = 0.01;
 constexpr double kJogMargin = 0.1;
 constexpr double kGripperJogMargin = 0.2;
@@ -129,7 +129,7 @@ Result<Segment> MovePlanner::planJoints(const AxisValues& start, const AxisValue
 SpeedProfile MovePlanner::profileFor(const std::vector<AxisValues>& path, double length,
                                      double angle) const {
     const auto& tool = model_.cartesianLimits();
-    // So a motion of nothing still takes a cycle.
+    // Lets a motion without a way take a cycle.
     double velocity = 1.0 / kCycleSeconds;
     double acceleration = 4.0 / (kCycleSeconds * kCycleSeconds);
     const auto limit = [&](double way, double most_velocity, double most_acceleration) {
@@ -262,7 +262,7 @@ Result<Segment> MovePlanner::planLinearJog(const AxisValues& start,
     }
     override_ = std::clamp(size, 0.02, 1.0) * kJogOverride;
     const auto from = baseFromFlange(start) * flange_from_tool_;
-    // As far as the arm can go, looked for from far to near.
+    // Searches the farthest point that the arm can reach, from far to near.
     for (double reach = kJogReach; reach > kStep; reach *= 0.7) {
         motion::Pose to = from;
         to.translation += along / size * reach;

@@ -38,7 +38,7 @@ public:
     const AxisLimits& limits() const { return limits_; }
 
 private:
-    struct Way;  // of the tool frame
+    struct Way;  // way of the tool frame
 
     Result<AxisValues> jointTarget(const AxisValues& start, std::size_t axes,
                                    const Point& point) const;

@@ -50,7 +50,7 @@ struct Movement {
 
 /// A whole CartesianPose or Frame of a message.
 CartesianPose cartesianFrom(const Json& message);
-/// A whole CartesianPose; null for what is not finite.
+/// A whole CartesianPose; numbers that are not finite become null.
 Json toJson(const CartesianPose& pose);
 
 }  // namespace metier::virtual_edo

@@ -55,7 +55,7 @@ WorldReport Robot::step(const WorldEffect& effect) {
     bus_.step(partWidth(effect));
     const auto report = bus_.report();
     node_.setContact(contact_left_ > 0 || effect.wrench.force.norm() > options_.collision_force);
-    // The state machine hears of the joints first and passes on what it heard.
+    // The state machine gets the joints' reports first and passes them on.
     machine_.step(report, node_.collision());
     if (report) {
         if (bus_.justCalibrated()) {

@@ -15,15 +15,15 @@
 
 namespace metier::virtual_edo {
 
-/// What an e.DO is made as.
+/// Options of an e.DO.
 struct RobotOptions {
     Software software;
     std::size_t axes = kMostAxes;  ///< 7 with the gripper, 6 without
-    /// Whether it starts calibrated with free brakes, at the model's home position; otherwise in
-    /// INIT, at zero, uncalibrated.
+    /// Starts calibrated with free brakes, at the model's home position; otherwise in INIT, at
+    /// zero, uncalibrated.
     bool ready = true;
-    double collision_force = 50.0;  ///< on the flange [N], from which on it is a collision
-    /// Whether it computes kinematics for clients, which no release of the maker does.
+    double collision_force = 50.0;  ///< smallest force on the flange that is a collision [N]
+    /// Offers kinematics services to clients; no release of the maker does.
     bool kinematics_services = false;
 };
 
@@ -53,7 +53,7 @@ public:
     /// Errors: not_found, invalid_argument.
     Result<void> inject(const virtual_controller::Injection& injection);
     Json state() const;
-    /// Where the arm truly is [rad].
+    /// True joint position of the arm [rad].
     motion::JointVector jointPosition() const;
 
 private:
@@ -113,7 +113,7 @@ private:
     Wanted wanted_;
     std::uint64_t cycles_ = 0;
     std::uint64_t calibrations_ = 0;
-    std::int8_t tool_ = -1;  // as configured by /tool_configuration or the start-up
+    std::int8_t tool_ = -1;  // tool configured by /tool_configuration or the start-up
     std::size_t commands_to_drop_ = 0;
     int contact_left_ = 0;  // cycles that an injected collision lasts
     bool part_lost_ = false;

@@ -18,7 +18,7 @@ struct Topic {
 // Comau/eDO_core: SubscribePublish.cpp, StateManager.cpp, AlgorithmManager.cpp, TabletCheck.cpp of
 // 906c2f4 (2.4.0), 8b99eb3 (3.0.1) and 286074d (3.1.2).
 constexpr std::array kTopics{
-    // What clients write.
+    // Topics that clients write.
     Topic{"/bridge_init", "edo_core_msgs/JointInit"},
     Topic{"/bridge_jnt_reset", "edo_core_msgs/JointReset"},
     Topic{"/bridge_jnt_calib", "edo_core_msgs/JointCalibration"},
@@ -32,7 +32,7 @@ constexpr std::array kTopics{
     Topic{"/algo_coll_thr", "edo_core_msgs/CollisionThreshold", "3.0.1"},
     Topic{"/tool_configuration", "std_msgs/Int8", "3.1.2"},
     Topic{"/external_control", "edo_core_msgs/JointValue", "3.1.2"},
-    // What the robot writes.
+    // Topics that the robot writes.
     Topic{"/machine_state", "edo_core_msgs/MachineState"},
     Topic{"/usb_jnt_state", "edo_core_msgs/JointStateArray"},
     Topic{"/machine_bridge_jnt_state", "edo_core_msgs/JointStateArray", "2.4.0", "3.0.1"},
@@ -120,7 +120,7 @@ void Robot::serveToolAndCounter(RosGraph& graph) {
     serve(graph, "/algo_tool_configuration_srv", "ToolConfiguration", [this](const Json&) {
         return Result<Json>(Json::object({{"tool_id", tool()}}));
     });
-    // CalibCounter.cpp: the one ignores `increment`, the other does not tell the count.
+    // CalibCounter.cpp: the one ignores `increment`, the other does not return the count.
     serve(graph, "/calibration_counter_srv", "CalibCounter", [this](const Json&) {
         return Result<Json>(Json::object({{"cnt", calibrations_}}));
     });

@@ -9,7 +9,7 @@ namespace {
 using virtual_controller::Injection;
 using virtual_controller::InjectionHelp;
 
-// How long an injected collision presses on the arm, in cycles.
+// Time for which an injected collision presses on the arm [cycles].
 constexpr int kContactCycles = 20;
 constexpr std::size_t kMostDropped = 1'000'000;
 

@@ -158,7 +158,7 @@ Result<void> Rosbridge::subscribe(Client& client, const Json& request) {
         wishes[requestId(request)] = {.throttle_ms = *throttle, .queue_length = *queue};
     }
     if (!compression->empty() && *compression != "none") {
-        // Clients tell a compressed message by its op: they understand one that is not.
+        // Clients recognise a compressed message by its op, so they understand an uncompressed one.
         sendStatus(client,
                    fmt::format("subscribe: there is no compression {}: {} is sent without",
                                *compression, topic),

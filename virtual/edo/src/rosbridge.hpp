@@ -16,10 +16,10 @@
 
 namespace metier::virtual_edo {
 
-/// What stands on the robot's side of the bridge.
+/// Topics and services on the robot's side of the bridge.
 struct RosGraph {
     struct Service {
-        std::string type;  ///< as "edo_core_msgs/ControlSwitch"
+        std::string type;  ///< such as "edo_core_msgs/ControlSwitch"
         /// Gets whole arguments, answers with any part of the response.
         std::function<Result<Json>(const Json& arguments)> call;
     };
@@ -32,7 +32,7 @@ struct RosGraph {
 
 /// The rosbridge protocol, version 2, between clients and the robot: JSON in, JSON out, no sockets.
 ///
-/// What a client gets wrong is answered by an error status, and never harms another client.
+/// An error of a client is answered by an error status, and never harms another client.
 ///
 /// Threading: one thread.
 /// Source: RobotWebTools/rosbridge_suite, rosbridge_library (ROS 1); ROSBRIDGE_PROTOCOL.md.
@@ -59,7 +59,7 @@ public:
     /// Gives a message, complete as its type is, to every client that subscribed.
     void publish(const std::string& topic, const Json& message);
 
-    /// What throttle_rate counts by; sends what waited in queues.
+    /// Sets the time by which throttle_rate counts; sends messages that waited in queues.
     void setTime(SteadyTime now);
 
 private:
@@ -68,7 +68,7 @@ private:
         std::int64_t queue_length = 0;
     };
     struct Subscription {
-        std::map<std::string, SubscriptionWish> wishes;  // by id
+        std::map<std::string, SubscriptionWish> wishes;  // wishes by their id
         std::optional<SteadyTime> last_sent;
         std::deque<std::string> queue;
         std::chrono::milliseconds throttle() const;
@@ -76,7 +76,7 @@ private:
     };
     struct Client {
         Send send;
-        int level = 1;  // of status messages: 0 none, 1 error, 2 warning, 3 info
+        int level = 1;  // level of status messages: 0 none, 1 error, 2 warning, 3 info
         std::optional<std::size_t> fragment_size;
         std::uint64_t fragments_sent = 0;
         std::map<std::string, Subscription, std::less<>> subscriptions;

@@ -6,7 +6,7 @@
 
 namespace metier::virtual_edo {
 
-/// How far along a path from 0 to 1 a motion is: speed up, go on, slow down.
+/// Progress of a motion along a path from 0 to 1: speeds up, goes on, slows down.
 class SpeedProfile {
 public:
     /// \param velocity     largest [1/s], > 0
@@ -15,7 +15,7 @@ public:
 
     double at(double seconds) const;
     double duration() const { return 2.0 * ramp_ + cruise_; }
-    /// When it begins to slow down [s].
+    /// Time at which it begins to slow down [s].
     double brakingFrom() const { return ramp_ + cruise_; }
 
 private:

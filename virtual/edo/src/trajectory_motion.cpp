@@ -7,7 +7,7 @@ namespace metier::virtual_edo {
 namespace {
 
 constexpr int kCyclesPerSecond = 100;
-// How long a motion at full speed takes to stop [s].
+// Time for stopping a motion at full speed [s].
 constexpr double kStopTime = 0.5;
 
 }  // namespace

@@ -141,7 +141,7 @@ std::uint8_t TrajectoryNode::switchControl(std::uint8_t mode) {
 }
 
 void TrajectoryNode::takeControl(AlgorithmMode mode) {
-    // What moves stops where it is.
+    // A moving arm stops where it is.
     dropAll(FeedbackData::dropped_by_control);
     holdMeasured();
     mode_ = mode;

@@ -55,14 +55,15 @@ public:
 
     AlgorithmMode mode() const { return mode_; }
     bool isSwitchedOff() const { return mode_ >= AlgorithmMode::switched_off; }
-    /// Whether anything moves or waits to.
+    /// Reports whether a motion runs or waits.
     bool isBusy() const;
-    /// Whether it publishes targets and its mode; older software is silent while switched off.
+    /// Reports whether it publishes targets and its mode; older software is silent while switched
+    /// off.
     bool publishes() const { return software_.external_control || !isSwitchedOff(); }
     bool publishesPose() const {
         return mode_ != AlgorithmMode::uninitialised && !isSwitchedOff() && !alarm_;
     }
-    /// What it wants of each configured axis.
+    /// Target of each configured axis.
     const AxisValues& target() const { return target_; }
     const AxisValues& velocity() const { return velocity_; }
     /// Pose of the measured joints, in the last move's frames.
@@ -73,7 +74,7 @@ private:
     struct Running {
         Segment segment;
         std::uint8_t delay = 0;
-        double start = 0.0;  // in the time of the motion [s]
+        double start = 0.0;  // start on the motion's own time [s]
     };
 
     void takeCommands();
@@ -108,7 +109,7 @@ private:
     std::deque<Movement> jogs_;
 
     std::deque<Running> running_;
-    double time_ = 0.0;  // of the motion; runs slower while it stops [s]
+    double time_ = 0.0;  // the motion's own time; passes more slowly while it stops [s]
     double rate_ = 1.0;
     bool stopping_ = false;
     bool jogging_ = false;

@@ -63,7 +63,7 @@ bool isCloseStatus(std::uint64_t status) {
            (status >= 3000 && status <= 4999);
 }
 
-/// What is known of a frame once its first bytes are there.
+/// Header of a frame, known once its first bytes are there.
 struct Header {
     std::size_t size = 0;  // with the mask
     std::uint64_t length = 0;
@@ -79,7 +79,7 @@ Header headerOf(std::string_view bytes) {
     return {.size = 2 + extra + 4, .length = extra == 0 ? code : bigEndian(bytes.substr(2, extra))};
 }
 
-/// Whether the first two bytes may begin a frame of a client.
+/// Reports whether the first two bytes may begin a frame of a client.
 bool isLawful(std::uint8_t first, std::uint8_t second) {
     const std::uint8_t opcode = first & 0x0FU;
     const bool is_control = (opcode & 0x8U) != 0;

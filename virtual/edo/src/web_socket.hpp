@@ -24,14 +24,14 @@ class WebSocket {
 public:
     struct Received {
         std::vector<std::string> messages;  ///< whole ones, in order
-        std::string answer;                 ///< to be sent, perhaps nothing
-        bool close = false;                 ///< to be closed after the answer
+        std::string answer;                 ///< bytes to send, perhaps none
+        bool close = false;                 ///< the connection must be closed after the answer
     };
 
-    /// Takes what came in one read. After `close` it takes nothing more.
+    /// Takes the bytes of one read. After `close` it takes nothing more.
     Received receive(std::span<const std::byte> bytes);
 
-    /// Whether the handshake is done, so that messages may be sent.
+    /// Reports whether the handshake is done, so that messages may be sent.
     bool isOpen() const noexcept { return state_ == State::open; }
 
     /// One frame with a text message.

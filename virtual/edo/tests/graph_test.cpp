@@ -1,4 +1,4 @@
-// What each release has: topics, services, and how clients look around among them.
+// Topics and services of each release, and the ways in which clients list them.
 #include <gmock/gmock.h>
 
 #include <algorithm>

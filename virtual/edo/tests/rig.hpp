@@ -172,7 +172,7 @@ public:
     SteadyTime now{};
     virtual_controller::WorldEffect effect;
     virtual_controller::WorldReport report;
-    std::vector<int> states;  ///< of the machine, each change
+    std::vector<int> states;  ///< states of the machine, each change
 
 private:
     void noteState() {

@@ -8,7 +8,7 @@
 
 #include "robot_application.hpp"
 
-/// What the fuzz targets of the cabinet share: an arm, and commands read from an input.
+/// Common parts of the cabinet's fuzz targets: an arm, and commands read from an input.
 namespace metier::virtual_iiwa {
 
 inline Cabinet cabinet() {

@@ -21,7 +21,7 @@ Arm::Arm(const motion::RobotModel& model, const JointVector& position)
     history_.fill(position);
 }
 
-// ---- what it is told ---------------------------------------------------------------------------
+// ---- commands ----------------------------------------------------------------------------------
 
 void Arm::move(Plan plan) {
     brake(End::cancelled);
@@ -176,7 +176,7 @@ void Arm::breakDown() {
 
 Arm::Moved Arm::finish(End end) {
     clear();
-    // Whoever has another motion to begin knows that this one was cancelled.
+    // A caller that has given the next motion knows that this one was cancelled.
     return next_ && end == End::cancelled ? std::nullopt : std::optional(end);
 }
 

@@ -44,9 +44,9 @@ public:
     const motion::JointVector& position() const noexcept { return position_; }  ///< [rad]
     /// Over the last 10 ms [rad/s].
     motion::JointVector velocity() const noexcept;
-    /// Whether there is a motion, or one is to begin.
+    /// Reports whether a motion runs or is about to begin.
     bool moving() const noexcept { return path_ || servo_ || next_; }
-    /// Whether a standard motion runs and does not brake.
+    /// Reports whether a standard motion runs and does not brake.
     bool running() const noexcept { return path_ && !braking_; }
 
 private:
@@ -78,7 +78,7 @@ private:
     LinearServo* linear_servo_ = nullptr;  // servo_, if it is one
     bool braking_ = false;
     End brake_end_ = End::cancelled;
-    std::optional<End> never_begun_;  // how a motion ended that had not begun
+    std::optional<End> never_begun_;  // end of a motion that had not begun
 };
 
 }  // namespace metier::virtual_iiwa

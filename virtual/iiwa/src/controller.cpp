@@ -16,7 +16,8 @@ using virtual_controller::InjectionHelp;
 using virtual_controller::TcpPeer;
 
 constexpr std::size_t kAxes = 7;
-// What a PC may send while the application is busy; more ends it [bytes].
+// Largest number of bytes that a PC may send while the application is busy; more ends the
+// application.
 constexpr std::size_t kLongestBacklog = 65'536;
 
 Options readOptions(const virtual_controller::ControllerRequest& request) {
@@ -234,7 +235,7 @@ std::vector<InjectionHelp> IiwaController::injections() const {
     };
 }
 
-/// Nobody presses the enabling switch, without which T1 and T2 allow no motion.
+/// Selects a mode. The enabling switch is never pressed, so T1 and T2 allow no motion.
 Result<void> IiwaController::selectMode(const std::string& mode) {
     if (mode != "AUT" && mode != "T1" && mode != "T2") {
         return fail(Errc::invalid_argument,

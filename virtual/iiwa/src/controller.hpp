@@ -17,7 +17,7 @@
 
 namespace metier::virtual_iiwa {
 
-/// What the settings say (README.md).
+/// Options from the settings (README.md).
 struct Options {
     std::string pc_address;
     std::uint16_t pc_port = 12225;
@@ -26,11 +26,11 @@ struct Options {
     double redial_delay = 1.0;    ///< [s]
     double answer_delay = 0.002;  ///< [s]
     double force_noise = 0.0;     ///< standard deviation [N], [Nm]
-    double torque_noise = 0.0;    ///< of the axes, standard deviation [Nm]
+    double torque_noise = 0.0;    ///< standard deviation of the axes' torque [Nm]
     motion::JointVector start;    ///< joint position when power comes [rad]
 };
 
-/// A Sunrise cabinet whose robot application dials the PC.
+/// A Sunrise cabinet whose robot application connects to the PC.
 class IiwaController final : public virtual_controller::Controller {
 public:
     static Result<std::unique_ptr<IiwaController>> start(
@@ -65,8 +65,8 @@ private:
     virtual_controller::TcpPeer* pc_ = nullptr;
     std::vector<std::byte> received_;  // not yet read by the application
     std::optional<RobotApplication::Answer> due_;
-    int answer_cycles_ = 0;  // until the answer leaves
-    int redial_cycles_ = 0;  // until the next dial; 0: none
+    int answer_cycles_ = 0;  // cycles until the answer is sent
+    int redial_cycles_ = 0;  // cycles until the next connection attempt; 0: none
     bool silent_ = false;
     std::uint64_t answers_ = 0;
     std::string last_failure_;

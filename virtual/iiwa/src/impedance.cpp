@@ -10,7 +10,8 @@ namespace {
 constexpr double kUnbounded = std::numeric_limits<double>::max();
 constexpr double kNoLimit = 1e6;
 
-/// So many arguments of an impedance command, from `first`, must be from `lower` to `upper`.
+/// Range rule: this number of arguments of an impedance command, from `first` on, must be between
+/// `lower` and `upper`.
 struct ImpedanceRange {
     int command;
     std::size_t first;

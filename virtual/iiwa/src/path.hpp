@@ -10,21 +10,21 @@
 
 namespace metier::virtual_iiwa {
 
-/// What the PC allows a motion, as the defaults of the robot application.
+/// Limits that the PC sets for a motion; the defaults are those of the robot application.
 struct MotionLimits {
     double joint_velocity = 1.0;      ///< share of what the axes can
     double joint_acceleration = 1.0;  ///< share of what the axes can
     double joint_jerk = 1.0;          ///< share of what the axes can
-    double velocity = 1.0;            ///< of the tool frame [m/s]
+    double velocity = 1.0;            ///< velocity of the tool frame [m/s]
     double acceleration = 1.0;        ///< [m/s2]
     double jerk = 1.0;                ///< [m/s3]; the cabinet takes no notice of it
 };
 
-/// What the drives of one axis give with these shares: [rad/s], [rad/s2], [rad/s3].
+/// Limits of the drives of one axis with these shares: [rad/s], [rad/s2], [rad/s3].
 motion::ScalarLimits axisLimits(const motion::RobotModel& model, std::size_t axis,
                                 const MotionLimits& limits);
 
-/// Where the joints are along a motion, by a parameter from 0 to 1.
+/// Joint positions along a motion, by a parameter from 0 to 1.
 class Path {
 public:
     virtual ~Path() = default;
@@ -33,10 +33,10 @@ public:
     virtual std::optional<motion::JointVector> at(double parameter,
                                                   const motion::JointVector& near) const = 0;
 
-    motion::ScalarLimits limits;  ///< of the parameter
+    motion::ScalarLimits limits;  ///< limits of the parameter
 };
 
-/// What moves: a tool frame on the flange, or the flange itself.
+/// Moving frame: a tool frame on the flange, or the flange itself.
 struct MovingFrame {
     const motion::RobotModel* model = nullptr;
     motion::Pose flange_from_tool;

@@ -40,7 +40,7 @@ bool isWhole(double value) {
     return within(value, -1e6, 1e6) && value == std::trunc(value);
 }
 
-/// As the application's language rounds; 0 if it is no number.
+/// Rounds like the application's language; 0 for NaN.
 int rounded(double value) {
     return within(value, -1e6, 1e6) ? static_cast<int>(std::floor(value + 0.5)) : 0;
 }
@@ -258,7 +258,8 @@ bool RobotApplication::setTorqueCondition(const Arguments& arguments) {
 bool RobotApplication::setMode(int code, double value) {
     const auto* const choice = std::ranges::find(kChoices, code, &Choice::command);
     if (!isWhole(value) || !within(value, choice->first, choice->last)) {
-        // Of a way to tell the state that it does not know the application says nothing more.
+        // Command 301 (when the state is sent) with an unknown value is refused without an error
+        // code.
         return code != 301 && refuse(ErrorCode::value);
     }
     const int chosen = static_cast<int>(value);

@@ -16,7 +16,7 @@ namespace metier::virtual_iiwa {
 /// Source: libiiwa @ a17a491, java/src/application and docs/source/intro/protocol.rst.
 class RobotApplication {
 public:
-    /// When the PC gets its state.
+    /// Time at which the PC gets its answer.
     enum class Answer : std::uint8_t {
         at_once,
         after_motion,     ///< synchronous: status() is right when waiting() is over
@@ -70,7 +70,7 @@ private:
     MotionLimits limits_;
     std::array<std::optional<double>, 3> force_thresholds_;  // [N]
     std::array<std::optional<Interval>, 7> torque_limits_;   // [Nm]
-    std::map<int, std::array<double, 7>> impedance_;         // by command
+    std::map<int, std::array<double, 7>> impedance_;         // settings by their command
     motion::Pose flange_from_tool_;
     bool servo_ = false;
     bool synchronous_ = false;

@@ -12,7 +12,7 @@ using motion::JointVector;
 using motion::Pose;
 using motion::ScalarLimits;
 
-// What a dimension gets that does not exist.
+// Limits for a dimension that does not exist.
 constexpr ScalarLimits kUnused{1.0, 1.0, 1.0};
 // The cabinet's own limits of a Cartesian servo motion's jerk [m/s3].
 constexpr double kServoJerk = 100.0;

@@ -11,7 +11,7 @@
 /// The numbers that a PC and the robot application on the cabinet exchange (libiiwa).
 namespace metier::virtual_iiwa {
 
-/// How a number is written, big-endian; the cabinet's process data choose.
+/// Format of a number, big-endian; the cabinet's process data choose it.
 enum class Precision : std::uint8_t { single_precision, double_precision };
 
 struct Command {
@@ -48,7 +48,7 @@ std::vector<std::byte> encodeState(const StateNumbers& state, Precision precisio
 motion::Pose toPose(const std::array<double, 6>& xyzabc);
 std::array<double, 6> toNumbers(const motion::Pose& pose);
 
-/// What element 34 of the state says, until another error comes.
+/// Value of element 34 of the state; it stays until another error comes.
 enum class ErrorCode : std::int8_t {
     none = -10,
     value = -11,

@@ -16,17 +16,18 @@
 
 namespace metier::virtual_netft {
 
-/// What the settings say (README.md).
+/// Options from the settings (README.md).
 struct Options {
     std::uint16_t port = 49152;
     std::uint16_t http_port = 0;  ///< 0: no web pages
-    double rate = 1000.0;         ///< at first [1/s]
-    int buffer_size = 5;          ///< at first; records in one datagram of the buffered mode
+    double rate = 1000.0;         ///< initial rate [1/s]
+    int buffer_size = 5;          ///< initial number of records in one datagram of the buffered
+                                  ///< mode
     std::string product;
     Calibration calibration;
 };
 
-/// A Net F/T: records over UDP to whoever asked last, and its web pages.
+/// A Net F/T: sends records over UDP to the client that asked last, and serves its web pages.
 class NetFtController final : public virtual_controller::Controller {
 public:
     static Result<std::unique_ptr<NetFtController>> start(

@@ -15,7 +15,7 @@ enum class Command : std::uint16_t {
     start_real_time = 0x0002,   ///< one record per datagram
     start_buffered = 0x0003,    ///< several records per datagram
     start_multi_unit = 0x0004,  ///< one, in step with other sensors; alone as in real time
-    reset_latch = 0x0041,       ///< of the monitor condition
+    reset_latch = 0x0041,       ///< resets the latch of the monitor condition
     set_bias = 0x0042,
 };
 
@@ -24,12 +24,12 @@ struct Request {
     std::uint32_t sample_count = 0;  ///< 0: without end
 };
 
-/// Nothing for what is no request, which the sensor ignores.
+/// Parses a request; nothing if the datagram is no request, which the sensor ignores.
 std::optional<Request> parseRequest(std::span<const std::byte> datagram) noexcept;
 
 struct Record {
-    std::uint32_t rdt_sequence = 0;  ///< of the records since the request
-    std::uint32_t ft_sequence = 0;   ///< of the sensor's own samples
+    std::uint32_t rdt_sequence = 0;  ///< number of the record since the request
+    std::uint32_t ft_sequence = 0;   ///< number of the sensor's own sample
     std::uint32_t status = 0;
     std::array<std::int32_t, 6> counts{};  ///< force x, y, z, torque x, y, z
 };

@@ -16,16 +16,16 @@ namespace metier::virtual_netft {
 struct Unit {
     std::string_view name;
     double size = 1.0;
-    int code = 0;  ///< by which the pages name it besides
+    int code = 0;  ///< its number on the pages
 };
 
-/// As the sensor's web pages write them.
+/// Units in the spelling of the sensor's web pages.
 std::span<const Unit> forceUnits() noexcept;
 std::span<const Unit> torqueUnits() noexcept;
 
-/// The sensor's own samples, whatever the rate of the records [1/s].
+/// Rate of the sensor's own samples, independent of the rate of the records [1/s].
 inline constexpr int kSampleRate = 7000;
-/// Of the transducer, on the pages.
+/// Serial number of the transducer on the pages.
 inline constexpr std::string_view kSerialNumber = "FT00001";
 
 /// The sensor's own calibration and range.
@@ -55,9 +55,8 @@ public:
 
     /// The last load becomes zero.
     void setBias() noexcept { bias_ = last_; }
-    /// The bias as the pages tell it: that of each gauge, -32768 to 32767. A real sensor has six
-    /// gauges that a matrix maps to the axes; here each axis has one, 32767 at the end of its
-    /// range.
+    /// Bias of each gauge for the pages, -32768 to 32767. A real sensor has six gauges that a
+    /// matrix maps to the axes; here each axis has one gauge, with 32767 at the end of its range.
     std::array<int, 6> gaugeBias() const noexcept;
     void setGaugeBias(std::size_t gauge, int bias) noexcept;
     /// Ends a warning of the monitor condition.
@@ -69,7 +68,7 @@ public:
 
 private:
     Calibration calibration_;
-    std::array<double, 6> last_{};  // with its noise [N], [Nm]
+    std::array<double, 6> last_{};  // last wrench with its noise [N], [Nm]
     std::array<double, 6> bias_{};
     std::uint32_t status_ = status::kHealthy;
     std::mt19937 random_{1};

@@ -63,7 +63,8 @@ void UdpPort::receive() {
                                    if (error == asio::error::operation_aborted) {
                                        return;
                                    }
-                                   // An error tells of an earlier datagram that found nobody.
+                                   // An error here reports an earlier datagram that found no
+                                   // receiver.
                                    if (!error && !faults_.cut.load()) {
                                        on_datagram_(from_, std::span(incoming_).first(count));
                                    }

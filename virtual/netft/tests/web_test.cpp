@@ -32,7 +32,7 @@ TEST(Web, TellsTheConfiguration) {
     EXPECT_THAT(page, HasSubstr("<scfgtu>Nm</scfgtu>"));
 }
 
-// What ATI's Java demo asks for, and gives up without.
+// Values that ATI's Java demo needs: it gives up without them.
 TEST(Web, TellsWhatTheMakersDemoNeeds) {
     const auto page = get("/netftapi2.xml?index=0");
     EXPECT_THAT(page, HasSubstr("<setcfgsel>0</setcfgsel>"));

@@ -10,7 +10,7 @@ namespace metier::virtual_ur {
 
 namespace {
 
-// Of the maker's list of errors (believed).
+// Codes of the maker's list of errors (assumed).
 constexpr int kCollision = 157;
 
 /// One that cannot be refused.

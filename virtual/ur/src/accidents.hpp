@@ -8,7 +8,7 @@
 
 namespace metier::virtual_ur {
 
-/// What people and accidents do to a robot.
+/// Act of a person or an accident that a robot suffers.
 struct Accident {
     const char* name;
     const char* help;

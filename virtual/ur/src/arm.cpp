@@ -12,12 +12,12 @@ namespace metier::virtual_ur {
 
 namespace {
 
-// What rounding leaves of a standstill is one [rad/s].
+// Speed below which the arm stands still: rounding errors of a standstill are smaller [rad/s].
 constexpr double kStandstill = 1e-9;
-// How far an injected violation is beyond a limit [rad].
+// Distance of an injected violation beyond a limit [rad].
 constexpr double kBeyond = 0.01;
 
-// From the maker's list of errors (believed): position close to joint limits, position deviates
+// Codes of the maker's list of errors (assumed): position close to joint limits, position deviates
 // from path, position in singularity.
 constexpr int kJointLimit = 150;
 constexpr int kOffPath = 153;

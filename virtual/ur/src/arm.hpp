@@ -14,17 +14,17 @@
 
 namespace metier::virtual_ur {
 
-/// What the controller allows the arm, and how it stops it.
+/// Limits of the arm in the controller, and its way of stopping.
 struct ArmOptions {
     std::vector<joint_simulator::AxisLimits> limits;  ///< six
     double cycle = 0.008;                             ///< [s]
     Vector6 start{};                                  ///< [rad]
-    double stop_deceleration = 13.0;  ///< of a stop that the controller makes by itself [rad/s2]
+    double stop_deceleration = 13.0;  ///< deceleration of the controller's own stop [rad/s2]
 };
 
 /// Why the controller has to stop the arm by itself.
 struct ArmViolation {
-    int code = 0;  ///< as C150 of the maker's list of errors
+    int code = 0;  ///< such as 150 for C150 of the maker's list of errors
     std::string text;
 };
 
@@ -36,7 +36,7 @@ public:
     /// \param model of six axes; outlives the arm
     Arm(const motion::RobotModel& model, const ArmOptions& options);
 
-    // What a program asks for; each takes over from the motion before.
+    // Motions requested by a program; each replaces the motion before.
     void servo(const Vector6& target, double duration, double lag);
     /// The tool along a line; speeds as those of moveL().
     void servoLine(const motion::Pose& base_from_target, const PathSpeed& speed);
@@ -44,7 +44,7 @@ public:
     /// A motion that begins at standstill: the arm is stopped first.
     using FromStandstill = std::function<std::unique_ptr<Motion>(const Vector6& start)>;
     void beginStanding(FromStandstill motion, double stop_acceleration);
-    /// Whether a program that waits for the motion may go on.
+    /// Reports whether a program that waits for the motion may go on.
     bool motionDone() const { return !motion_ || motion_->done(); }
 
     /// The controller's own stop, off the path; nothing else moves the arm until it stands.
@@ -55,7 +55,7 @@ public:
     /// \param scaling of time along the motion, 0 to 1
     /// \return why the arm has to be stopped; its set-point was not taken then
     std::optional<ArmViolation> cycle(double scaling);
-    /// What a set-point of that axis beyond its upper limit would be.
+    /// Violation by a set-point of that axis beyond its upper limit.
     ArmViolation beyondLimit(std::size_t axis) const;
     bool withinLimits(const Vector6& position) const;
     /// Puts the arm elsewhere, standing.

@@ -47,7 +47,7 @@ private:
     std::function<void(std::string)> log_;
     std::string operational_mode_ = "NONE";
     std::string user_role_ = "PROGRAMMER";
-    unsigned flight_reports_ = 0;  // so many were made
+    unsigned flight_reports_ = 0;  // number of reports made
 };
 
 }  // namespace metier::virtual_ur

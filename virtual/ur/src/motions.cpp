@@ -10,7 +10,7 @@ namespace metier::virtual_ur {
 
 namespace {
 
-// Of the inverse Jacobian: keeps it finite in a singular place.
+// Damping of the inverse Jacobian: keeps it finite in a singular place.
 constexpr double kDamping = 1e-6;
 // A servo that is so near is there: an exponential alone would never arrive [rad].
 constexpr double kArrived = 1e-9;
@@ -123,7 +123,7 @@ using Twist = Eigen::Matrix<double, 6, 1>;
 // However hard a script asks the tool to accelerate, its joints do not do more [rad/s2]; believed.
 constexpr double kTwistRamp = 20.0;
 
-/// Of the tool's origin, in the base frame.
+/// Jacobian of the tool's origin, in the base frame.
 Eigen::Matrix<double, 6, 6> toolJacobian(const ToolKinematics& tool, const motion::JointVector& q) {
     Eigen::Matrix<double, 6, 6> jacobian = tool.arm.jacobian(q);
     const Eigen::Vector3d arm = tool.arm.forward(q).rotation * tool.flange_from_tool.translation;
@@ -182,7 +182,7 @@ private:
     double left_;
     ToolKinematics tool_;
     std::optional<Twist> twist_;
-    std::optional<Vector6> present_;  // of the joints [rad/s]
+    std::optional<Vector6> present_;  // joint velocity [rad/s]
     bool reached_ = false;
 };
 

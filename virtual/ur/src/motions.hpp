@@ -10,7 +10,7 @@
 
 namespace metier::virtual_ur {
 
-/// Where the commanded arm is.
+/// Position and velocity of the commanded arm.
 struct JointState {
     Vector6 position{};  ///< [rad]
     Vector6 velocity{};  ///< [rad/s]
@@ -26,30 +26,31 @@ public:
     /// \param now  the last set-point and its velocity
     /// \param step [s] that pass
     virtual std::optional<Vector6> next(const JointState& now, double step) = 0;
-    /// Whether a script that waits for it may go on. The motion may go on too.
+    /// Reports whether a script that waits for the motion may go on. The motion itself may go on,
+    /// too.
     virtual bool done() const = 0;
 };
 
-/// Where the tool's origin sits on the arm.
+/// Kinematics of the arm with its tool.
 struct ToolKinematics {
     const motion::Kinematics& arm;
     motion::Pose flange_from_tool;
 };
 
-/// How fast a move may be along its path.
+/// Speed and acceleration of a move along its path.
 struct PathSpeed {
     double velocity = 0.0;
     double acceleration = 0.0;
     double duration = 0.0;  ///< [s]; > 0: as long as that instead
 };
 
-/// Follows a set-point that changes all the time: two equal low-passes that together lag by
-/// lookahead + 1 / gain behind it (docs in the README: what is simulated).
+/// Follows a set-point that changes all the time: two equal low-passes, which together lag behind
+/// it by lookahead + 1 / gain (see the README on simulated parts).
 class ServoMotion final : public Motion {
 public:
     /// \param now where the arm is and how fast: the motion goes on from there
     explicit ServoMotion(const JointState& now);
-    /// Where to go from now on.
+    /// Sets the target from now on.
     /// \param duration [s] that a script waits for it
     /// \param lag      [s], > 0
     void retarget(const Vector6& target, double duration, double lag);
@@ -60,7 +61,7 @@ public:
 private:
     JointState start_;
     Vector6 target_{};
-    std::optional<Vector6> first_;  // what the first low-pass gives
+    std::optional<Vector6> first_;  // output of the first low-pass
     double lag_ = 0.1;
     double left_ = 0.0;
 };
@@ -70,13 +71,13 @@ class LineServo final : public Motion {
 public:
     /// \param now where the arm is and how fast: the motion goes on from there
     explicit LineServo(const JointState& now) : start_velocity_(now.velocity) {}
-    /// Where to go from now on.
+    /// Sets the target from now on.
     /// \param speed velocity [m/s] and acceleration [m/s2] of the tool's origin, > 0; a turn counts
     ///              as the way of a point kTurnRadius beside it. The duration has no meaning.
     void retarget(const motion::Pose& base_from_target, const PathSpeed& speed,
                   const ToolKinematics& tool);
 
-    static constexpr double kTurnRadius = 0.1;  ///< [m]; the controller tells it, too
+    static constexpr double kTurnRadius = 0.1;  ///< [m]; the controller reports it, too
 
     std::optional<Vector6> next(const JointState& now, double step) override;
     /// A script waits for one cycle.
@@ -103,9 +104,11 @@ std::unique_ptr<Motion> speedL(const Vector6& twist, double acceleration, double
 /// Brakes every axis along its direction until the arm stands.
 std::unique_ptr<Motion> stopJ(double acceleration);
 
-/// From standstill, all axes arriving together. Speeds [rad/s] are those of the leading axis.
+/// Move from standstill on which all axes arrive together. Speeds [rad/s] are those of the leading
+/// axis.
 std::unique_ptr<Motion> moveJ(const Vector6& start, const Vector6& target, const PathSpeed& speed);
-/// From standstill, the tool along a line. Speeds [m/s]; of a turn on the spot [rad/s].
+/// Move from standstill of the tool along a line. Speeds in [m/s]; for a rotation without a way in
+/// [rad/s].
 std::unique_ptr<Motion> moveL(const Vector6& start, const motion::Pose& base_from_target,
                               const PathSpeed& speed, const ToolKinematics& tool);
 

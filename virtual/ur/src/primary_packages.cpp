@@ -15,7 +15,7 @@ constexpr std::string_view kName = "URControl";
 constexpr std::uint8_t kRobotState = 16;
 constexpr std::uint8_t kRobotMessage = 20;
 
-// Who says something, as seen in captured streams.
+// Source of a message, as seen in captured streams.
 constexpr std::int8_t kFromController = -2;
 constexpr std::int8_t kFromProgram = -3;
 
@@ -151,7 +151,7 @@ DhTable dhOf(const motion::RobotModel& model) {
 Bytes kinematics(const DhTable& dh) {
     ByteWriter body;
     for (std::size_t i = 0; i < kAxes; ++i) {
-        // Of the axis' parameters: equal ones give equal sums, as the maker's do.
+        // Checksum of the axis' parameters: equal parameters give equal sums, as with the maker's.
         std::uint64_t sum = 0;
         for (const double value : {dh.theta[i], dh.a[i], dh.d[i], dh.alpha[i]}) {
             sum = sum * 31 + std::bit_cast<std::uint64_t>(value);
@@ -187,7 +187,7 @@ Bytes force(const RobotState& state) {
     return package(7, std::move(body));
 }
 
-/// A part that nobody documents, or that says nothing of a virtual arm.
+/// A part that is not documented, or has no meaning for a virtual arm.
 Bytes empty(std::uint8_t type, std::size_t content) {
     ByteWriter body;
     body.zeros(content);

@@ -11,14 +11,14 @@
 
 namespace metier::virtual_ur {
 
-// What the ports 30001 and 30002 send. Every function gives one whole package.
+// Packages of the ports 30001 and 30002. Every function returns one whole package.
 // Source: the maker's client interface documents; the packet captured in URCL's tests.
 
-/// What does not change of the robot.
+/// Properties of the robot that do not change.
 struct RobotDescription {
     Series series = Series::cb3;
     ControllerVersion version;
-    std::string build_date;  ///< as "14-12-2020, 11:11:11"
+    std::string build_date;  ///< such as "14-12-2020, 11:11:11"
     const motion::RobotModel* model = nullptr;
     Vector6 joint_acceleration{};  ///< most of each axis [rad/s2]
     std::int32_t robot_type = 1;   ///< 1 UR5, 2 UR10, 3 UR3
@@ -37,7 +37,7 @@ Bytes keyMessage(MessageTime time, std::string_view title, std::string_view text
 Bytes safetyModeMessage(MessageTime time, SafetyMode mode);
 Bytes runtimeExceptionMessage(MessageTime time, int line, int column, std::string_view text);
 
-/// As the maker's log shows it: C150A1, with a level.
+/// Error in the form of the maker's log: C150A1, with a level.
 struct ErrorCode {
     enum class Level : std::int32_t { debug, info, warning, violation, fault, critical };
     std::int32_t code = 0;

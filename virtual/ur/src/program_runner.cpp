@@ -22,7 +22,7 @@ constexpr double kPauseTime = 0.25;
 // Sums of shares are not exact.
 constexpr double kRounding = 1e-9;
 constexpr std::size_t kMostSecondary = 64;
-// Of a script's line in a message [bytes].
+// Largest part of a script's line in a message [bytes].
 constexpr std::size_t kMostEchoed = 200;
 
 struct Place {
@@ -50,7 +50,7 @@ Place placeOf(std::string_view message) {
     return place;
 }
 
-/// What is between the first two quotation marks.
+/// Text between the first two quotation marks.
 std::string_view quoted(std::string_view text) {
     text.remove_prefix(std::min(text.find('\''), text.size() - 1) + 1);
     return text.substr(0, text.find('\''));
@@ -66,7 +66,7 @@ std::string_view lineOf(std::string_view text, int number) {
     return text.ends_with('\r') ? text.substr(0, text.size() - 1) : text;
 }
 
-/// As the maker says that a script is no program.
+/// Text of the maker for a script that is no program.
 /// Source: README.md, what is simulated.
 std::string inMakersWords(const Error& error, const Place& place, std::string_view script) {
     if (error.code == Errc::not_found) {

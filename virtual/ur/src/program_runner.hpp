@@ -20,14 +20,14 @@ namespace metier::virtual_ur {
 class ProgramRunner {
 public:
     /// \param robot outlives the runner
-    /// \param tell  gets the messages of the primary port
+    /// \param tell  receives the messages for the primary port
     ProgramRunner(ScriptRobot& robot, const RobotState& state, std::function<void(Bytes)> tell);
 
-    /// Takes a script as it came on a script port; what is wrong with it is told there.
+    /// Takes a script from a script port; errors in it are reported at the primary port.
     void run(std::string_view text);
 
-    // What the dashboard asks for.
-    /// \param file a script; `name` is what it is called
+    // Requests of the dashboard.
+    /// \param file a script; `name` is its displayed name
     /// Errors: not_found, invalid_argument (not a program).
     Result<void> load(const std::filesystem::path& file, std::string name);
     /// Begins the loaded program or goes on. Errors: invalid_state if there is none.
@@ -44,7 +44,7 @@ public:
     RuntimeState state() const { return runtime_; }
     /// Share of the time that passes for the program now: less while it pauses and resumes.
     double timeShare() const { return share_; }
-    /// As the dashboard tells it; "<unnamed>" if nothing is loaded.
+    /// Name for the dashboard; "<unnamed>" if nothing is loaded.
     const std::string& loadedName() const { return loaded_name_; }
     bool loaded() const { return loaded_.has_value(); }
     std::uint32_t line() const;
@@ -69,7 +69,7 @@ private:
     std::string loaded_name_ = "<unnamed>";
     RuntimeState runtime_ = RuntimeState::stopped;
     double share_ = 1.0;
-    double due_ = 1.0;  // of a cycle of the program
+    double due_ = 1.0;  // part of a cycle of the program that is due
     bool held_for_safety_ = false;
 };
 

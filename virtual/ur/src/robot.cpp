@@ -22,7 +22,7 @@ constexpr double kFirstSecond = 64.0;
 // From the maker's list of errors: a script came while the arm is in local control.
 constexpr std::int32_t kReadOnlyInterface = 210;
 
-// Which code the controller has for a stop that a program asks for is not known.
+// Code of a stop that a program asks for; the controller's own code is not known.
 constexpr int kProgramsStop = 0;
 
 std::uint64_t masked(std::uint64_t bits, std::uint64_t mask, std::uint64_t value) {

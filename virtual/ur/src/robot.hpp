@@ -20,7 +20,7 @@ namespace metier::virtual_ur {
 /// Threading: the thread that runs the io_context.
 class Robot {
 public:
-    /// What is around it; all of it outlives the robot.
+    /// Surroundings of the robot; all of them must outlive it.
     struct Surroundings {
         asio::io_context& context;
         virtual_controller::LinkFaults& faults;
@@ -34,7 +34,7 @@ public:
 
     /// One period of the controller.
     void cycle();
-    /// As after power was switched off and on.
+    /// Restarts as after power was switched off and on.
     void restart();
 
     const RobotState& state() const { return state_; }
@@ -98,7 +98,8 @@ private:
     RobotState state_;
     ControlInputs control_;
     Control control_mode_;
-    // By programs, in this cycle: done once none of them runs, since it may end them.
+    // Requests of programs in this cycle: carried out when no program is running its step, since
+    // they may end programs.
     struct Asked {
         bool power_down = false;
         bool protective_stop = false;

@@ -5,7 +5,7 @@
 
 namespace metier::virtual_ur {
 
-/// How long the transitions take [s].
+/// Durations of the transitions [s].
 struct ModeTimes {
     double power_on = 1.0;
     double brake_release = 0.5;
@@ -25,7 +25,7 @@ public:
     /// \param standing whether the arm stands: only then power goes off
     void step(double seconds, bool standing);
 
-    // What the panel, the dashboard and the script ports ask for.
+    // Requests of the panel, the dashboard and the script ports.
     /// Errors of both: invalid_state in an emergency stop or a fault.
     Result<void> powerOn();
     /// Powers on first if need be.
@@ -35,13 +35,13 @@ public:
     Result<void> unlock();
     void restartSafety();
 
-    // What happens to the robot.
+    // Events that happen to the robot.
     void protectiveStop();
     void emergencyStop();
     void releaseEmergencyStop();
     void safeguardStop();
     void closeSafeguard();
-    /// Until the safety system is restarted.
+    /// Violation, which lasts until the safety system is restarted.
     void violation();
     /// An axis is outside of its safety limits; programs may not run until it is moved back.
     void recovery();
@@ -51,7 +51,7 @@ public:
     SafetyMode safetyMode() const { return safety_; }
     std::uint32_t safetyStatusBits() const;
     JointMode jointMode() const;
-    /// Whether a program may begin or go on.
+    /// Reports whether a program may begin or go on.
     bool mayRun() const { return robot_ == RobotMode::running && safety_ == SafetyMode::normal; }
     bool emergencyStopped() const { return safety_ == SafetyMode::robot_emergency_stop; }
 
@@ -62,8 +62,8 @@ private:
     const ModeTimes times_;
     RobotMode robot_;
     SafetyMode safety_ = SafetyMode::normal;
-    double in_mode_ = 0.0;    // how long the robot mode is the present one [s]
-    double in_safety_ = 0.0;  // how long the safety mode is [s]
+    double in_mode_ = 0.0;    // time in the present robot mode [s]
+    double in_safety_ = 0.0;  // time in the present safety mode [s]
     bool release_brakes_ = false;
     bool powering_off_ = false;
 };

@@ -14,7 +14,7 @@ namespace {
 
 using cell::Settings;
 
-// What the maker's configuration package tells of a UR5 (captured stream) [rad/s2].
+// Value of a UR5 in the maker's configuration package (captured stream) [rad/s2].
 constexpr double kJointAcceleration = 40.0;
 // A UR5 stops from 183 deg/s within 0.244 s (user manual) [rad/s2].
 constexpr double kStopDeceleration = 13.0;
@@ -48,7 +48,7 @@ Ports readPorts(const Settings& settings) {
     return ports;
 }
 
-/// "UR5" of "ur5e": the number tells the size.
+/// Type number of "ur5e" and the like: the number in the name is the size.
 std::int32_t robotType(std::string_view model) {
     if (model.find("10") != std::string_view::npos) {
         return 2;

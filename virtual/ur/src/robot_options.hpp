@@ -11,7 +11,7 @@
 
 namespace metier::virtual_ur {
 
-/// Where the services listen; 0: a free port.
+/// TCP ports of the services; 0: a free port.
 struct Ports {
     std::uint16_t dashboard = 29999;
     std::uint16_t primary = 30001;
@@ -23,7 +23,7 @@ struct Ports {
     std::uint16_t realtime_read_only = 30013;
 };
 
-/// Whether scripts and the dashboard may command an e-Series arm.
+/// Right of scripts and the dashboard to command an e-Series arm.
 enum class Control : std::uint8_t { local, remote };
 
 /// One virtual robot with its controller.
@@ -34,14 +34,14 @@ struct RobotOptions {
     PowerAtStart power = PowerAtStart::running;
     Control control = Control::remote;
     std::string serial_number;
-    std::string robot_model;         ///< as the dashboard tells it, "UR5"
+    std::string robot_model;         ///< answer of the dashboard, such as "UR5"
     std::filesystem::path programs;  ///< folder of what the dashboard loads; empty: none
     Ports ports;
     std::string address = "127.0.0.1";  ///< the robot's own, where its sockets come from
 };
 
-/// \param model of six axes; outlives what is made of the options
-/// Errors: invalid_argument with all that is wrong; README.md has the settings.
+/// \param model model with six axes; must outlive everything that is made with the options
+/// Errors: invalid_argument with all errors; README.md lists the settings.
 Result<RobotOptions> readOptions(const cell::Settings& settings, const motion::RobotModel& model);
 
 }  // namespace metier::virtual_ur

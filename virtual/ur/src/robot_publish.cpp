@@ -1,4 +1,4 @@
-// What the virtual robot shows of itself, once per cycle.
+// Published state of the virtual robot, once per cycle.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace metier::virtual_ur {
 
 namespace {
 
-// Of a robot that is switched on and does nothing.
+// Values of a robot that is switched on and does nothing.
 constexpr double kMainVoltage = 48.0;
 constexpr double kMotorTemperature = 28.0;
 constexpr double kIdleCurrent = 0.5;
@@ -17,7 +17,7 @@ constexpr double kIdleCurrent = 0.5;
 constexpr std::uint32_t kPowerOn = 1U << 0U;
 constexpr std::uint32_t kProgramRunning = 1U << 1U;
 
-/// Where the tool's origin is and how it moves.
+/// Pose and velocity of the tool's origin.
 struct ToolMotion {
     Vector6 pose{};
     Vector6 speed{};
@@ -38,7 +38,8 @@ ToolMotion toolMotion(const ToolKinematics& tool, const JointState& joints) {
             {linear.x(), linear.y(), linear.z(), turn.x(), turn.y(), turn.z()}};
 }
 
-/// A wrench on the flange, in its frame, as the maker tells it: on the tool's origin, base frame.
+/// Converts a wrench on the flange, in its frame, to the maker's form: on the tool's origin, base
+/// frame.
 Vector6 forceOnTool(const motion::Wrench& wrench, const motion::Pose& base_from_flange,
                     const motion::Pose& flange_from_tool) {
     const Eigen::Vector3d force = base_from_flange.rotation * wrench.force;

@@ -63,7 +63,7 @@ struct InputsOutputs {
 /// Everything that is sent of the virtual arm; written once per cycle, read by every port.
 /// SI, radians; poses are x, y, z and the rotation vector, in the base frame.
 struct RobotState {
-    std::uint64_t cycle = 0;  ///< of the controller; never jumps
+    std::uint64_t cycle = 0;  ///< number of the controller's cycle; never jumps
     double timestamp = 0.0;   ///< exactly cycle times period [s]
 
     Vector6 target_q{};
@@ -90,8 +90,9 @@ struct RobotState {
     std::array<std::int32_t, kAxes> joint_mode{};
     std::uint32_t script_line = 0;
 
-    double speed_slider = 1.0;   ///< what was asked for, 0 to 1
-    double speed_scaling = 1.0;  ///< of the trajectory limiter, 0 to 1; times the slider is driven
+    double speed_slider = 1.0;   ///< requested speed, 0 to 1
+    double speed_scaling = 1.0;  ///< factor of the trajectory limiter, 0 to 1; the arm moves with
+                                 ///< it times the slider
 
     double payload = 0.0;  ///< [kg]
     Vector3 payload_cog{};
@@ -109,7 +110,7 @@ struct RobotState {
     Vector6 joint_temperature{};
 };
 
-/// What clients write besides registers, as the maker's inputs are named.
+/// Inputs that clients write besides registers, with the maker's names.
 struct ControlInputs {
     std::uint32_t speed_slider_mask = 0;
     double speed_slider_fraction = 1.0;
@@ -125,7 +126,7 @@ struct ControlInputs {
     Vector6 external_force_torque{};
 };
 
-/// As the dashboard writes them: "POWER_OFF", "PROTECTIVE_STOP".
+/// Names in the dashboard's spelling: "POWER_OFF", "PROTECTIVE_STOP".
 std::string toText(RobotMode mode);
 std::string toText(SafetyMode mode);
 

@@ -12,7 +12,7 @@ namespace metier::virtual_ur {
 
 namespace {
 
-constexpr std::string_view kSource = "RTDE";  // of text messages
+constexpr std::string_view kSource = "RTDE";  // source of text messages
 
 constexpr std::size_t kHeader = 3;
 constexpr std::size_t kMostRecipes = 255;

@@ -14,7 +14,7 @@
 
 namespace metier::virtual_ur {
 
-/// As URControl numbers itself.
+/// Version number of URControl.
 struct ControllerVersion {
     std::uint32_t major = 0;
     std::uint32_t minor = 0;
@@ -22,7 +22,7 @@ struct ControllerVersion {
     std::uint32_t build = 0;
 };
 
-/// What the RTDE sessions of one controller share.
+/// Data shared by the RTDE sessions of one controller.
 struct RtdeShared {
     ControllerVersion version;
     double rate = 125.0;  ///< cycles per second
@@ -59,7 +59,7 @@ private:
     };
     struct OutputRecipe {
         std::vector<RtdeVariable> variables;
-        std::uint64_t every = 1;  // so many cycles
+        std::uint64_t every = 1;  // cycles between two packages
     };
 
     void handle(char type, std::span<const std::byte> payload);
@@ -79,7 +79,7 @@ private:
     Bytes received_;
     unsigned protocol_ = 1;
     OutputRecipe outputs_;
-    std::uint64_t cycles_ = 0;  // since the start
+    std::uint64_t cycles_ = 0;  // cycles since the start
     bool started_ = false;
     std::vector<InputRecipe> inputs_;  // the first has id 1
     std::set<std::string, std::less<>> claimed_;

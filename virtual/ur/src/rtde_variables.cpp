@@ -62,7 +62,7 @@ const std::array kInputs{
 struct RegisterName {
     enum class Kind : std::uint8_t { bits, bit, integer, number };
     Kind kind = Kind::bit;
-    std::size_t number = 0;  // of the first bit for `bits`
+    std::size_t number = 0;  // number of the first bit for `bits`
 };
 
 std::optional<std::size_t> numberAfter(std::string_view name, std::string_view prefix) {

@@ -18,7 +18,7 @@ namespace metier::virtual_ur {
 using RtdeValue = std::variant<bool, std::uint8_t, std::uint32_t, std::uint64_t, std::int32_t,
                                double, Vector3, Vector6, std::array<std::int32_t, kAxes>>;
 
-/// Where inputs of clients go.
+/// Destinations of the inputs of clients.
 struct RtdeInputs {
     Registers& registers;
     ControlInputs& control;
@@ -35,7 +35,7 @@ public:
     /// The input of that name; empty if there is none.
     static std::optional<RtdeVariable> input(std::string_view name);
 
-    /// As "VECTOR6D".
+    /// Name of the type, such as "VECTOR6D".
     std::string_view typeName() const;
     /// [bytes]
     std::size_t size() const;
@@ -47,7 +47,7 @@ public:
 private:
     RtdeVariable(const RtdeValue& type, std::size_t number) : type_(type), number_(number) {}
 
-    RtdeValue type_;  // of that alternative
+    RtdeValue type_;  // value of the variable's type
     std::size_t number_ = 0;
     Read read_ = nullptr;
     Write write_ = nullptr;

@@ -1,4 +1,4 @@
-// What programs ask of the arm: motions and kinematics.
+// Requests of programs to the arm: motions and kinematics.
 
 #include <fmt/format.h>
 
@@ -11,12 +11,12 @@ namespace metier::virtual_ur {
 
 namespace {
 
-// When a program ends or gives up a motion [rad/s2].
+// Deceleration when a program ends or gives up a motion [rad/s2].
 constexpr double kProgramStop = 10.0;
 
 using urscript::Target;
 
-// Of the arm before a move begins [rad/s2].
+// Deceleration of the arm before a move begins [rad/s2].
 constexpr double kStopBeforeMove = 10.0;
 
 double leading(const Vector6& values) {
@@ -41,7 +41,7 @@ Result<Vector6> solve(const Arm& arm, const motion::Pose& base_from_flange, cons
     });
 }
 
-/// Of the tool's origin, in the base frame.
+/// Pose of the tool's origin, in the base frame.
 motion::Pose poseOf(const ToolKinematics& tool, const Target& target) {
     if (const auto* q = std::get_if<Vector6>(&target)) {
         return tool.arm.forward(toJointVector(*q)) * tool.flange_from_tool;
@@ -49,7 +49,7 @@ motion::Pose poseOf(const ToolKinematics& tool, const Target& target) {
     return toPose(std::get<urscript::Pose>(target).value);
 }
 
-/// Where a move goes; empty for what is none.
+/// Destination of a move; empty for other motions.
 struct Destination {
     std::optional<Target> operator()(const urscript::Move& move) const { return move.target; }
     template <typename Other>
@@ -153,7 +153,7 @@ private:
                 kStopBeforeMove);
         });
     }
-    /// Of the tool; a target that no axes reach is refused before the arm moves.
+    /// Pose of the tool; a target that no joint position reaches is refused before the arm moves.
     Result<motion::Pose> pose(const Target& target) const {
         return jointTarget(target).map([&](const Vector6&) { return poseOf(arm_.tool(), target); });
     }

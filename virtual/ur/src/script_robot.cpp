@@ -18,7 +18,7 @@ using urscript::DigitalPort;
 using urscript::Pose;
 using urscript::RegisterBank;
 
-/// Where a digital port begins in the bits, and how many it has.
+/// First bit of a digital port, and the number of its bits.
 struct BitRange {
     std::size_t first = 0;
     int count = 8;
@@ -268,7 +268,7 @@ Result<double> ScriptRobot::analogInput(AnalogPort port, int index) const {
 
 namespace {
 
-// What a share of 1 is: 4 to 20 mA, or 0 to 10 V.
+// Values of the shares 0 and 1: 4 and 20 mA, or 0 and 10 V.
 constexpr double kLeastCurrent = 0.004;
 constexpr double kCurrentRange = 0.016;
 constexpr double kVoltageRange = 10.0;

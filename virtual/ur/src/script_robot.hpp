@@ -13,7 +13,7 @@
 
 namespace metier::virtual_ur {
 
-/// What programs find of the virtual robot.
+/// The virtual robot as programs see it.
 ///
 /// Threading: one thread, the cycle.
 class ScriptRobot final : public urscript::Robot {
@@ -42,7 +42,7 @@ public:
 
     /// Clients wrote inputs of these names.
     void inputsWritten(const std::vector<std::string>& names);
-    /// What a watchdog wants now: "pause" or "stop"; empty if all is well.
+    /// Action that a watchdog demands now: "pause" or "stop"; empty: none.
     std::string watch();
 
     double stepTime() const override { return parts_.cycle; }
@@ -87,7 +87,7 @@ private:
 
     Parts parts_;
     urscript::RobotState seen_;
-    std::optional<urscript::Motion> motion_;  // that was begun last
+    std::optional<urscript::Motion> motion_;  // motion that was begun last
     bool abandoned_ = false;
     bool popup_open_ = false;
     std::uint64_t contact_since_ = 0;  // cycle; 0: no contact

@@ -11,8 +11,8 @@
 
 namespace metier::virtual_ur {
 
-/// The sockets that programs dial out with, to addresses, not to names. One whose program leaves
-/// 1 MB unread is cut.
+/// Sockets with which programs connect to addresses, not to names. A socket whose program leaves 1
+/// MB unread is closed.
 ///
 /// Threading: the thread that runs the io_context.
 class ScriptSockets final : public urscript::Sockets {
@@ -29,7 +29,7 @@ public:
     bool send(const std::string& name, std::string_view bytes) override;
     std::string_view received(const std::string& name) const override;
     void consume(const std::string& name, std::size_t count) override;
-    /// As at the end of a program.
+    /// Closes all sockets, as at the end of a program.
     void closeAll();
 
 private:

@@ -102,7 +102,7 @@ private:
     RtdeShared rtde_;
     std::map<TcpPeer*, std::unique_ptr<RtdeSession>> sessions_;
     std::map<TcpPeer*, urscript::ScriptSplitter> splitters_;
-    std::map<TcpPeer*, std::string> lines_;  // what came since the last line feed
+    std::map<TcpPeer*, std::string> lines_;  // bytes since the last line feed
     std::vector<Port> ports_;
     std::optional<Pacer> pacer_;
     virtual_controller::StandingTime standing_;

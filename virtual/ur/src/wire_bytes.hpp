@@ -90,7 +90,7 @@ public:
         return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};  // NOLINT: text
     }
     std::size_t left() const { return bytes_.size(); }
-    /// Whether everything that was asked for was there.
+    /// Reports whether every requested byte was there.
     bool complete() const { return complete_; }
 
 private:

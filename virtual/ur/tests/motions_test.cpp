@@ -75,7 +75,7 @@ TEST(Motions, AMoveWithATimeTakesThatTime) {
 }
 
 TEST(Motions, AMoveWithATimeNeedsNoSpeeds) {
-    // What a client sends that gives a point by its time only: a = 0, v = 0, t = 1.
+    // Arguments of a client that gives a point by its time only: a = 0, v = 0, t = 1.
     for (const auto& [velocity, acceleration] :
          {std::pair{0.0, 0.0}, {0.0, 1.4}, {1.0, 0.0}, {0.01, 1.4}}) {
         Drive drive{{kHome, {}}};
@@ -266,7 +266,7 @@ TEST(Motions, AServoTakesOverFromAMovingArmWithoutAJump) {
     ServoMotion motion({kHome, moving});
     Drive drive{{kHome, moving}};
     Vector6 target = kHome;
-    target[0] += 0.05;  // where it would be a lag later
+    target[0] += 0.05;  // position one lag later
     for (int i = 0; i < 50; ++i) {
         target[0] += 0.5 * kStep;
         motion.retarget(target, kStep, 0.1);

@@ -1,5 +1,5 @@
-// A program that clients of RTDE registers command: with functions within it, threads that move the
-// arm, and what it tells back in registers.
+// A program that clients command by RTDE registers: with functions inside, threads that move the
+// arm, and answers in registers.
 #include <gmock/gmock.h>
 
 #include "robot_fixture.hpp"

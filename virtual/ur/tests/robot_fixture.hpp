@@ -57,7 +57,8 @@ public:
     bool runtimeBecomes(RuntimeState state) {
         return until([&] { return robot.state().runtime_state == state; });
     }
-    /// Whether a message of that kind (its tenth byte after the head) with that text was told.
+    /// Reports whether a message of that kind (its tenth byte after the head) with that text was
+    /// sent.
     bool wasReported(int kind, const std::string& text) const {
         return std::any_of(told.begin(), told.end(), [&](const Bytes& message) {
             const std::string all(reinterpret_cast<const char*>(message.data()), message.size());

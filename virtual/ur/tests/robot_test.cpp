@@ -18,7 +18,7 @@ constexpr int kError = 6;
 constexpr int kKey = 7;
 constexpr int kException = 10;
 
-/// What RL uploads, in our own words: follows registers while an integer is 1.
+/// Script like that of RL, in our own words: follows registers while an integer is 1.
 constexpr std::string_view kFollow = R"(def follow():
   while read_input_integer_register(0) == 1:
     q = [0, 0, 0, 0, 0, 0]

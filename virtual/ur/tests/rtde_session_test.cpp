@@ -18,7 +18,7 @@ protected:
     Result<void> send(RtdeSession& session, const Bytes& package) {
         return session.receive(package);
     }
-    /// What one package is answered with.
+    /// Answer to one package.
     Bytes answer(const Bytes& package) { return answer(session_, peer_, package); }
     Bytes answer(RtdeSession& session, FakePeer& peer, const Bytes& package) {
         peer.sent.clear();

@@ -83,7 +83,7 @@ TEST(RtdeVariables, SizesAreThoseOfTheWire) {
     EXPECT_EQ(RtdeVariable::input("standard_digital_output")->size(), 1U);
 }
 
-/// What a client writes to an input and reads of the register behind it.
+/// Value that a client writes to an input and reads from the register behind it.
 template <typename T>
 Bytes written(RobotState& state, std::string_view input, T value, std::string_view output) {
     ControlInputs control;

@@ -158,7 +158,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto text = Writer(decisions).program();
     const auto defined = Program::parse(text);
     if (!defined && defined.error().message.find("'d'") == std::string::npos) {
-        std::abort();  // whatever was decided is a program, but for a variable that nobody has set
+        std::abort();  // every generated text is a program, except for unset variables
     }
     if (size % 8 == 0 && Program::parse(text + "d = 1\n")) {
         std::abort();  // text behind its end

@@ -15,8 +15,8 @@ class Call;
 struct Builtin {
     std::string_view name;
     std::string_view parameters;  ///< names, separated by blanks
-    std::uint8_t required = 0;    ///< so many parameters have no default value
-    /// What it returns is used if the call neither failed nor waits.
+    std::uint8_t required = 0;    ///< number of parameters without a default value
+    /// Its return value is used if the call neither failed nor waits.
     Value (*function)(Call& call) = nullptr;
 };
 

@@ -40,7 +40,7 @@ AnalogPin pinOf(int n) {
     return {port, n};
 }
 
-/// What `function` of the robot tells of the pin whose number is the first argument.
+/// Returns the result of the robot's `function` for the pin whose number is the first argument.
 template <auto pin_of, auto function>
 Value get(Call& call) {
     const auto pin = pin_of(call.integer(0));

@@ -16,7 +16,7 @@ struct Defaults {
     double velocity;
 };
 
-/// Of `target a v t r`.
+/// Move with the arguments `target a v t r`.
 template <typename T>
 Value timedMove(Call& call, Defaults defaults) {
     T move;
@@ -28,7 +28,7 @@ Value timedMove(Call& call, Defaults defaults) {
     return call.moves(move);
 }
 
-/// Of `target a v r`.
+/// Move with the arguments `target a v r`.
 template <typename T>
 Value untimedMove(Call& call, Defaults defaults) {
     T move;

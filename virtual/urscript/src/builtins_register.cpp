@@ -3,7 +3,8 @@
 namespace metier::urscript {
 namespace {
 
-/// What `function` of the robot tells of the register whose number is the first argument.
+/// Returns the result of the robot's `function` for the register whose number is the first
+/// argument.
 template <RegisterBank bank, auto function>
 Value read(Call& call) {
     const int index = call.integer(0);

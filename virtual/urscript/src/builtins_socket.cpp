@@ -92,7 +92,7 @@ Value close(Call& call) {
     return {};
 }
 
-/// Of `number socket_name timeout`.
+/// Reads for the arguments `number socket_name timeout`.
 Value readNumbers(Call& call, const Value& failed,
                   std::optional<Extracted> (*extract)(std::string_view, std::size_t)) {
     const int count = call.integer(0);

@@ -6,7 +6,7 @@
 namespace metier::urscript {
 namespace {
 
-/// Of freedrive: 1 and 2 would be near a singular place, and too near.
+/// Status of freedrive: far from a singular place; 1 would be near one, 2 too near.
 constexpr std::int32_t kFarFromSingular = 0;
 
 /// One item of the robot's state.

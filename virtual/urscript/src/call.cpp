@@ -173,7 +173,7 @@ Value Call::applies(const Command& command) {
 }
 
 std::int64_t cyclesOf(double duration, double step_time) {
-    constexpr double kMost = 1e15;  // what a double counts exactly
+    constexpr double kMost = 1e15;  // integers up to here are exact in a double
     const double cycles = std::ceil(duration / step_time - 1e-6);
     return cycles >= 1.0 ? static_cast<std::int64_t>(std::min(cycles, kMost)) : 1;
 }

@@ -18,7 +18,7 @@ namespace metier::urscript {
 /// Asked once per cycle whether what a thread waits for has come: the value, or empty.
 using Wait = std::function<Result<std::optional<Value>>()>;
 
-/// What calls reach of the program that makes them.
+/// Access of calls to the program that makes them.
 class CallContext {
 public:
     virtual ~CallContext() = default;
@@ -31,8 +31,8 @@ public:
     virtual Result<bool> motionDone() = 0;
 };
 
-/// One call of a builtin. The first argument of a wrong type fails the call; what is read after
-/// that is empty, so a function reads all it needs, then asks ok() before it does something.
+/// One call of a builtin. The first argument of a wrong type fails the call; later reads return
+/// empty values, so a function reads all its arguments, then checks ok() before it does something.
 class Call {
 public:
     Call(const Builtin& builtin, std::span<const Value> arguments, CallContext& context)
@@ -65,7 +65,7 @@ public:
     /// The call fails. Returns what its function may return.
     Value failed(Error error);
     Value failed(Errc code, std::string_view why);
-    /// What the robot said: its value, or the call fails.
+    /// Value of a Result from the robot; an error fails the call.
     template <typename T>
     Value checked(Result<T> result) {
         return result ? Value(*std::move(result)) : failed(std::move(result.error()));

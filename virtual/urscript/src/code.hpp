@@ -11,8 +11,8 @@
 
 namespace metier::urscript {
 
-/// What the machine of a thread can do. `a` and `n` are those of the instruction; "pops" and
-/// "pushes" mean the thread's stack of values.
+/// Instructions of the machine that runs a thread. `a` and `n` are operands of the instruction;
+/// "pops" and "pushes" mean the thread's stack of values.
 enum class Op : std::uint8_t {
     constant,            ///< pushes constants[a]
     load_global,         ///< pushes globals[a]
@@ -39,11 +39,11 @@ enum class Op : std::uint8_t {
     greater,
     greater_equal,
     logical_xor,
-    jump,           ///< to a
-    jump_if_false,  ///< pops a value; to a
-    jump_if_given,  ///< to a if parameter n has a value
+    jump,           ///< jumps to a
+    jump_if_false,  ///< pops a value; jumps to a if it is false
+    jump_if_given,  ///< jumps to a if parameter n has a value
     call,           ///< pops the arguments of calls[a], pushes what the function returns
-    call_builtin,   ///< as call, of builtin_calls[a]
+    call_builtin,   ///< as call, for builtin_calls[a]
     run,            ///< starts functions[a] as a thread, pushes its handle
     kill,           ///< pops a handle, pushes none
     join,           ///< pops a handle, pushes none when that thread has ended
@@ -62,7 +62,7 @@ struct Instruction {
 struct Function {
     std::string name;
     std::vector<std::string> parameters;
-    std::size_t required = 0;  ///< so many parameters have no default value
+    std::size_t required = 0;  ///< number of parameters without a default value
     bool is_thread = false;
     std::vector<std::string> locals;  ///< parameters first
     std::vector<Instruction> instructions;
@@ -71,12 +71,12 @@ struct Function {
 /// A call of a function of the script: arguments come as they are written.
 struct FunctionCall {
     std::size_t function = 0;
-    std::vector<std::uint8_t> parameter;  ///< of each argument
+    std::vector<std::uint8_t> parameter;  ///< parameter of each argument
 };
 
 struct BuiltinCall {
     const Builtin* builtin = nullptr;
-    std::size_t total = 0;  ///< of its parameters
+    std::size_t total = 0;  ///< number of its parameters
     std::vector<std::uint8_t> parameter;
 };
 

@@ -10,14 +10,14 @@
 namespace metier::urscript {
 namespace {
 
-/// What can be called, in the words of a script.
+/// Signature of a callable function, with the names of a script.
 struct Signature {
     std::string_view name;
     std::vector<std::string_view> parameters;
     std::size_t required = 0;
 };
 
-/// Which parameter each argument is for. Errors: invalid_argument.
+/// Finds the parameter of each argument. Errors: invalid_argument.
 Result<std::vector<std::uint8_t>> parametersOf(const std::vector<WrittenArgument>& arguments,
                                                const Signature& signature, Position at) {
     const auto& names = signature.parameters;

@@ -45,14 +45,14 @@ public:
     void storeElement(std::string_view name, std::size_t n, Position at);
     void declareGlobal(std::string_view name);
     void declareLocal(std::string_view name);
-    /// Whether a variable of that name can be seen now.
+    /// Reports whether a variable of that name is visible now.
     bool isVariable(std::string_view name) const;
 
     void call(std::string_view name, std::vector<WrittenArgument> arguments, Position at);
     void run(std::string_view name, Position at);
 
-    /// Binds the calls and checks that every name is known. Errors: not_found (a name that nobody
-    /// defines), invalid_argument.
+    /// Binds the calls and checks that every name is known. Errors: not_found (a name without a
+    /// definition), invalid_argument.
     /// \param end of the program's text
     Result<Code> finish(Position end);
 
@@ -67,8 +67,8 @@ private:
         std::map<std::string, std::int32_t, std::less<>> locals;
     };
     struct OpenCall {
-        std::size_t function = 0;     // which contains it
-        std::size_t instruction = 0;  // in that function
+        std::size_t function = 0;     // function that contains it
+        std::size_t instruction = 0;  // instruction in that function
         std::string_view name;
         std::vector<WrittenArgument> arguments;
         bool is_run = false;

@@ -230,7 +230,7 @@ bool Parser::isPose() const {
     return !builder_.isVariable("p") || valuesWithin(2) == kPoseElements;
 }
 
-/// How many values the bracket holds whose first token is `ahead`.
+/// Number of values in the bracket whose first token is `ahead`.
 std::size_t Parser::valuesWithin(std::size_t ahead) const {
     std::size_t values = 1;
     for (int depth = 1; peek(ahead).kind != Kind::end_of_text; ++ahead) {

@@ -57,7 +57,7 @@ private:
     Program program_;
     Robot& robot_;
     RunLimits limits_;
-    const Code& code_;  // of program_
+    const Code& code_;  // code of program_
     std::vector<Value> globals_;
     std::vector<std::unique_ptr<Thread>> threads_;  // oldest first; the main thread is the first
     const Thread* current_ = nullptr;               // runs now
@@ -72,7 +72,7 @@ private:
 
 RunState Interpreter::Run::step() {
     spent_ = 0;
-    // By index: threads that are started now run in this cycle, too.
+    // Loops by index, since threads that start now run in this cycle, too.
     for (std::size_t i = 0; i < threads_.size() && state_ == RunState::running; ++i) {
         Thread& thread = *threads_[i];
         current_ = &thread;

@@ -48,7 +48,7 @@ tl::unexpected<Error> mismatch(Op op, const Value& left, const Value& right) {
                                                  symbolOf(op), right.typeName()));
 }
 
-/// As 32 bits count: beyond the ends they begin anew.
+/// Wraps a number to 32 bits: beyond one end it goes on at the other.
 Value wrapped(std::int64_t value) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(value));
 }
@@ -158,7 +158,7 @@ bool isMatrix(const List& list) {
                        [](const Value& row) { return row.get<List>() != nullptr; });
 }
 
-/// Sum of the products of a row and what `column` tells for each of its elements.
+/// Sum of the products of a row's elements and the values of `column` for each of them.
 template <typename Column>
 Result<Value> dotProduct(const List& row, std::size_t size, Column column) {
     if (row.size() != size) {

@@ -8,13 +8,13 @@
 
 namespace metier::urscript {
 
-// What operators do with values. Errors: type_mismatch, out_of_range, invalid_argument; without
-// position. Pure. Source: script manual, "Matrix and Array Expressions".
+// Operators on values. Errors: type_mismatch, out_of_range, invalid_argument; without position.
+// Pure. Source: script manual, "Matrix and Array Expressions".
 
 /// \param op one of Op::add to Op::logical_xor
 Result<Value> applyBinary(Op op, const Value& left, const Value& right);
 Result<Value> negated(const Value& value);
-/// Of a bool; numbers are true if not 0, strings if not empty.
+/// Truth of a value: a bool itself; numbers are true if not 0, strings if not empty.
 Result<bool> truthOf(const Value& value);
 
 Result<Value> elementOf(const Value& value, std::span<const Value> indices);
@@ -25,7 +25,7 @@ Result<Value> listOf(std::vector<Value> elements);
 /// A pose of 6 numbers.
 Result<Value> poseOf(std::span<const Value> elements);
 
-/// What a value costs to copy or make, in instructions; 0 for small ones.
+/// Cost of copying or making a value, in instructions; 0 for small ones.
 std::size_t costOf(const Value& value);
 
 }  // namespace metier::urscript

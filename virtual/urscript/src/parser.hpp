@@ -70,7 +70,7 @@ private:
 
     Result<void> nested(Step step);
 
-    int depth_ = 0;  // of blocks and expressions within each other
+    int depth_ = 0;  // depth of nested blocks and expressions
     std::vector<Loop> loops_;
     CodeBuilder builder_;
 };

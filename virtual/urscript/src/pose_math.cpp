@@ -22,7 +22,7 @@ Eigen::Quaterniond rotationOf(const Pose& pose) {
     return rotationOf(Eigen::Vector3d(pose.value[3], pose.value[4], pose.value[5]));
 }
 
-/// With an angle of at most half a turn.
+/// Rotation vector with an angle of at most half a turn.
 Eigen::Vector3d vectorOf(const Eigen::Quaterniond& rotation) {
     const Eigen::AngleAxisd turn(rotation.normalized());
     return turn.axis() * turn.angle();

@@ -4,7 +4,7 @@
 
 namespace metier::urscript {
 
-// What the pose functions of a script compute. Pure; any finite poses.
+// Pose functions of a script. Pure; any finite poses.
 // Source: script manual, module urmath.
 
 /// base_from_target = base_from_source * source_from_target.
@@ -14,7 +14,8 @@ Pose inverted(const Pose& pose);
 Pose added(const Pose& left, const Pose& right);
 /// Positions are subtracted; the rotation leads from `from` to `to`, in the base frame.
 Pose subtracted(const Pose& to, const Pose& from);
-/// On the straight line and the shortest rotation; alpha 0 is `from`, 1 is `to`, any is allowed.
+/// Pose on the straight line and the shortest rotation; alpha 0 is `from`, 1 is `to`, any value is
+/// allowed.
 Pose interpolated(const Pose& from, const Pose& to, double alpha);
 
 /// Roll, pitch and yaw [rad] of a rotation vector: Rz(yaw) Ry(pitch) Rx(roll).

@@ -9,7 +9,7 @@
 namespace metier::urscript {
 namespace {
 
-constexpr std::size_t kMostValues = 20'000;  // on the stack of a thread
+constexpr std::size_t kMostValues = 20'000;  // largest number of values on the stack of a thread
 
 Result<void> spend(ThreadContext& context, std::size_t instructions) {
     if (context.spend(instructions)) {
@@ -173,7 +173,7 @@ Result<void> Thread::load(const Value& value, std::string_view name, ThreadConte
     if (value.isNone()) {
         return fail(Errc::invalid_state, fmt::format("variable '{}' has no value", name));
     }
-    stack_.push_back(value);  // which may end `value`: a local variable stands on the stack, too
+    stack_.push_back(value);  // may invalidate `value`: a local variable is on the stack, too
     const auto& loaded = stack_.back();
     // Lists are shared, text is copied.
     return loaded.get<std::string>() == nullptr ? Result<void>() : checkSize(loaded, context);

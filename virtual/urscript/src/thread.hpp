@@ -10,13 +10,13 @@
 
 namespace metier::urscript {
 
-/// What a thread reaches of the program it belongs to.
+/// Access of a thread to its program.
 class ThreadContext : public CallContext {
 public:
     virtual std::vector<Value>& globals() = 0;
     /// Counts work; false if the cycle's budget is spent.
     virtual bool spend(std::size_t instructions) = 0;
-    /// Whether a thread may take more than this cycle.
+    /// Reports whether a thread may take more than this cycle.
     virtual bool mayWait() const = 0;
     /// \return its handle. Errors: out_of_range (too many).
     virtual Result<std::int32_t> startThread(std::size_t function) = 0;
@@ -42,7 +42,7 @@ public:
     void kill() { state_ = State::ended; }
     State state() const { return state_; }
     std::int32_t handle() const { return handle_; }
-    /// Of the instruction that is carried out.
+    /// Position of the instruction that is being executed.
     Position position() const { return at_; }
     const Error& error() const { return error_; }
 
@@ -50,7 +50,7 @@ private:
     struct Frame {
         const Function* function = nullptr;
         std::size_t next = 0;  // instruction
-        std::size_t base = 0;  // of its locals in the stack
+        std::size_t base = 0;  // index of its first local variable in the stack
     };
 
     bool resume(ThreadContext& context);

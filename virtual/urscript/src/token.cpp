@@ -67,7 +67,7 @@ bool isNamePart(char c) {
     return isNameStart(c) || isDigit(c);
 }
 
-/// Whether a statement cannot end behind this token.
+/// Reports whether a statement cannot end behind this token.
 bool goesOn(Kind kind) {
     switch (kind) {
         case Kind::word_and:

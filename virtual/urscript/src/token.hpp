@@ -8,7 +8,7 @@
 
 namespace metier::urscript {
 
-/// Where in the text, both from 1.
+/// Place in the text, both numbers from 1.
 struct Position {
     std::int32_t line = 1;
     std::int32_t column = 1;
@@ -73,8 +73,8 @@ enum class TokenKind : std::uint8_t {
 
 struct Token {
     TokenKind kind = TokenKind::end_of_text;
-    std::string_view text;  ///< of the script; a string without its quotes
-    double number = 0.0;    ///< of integer and number
+    std::string_view text;  ///< text in the script; a string is without its quotes
+    double number = 0.0;    ///< value of an integer or a number
     Position at;
 };
 
@@ -83,7 +83,7 @@ struct Token {
 /// Errors: invalid_argument, "line L, column C: why".
 Result<std::vector<Token>> tokenize(std::string_view text);
 
-/// How many blocks a line opens more than it closes (may be negative), and whether it has any
+/// Number of blocks that a line opens minus those that it closes, and whether the line has any
 /// token. For text that comes line by line; never fails.
 struct LineBlocks {
     int opened = 0;

@@ -31,7 +31,7 @@ public:
 
     /// The state that a socket has as soon as it is opened.
     SocketState first_state = SocketState::open;
-    /// What its peer has sent by then.
+    /// Bytes that its peer has sent by then.
     std::string first_received;
     std::map<std::string, Socket> all;
 };
@@ -88,7 +88,7 @@ public:
     int motion_cycles = 1;  ///< that a motion lasts
     int abandoned = 0;
     int contact = 0;
-    std::string refusal;  ///< what every motion fails with; empty: none does
+    std::string refusal;  ///< error of every motion; empty: no error
     std::array<std::int32_t, 48> input_integers{};
     std::array<double, 48> input_floats{};
     std::array<std::int32_t, 48> output_integers{};

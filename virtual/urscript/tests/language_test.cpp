@@ -124,7 +124,7 @@ TEST(UrscriptLanguage, BindsNamesAsTheManualSays) {
                        "g()\nend\nf()"),
               "2");
     EXPECT_EQ(resultOf("def f():\nglobal result = 5\nend\nf()"), "5");
-    // What nobody made global before is the function's own.
+    // A variable that was not global before is local to the function.
     EXPECT_EQ(resultOf("def f():\nx = 1\nreturn x\nend\nx = 7\nf()\nresult = x"), "7");
 }
 

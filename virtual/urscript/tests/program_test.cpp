@@ -302,7 +302,7 @@ TEST(UrscriptSpeed, AThousandInstructionsTakeFarLessThanAMillisecond) {
         parsed(within("x = 0\nwhile True:\ni = 0\nwhile i < 100:\nx = x + i * 0.5\ni = i + 1\nend\n"
                       "sync()\nend")),
         robot);
-    constexpr int kCycles = 200;  // of about 1300 instructions
+    constexpr int kCycles = 200;  // cycles of about 1300 instructions
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < kCycles; ++i) {
         ASSERT_EQ(interpreter.step(), RunState::running);

@@ -18,7 +18,7 @@ double halfExtent(const Eigen::Vector3d& size, const Eigen::Vector3d& direction)
     return 0.5 * size.cwiseProduct(direction.cwiseAbs()).sum();
 }
 
-/// How wide a part is between jaws that close along their x axis [m].
+/// Width of a part between jaws that close along their x axis [m].
 double widthBetween(const motion::Pose& world_from_jaws, const Part& part) {
     const Eigen::Vector3d closing = world_from_jaws.rotation * Eigen::Vector3d::UnitX();
     return 2.0 * halfExtent(part.size, part.world_from_part.rotation.conjugate() * closing);

@@ -18,35 +18,37 @@ using virtual_controller::WorldReport;
 /// A box that can be gripped along its x axis.
 struct Part {
     Eigen::Vector3d size;           ///< [m]
-    motion::Pose world_from_part;   ///< of its centre
+    motion::Pose world_from_part;   ///< pose of its centre
     double mass = 0.0;              ///< [kg]
-    std::string held_by{};          ///< the gripper's controller; empty: nobody
+    std::string held_by{};          ///< controller of the gripper that holds it; empty: none
     motion::Pose jaws_from_part{};  ///< while it is held
 };
 
 /// A plane that pushes back like a spring with a damper.
 struct Wall {
-    Eigen::Vector3d point;       ///< on the plane [m]
-    Eigen::Vector3d normal;      ///< of length 1, away from the wall
+    Eigen::Vector3d point;       ///< a point on the plane [m]
+    Eigen::Vector3d normal;      ///< unit vector, away from the wall
     double stiffness = 5'000.0;  ///< [N/m]
     double damping = 50.0;       ///< [Ns/m]
 };
 
-/// Where a controller's device stands or hangs.
+/// Mounting place of a controller's device.
 struct Mount {
-    motion::Pose world_from_base{};  ///< of an arm
-    std::string on{};  ///< of a gripper or sensor: the arm's controller; empty: an arm
-    motion::Pose flange_from_jaws{};  ///< of a gripper: between the jaws, x from jaw to jaw
-    /// What of an arm touches walls first: in the flange frame [m].
+    motion::Pose world_from_base{};  ///< base of an arm
+    std::string on{};  ///< for a gripper or sensor: controller of its arm; empty: the device is an
+                       ///< arm
+    motion::Pose flange_from_jaws{};  ///< for a gripper: frame between the jaws, x from jaw to jaw
+    /// Point of an arm that touches walls first, in the flange frame [m].
     Eigen::Vector3d contact_point = Eigen::Vector3d::Zero();
 };
 
-/// What a world is made of.
+/// Options of a world.
 struct WorldOptions {
     std::map<std::string, Part> parts;
-    std::map<std::string, Mount> mounts;   ///< by controller; others stand at the origin
+    std::map<std::string, Mount> mounts;   ///< by controller; other controllers' devices stand at
+                                           ///< the origin
     std::vector<Wall> walls;               ///< a table is one, too
-    std::optional<double> table_height{};  ///< where parts that are let go come to lie [m]
+    std::optional<double> table_height{};  ///< height at which released parts come to rest [m]
     double part_tolerance = 0.01;          ///< a part so far from between the jaws is missed [m]
 };
 
@@ -74,7 +76,7 @@ public:
 private:
     struct Arm {
         motion::Pose world_from_flange;
-        Eigen::Vector3d contact;                                     ///< in the world [m]
+        Eigen::Vector3d contact;  ///< contact point in the world frame [m]
         Eigen::Vector3d contact_velocity = Eigen::Vector3d::Zero();  ///< [m/s]
         double time = 0.0;  ///< its controller's own, of `contact` [s]
     };

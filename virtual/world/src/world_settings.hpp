@@ -5,7 +5,7 @@
 
 namespace metier::virtual_world {
 
-/// Reads a world's settings; what is wrong is noted in them. virtual/world/README.md lists them.
+/// Reads a world's settings; errors are noted in them. virtual/world/README.md lists the settings.
 WorldOptions readOptions(const cell::Settings& settings);
 
 }  // namespace metier::virtual_world

@@ -14,7 +14,7 @@
 
 namespace metier::virtual_wsg50 {
 
-/// What the settings say (README.md).
+/// Options from the settings (README.md).
 struct Options {
     std::uint16_t port = 1000;
     Capability capability;

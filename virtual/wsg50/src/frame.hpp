@@ -24,8 +24,8 @@ struct Frame {
 /// \param payload at most 65535 bytes
 std::vector<std::byte> encode(std::uint8_t id, std::span<const std::byte> payload);
 
-/// Finds the frames in a stream of bytes; skips what is before a preamble.
-/// Keeps at most one frame's bytes, 65543, besides what was fed last.
+/// Finds the frames in a stream of bytes; skips bytes before a preamble. Keeps the bytes of one
+/// frame at most, 65543, besides those fed last.
 ///
 /// Threading: one thread.
 class FrameReader {

@@ -7,10 +7,10 @@ namespace metier::virtual_wsg50 {
 
 namespace {
 
-// Half of what the wire's float can tell at the ends of the ranges [m], [m/s], ...
+// Half of the resolution of the wire's float at the ends of the ranges [m], [m/s], ...
 constexpr double kRounding = 1e-6;
 
-/// False for what is no number too.
+/// Range check; false for NaN, too.
 bool within(double value, double low, double high) {
     return value >= low - kRounding && value <= high + kRounding;
 }

@@ -9,7 +9,7 @@
 
 namespace metier::virtual_wsg50 {
 
-/// What the gripper is able to. The maker's data of a WSG 50 110.
+/// Abilities of the gripper: the maker's data of a WSG 50 110.
 struct Capability {
     double stroke = 0.110;           ///< [m]
     double min_speed = 0.005;        ///< [m/s]
@@ -21,7 +21,7 @@ struct Capability {
     double overdrive_force = 120.0;  ///< [N]
     double clamping_travel = 0.003;  ///< grasps from the nominal width to so much beside it [m]
     double homing_speed = 0.1;       ///< [m/s]
-    double start_width = 0.055;      ///< when power comes [m]
+    double start_width = 0.055;      ///< width when power is switched on [m]
 };
 
 struct SoftLimits {
@@ -29,14 +29,14 @@ struct SoftLimits {
     double plus = 0.0;   ///< [m]
 };
 
-/// What pre-position does when something is in the way.
+/// Behaviour of pre-position when an obstacle is in the way.
 enum class WhenBlocked : std::uint8_t { clamp, stop };
 
 enum class HomingDirection : std::uint8_t { standard = 0, positive = 1, negative = 2 };
 
 /// The gripper behind the wire: modes, limits, faults, and the jaws.
 ///
-/// Motion commands return pending, or why not; their end is told by OnFinished, once each.
+/// Motion commands return pending, or the reason why not; OnFinished reports the end of each once.
 /// Threading: one thread.
 class Gripper {
 public:
@@ -84,7 +84,7 @@ public:
 private:
     struct Motion {
         Command command = Command::stop;
-        double nominal = 0.0;  // of a grasp [m]
+        double nominal = 0.0;  // nominal width of a grasp [m]
         WhenBlocked when_blocked = WhenBlocked::stop;
     };
 
@@ -101,7 +101,7 @@ private:
     Jaws jaws_;
     std::optional<Motion> motion_;
     GraspingState state_ = GraspingState::idle;
-    Jaws::Contact blocked_ = Jaws::Contact::none;  // where it stopped being blocked
+    Jaws::Contact blocked_ = Jaws::Contact::none;  // contact at which it stopped, blocked
     std::optional<SoftLimits> soft_limits_;
     double force_limit_;
     bool referenced_ = false;

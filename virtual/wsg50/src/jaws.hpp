@@ -5,7 +5,7 @@
 
 namespace metier::virtual_wsg50 {
 
-/// What stands in the jaws' way.
+/// Obstacles in the way of the jaws.
 struct Obstacles {
     std::optional<double> part{};   ///< width of a part between the jaws [m]
     std::optional<double> block{};  ///< a width the jaws cannot pass, from either side [m]
@@ -37,7 +37,7 @@ public:
     double velocity() const noexcept { return velocity_; }  ///< [m/s], opening > 0
     double target() const noexcept { return target_; }      ///< [m]
     bool arrived() const noexcept { return width_ == target_ && velocity_ == 0.0; }
-    /// What the jaws press against, and in which direction.
+    /// Obstacle against which the jaws press, with the direction.
     Contact contact() const noexcept { return contact_; }
 
 private:

@@ -15,7 +15,7 @@ constexpr std::size_t kAnyLength = 0xFFFF;
 constexpr std::size_t kTagLength = 64;
 constexpr std::string_view kAcknowledgement = "ack";
 
-/// How long the payload of a command may be.
+/// Allowed length of a command's payload.
 struct Shape {
     Command command;
     std::size_t shortest;

@@ -14,7 +14,7 @@
 
 namespace metier::virtual_wsg50 {
 
-/// What outlives a connection besides the gripper itself.
+/// Data that outlive a connection, besides the gripper itself.
 struct Identity {
     std::uint32_t serial = 1;
     std::string tag;
@@ -36,7 +36,7 @@ public:
     void finished(Command command, Status status) { reply(command, status, {}); }
     /// Sends the updates that are due after so much more time.
     void step(std::chrono::milliseconds elapsed);
-    /// Whether the client said that it will go.
+    /// Reports whether the client has announced its disconnection.
     bool disconnectAnnounced() const noexcept { return disconnect_announced_; }
 
 private:

@@ -34,7 +34,7 @@ protected:
             session_.step(std::chrono::milliseconds(2));
         }
     }
-    /// What was sent since the last call.
+    /// Replies sent since the last call.
     std::vector<Reply> replies() {
         std::vector<Reply> result;
         last_data_.clear();

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 
 constexpr double kStandstillSpeed = 0.01;  // [rad/s]
 constexpr int kRestCycles = 5;
-// A robot whose brakes close stands after it, whatever its velocities say.
+// After this time a robot with closed brakes stands still, even if it reports velocities.
 constexpr auto kLongestBraking = 2s;
 
 }  // namespace

@@ -20,7 +20,7 @@ public:
     /// A new connection to a robot of that generation. Control that was taken when the last one was
     /// lost is given back first.
     void connected(const Generation& generation) noexcept;
-    /// The link is lost: whoever moves the arm hears of it at once.
+    /// Reports the loss of the link: the source that moves the arm is ended at once.
     void disconnected() noexcept;
 
     /// One cycle of the robot.
@@ -30,15 +30,15 @@ public:
     /// Notices what did not come. Also between cycles.
     void tick(SteadyTime now);
 
-    /// Asks for control to be given back at once, as soon as nobody moves the arm; for whoever else
+    /// Asks for control to be given back as soon as no source moves the arm, because another user
     /// wants the joints. Holds until the next call.
     enum class Wanted : std::uint8_t { for_sources, elsewhere };
     void setWanted(Wanted wanted) noexcept { wanted_ = wanted; }
-    /// Gives back what somebody left taken, if anybody did. Only while free.
+    /// Gives back control that an earlier client has left taken, if there is any. Only while free.
     void giveBackLeftover(SteadyTime now, Wire& wire);
-    /// Whether the robot's own trajectory generator has the joints.
+    /// Reports whether the robot's own trajectory generator has the joints.
     bool free() const noexcept { return handover_.state() == Handover::State::free; }
-    /// Where the joints are told to be [rad], [m].
+    /// Commanded position of the joints [rad], [m].
     JointSetPoint holding() const noexcept;
 
 private:

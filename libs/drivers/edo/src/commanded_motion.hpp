@@ -7,7 +7,7 @@
 
 namespace metier::edo_driver {
 
-/// What a set-point broke, without text so that a cycle thread can make it.
+/// A limit that a set-point broke; without text, so that a cycle thread can make it.
 struct Violation {
     enum class Kind : std::uint8_t { axis_count, not_finite, position, step };
 
@@ -20,7 +20,7 @@ struct Violation {
 /// A sentence with axis (from 1), value, limit and unit.
 std::string toText(const Violation& violation);
 
-/// Where the axes are told to be: follows set-points, and brakes by itself, since an e.DO has no
+/// Commanded position of the axes: follows set-points, and brakes by itself, since an e.DO has no
 /// stop of its own for joints that a client controls.
 ///
 /// Threading: one thread, the cycle. Does not allocate.
@@ -31,7 +31,7 @@ public:
 
     /// The axes stand here.
     void reset(const device::JointArray& position) noexcept;
-    /// As reset(), unless the axes are there already but for the noise of a measurement.
+    /// Calls reset(), unless the axes are there already within the noise of the measurement.
     void settle(const device::JointArray& measured) noexcept;
 
     /// Takes the next set-point, or leaves everything unchanged and says what it breaks.
@@ -52,8 +52,7 @@ private:
     device::JointArray velocity_;  // [rad/s]
 };
 
-/// Notices that the joints do not do what they are told: set-points that are dropped leave no other
-/// trace.
+/// Notices that the joints do not follow their set-points: dropped set-points leave no other trace.
 ///
 /// Threading: one thread, the cycle. Does not allocate.
 class FollowingWatch {
@@ -75,15 +74,15 @@ private:
     std::optional<SteadyTime> behind_since_;
 };
 
-/// When a set-point is due: one per cycle, although joint states may come in bunches.
+/// Decides when a set-point is due: one per cycle, although joint states may come in bunches.
 ///
 /// Threading: one thread, the cycle.
 class Pacer {
 public:
     explicit Pacer(Duration cycle) : cycle_(cycle) {}
 
-    /// Whether one is due now; it then counts as sent. A joint state may come half a cycle early,
-    /// but on the average there are no more set-points than cycles.
+    /// Reports whether a set-point is due now; it then counts as sent. A joint state may come half
+    /// a cycle early, but on average there are no more set-points than cycles.
     bool due(SteadyTime now) noexcept;
 
 private:

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::int64_t kSoftwareId = 255;  // of the entry that is the robot's software
+constexpr std::int64_t kSoftwareId = 255;  // id of the entry of the robot's software
 
 /// Reads the fields of one object; the first that is wrong is kept.
 class Fields {
@@ -83,7 +83,7 @@ public:
         }
     }
 
-    /// What was read, unless something was wrong.
+    /// The read value, unless there was an error.
     template <typename T>
     Result<Incoming> finish(T message) const {
         if (!problem_.empty()) {

@@ -30,7 +30,7 @@ public:
     const EdoOptions& options() const noexcept { return options_; }
     device::ArmCore& core() noexcept { return core_; }
 
-    /// As device::Arm::attach().
+    /// Same as device::Arm::attach().
     Result<void> attach(std::shared_ptr<device::SetPointSource> source);
     /// Begins a motion of the jaws, as device::Gripper does.
     Result<void> moveJaws(GripperTask::Kind kind, const device::GripperRequest& request,
@@ -38,7 +38,7 @@ public:
     void stopJaws() noexcept { session_.gripperSlot().stop(); }
     device::GripperState gripperState() const noexcept;
 
-    /// As device::Arm::resetFault().
+    /// Same as device::Arm::resetFault().
     Result<void> resetFault();
 
 private:
@@ -53,7 +53,7 @@ private:
     const EdoOptions options_;
     device::ArmCore core_;
     Session session_;
-    std::mutex turn_;  // held while somebody is given the joints
+    std::mutex turn_;  // held while a user is given the joints
     device::Notifier notifier_;
     std::jthread thread_;
 };

@@ -10,10 +10,10 @@ namespace {
 
 using Version = std::array<int, 3>;
 
-constexpr Version kHoldState{2, 1, 0};  // of this one the state is called 8
+constexpr Version kHoldState{2, 1, 0};  // in this version the state has the number 8
 constexpr Version kLastClassic{3, 0, 1};
 constexpr Version kFirstExternal{3, 1, 2};
-constexpr int kLargestMajor = 3;  // of what is known
+constexpr int kLargestMajor = 3;  // largest known major version
 constexpr int kHeldState = 8;
 
 /// The three numbers behind the last underscore.

@@ -10,10 +10,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBeginTime = 500ms;  // from a motion's command to its begin
+constexpr auto kBeginTime = 500ms;  // longest time from a motion's command to its begin
 constexpr auto kCancelTime = 2s;
-constexpr auto kRestTime = 100ms;    // of the jaws at the end of a motion
-constexpr auto kStallTime = 500ms;   // of the jaws, while the robot believes that they move
+constexpr auto kRestTime = 100ms;    // standstill of the jaws that ends a motion
+constexpr auto kStallTime = 500ms;   // standstill of the jaws while the robot takes them for moving
 constexpr double kRestSpeed = 1e-3;  // [m/s]
 constexpr double kArrived = 1e-3;    // [m]
 constexpr double kMoved = 0.5e-3;    // [m]

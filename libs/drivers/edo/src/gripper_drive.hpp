@@ -67,7 +67,7 @@ private:
     Step step_ = Step::idle;
     GripperTask task_;
     double start_width_ = 0.0;
-    SteadyTime deadline_{};  // of the whole motion
+    SteadyTime deadline_{};  // deadline of the whole motion
     SteadyTime begin_by_{};
     bool executed_ = false;
     std::string rejection_;

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kAnswerTime = 2s;
 constexpr auto kAgreeTime = 500ms;
-// The algorithm state comes each 10 ms; so long a silence means that it is not told any more.
+// The algorithm state comes every 10 ms; after this silence it is not published any more.
 constexpr auto kSilence = 50ms;
 // States that may still be under way when control was taken.
 constexpr int kMostContradictions = 20;
@@ -56,7 +56,8 @@ void Handover::onResponse(const ServiceResponse& response, SteadyTime now) {
         refusal_ = fmt::format("the service failed: {}", response.text);
     } else if (*response.result_code != 0 && state_ == State::taking) {
         refusal_ = fmt::format("refused with result {}", *response.result_code);
-    } else {  // who has nothing to give back is refused too: a brake gave it back already
+    } else {  // the service also refuses if there is nothing to give back: a brake gave it back
+              // already
         granted_ = true;
         granted_at_ = now;
         deadline_ = now + kAgreeTime;

@@ -13,8 +13,9 @@ namespace metier::edo_driver {
 /// Takes control of the joints from the robot's own trajectory generator and gives it back.
 ///
 /// An answer of the service alone proves nothing: the algorithm state must agree. Older software
-/// is silent about it while control is taken; then its silence is the proof, and its voice
-/// afterwards. If a robot never told its algorithm state at all, the answer must do.
+/// does not publish that state while control is taken; then its silence is the proof that control
+/// was taken, and the next state the proof that it was given back. If a robot has never published
+/// its algorithm state, the answer alone must do.
 ///
 /// Threading: one thread. tick() and onAlgorithmState() do not allocate unless something is wrong.
 class Handover {
@@ -47,14 +48,14 @@ private:
 
     Generation generation_{};
     State state_ = State::free;
-    bool granted_ = false;   // by the service, and to be compared
-    bool leftover_ = false;  // giving back what was not taken by this connection
+    bool granted_ = false;   // the service agreed; the algorithm state must confirm it
+    bool leftover_ = false;  // gives back control that was not taken by this connection
     std::string refusal_;
     std::string id_;
     unsigned calls_ = 0;
     SteadyTime deadline_{};
     SteadyTime granted_at_{};
-    int algorithm_ = -1;  // last state that was told; -1: none on this connection
+    int algorithm_ = -1;  // last published state; -1: none on this connection
     SteadyTime heard_at_{};
     int contradictions_ = 0;  // states in a row that say that control is not taken
 };

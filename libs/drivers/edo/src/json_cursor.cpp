@@ -45,7 +45,7 @@ void JsonCursor::enter(char opening) noexcept {
     place_ = Place::first;
 }
 
-/// To the next entry, over the comma.
+/// Moves to the next entry, over the comma.
 bool JsonCursor::next(char closing) noexcept {
     if (take(closing)) {
         place_ = Place::later;  // in what is around it

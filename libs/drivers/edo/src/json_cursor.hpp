@@ -25,8 +25,7 @@ public:
     /// The next key of the object that was entered, with the cursor at its value; nothing at the
     /// end, which leaves the object.
     std::optional<std::string_view> nextKey() noexcept;
-    /// Whether the list that was entered has another value, with the cursor at it; at the end it
-    /// leaves the list.
+    /// Moves to the next value of the entered list; false at the end, where it leaves the list.
     bool nextElement() noexcept;
 
     std::string_view string() noexcept;
@@ -36,7 +35,7 @@ public:
     std::int64_t integer() noexcept;
     /// The text of any value.
     std::string_view skip() noexcept;
-    /// Whether nothing but white space is left.
+    /// Reports whether only white space is left.
     bool atEnd() noexcept;
 
 private:
@@ -55,7 +54,7 @@ private:
 
     std::string_view rest_;
     bool ok_ = true;
-    Place place_ = Place::first;  // in the innermost object or list
+    Place place_ = Place::first;  // place in the innermost object or list
 };
 
 }  // namespace metier::edo_driver

@@ -41,7 +41,7 @@ device::Safety unusable(SafetyState state, const MachineState& machine, std::str
     return {state, fmt::format("{}{}{}", toText(machine), advice.empty() ? "" : ": ", advice)};
 }
 
-/// Of a state in which the arm could move.
+/// Safety by the opcode, for a machine state in which the arm could move.
 device::Safety byOpcode(const MachineState& machine) {
     if (machine.opcode == 0) {
         return {};

@@ -16,7 +16,7 @@ std::string opcodeText(std::uint32_t opcode);
 /// State and opcode in words: "BRAKED (brake active, collision)".
 std::string toText(const MachineState& machine);
 
-/// What the machine state means for whoever wants to move the arm; its text says what to do.
+/// Safety state of the arm for a machine state; its text says what to do.
 device::Safety safetyOf(const MachineState& machine);
 
 }  // namespace metier::edo_driver

@@ -13,18 +13,19 @@ namespace metier::edo_driver {
 
 using Duration = std::chrono::nanoseconds;
 
-/// What the driver expects of the axes. One value per axis: [rad], [rad/s], [rad/s2].
+/// Limits of the axes that the driver assumes. One value per axis: [rad], [rad/s], [rad/s2].
 struct AxisOptions {
     device::JointArray lower;
     device::JointArray upper;
     device::JointArray velocity;
-    device::JointArray deceleration;  ///< of the driver's own braking
+    device::JointArray deceleration;  ///< deceleration of the driver's own braking
 };
 
-/// How set-points are judged against what the joints do.
+/// Thresholds for comparing set-points with the motion of the joints.
 struct FollowingOptions {
-    double distance = 0.1;                           ///< from set-point to joint [rad]
-    Duration time = std::chrono::milliseconds(300);  ///< how long it may be larger
+    double distance = 0.1;                           ///< largest distance from set-point to joint
+                                                     ///< [rad]
+    Duration time = std::chrono::milliseconds(300);  ///< time for which the distance may be larger
 };
 
 /// The gripper; believed values, see docs/protocols/edo.md.
@@ -50,7 +51,8 @@ struct EdoOptions {
     ResetRequest reset;
     Duration joint_timeout = std::chrono::milliseconds(100);
     Duration machine_timeout = std::chrono::seconds(1);
-    Duration hold_control = std::chrono::milliseconds(300);  ///< at rest, before it is given back
+    Duration hold_control = std::chrono::milliseconds(300);  ///< time at rest before control is
+                                                             ///< given back
     bool start_on_connect = false;
 
     /// Period of the joint states and of the set-points.

@@ -126,7 +126,7 @@ Safety SafetyKeeper::silence() const {
                                                              milliseconds(options_.machine_timeout))
                                                : std::string("no machine state yet")};
     }
-    // Joints that were not discovered yet tell nothing.
+    // Joints that were not discovered yet do not report.
     const bool started =
         machine_->state != MachineState::init && machine_->state != MachineState::command;
     if (joints_silent_ && started) {

@@ -8,7 +8,7 @@
 
 namespace metier::edo_driver {
 
-/// Knows everything that may forbid motion, and tells the arm's core the gravest of it.
+/// Collects all reasons that may forbid motion, and gives the most serious one to the arm's core.
 ///
 /// Threading: one thread. tick() does not allocate unless something changes.
 class SafetyKeeper {
@@ -19,9 +19,9 @@ public:
 
     /// Nothing is known of the robot any more.
     void linkLost(const std::string& why);
-    /// The link is there, what is asked of the robot is not answered yet.
+    /// The link is open; the robot has not answered the first requests yet.
     void linkFound(SteadyTime now);
-    /// What makes this robot unusable for this driver; for as long as the link lasts.
+    /// Sets the reason why this driver cannot use this robot; it stays until the link ends.
     void unusable(const std::string& why);
     void onMachineState(const MachineState& machine, SteadyTime now);
     /// \param count of joints in the message
@@ -35,9 +35,10 @@ public:
     void clearFault();
     bool hasFault() const noexcept { return !fault_.empty(); }
 
-    /// What the robot said last; nothing before it spoke.
+    /// Last machine state from the robot; nothing before the first one.
     const std::optional<MachineState>& machine() const noexcept { return machine_; }
-    /// Whether the robot itself lets the joints move, whatever the driver thinks.
+    /// Reports whether the robot itself lets the joints move, whatever other reasons the driver
+    /// has.
     bool robotAllowsMotion() const noexcept { return robot_allows_; }
     bool jointsSilent() const noexcept { return joints_silent_; }
 
@@ -51,7 +52,7 @@ private:
     std::optional<std::string> link_problem_{"not connected yet"};
     std::optional<std::string> unusable_;
     std::optional<MachineState> machine_;
-    device::Safety robot_;  // by machine_
+    device::Safety robot_;  // safety by machine_
     bool robot_allows_ = false;
     std::size_t joint_count_ = 0;
     bool machine_silent_ = true;

@@ -116,7 +116,7 @@ void Session::on(const JointStates& states, SteadyTime now, Wire& wire) {
         return;
     }
     if (!valid(states)) {
-        // While somebody moves the arm it counts as silence, which ends that.
+        // While a source moves the arm, it counts as silence, which ends the motion.
         if (states.count != options_.layout.count() && core_.active() == nullptr) {
             safety_.onJointStates(states.count, now);
         }
@@ -270,7 +270,7 @@ void Session::tickGripper(SteadyTime now, Wire& wire) {
         gripper_.stop(now, wire);
     }
     if (auto outcome = gripper_.tick(*safety_.machine(), now, wire)) {
-        publishGripper(now);  // first: whoever hears of the end sees the jaws at rest
+        publishGripper(now);  // first, so that an observer of the end sees the jaws at rest
         gripper_slot_.end(std::move(*outcome));
     }
 }

@@ -23,18 +23,18 @@ public:
 
     /// A new connection: asks for the software version, then for all that the driver follows.
     void linkUp(SteadyTime now, Wire& wire);
-    /// The connection is lost, or there was none; who waits for something hears of it.
+    /// Notes that the connection is lost, or was not made; waiting requests end with that error.
     void linkDown(const std::string& why);
-    /// The same of a link that the driver ends itself: nobody is warned.
+    /// The same for a link that the driver ends itself: no warning is logged.
     void letGo(const std::string& why);
     void onText(std::string_view text, SteadyTime now, Wire& wire);
-    /// At least every 20 ms.
+    /// Call it at least every 20 ms.
     /// Errors: connection_lost if the robot is silent and a new connection might help.
     Result<void> tick(SteadyTime now, Wire& wire);
 
-    /// Nobody shall move anything any more: brakes and gives control back.
+    /// Ends all motion: brakes and gives control back.
     void close() noexcept;
-    /// Whether control is with the robot.
+    /// Reports whether the robot has control.
     bool closed() const noexcept { return arm_.free(); }
 
     device::ResetSlot& resetSlot() noexcept { return reset_slot_; }

@@ -8,9 +8,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBeginTime = 2s;     // from a command to a change of the machine state
+constexpr auto kBeginTime = 2s;     // longest time from a command to a change of the machine state
 constexpr auto kExecuteTime = 12s;  // the robot gives its joints 10 s
-constexpr auto kSettleTime = 1s;    // from NOT_CALIBRATED to CALIBRATED, if the joints are
+constexpr auto kSettleTime = 1s;    // longest time from NOT_CALIBRATED to CALIBRATED, if the joints
+                                    // are calibrated
 
 }  // namespace
 

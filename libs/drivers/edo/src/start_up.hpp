@@ -13,8 +13,8 @@ namespace metier::edo_driver {
 /// Leads the robot from INIT or BRAKED to CALIBRATED: discovers its joints, releases its brakes.
 /// It never calibrates, which is a person's work.
 ///
-/// The robot drops what its state does not allow without a word, so only the machine state tells
-/// whether something happened.
+/// The robot drops commands that its state does not allow, without an answer, so only the machine
+/// state shows whether a command had an effect.
 ///
 /// Threading: one thread.
 class StartUp {
@@ -27,7 +27,8 @@ public:
     bool running() const noexcept { return step_ != Step::idle; }
     void cancel() noexcept { step_ = Step::idle; }
 
-    /// Goes on. \return how it ended, once; device_fault with what is still wrong
+    /// Continues the start_up.
+    /// \return its outcome, once; device_fault with the reason that remains
     std::optional<Result<void>> tick(const MachineState& machine, SteadyTime now, Wire& wire);
 
 private:
@@ -41,7 +42,7 @@ private:
     const JointLayout& layout_;
     ResetRequest request_;
     Step step_ = Step::idle;
-    std::string_view command_;  // what was sent last
+    std::string_view command_;  // last command sent
     std::uint8_t sent_in_ = 0;  // the state it was sent in
     bool init_sent_ = false;
     bool reset_sent_ = false;

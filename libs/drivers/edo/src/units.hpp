@@ -11,7 +11,7 @@ namespace metier::edo_driver {
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 inline constexpr double kMetresPerMillimetre = 1e-3;
 
-/// What one unit of the wire is in SI, for that joint.
+/// Size of one unit of the wire in SI, for that joint.
 inline double unitOf(const JointLayout& layout, std::size_t joint) noexcept {
     return layout.isGripper(joint) ? kMetresPerMillimetre : kRadiansPerDegree;
 }

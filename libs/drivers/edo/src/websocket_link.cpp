@@ -31,7 +31,7 @@ using boost::system::error_code;
 constexpr std::size_t kLongestMessage = std::size_t{1} << 20U;
 constexpr std::size_t kUsualMessage = std::size_t{1} << 16U;
 
-/// What pending operations of one direction need, so that none of them allocates.
+/// Memory for the pending operations of one direction, so that none of them allocates.
 class OperationMemory {
 public:
     void* take(std::size_t size) {
@@ -160,7 +160,7 @@ struct WebSocketLink::Impl {
     boost::asio::io_context context{1};  // destroys what is pending, so before the directions
     Stream stream{context};
     beast::flat_buffer buffer{kLongestMessage};
-    bool delivered = false;  // what is in the buffer
+    bool delivered = false;  // the content of the buffer was delivered
 };
 
 WebSocketLink::WebSocketLink(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -188,7 +188,7 @@ Result<void> WebSocketLink::send(std::string_view text, SteadyTime deadline) {
     impl.stream.async_write(boost::asio::buffer(text.data(), text.size()), begin(impl.writer));
     auto sent = impl.finish(impl.writer, deadline);
     if (!sent) {
-        shutdown();  // the text is lost for whoever goes on
+        shutdown();  // ends the link: part of the text may be sent already
         impl.finish(impl.writer, SteadyTime::max());
     }
     return sent;

@@ -4,11 +4,11 @@
 
 namespace metier::edo_driver {
 
-/// Where the texts for the robot go.
+/// Receiver of the texts for the robot.
 class Wire {
 public:
     virtual ~Wire() = default;
-    /// Sends one text. A failure is noticed by whoever owns the link, as its loss.
+    /// Sends one text. The owner of the link notices a failure as the loss of the link.
     virtual void send(std::string_view text) noexcept = 0;
 };
 

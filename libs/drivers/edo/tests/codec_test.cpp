@@ -238,7 +238,7 @@ TEST(Decoder, DoesNotAllocateForWhatComesInEachCycle) {
     EXPECT_TRUE(right);
 }
 
-// ---- what the robot is told ----
+// ---- texts for the robot ----
 
 TEST(Encoder, WritesSubscriptionsWithoutThrottle) {
     EXPECT_EQ(subscribeText("/machine_state", "edo_core_msgs/MachineState"),

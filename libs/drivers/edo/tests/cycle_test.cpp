@@ -13,7 +13,7 @@ public:
     std::size_t characters = 0;
 };
 
-/// Texts of one cycle of a robot that stands where it is told.
+/// Texts of one cycle of a robot that stands at its set-point.
 constexpr std::string_view kJoints =
     R"({"topic":"/usb_jnt_state","msg":{"joints_mask":127,"joints":[{"position":0.0},)"
     R"({"position":10.0},{"position":90.0},{"position":0.0},{"position":80.0},{"position":0.0},)"

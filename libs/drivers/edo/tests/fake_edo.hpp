@@ -9,7 +9,7 @@
 
 namespace metier::edo_driver::testing {
 
-/// Ways in which a robot can misbehave. All off: it does what it is told.
+/// Ways in which a robot can misbehave. All off: it obeys.
 struct FakeFaults {
     bool drop_init = false;
     bool drop_reset = false;
@@ -24,15 +24,15 @@ struct FakeFaults {
     bool mute_algorithm = false;
     bool null_positions = false;
     bool brakes_stay_closed = false;  ///< a reset ends in BRAKED again
-    bool restless = false;            ///< tells velocities of joints that stand
+    bool restless = false;            ///< reports velocities of joints that stand still
     bool believes_in_jaws = false;    ///< jaws that are blocked move on, as it thinks
     bool drop_cancels = false;
     int move_feedback = 0;  ///< instead of received: a negative type
 };
 
-/// What a rosbridge server in front of an e.DO says and does, as far as the tests need it: a state
-/// machine, joints that follow set-points at once, jaws that a part stops. Written from the
-/// protocol's description (docs/protocols/edo.md). Units are those of the wire.
+/// A rosbridge server in front of an e.DO, as far as the tests need it: a state machine, joints
+/// that follow set-points at once, jaws that a part stops. Written from the protocol's description
+/// (docs/protocols/edo.md). Units are those of the wire.
 ///
 /// Threading: one thread.
 class FakeEdo {
@@ -63,7 +63,7 @@ public:
     std::uint32_t opcode = 0;
     bool uncalibrated = false;
     bool control_taken = false;
-    int switched_off_state = 9;       ///< of /algorithm_state, in older software
+    int switched_off_state = 9;       ///< value of /algorithm_state, in older software
     bool tells_switched_off = false;  ///< although older software does not
     int set_points = 0;
     int set_points_while_not_taken = 0;

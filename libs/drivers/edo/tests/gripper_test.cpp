@@ -23,7 +23,7 @@ protected:
         ASSERT_TRUE(bench_.session.gripperSlot().post(
             *task, [this](Result<GripperOutcome> outcome) { outcome_ = std::move(outcome); }));
     }
-    /// How the motion ended, within 20 s of the robot.
+    /// Outcome of the motion, within 20 s of the robot.
     Result<GripperOutcome> ended() {
         bench_.runUntil([this] { return outcome_.has_value(); });
         return outcome_.value_or(fail(Errc::timeout, "never"));

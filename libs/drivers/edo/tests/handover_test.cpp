@@ -29,12 +29,12 @@ protected:
         handover_.onResponse(response, now_);
     }
     void answer(int result) { answer({.id = {}, .ok = true, .result_code = result}); }
-    /// The robot tells its algorithm state a moment later.
+    /// The robot publishes its algorithm state a moment later.
     void tells(int state) {
         now_ += 1ms;
         handover_.onAlgorithmState({state}, now_);
     }
-    /// How it stands after some time.
+    /// Outcome after some time.
     Result<void> after(std::chrono::milliseconds time) {
         now_ += time;
         return handover_.tick(now_);

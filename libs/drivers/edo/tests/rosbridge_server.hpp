@@ -32,7 +32,7 @@ public:
     void ping();
     /// Ends the connection without a word; the client may come again.
     void drop();
-    /// How often a client connected.
+    /// Number of times that a client connected.
     int connections() const;
 
 private:

@@ -18,7 +18,7 @@ class StartUpTest : public ::testing::Test, private Wire {
 protected:
     StartUpTest() { start_up_.start(now_); }
 
-    /// How it ends; nothing if it goes on.
+    /// Outcome; nothing if it goes on.
     std::optional<Result<void>> tick(std::uint8_t state, std::chrono::milliseconds later = 0ms,
                                      std::uint32_t opcode = 0) {
         now_ += later;

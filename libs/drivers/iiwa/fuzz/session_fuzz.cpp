@@ -42,7 +42,7 @@ private:
     double step_;
 };
 
-/// One connection. The cabinet does what it is told as far as the input says.
+/// One connection. The input decides how far the cabinet obeys its commands.
 class Dialogue {
 public:
     Dialogue() {

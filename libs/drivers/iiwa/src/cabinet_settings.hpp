@@ -12,7 +12,7 @@ class CommandList {
 public:
     static constexpr std::size_t kCapacity = 12;
 
-    /// What does not fit is dropped; no list here is that long.
+    /// Adds a command; one beyond the capacity is dropped, but no list here is that long.
     void add(const Command& command) noexcept {
         if (end_ < kCapacity) {
             commands_[end_++] = command;
@@ -29,7 +29,7 @@ private:
     std::size_t end_ = 0;
 };
 
-/// What the cabinet was told of its settings, so that nothing is told twice.
+/// Settings that were sent to the cabinet, so that none is sent twice.
 ///
 /// Threading: one thread, the cycle. Nothing allocates.
 class CabinetSettings {

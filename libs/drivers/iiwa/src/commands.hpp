@@ -34,7 +34,7 @@ Command asynchronousExecution() noexcept;
 /// \param index as the station's setup counts; -1 detaches
 Command attachTool(int index) noexcept;
 
-/// What a command is for, as "joint velocity (201)": for texts.
+/// Name of a command for texts, such as "joint velocity (201)".
 std::string describe(const Command& command);
 
 }  // namespace metier::iiwa_driver

@@ -22,18 +22,18 @@ namespace {
 constexpr double kAxisTolerance = 2e-3;      // [rad]
 constexpr double kPositionTolerance = 1e-3;  // [m]
 constexpr double kRotationTolerance = 5e-3;  // [rad]
-// What the robot application begins with: docs/protocols/iiwa.md#commands.
+// Initial values of the robot application: docs/protocols/iiwa.md#commands.
 constexpr double kOwnLineVelocity = 1.0;      // [m/s]
 constexpr double kOwnLineAcceleration = 1.0;  // [m/s2]
-// How long a motion may take to begin after it was accepted [s].
+// Longest time from the acceptance of a motion to its begin [s].
 constexpr double kLongestStart = 0.3;
-// How long the arm may take to settle after the cabinet has ended the motion [s].
+// Longest time for the arm to settle after the cabinet has ended the motion [s].
 constexpr double kLongestSettling = 0.1;
 // A motion is given up when no axis got so far [rad] in so long [s]. Its speed says nothing: a slow
 // motion is slower than the noise of the cabinet's differences.
 constexpr double kLeastProgress = 1e-4;
 constexpr double kLongestStall = 3.0;
-// How long braking may take [s], and when it is asked for again.
+// Longest time of braking [s], and time after which it is requested again.
 constexpr double kLongestBraking = 4.0;
 constexpr double kCancelAgain = 0.5;
 
@@ -162,7 +162,7 @@ bool ControllerPlannedRun::take(const Command& sent, const CabinetState& answer,
     return true;
 }
 
-/// What the motion's outcome is made of.
+/// Notes the values of the motion's outcome.
 void ControllerPlannedRun::note(const CabinetState& answer) noexcept {
     auto& outcome = end_.outcome;
     outcome.force = answer.force;

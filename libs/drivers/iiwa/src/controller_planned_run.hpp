@@ -13,7 +13,7 @@ namespace metier::iiwa_driver {
 inline constexpr double kStandstillSpeed = 5e-3;
 bool stands(const CabinetState& state) noexcept;
 
-/// How far something is from where it should be.
+/// Distance of an axis or of the flange from its target.
 struct Miss {
     enum class Quantity : std::uint8_t { axis, position, rotation };
     Quantity quantity = Quantity::axis;
@@ -22,10 +22,10 @@ struct Miss {
     double limit = 0.0;     ///< the same unit
     bool within() const noexcept { return distance <= limit; }
 };
-/// As "axis 2 0.0135 rad from its target, limit 0.0020 rad".
+/// A text such as "axis 2 0.0135 rad from its target, limit 0.0020 rad".
 std::string toString(const Miss& miss);
 
-/// How a motion of the cabinet's planner ended.
+/// End of a motion of the cabinet's planner.
 struct RunEnd {
     enum class Cause : std::uint8_t {
         at_target,
@@ -38,7 +38,7 @@ struct RunEnd {
         disconnected,
     };
     Cause cause = Cause::at_target;
-    Command command{};  ///< that was refused
+    Command command{};  ///< refused command
     Miss miss{};
     int error = 0;  ///< code that the cabinet noted during the motion, 0 if none
     device::MotionOutcome outcome{};
@@ -53,8 +53,9 @@ class ControllerPlannedRun {
 public:
     struct Request {
         const device::ControllerPlannedMotion& motion;
-        motion::Pose flange_from_tool;  ///< what the cabinet adds to the flange in its poses
-        double force_tolerance = 10.0;  ///< of the cabinet's estimate [N]
+        motion::Pose flange_from_tool;  ///< tool that the cabinet's poses include
+        double force_tolerance = 10.0;  ///< largest inaccuracy of the cabinet's force estimate
+                                        ///< [N]
     };
 
     /// \param now the newest state, in which no motion is under way
@@ -63,14 +64,15 @@ public:
     /// Brakes; the motion ends as `cause`.
     void stop(RunEnd::Cause cause) noexcept;
 
-    /// What to send now.
+    /// Command to send now.
     Command command() const noexcept;
     /// Takes the answer to it. \return whether the motion is over
     /// \param step since the answer before [s]
     bool take(const Command& sent, const CabinetState& answer, double step,
               CabinetSettings& settings) noexcept;
 
-    /// There is more to tell before the motion begins: it should not wait for the next cycle.
+    /// Reports whether more commands must be sent before the motion begins: they should not wait
+    /// for the next cycle.
     bool hurried() const noexcept { return phase_ == Phase::telling; }
     const RunEnd& end() const noexcept { return end_; }
 
@@ -91,14 +93,14 @@ private:
     CommandList list_;
     bool by_joints_ = true;
     device::JointArray target_joints_;
-    motion::Pose target_;  ///< of the cabinet's tool
+    motion::Pose target_;  ///< target of the cabinet's tool
     device::JointArray start_;
     int error_before_ = 0;
     bool started_ = false;         ///< seen to move
     bool condition_new_ = false;   ///< a force condition that is met belongs to this motion
     double idle_ = 0.0;            ///< without a motion [s]
-    device::JointArray progress_;  ///< where the arm was when it last got on [rad]
-    double stalled_ = 0.0;         ///< with a motion, since then [s]
+    device::JointArray progress_;  ///< position at the last progress [rad]
+    double stalled_ = 0.0;         ///< time without progress since then, with a motion active [s]
     double braking_ = 0.0;         ///< [s]
     double since_cancel_ = 0.0;    ///< [s]
     bool cancelled_ = false;

@@ -13,7 +13,7 @@ std::chrono::nanoseconds milliseconds(double ms) {
         std::chrono::duration<double, std::milli>(ms));
 }
 
-/// Notes what is wrong in the settings; finish() tells.
+/// Reads the settings and notes errors in them; finish() reports these.
 IiwaOptions read(const device::OpenRequest& request) {
     const auto& settings = request.settings;
     IiwaOptions options;

@@ -34,7 +34,7 @@ private:
     device::ArmCore& core_;
     const std::chrono::nanoseconds longest_;
     const std::string name_;
-    device::SharedValue<device::WrenchSample> newest_;  ///< as the cabinet gave it
+    device::SharedValue<device::WrenchSample> newest_;  ///< as received from the cabinet
     device::SharedValue<device::WrenchSample> zero_;
     std::mutex tare_mutex_;  ///< one writer of zero_
 };

@@ -13,7 +13,7 @@ namespace metier::iiwa_driver {
 
 namespace {
 
-// A cycle with the slowest answer may be so late before the guard hangs up.
+// Largest delay of a cycle with the slowest answer before the guard closes the connection.
 constexpr std::chrono::milliseconds kGuardMargin{300};
 
 device::ArmInfo infoOf(const IiwaOptions& options, const motion::RobotModel& model) {
@@ -24,7 +24,7 @@ device::ArmInfo infoOf(const IiwaOptions& options, const motion::RobotModel& mod
     return info;
 }
 
-/// As long as a connected cabinet may be silent, and 5 cycles at least.
+/// Longest silence of a connected cabinet, and 5 cycles at least.
 std::chrono::nanoseconds longestSilence(const IiwaOptions& options) {
     return std::max(5 * options.cycle, options.cycle + options.answer_timeout);
 }

@@ -6,14 +6,14 @@
 
 namespace metier::iiwa_driver {
 
-/// Whether the cabinet may be asked for this motion: it does not say what it does not accept.
+/// Checks whether the cabinet would accept this motion, since it does not report what it refuses.
 /// Errors: invalid_argument (sizes, not finite, a share outside (0, 1]), out_of_range (axis and
 /// limit), unreachable.
 Result<void> checkMotion(const motion::RobotModel& model,
                          const device::ControllerPlannedMotion& motion);
 
-/// Whether the cabinet sees the flange where the model does. Errors: device_fault with both poses'
-/// distance.
+/// Checks that the cabinet and the model agree on the pose of the flange. Errors: device_fault with
+/// the distance of both poses.
 Result<void> checkSameFlange(const motion::Pose& by_model, const motion::Pose& by_cabinet);
 
 }  // namespace metier::iiwa_driver

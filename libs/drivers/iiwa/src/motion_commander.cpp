@@ -59,7 +59,7 @@ void MotionCommander::connected(const CabinetState& first, SteadyTime now) {
     settleIn();
 }
 
-/// What every cabinet is told before anything else; none of it moves the arm.
+/// Sends the first settings to the cabinet, before anything else; none of them moves the arm.
 void MotionCommander::settleIn() noexcept {
     mode_ = Mode::settling_in;
     chores_.clear();
@@ -182,7 +182,7 @@ void MotionCommander::take(const Command& sent, const CabinetState& answer,
     }
     judge();
     core_.publish(state_);
-    if (motion_over) {  // only now: whoever hears of it sees the states that go with it
+    if (motion_over) {  // only now, so that an observer of the end sees the states that go with it
         slot_.end(planned_.end());
     }
     if (stream_over) {
@@ -214,7 +214,7 @@ void MotionCommander::hold(const device::JointArray& measured) noexcept {
     }
 }
 
-/// One that was refused is told again by the next motion that needs it.
+/// A refused setting is sent again by the next motion that needs it.
 void MotionCommander::takeChore(const Command& sent, const CabinetState& answer) noexcept {
     if (chores_.empty() || sent.code != chores_.front().code) {
         return;

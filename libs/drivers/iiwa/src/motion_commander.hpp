@@ -16,13 +16,15 @@
 
 namespace metier::iiwa_driver {
 
-/// What is to be told to the cabinet besides motions.
+/// Settings for the cabinet, besides motions.
 struct MotionCommanderOptions {
-    double force_tolerance = 10.0;  ///< of the cabinet's estimate of a contact force [N]
+    double force_tolerance = 10.0;  ///< largest inaccuracy of the cabinet's estimate of a contact
+                                    ///< force [N]
     int tool = -1;                  ///< index in the station's setup; -1: none
 };
 
-/// Decides what the cabinet is told next and makes of its answers what the arm is.
+/// Decides which command is sent to the cabinet next, and turns its answers into the state of the
+/// arm.
 ///
 /// Threading: as each function says; the cycle thread's functions neither lock, allocate nor log
 /// except where the safety state changes.
@@ -38,19 +40,20 @@ public:
     // ---- the cycle thread ----
     /// A cabinet has answered for the first time, to askState().
     void connected(const CabinetState& first, SteadyTime now);
-    /// What to send now.
+    /// Command to send now.
     Command command() noexcept;
     /// Takes the answer to it. \param now when it came
     void take(const Command& sent, const CabinetState& answer, SteadyTime now) noexcept;
-    /// So many cycles went by without a command.
+    /// Notes that `count` cycles passed without a command.
     void missedCycles(std::uint64_t count) noexcept;
-    /// The cabinet is still told what every one is told first.
+    /// Reports whether the first settings are still being sent to the cabinet.
     bool settlingIn() const noexcept { return mode_ == Mode::settling_in; }
     /// The next command should follow without waiting for the next cycle.
     bool hurried() const noexcept;
-    /// The cabinet is gone: whatever moved the arm is told. \param text names the device and why
+    /// Notes that the cabinet is gone, and ends the motion of the arm.
+    /// \param text names the device and the reason
     void lost(const std::string& text);
-    /// Whether dispatch() has something to tell.
+    /// Reports whether dispatch() has something to report.
     bool toTell() const noexcept { return core_.toTell() || slot_.toTell(); }
 
     // ---- any thread ----
@@ -91,7 +94,7 @@ private:
     device::RequestSlot<device::ControllerPlannedMotion, RunEnd> slot_;
     std::mutex admission_;  ///< one of attach() and move()
 
-    // Of the cycle thread.
+    // Cycle thread only:
     Mode mode_ = Mode::settling_in;
     CommandList chores_;
     CabinetSettings settings_;
@@ -102,7 +105,7 @@ private:
     CabinetState answer_;
     device::ArmState state_;
     SteadyTime last_answer_{};
-    double try_again_in_ = 0.0;  ///< to tell a setting that was refused [s]
+    double try_again_in_ = 0.0;  ///< time until a refused setting is sent again [s]
     Condition condition_ = Condition::none;
     int skipped_ = 0;     ///< set-points to leave out next
     bool holds_ = false;  ///< the commanded position is one that was reached

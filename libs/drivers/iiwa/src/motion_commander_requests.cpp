@@ -6,7 +6,7 @@
 #include "motion_commander.hpp"
 #include "run_outcome.hpp"
 
-// What is asked of the commander by any thread.
+// Requests to the commander, from any thread.
 
 namespace metier::iiwa_driver {
 
@@ -55,7 +55,7 @@ Result<void> MotionCommander::resetFault() {
         return fail(Errc::device_fault, core_.info().name + ": the arm still brakes");
     }
     core_.setSafety({SafetyState::normal, "", false});
-    latched_.store(false);  // from now on the cycle judges again
+    latched_.store(false);  // the cycle decides again from now on
     return {};
 }
 

@@ -6,8 +6,8 @@ namespace metier::iiwa_driver {
 
 namespace {
 
-// How long "ready" must be missing: of a moving arm that was ready while it moved, and else of an
-// arm at rest, since it may come a little after the end of a motion [s].
+// Time for which "ready" must be missing [s]: for a moving arm that was ready while it moved, and
+// for an arm at rest, since "ready" may come a little after the end of a motion.
 constexpr double kMissingInMotion = 0.03;
 constexpr double kMissingAtRest = 0.2;
 

@@ -4,10 +4,11 @@
 
 namespace metier::iiwa_driver {
 
-/// Tells from the cabinet's states whether the arm may move. The protocol has no safety state: all
-/// there is is "ready to move", which is 0 in every stop, without drives or enabling switch.
+/// Decides by the cabinet's states whether the arm may move. The protocol has no safety state, only
+/// "ready to move", which is 0 in every stop, without drives and without the enabling switch.
 ///
-/// Whether a cabinet stays ready while it moves is not documented: it is learned from its states.
+/// It is not documented whether a cabinet stays ready while it moves: that is learned from its
+/// states.
 /// Threading: one thread, the cycle. Nothing allocates.
 class Readiness {
 public:

@@ -15,7 +15,7 @@ namespace {
 
 // Rounding of set-points at the end of an axis' range [rad].
 constexpr double kRounding = 1e-6;
-// How much farther than the axis can go in one cycle a set-point may be.
+// Largest step to a set-point, as a multiple of the way that the axis can go in one cycle.
 constexpr double kStepFactor = 1.5;
 constexpr double kSmallStep = 1e-3;  // [rad]
 // The arm may be this far behind its set-points for so long: at full speed it is some 50 ms behind.

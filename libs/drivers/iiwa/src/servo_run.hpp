@@ -13,14 +13,14 @@ struct ServoFault {
         position,       ///< a set-point outside the axis' range
         step,           ///< a set-point farther from the one before than the axis can go
         not_finite,     ///< a set-point
-        not_following,  ///< the arm is not where it was told to be
+        not_following,  ///< the arm does not follow its set-points
         refused,        ///< the cabinet did not execute a command
     };
     Kind kind = Kind::position;
     std::size_t axis = 0;  ///< from 0
     double value = 0.0;    ///< [rad]
     double limit = 0.0;    ///< [rad]
-    Command command{};     ///< that was refused
+    Command command{};     ///< refused command
 };
 std::string toString(const ServoFault& fault);
 
@@ -43,7 +43,7 @@ public:
     /// Brakes; ends as `stopped` at standstill.
     void stop() noexcept;
 
-    /// What to send now; asks the source for a set-point when it is time for one.
+    /// Command to send now; asks the source for a set-point when one is due.
     /// \param cycles since the last set-point, >= 1: so many are asked for, the last is sent
     Command command(device::SetPointSource& source, const device::ArmState& state,
                     int cycles) noexcept;
@@ -51,7 +51,7 @@ public:
     Status take(const Command& sent, const CabinetState& answer, double step,
                 CabinetSettings& settings) noexcept;
 
-    /// There is more to tell before the first set-point.
+    /// Reports whether more commands must be sent before the first set-point.
     bool hurried() const noexcept { return phase_ == Phase::entering; }
     /// The last set-point sent [rad].
     const device::JointArray& commanded() const noexcept { return commanded_; }
@@ -74,7 +74,7 @@ private:
     Phase phase_ = Phase::entering;
     CommandList list_;
     device::JointArray commanded_;
-    double behind_ = 0.0;  ///< how long the arm has been too far from its set-points [s]
+    double behind_ = 0.0;  ///< time for which the arm has been too far from its set-points [s]
     bool cancelled_ = false;
     ServoFault fault_;
 };

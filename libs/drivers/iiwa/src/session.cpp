@@ -14,9 +14,9 @@ using std::chrono::steady_clock;
 
 namespace {
 
-// How long one wait for the cabinet lasts; shutdown() ends it at once.
+// Length of one wait for the cabinet; shutdown() ends it at once.
 constexpr auto kAcceptTimeout = std::chrono::milliseconds(500);
-// What the cabinet is told first may take longer: it attaches tools, for example.
+// Deadline for the first commands, which may take longer: the cabinet attaches tools, for example.
 constexpr auto kFirstTimeout = std::chrono::seconds(2);
 // Before the next cabinet is listened to after one was lost.
 constexpr auto kPause = std::chrono::milliseconds(200);
@@ -80,8 +80,9 @@ Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
     return {};
 }
 
-/// The cabinet waits for ever for the next command, and goes on with a motion meanwhile: somebody
-/// has to hang up if none comes. What it is told first may take longer than that.
+/// The cabinet waits for ever for the next command, and goes on with a motion meanwhile: the guard
+/// has to close the connection if none comes. It begins after the first commands, which may take
+/// longer than its limit.
 Result<void> Session::keepGuard(link::TcpLink& link) {
     links_.guard.alive();
     if (guarded_ || clients_.commander.settlingIn()) {

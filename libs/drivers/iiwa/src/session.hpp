@@ -21,20 +21,21 @@ struct SessionOptions {
     std::chrono::nanoseconds answer_timeout{std::chrono::milliseconds(100)};
 };
 
-/// Waits for the cabinet to dial in, then sends one command per cycle and hands its answers on,
+/// Waits until the cabinet connects, then sends one command per cycle and passes its answers on,
 /// until the connection is lost; then waits again.
 ///
 /// Threading: run() is the cycle thread.
 class Session {
 public:
-    /// What the session serves; all must outlive it.
+    /// Objects that the session serves; all must outlive it.
     struct Clients {
         MotionCommander& commander;
         FlangeForce& force;
-        std::function<void()> signal;  ///< there is something to tell; neither locks nor allocates
+        std::function<void()> signal;  ///< called when there is something to report; neither locks
+                                       ///< nor allocates
     };
 
-    /// The ends of the connection: where the cabinet dials in, and who hangs up if this process
+    /// Port to which the cabinet connects, and the guard that closes the connection if this process
     /// does not work any more.
     struct Links {
         link::TcpListener listener;
@@ -44,7 +45,7 @@ public:
     Session(Links links, Clients clients, const SessionOptions& options);
 
     std::uint16_t port() const { return links_.listener.port(); }
-    /// Until `stop` is asked for; within one cycle.
+    /// Runs until `stop` is requested; ends within one cycle after it.
     void run(const std::stop_token& stop);
     /// Any thread: ends waiting for the cabinet.
     void shutdown() noexcept { links_.listener.shutdown(); }
@@ -61,7 +62,7 @@ private:
     Links links_;
     Clients clients_;
     const SessionOptions options_;
-    bool answered_ = false;  ///< on this connection
+    bool answered_ = false;  ///< the cabinet has answered on this connection
     bool guarded_ = false;   ///< this connection
     std::array<std::byte, kLongestState + 1> buffer_{};
     std::mutex pause_mutex_;

@@ -18,7 +18,7 @@ constexpr double kLargestVelocity = 50;   // [rad/s]
 constexpr double kLargestDistance = 10;   // [m]
 constexpr double kLargestError = 1e6;
 
-// Where the parts of a state begin: docs/protocols/iiwa.md#state.
+// First elements of the parts of a state: docs/protocols/iiwa.md#state.
 constexpr std::size_t kExecuted = 0;
 constexpr std::size_t kPosition = 1;
 constexpr std::size_t kVelocity = 8;

@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Next = device::SetPointSource::Next;
 
-/// A cabinet without a socket, which is at once where it is told to be.
+/// A cabinet without a socket, whose arm is at each set-point at once.
 class Echo {
 public:
     Echo() {

@@ -30,7 +30,7 @@ inline bool until(const std::function<bool()>& done, std::chrono::milliseconds l
     return true;
 }
 
-/// How a motion ended, for whoever waits for it.
+/// Outcome of a motion, for a thread that waits for it.
 class Outcome {
 public:
     device::MotionPlanner::Done taker() {
@@ -59,7 +59,7 @@ private:
     std::optional<Result<device::MotionOutcome>> outcome_;
 };
 
-/// Streams by a function of the cycle's number; counts and tells its end.
+/// Streams by a function of the cycle's number; counts and reports its end.
 class Stream final : public device::SetPointSource {
 public:
     using Play = std::function<Next(int cycle, device::JointArray& set_point)>;

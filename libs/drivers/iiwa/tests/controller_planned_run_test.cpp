@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 
 class ControllerPlannedRunTest : public ::testing::Test {
 protected:
-    /// Begins, and tells all that is to be told.
+    /// Begins, and sends all settings that are needed.
     void begin(const device::ControllerPlannedMotion& motion) {
         run_.begin({motion, motion::Pose::identity(), 10.0}, state_, settings_);
         while (run_.hurried()) {

@@ -92,7 +92,7 @@ private:
     }
 };
 
-// ---- what every cabinet is told first ----
+// ---- first settings of every cabinet ----
 
 TEST_F(MotionCommanderTest, TellsItsSettingsAtOnceAndIsReadyThen) {
     connect();

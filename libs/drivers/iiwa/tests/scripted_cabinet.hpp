@@ -21,13 +21,13 @@ inline motion::RobotModel iiwa7() {
     return motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/iiwa7.toml").value();
 }
 
-/// What stands for the robot application of a cabinet in tests: dials in, reads one command at a
-/// time, answers each with one state. Written from the protocol's description alone.
+/// Replacement of a cabinet's robot application in tests: connects, reads one command at a time,
+/// answers each with one state. Written from the protocol's description alone.
 class ScriptedCabinet {
 public:
     using Numbers = std::array<double, 8>;
 
-    /// How it behaves from now on. Changed by change().
+    /// Behaviour from now on. Changed by change().
     struct Behaviour {
         bool ready = true;
         bool ready_while_moving = true;
@@ -35,18 +35,19 @@ public:
         bool ignores_moves = false;   ///< executes them without moving, in silence
         bool does_not_start = false;  ///< a motion stays active, the arm stands
         int error_of_next_move = 0;   ///< noted, for ever
-        double contact_after = std::numeric_limits<double>::infinity();  ///< of a way [rad]
-        double contact_force = 50.0;  ///< along z of the flange [N]
-        double tool_length = 0.0;     ///< of a tool that is attached, along z [m]
-        int dies_at = -1;             ///< closes instead of answering this code
+        double contact_after =
+            std::numeric_limits<double>::infinity();  ///< way until a contact [rad]
+        double contact_force = 50.0;                  ///< along z of the flange [N]
+        double tool_length = 0.0;                     ///< length of an attached tool, along z [m]
+        int dies_at = -1;                             ///< closes instead of answering this code
         /// Changes the bytes of the next answers.
         std::function<void(std::vector<std::byte>&)> tamper{};
     };
 
     struct Options {
         bool double_precision = false;
-        std::chrono::milliseconds delay{0};  ///< of each answer
-        double speed = 2.0;                  ///< of every axis [rad/s]
+        std::chrono::milliseconds delay{0};  ///< delay of each answer
+        double speed = 2.0;                  ///< speed of every axis [rad/s]
         Behaviour behaviour{};               ///< at first
     };
 

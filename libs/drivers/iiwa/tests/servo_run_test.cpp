@@ -18,7 +18,7 @@ constexpr double kCycle = 0.01;  // [s]
 
 class ServoRunTest : public ::testing::Test {
 protected:
-    /// Begins, and tells all that is to be told before the first set-point.
+    /// Begins, and sends all settings that are needed before the first set-point.
     void follow() {
         run_.begin(state_.position, settings_);
         while (run_.hurried()) {

@@ -77,7 +77,7 @@ std::string textOf(const pugi::xml_document& page, std::span<const char* const> 
     return {};
 }
 
-/// Where each value is on the newer and on the older page.
+/// Name of each value on the newer and on the older page.
 constexpr std::array kForceCounts{"cfgcpf", "calcpf"};
 constexpr std::array kTorqueCounts{"cfgcpt", "calcpt"};
 constexpr std::array kForceUnit{"scfgfu", "scalfu"};

@@ -10,13 +10,13 @@
 
 namespace metier::netft_driver {
 
-/// What one count stands for.
+/// Force and torque that one count stands for.
 struct Calibration {
     double force_per_count = 0.0;   ///< [N]
     double torque_per_count = 0.0;  ///< [Nm]
 };
 
-/// Units by text, for pages that do not tell them; empty: not known.
+/// Units as text, for pages that do not state them; empty: not known.
 struct UnitTexts {
     std::string force{};
     std::string torque{};
@@ -29,7 +29,7 @@ Result<double> forceUnit(std::string_view text);
 Result<double> torqueUnit(std::string_view text);
 
 /// Reads the page netftapi2.xml, or the older netftcalapi.xml.
-/// \param fallback the units, if the page does not tell them
+/// \param fallback units to use if the page does not state them
 /// Errors: invalid_argument if it is no such page, counts are missing or not positive, or a unit is
 ///         unknown or missing: nothing is guessed.
 Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fallback);

@@ -12,14 +12,14 @@
 
 namespace metier::netft_driver {
 
-/// What the driver is told about a sensor.
+/// Options of the driver for one sensor.
 struct NetftOptions {
     std::string name;
     std::string host;
     std::uint16_t port = 49152;
     std::uint16_t http_port = 80;
     std::optional<Calibration> calibration{};  ///< not set: the sensor's own, by HTTP
-    UnitTexts units{};                         ///< for a page that does not tell them
+    UnitTexts units{};                         ///< units for a page that does not state them
     /// Records [1/s]. Not set: as the sensor's page says, else kUsualRate.
     std::optional<double> rate{};
     /// Without a record: the sensor is lost. Not set: silenceAt() that rate.
@@ -50,7 +50,7 @@ public:
     const std::string& name() const noexcept override;
     device::WrenchSample sample() const noexcept override;
     device::Safety safety() const override;
-    /// Waits at most 1 s. Errors also: device_fault while the sensor tells an error.
+    /// Waits at most 1 s. Errors also: device_fault while the sensor reports an error.
     Result<void> tare() override;
     device::Registration onSafetyChange(SafetyCallback callback) override;
 

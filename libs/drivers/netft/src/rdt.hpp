@@ -35,7 +35,7 @@ struct RdtRecord {
 /// Errors: invalid_argument for any other number.
 Result<RdtRecord> parseRecord(std::span<const std::byte> bytes);
 
-/// What a status word says of the values.
+/// Meaning of a status word for the values.
 enum class StatusKind : std::uint8_t {
     healthy,
     warning,  ///< a monitor condition is latched; the values are good

@@ -10,7 +10,7 @@
 
 namespace metier::netft_driver {
 
-/// What the datagrams of one stream tell: measurements, and what is missing between them.
+/// Reads the datagrams of one stream: measurements, and the number of missing ones between them.
 ///
 /// Taking a datagram that is one does not allocate. Threading: one thread.
 class RecordStream {
@@ -21,7 +21,7 @@ public:
     /// no record that is newer than those before. Its health is normal or fault.
     std::optional<device::WrenchSample> take(std::span<const std::byte> datagram, SteadyTime now);
 
-    /// Of the newest record.
+    /// Status word of the newest record.
     std::uint32_t status() const noexcept { return status_; }
     /// Records that were sent and did not come.
     std::uint64_t lost() const noexcept { return lost_; }
@@ -31,13 +31,13 @@ public:
     std::uint64_t rejected() const noexcept { return rejected_; }
 
 private:
-    /// Whether the record is newer than those before; counts what it tells of them.
+    /// Reports whether the record is newer than those before; counts the missing ones.
     bool isNew(const RdtRecord& record);
     device::WrenchSample toSample(const RdtRecord& record, SteadyTime now) const noexcept;
 
     Calibration calibration_;
     std::optional<RdtRecord> last_;
-    std::uint64_t sensor_sequence_ = 0;  // as the sensor's, without its overflow
+    std::uint64_t sensor_sequence_ = 0;  // the sensor's counter, continued beyond its overflow
     std::uint32_t status_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t late_ = 0;

@@ -139,7 +139,7 @@ Result<void> NetftSensor::Session::begin(const std::stop_token& stop, link::UdpL
             count ? stream.take(std::span(buffer).first(*count), now()) : std::nullopt;
         if (sample) {
             connected_ = true;
-            status_ = ~stream.status();  // so that it is told, whatever it is
+            status_ = ~stream.status();  // differs from the status, so that the status is reported
             take(*sample, stream);
             return {};
         }

@@ -43,7 +43,8 @@ private:
     void run(const std::stop_token& stop);
     /// One connection, from begin to end. Errors: why it ended; nothing if it was to end.
     Result<void> connection(const std::stop_token& stop);
-    /// From the settings or the sensor's page, which also tells the rate of the records.
+    /// Reads the calibration from the settings or the sensor's page, which also has the rate of the
+    /// records.
     Result<Calibration> calibration();
     Result<std::string> readPage() const;
     void setSilence(std::optional<double> reported_rate) noexcept;
@@ -61,8 +62,8 @@ private:
     device::SharedValue<device::WrenchSample> sample_;
     device::SafetyPublisher safety_;
     std::atomic<std::uint64_t> lost_records_{0};
-    std::uint64_t lost_before_ = 0;  // in the connections before this one
-    std::uint32_t status_ = 0;       // of the last record
+    std::uint64_t lost_before_ = 0;  // records lost in the connections before this one
+    std::uint32_t status_ = 0;       // status word of the last record
     bool connected_ = false;
 
     std::atomic<bool> tare_asked_{false};

@@ -8,8 +8,8 @@
 
 namespace metier::netft_driver {
 
-/// Making the present load zero. The sensor does not answer the request, so the records after it
-/// are what tells whether it came.
+/// Task of taking the present load as zero. The sensor does not answer the request, so the records
+/// after it must show whether it arrived.
 ///
 /// Threading: one thread.
 class TareTask {
@@ -23,7 +23,7 @@ public:
 
     explicit TareTask(SteadyTime now) : attempt_end_(now) {}
 
-    /// Whether the request is to be sent, now.
+    /// Reports whether the request must be sent now.
     bool toSend(SteadyTime now);
     /// The outcome, once it is known. Errors: timeout, with the load that is left.
     std::optional<Result<void>> take(const device::WrenchSample& sample, SteadyTime now);

@@ -38,7 +38,7 @@ public:
         const std::lock_guard lock(mutex_);
         deaf_ = deaf;
     }
-    /// How many start requests are passed over.
+    /// Sets the number of start requests that are ignored.
     void ignoreStarts(int count) {
         const std::lock_guard lock(mutex_);
         ignored_starts_ = count;

@@ -41,7 +41,7 @@ void add(Bytes& stream, char type, std::string_view payload) {
     }
 }
 
-/// What each variable of the recipe is.
+/// Types of the variables of the recipe.
 std::string outputTypes() {
     static const std::map<std::string, std::string, std::less<>> others{
         {"timestamp", "DOUBLE"},

@@ -49,7 +49,7 @@ enum class SafetyMode : std::int32_t {
     safety_api_safeguard_stop = 22,
 };
 
-/// Of the controller's program. Source: docs/protocols/ur.md#modes.
+/// State of the controller's program. Source: docs/protocols/ur.md#modes.
 enum class RuntimeState : std::uint32_t {
     stopping = 0,
     stopped = 1,
@@ -68,16 +68,18 @@ std::string toText(RuntimeState state);
 
 /// One data package of RTDE. Trivially copyable.
 struct ControllerState {
-    double timestamp = 0.0;  ///< since the controller started [s]
+    double timestamp = 0.0;  ///< time since the controller started [s]
     Joints target_q{};       ///< [rad]
     Joints actual_q{};       ///< [rad]
     Joints actual_qd{};      ///< [rad/s]
-    /// x, y, z [N] and about x, y, z [Nm], at the tool in the base frame; zeros if not told.
+    /// Force along x, y, z [N] and torque about x, y, z [Nm] at the tool, in the base frame; zeros
+    /// if the controller does not send it.
     std::array<double, 6> tool_force{};
     RobotMode robot_mode = RobotMode::no_controller;
     SafetyMode safety_mode = SafetyMode::undefined;
     RuntimeState runtime_state = RuntimeState::stopped;
-    double speed_scaling = 1.0;          ///< of the trajectory limiter, 1: as commanded
+    double speed_scaling = 1.0;          ///< factor of the trajectory limiter; 1: the arm moves as
+                                         ///< commanded
     double target_speed_fraction = 1.0;  ///< the speed slider, 1: 100 %
     std::int32_t script_token = 0;       ///< written by the script that follows set-points
     std::int32_t script_counter = 0;     ///< the last set-point that it took

@@ -26,14 +26,15 @@ Result<bool> parseFlag(std::string_view reply);
 /// Threading: one thread.
 class Client {
 public:
-    /// Dials in and waits for the greeting.
-    /// Errors: connection_lost, timeout, invalid_argument (nobody that greets as a dashboard).
+    /// Connects and waits for the greeting.
+    /// Errors: connection_lost, timeout, invalid_argument (the peer does not greet like a
+    /// dashboard).
     static Result<Client> connect(const std::string& host, std::uint16_t port, SteadyTime deadline);
 
     /// Sends a command and waits for its one line of reply.
     /// Errors: connection_lost, timeout, invalid_argument.
     Result<std::string> ask(std::string_view command, SteadyTime deadline);
-    /// As ask(). Errors: also device_fault if the reply does not begin with `expected`.
+    /// The same as ask(). Errors: also device_fault if the reply does not begin with `expected`.
     Result<void> command(std::string_view command, std::string_view expected, SteadyTime deadline);
 
 private:

@@ -25,7 +25,7 @@ Pose turnAboutZ(double angle) {
             Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()))};
 }
 
-/// What follows joint i: Tz(d) Tx(a) Rx(alpha).
+/// Transform after joint i: Tz(d) Tx(a) Rx(alpha).
 Pose afterJoint(const primary::Kinematics& dh, std::size_t i) {
     return {{dh.a[i], 0.0, dh.d[i]},
             Eigen::Quaterniond(Eigen::AngleAxisd(dh.alpha[i], Eigen::Vector3d::UnitX()))};

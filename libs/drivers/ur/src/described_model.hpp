@@ -7,16 +7,16 @@
 
 namespace metier::ur_driver {
 
-/// The arm as its controller describes it: its own calibrated kinematics, and of every limit the
-/// stricter one of the file's and the controller's, with the margin that the maker's own presets
-/// keep (docs/protocols/ur.md#limits).
-/// \param file of a UR arm with six axes
-/// Errors: invalid_argument if the controller has another arm than the file, or tells nonsense.
+/// Model of the arm by its controller's description: with its calibrated kinematics, and for each
+/// limit the stricter one of the file and the controller, with the margin that the maker's own
+/// presets keep (docs/protocols/ur.md#limits).
+/// \param file model of a UR arm with six axes
+/// Errors: invalid_argument if the controller has another arm than the file, or sends impossible
+/// values.
 Result<motion::RobotModel> describedModel(const motion::RobotModel& file,
                                           const ControllerDescription& description);
 
-/// How the controller's arm differs from the model that is used, for a person; empty if it does
-/// not.
+/// Differences of the controller's arm from the model in use, for a person; empty if there is none.
 std::string differenceText(const motion::RobotModel& used,
                            const ControllerDescription& description);
 

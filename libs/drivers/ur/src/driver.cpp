@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kFirstESeries = 5;  // major version
 
-/// What the controller tells of itself; nothing if it is not there yet.
+/// Description that the controller sends; empty if it is not there yet.
 ControllerDescription describe(const device::OpenRequest& request, const UrSettings& settings) {
     const auto deadline = std::chrono::steady_clock::now() + settings.open_wait;
     auto description = readDescription(request.address, settings.primary_port, deadline);

@@ -18,7 +18,7 @@ namespace {
 constexpr auto kUploadTimeout = 2s;
 constexpr auto kRemoteCheckTimeout = 500ms;
 constexpr auto kScriptLinkLife = 2s;
-constexpr auto kSlice = 5ms;  // how soon a new job or the end is seen
+constexpr auto kSlice = 5ms;  // time after which a new job or the end is noticed
 
 }  // namespace
 
@@ -78,7 +78,7 @@ Result<void> Panel::checkRemoteControl() const {
     const auto deadline = std::chrono::steady_clock::now() + kRemoteCheckTimeout;
     auto client = dashboard::Client::connect(peer_.host, settings_.dashboard_port, deadline);
     if (!client) {
-        return {};  // the script itself will tell whether it may run
+        return {};  // the script itself shows whether it may run
     }
     const auto reply = client->ask("is in remote control", deadline);
     if (reply) {

@@ -14,11 +14,11 @@
 
 namespace metier::ur_driver {
 
-/// What takes its time and therefore is done on a thread of its own.
+/// A job that takes long and is therefore done on a thread of its own.
 struct PanelJob {
     enum class Kind : std::uint8_t { upload, stop_program };
     Kind kind{};
-    std::int32_t token = 0;  ///< of the script to upload
+    std::int32_t token = 0;  ///< token of the script to upload
 };
 
 using PanelJobs = Queue<PanelJob>;
@@ -27,8 +27,8 @@ using PanelJobs = Queue<PanelJob>;
 class Panel {
 public:
     /// \param refused called with the token of a script that could not be uploaded, after the
-    ///                reporter was told why
-    /// \param newest  what the controller told last
+    ///                reporter has got the reason
+    /// \param newest  returns the newest data package of the controller
     struct Parts {
         PanelJobs& jobs;
         device::ResetSlot& resets;

@@ -30,7 +30,7 @@ struct Kinematics {
     friend bool operator==(const Kinematics&, const Kinematics&) = default;
 };
 
-/// What the controller's safety settings allow, and what kind of arm it is.
+/// Limits of the controller's safety settings, and the type of its arm.
 struct Configuration {
     Joints lower{};             ///< [rad]
     Joints upper{};             ///< [rad]
@@ -41,7 +41,7 @@ struct Configuration {
     friend bool operator==(const Configuration&, const Configuration&) = default;
 };
 
-/// Of the sub-package robot mode, as far as the driver uses it.
+/// Content of the sub-package robot mode, as far as the driver uses it.
 struct ModeData {
     bool emergency_stopped = false;
     bool protective_stopped = false;
@@ -59,21 +59,21 @@ struct Version {
     std::string date;
 };
 
-/// Something that the controller tells a person.
+/// A message of the controller for a person.
 struct Report {
     enum class Kind : std::uint8_t { text, safety, error, runtime_exception };
     enum class Level : std::uint8_t { debug, info, warning, violation, fault, critical };
     Kind kind = Kind::text;
     Level level = Level::info;
-    std::int32_t code = 0;      ///< of error and safety; the line of a runtime exception
-    std::int32_t argument = 0;  ///< of error and safety; the column of a runtime exception
+    std::int32_t code = 0;      ///< code of error and safety; the line of a runtime exception
+    std::int32_t argument = 0;  ///< argument of error and safety; the column of a runtime exception
     std::string text{};         ///< printable; may be empty
 
     /// "C153A2: ..." or "runtime exception in line 3, column 4: ...".
     std::string toText() const;
 };
 
-/// What the driver understands of one package; the rest of it was skipped.
+/// Parts of one package that the driver understands; the rest was skipped.
 struct Package {
     std::optional<Kinematics> kinematics;
     std::optional<Configuration> configuration;

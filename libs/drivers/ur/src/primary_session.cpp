@@ -12,7 +12,7 @@ namespace {
 constexpr std::chrono::seconds kConnectTimeout{1};
 // The stream has ten packages per second: a connection that is silent for so long is dead.
 constexpr std::chrono::seconds kSilence{2};
-// How soon a monitor that waits sees that it is to end.
+// Time after which a waiting monitor notices that it must end.
 constexpr std::chrono::milliseconds kSlice{100};
 
 }  // namespace

@@ -31,19 +31,20 @@ private:
     StreamBuffer buffer_;
 };
 
-/// What a controller tells of itself when someone connects to its primary interface.
+/// Description that a controller sends when a client connects to its primary interface.
 struct ControllerDescription {
     std::optional<primary::Version> version;
     std::optional<primary::Kinematics> kinematics;
     std::optional<primary::Configuration> configuration;
 
     bool complete() const noexcept { return version && kinematics && configuration; }
-    /// Takes what the package tells.
+    /// Takes the content of a package.
     void take(const primary::Package& package);
 };
 
 /// Connects and listens until the description is complete or the deadline passed.
-/// \return what was told, perhaps not all. Errors: connection_lost, timeout if there was nothing.
+/// \return the received description, perhaps incomplete
+/// Errors: connection_lost, timeout if there was nothing.
 Result<ControllerDescription> readDescription(const std::string& host, std::uint16_t port,
                                               SteadyTime deadline);
 

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto kDashboardTimeout = 1s;  // for one command
+constexpr auto kDashboardTimeout = 1s;  // deadline of one command
 constexpr auto kUnlockTimeout = 3s;
 constexpr auto kStopTimeout = 2s;
 constexpr auto kPowerTimeout = 60s;  // an arm takes 10 to 20 s
@@ -86,7 +86,7 @@ Result<void> Recovery::unlock(const std::stop_token& stop) {
                                   std::chrono::duration<double>(left).count()));
     }
     METIER_ASSIGN(auto client, dial());
-    // Their replies tell only whether there was a popup; a link that fails now also fails below.
+    // Their replies show only whether there was a popup; a link that fails now also fails below.
     (void)client.ask("close safety popup", commandDeadline());
     (void)client.ask("close popup", commandDeadline());
     if (auto unlocked = client.command("unlock protective stop", "Protective stop releasing",

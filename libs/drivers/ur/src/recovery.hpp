@@ -21,13 +21,13 @@ struct Observation {
     SteadyTime stamp{};
 };
 
-/// Does at the dashboard what may be done without a person, so that the arm may move again.
+/// Takes the steps at the dashboard that need no person, so that the arm may move again.
 ///
-/// Threading: one thread, which it keeps waiting for as long as the controller needs.
+/// Threading: one thread; calls wait for as long as the controller needs.
 class Recovery {
 public:
     struct Peer {
-        std::string name;  ///< of the device
+        std::string name;  ///< name of the device
         std::string host;
     };
 

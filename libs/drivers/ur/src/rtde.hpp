@@ -56,8 +56,8 @@ Bytes setupInputs(const std::vector<std::string>& names);
 Bytes start();
 Bytes pause();
 
-// ---- what a controller answers. Errors of all: invalid_argument, the package is malformed ----
-/// Of requestProtocolVersion, start and pause.
+// ---- answers of a controller. Errors of all: invalid_argument, the package is malformed ----
+/// Parses the answer to requestProtocolVersion, start and pause.
 Result<bool> parseAccepted(std::span<const std::byte> payload);
 
 struct ControllerVersion {
@@ -68,7 +68,7 @@ struct ControllerVersion {
 };
 Result<ControllerVersion> parseControllerVersion(std::span<const std::byte> payload);
 
-/// Of setupOutputs and setupInputs.
+/// Answer to setupOutputs and setupInputs.
 struct RecipeReply {
     std::uint8_t id = 0;  ///< 0: not valid
     /// One per name that was asked for: a type, NOT_FOUND or IN_USE.
@@ -84,18 +84,19 @@ struct TextMessage {
 };
 Result<TextMessage> parseTextMessage(std::span<const std::byte> payload);
 
-/// Which variables the controller is asked to send, and how its data packages are read.
+/// Variables that the controller is asked to send, and the decoder of its data packages.
 class OutputRecipe {
 public:
-    /// All that the driver can use. \param register_base as in Setpoint
+    /// Begins with all variables that the driver can use.
+    /// \param register_base as in Setpoint
     explicit OutputRecipe(std::int32_t register_base);
 
     std::vector<std::string> names() const;
 
     /// Takes the answer to setupOutputs(names()).
-    /// \return whether the recipe is in force; if not, names() are now those to ask for instead:
-    ///         older software does not know all
-    /// Errors: not_supported if something is missing that the driver needs (the text names it),
+    /// \return whether the recipe is in force; if not, names() are now the ones to ask for instead,
+    ///         since older software does not know all
+    /// Errors: not_supported if a variable is missing that the driver needs (the text names it),
     ///         invalid_argument if the answer does not fit the question.
     Result<bool> take(const RecipeReply& reply);
 
@@ -105,7 +106,7 @@ public:
 
 private:
     enum class Need : std::uint8_t { required, optional };
-    /// Where a value goes.
+    /// Destination of a value.
     using Target = std::variant<double ControllerState::*, Joints ControllerState::*,
                                 std::int32_t ControllerState::*, RobotMode ControllerState::*,
                                 SafetyMode ControllerState::*, RuntimeState ControllerState::*>;
@@ -114,7 +115,7 @@ private:
         Need need;
         std::string name;
         std::string_view type;
-        std::string instead;  ///< to ask for if there is no such name; empty: nothing
+        std::string instead;  ///< name to ask for if there is no such name; empty: none
     };
 
     Result<void> check(const Field& field, std::string_view type) const;
@@ -124,7 +125,7 @@ private:
     std::uint8_t id_ = 0;
 };
 
-/// What the script on the controller reads in each of its steps.
+/// Values that the script on the controller reads in each of its steps.
 struct Setpoint {
     std::int32_t token = 0;    ///< the script goes on as long as it finds its own here
     std::int32_t counter = 0;  ///< changes with each set-point

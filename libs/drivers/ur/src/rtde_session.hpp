@@ -10,7 +10,7 @@
 
 namespace metier::ur_driver {
 
-/// What a session over RTDE is asked for.
+/// Parameters of a session over RTDE.
 struct RtdeRequest {
     std::string host;
     std::uint16_t port = 30004;
@@ -23,20 +23,20 @@ struct RtdeRequest {
 /// Errors name the peer. Threading: one thread.
 class RtdeSession {
 public:
-    /// Dials in, agrees on version 2 and the variables, and starts the packages. The token register
-    /// is set to 0: a script that still runs ends.
+    /// Connects, agrees on version 2 and the variables, and starts the packages. The token register
+    /// is set to 0, so that a script that still runs ends.
     /// Errors: connection_lost, timeout, not_supported (an old version, variables or the frequency
     ///         that the controller does not offer), resource_unavailable (registers in use),
     ///         invalid_argument (garbage).
     static Result<RtdeSession> open(const RtdeRequest& request, SteadyTime deadline);
 
-    /// The next data package. Does not allocate if there is no error.
+    /// Waits for the next data package. Does not allocate if there is no error.
     /// Errors: timeout, connection_lost, invalid_argument.
     Result<ControllerState> next(SteadyTime deadline);
     /// Errors: connection_lost, timeout. Does not allocate if there is none.
     Result<void> write(const rtde::Setpoint& setpoint, SteadyTime deadline);
-    /// Takes the token away from a script that still runs and pauses the data packages; whatever
-    /// fails then is over anyway.
+    /// Takes the token away from a script that still runs and pauses the data packages. A failure
+    /// is ignored: the connection is over then anyway.
     void end(SteadyTime deadline);
 
 private:

@@ -100,7 +100,7 @@ void SafetyReporter::disconnected(const std::string& why, SteadyTime now) {
     connected_.store(false);
     const std::lock_guard lock(mutex_);
     link_text_ = why;
-    latch_text_.clear();  // what the arm stopped for is over when it is back
+    latch_text_.clear();  // the reason of the stop is over when the arm is back
     update(now);
 }
 

@@ -14,12 +14,12 @@
 
 namespace metier::ur_driver {
 
-/// What a person must know and do so that the arm may move; state normal and no text if it may.
-/// The text does not name the device.
+/// Safety for two modes; its text says what a person must know and do so that the arm may move.
+/// State normal and no text if it may move. The text does not name the device.
 device::Safety judge(RobotMode robot_mode, SafetyMode safety_mode);
 
-/// Joins all that says whether the arm may move: the controller's modes, its messages, what the
-/// driver itself stopped for, and the link. Tells the ArmCore whenever that changes.
+/// Joins everything that decides whether the arm may move: the controller's modes, its messages,
+/// the driver's own stops, and the link. Sets the safety of the ArmCore whenever that changes.
 ///
 /// Threading: any thread; observe() neither locks nor allocates unless the modes changed.
 class SafetyReporter {
@@ -27,20 +27,22 @@ public:
     /// \param tell called after each change, on the thread that made it; must not lock
     SafetyReporter(device::ArmCore& core, std::function<void()> tell);
 
-    /// A data package came. \param limit_broken whether a set-point had been too fast before
+    /// Takes a data package.
+    /// \param limit_broken whether a set-point had been too fast before
     void observe(const ControllerState& now, bool limit_broken, SteadyTime stamp);
-    /// The link is gone or was not made. \param why names the peer
+    /// Notes that the link is gone or was not made.
+    /// \param why names the peer
     void disconnected(const std::string& why, SteadyTime now);
-    /// The driver stopped the arm; that holds until unlatch().
+    /// Notes that the driver stopped the arm; that holds until unlatch().
     void latch(const std::string& why, SteadyTime now);
     void unlatch();
     bool latched() const;
-    /// The controller told something: it is added to what stopped the arm shortly before or stops
-    /// it soon.
+    /// Takes a message of the controller: it is added to the reason of a stop shortly before or
+    /// soon after it.
     void report(const primary::Report& report, SteadyTime now);
-    /// Something a person should know although the arm may move; empty: nothing.
+    /// Sets a text that a person should know although the arm may move; empty: none.
     void note(const std::string& text);
-    /// Since when the safety state is what it is.
+    /// Time of the last change of the safety state.
     SteadyTime since() const;
 
 private:
@@ -51,13 +53,13 @@ private:
     };
 
     device::Safety compose() const;
-    /// With mutex_ held.
+    /// Call it with mutex_ held.
     void update(SteadyTime now);
 
     device::ArmCore& core_;
     const std::function<void()> tell_;
     std::atomic<bool> connected_{false};
-    Modes seen_;  // of the thread that observes
+    Modes seen_;  // used by the observing thread only
 
     mutable std::mutex mutex_;
     Modes modes_;

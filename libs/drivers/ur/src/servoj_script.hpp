@@ -6,13 +6,13 @@
 
 namespace metier::ur_driver {
 
-/// How the script on the controller follows set-points.
+/// Options of the script on the controller that follows set-points.
 struct ScriptOptions {
     std::int32_t register_base = 24;      ///< as in rtde::Setpoint
-    std::chrono::nanoseconds cycle{};     ///< of the set-points, > 0
-    double gain = 300.0;                  ///< of servoj, 100 to 2000
-    double lookahead = 0.1;               ///< of servoj, 0.03 to 0.2 [s]
-    double stop_deceleration = 4.0;       ///< of stopj [rad/s2]
+    std::chrono::nanoseconds cycle{};     ///< period of the set-points, > 0
+    double gain = 300.0;                  ///< gain of servoj, 100 to 2000
+    double lookahead = 0.1;               ///< lookahead time of servoj, 0.03 to 0.2 [s]
+    double stop_deceleration = 4.0;       ///< deceleration of stopj [rad/s2]
     std::chrono::nanoseconds patience{};  ///< longest silence of the set-points
 };
 

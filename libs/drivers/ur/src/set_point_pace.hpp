@@ -7,18 +7,19 @@
 
 namespace metier::ur_driver {
 
-/// Keeps set-points from coming in a bunch. After a link or a computer was late many packages of
-/// the controller come at once; a set-point for each would let the arm jump along its path.
+/// Prevents set-points in a bunch. After a delay of the link or the computer many packages of the
+/// controller come at once; a set-point for each would make the arm jump along its path.
 ///
 /// Threading: one thread.
 class SetPointPace {
 public:
-    /// \param cycle of the controller, > 0
+    /// \param cycle period of the controller, > 0
     explicit SetPointPace(std::chrono::nanoseconds cycle) noexcept
         : cycle_(cycle), pause_(cycle * 9 / 10) {}
 
-    /// Whether the motion may go on by a cycle; it then counts as gone on. Three cycles may come
-    /// together, as many as a usual link may be late; what is missing more stays missing.
+    /// Reports whether the motion may go on by a cycle; that cycle then counts as used. Three
+    /// cycles may come together, as many as a usual link may be late; further missing cycles stay
+    /// missing.
     bool due(SteadyTime now) noexcept {
         if (now + kTogether * cycle_ < next_) {
             return false;

@@ -15,7 +15,7 @@ public:
     /// \param capacity at least twice the longest thing that is looked for in the stream
     explicit StreamBuffer(std::size_t capacity) : bytes_(capacity) {}
 
-    /// Where the next bytes go; empty only if nothing was consumed from a full buffer.
+    /// Space for the next bytes; empty only if nothing was consumed from a full buffer.
     std::span<std::byte> space() noexcept {
         if (begin_ > 0 && bytes_.size() - end_ < bytes_.size() / 2) {
             std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_),
@@ -25,9 +25,9 @@ public:
         }
         return std::span(bytes_).subspan(end_);
     }
-    /// So many bytes of space() were filled.
+    /// Notes that `count` bytes of space() were filled.
     void filled(std::size_t count) noexcept { end_ += std::min(count, bytes_.size() - end_); }
-    /// What was received and not consumed; holds until space() is called.
+    /// Received bytes that were not consumed; valid until space() is called.
     std::span<const std::byte> received() const noexcept {
         return std::span(bytes_).subspan(begin_, end_ - begin_);
     }

@@ -13,14 +13,14 @@ using device::SafetyState;
 
 namespace {
 
-constexpr std::uint32_t kPrimingCycles = 3;  // until registers are in force for certain
+constexpr std::uint32_t kPrimingCycles = 3;  // cycles until registers are surely in force
 constexpr std::uint32_t kStandCycles = 3;    // one quiet measurement is no standstill
 constexpr std::uint32_t kSlowCycles = 5;     // the scaling may dip while a program starts
 constexpr std::uint32_t kAstrayCycles = 5;
 constexpr double kFullSpeed = 0.99;
 constexpr double kSlowStart = 0.5;     // longest time with a reduced scaling at the start [s]
-constexpr double kStopPatience = 1.0;  // for the script to obey [s]
-constexpr double kFollowMargin = 0.2;  // on top of three times the lookahead [s]
+constexpr double kStopPatience = 1.0;  // longest time until the script obeys [s]
+constexpr double kFollowMargin = 0.2;  // added to three times the lookahead [s]
 
 std::uint32_t cyclesIn(std::chrono::nanoseconds time, std::chrono::nanoseconds cycle) {
     return static_cast<std::uint32_t>(std::max<std::int64_t>(1, time / cycle));
@@ -30,7 +30,7 @@ double scaling(const ControllerState& now) noexcept {
     return std::min(now.speed_scaling, 1.0) * std::min(now.target_speed_fraction, 1.0);
 }
 
-/// How many set-points later `newer` is, whatever overflowed.
+/// Number of set-points from `older` to `newer`, also across an overflow.
 std::int32_t later(std::int32_t newer, std::int32_t older) noexcept {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(newer) -
                                      static_cast<std::uint32_t>(older));

@@ -23,7 +23,7 @@ struct StreamFault {
         program_ended,  ///< someone stopped or paused the script: runtime_state
         not_taken,      ///< the script does not take set-points: value is for how long [s]
         not_followed,   ///< target_q is elsewhere: axis, value, and low to high of the set-points
-        not_started,    ///< no word of the script: runtime_state, value is for how long [s]
+        not_started,    ///< the script has not answered: runtime_state; value is the time [s]
     };
     Kind kind = Kind::none;
     std::size_t axis = 0;
@@ -33,21 +33,24 @@ struct StreamFault {
     RuntimeState runtime_state = RuntimeState::stopped;
 };
 
-/// For a person; without the device's name.
+/// Text for a person, without the device's name.
 std::string toText(const StreamFault& fault);
 
 struct StreamOptions {
-    std::chrono::nanoseconds cycle{};          ///< of the set-points, > 0
-    std::chrono::nanoseconds patience{};       ///< of the script, as in ScriptOptions
-    std::chrono::nanoseconds start_timeout{};  ///< from the upload to the first set-point taken
-    double lookahead = 0.1;                    ///< of servoj [s]
+    std::chrono::nanoseconds cycle{};          ///< period of the set-points, > 0
+    std::chrono::nanoseconds patience{};       ///< longest silence that the script accepts, as in
+                                               ///< ScriptOptions
+    std::chrono::nanoseconds start_timeout{};  ///< longest time from the upload to the first
+                                               ///< set-point taken
+    double lookahead = 0.1;                    ///< lookahead time of servoj [s]
     double standstill_speed = 0.005;           ///< below it an axis counts as standing [rad/s]
-    double follow_tolerance = 0.05;            ///< of target_q against the set-points [rad]
+    double follow_tolerance = 0.05;            ///< largest deviation of target_q from the
+                                               ///< set-points [rad]
     Joints max_velocity{};                     ///< the controller's limits [rad/s]; 0: not known
 };
 
-/// What happens in each cycle of the controller: asks the source, writes set-points, watches that
-/// the controller does what it is told. No socket, no thread, no clock.
+/// Streams set-points in the cycle of the controller: asks the source, writes set-points, watches
+/// that the controller obeys. Has no socket, no thread and no clock.
 ///
 /// The script is uploaded when a source is attached and none runs. It goes on holding the last
 /// set-point after a source was done, so that the next one begins at once.
@@ -56,13 +59,13 @@ struct StreamOptions {
 /// token() from any thread.
 class Streamer {
 public:
-    /// What the cycle's caller has to do.
+    /// Actions for the caller of cycle().
     struct Output {
         bool write = false;  ///< send `setpoint`
         rtde::Setpoint setpoint{};
         std::int32_t upload = 0;    ///< not 0: upload the script with this token
         bool stop_program = false;  ///< the script does not obey: stop it at the dashboard
-        StreamFault fault{};        ///< to be told and kept until it is reset
+        StreamFault fault{};        ///< fault to report and to keep until a reset
     };
 
     /// \param first_token of the scripts; not 0, best another one in every process
@@ -70,15 +73,16 @@ public:
 
     /// One data package came. The safety state of the core must be the package's already.
     Output cycle(const ControllerState& now, SteadyTime stamp) noexcept;
-    /// The link is gone; the safety state of the core must tell it already.
+    /// Notes that the link is gone; the safety state of the core must be disconnected already.
     void disconnected() noexcept;
-    /// The script with this token could not be uploaded; why was told already.
+    /// Notes that the script with this token could not be uploaded; the reason was reported
+    /// already.
     void refuseStart(std::int32_t token) noexcept { refused_token_.store(token); }
-    /// Of the newest script; a running program that shows another one is not ours.
+    /// Token of the newest script; a running program with another token is not ours.
     std::int32_t token() const noexcept { return token_.load(); }
-    /// Whether the script runs or is about to.
+    /// Reports whether the script runs or is about to.
     bool busy() const noexcept { return busy_.load(); }
-    /// Whether one of the last set-points was faster than an axis may be.
+    /// Reports whether one of the last set-points was faster than an axis may be.
     bool limitBroken() const noexcept { return cycles_since_violation_ < kViolationMemory; }
 
 private:
@@ -115,7 +119,7 @@ private:
     Phase phase_ = Phase::idle;
     device::ArmState state_;
     rtde::Setpoint setpoint_;
-    std::int32_t first_counter_ = 0;  // of this script
+    std::int32_t first_counter_ = 0;  // first counter of this script
     std::uint32_t phase_cycles_ = 0;
     std::uint32_t stand_cycles_ = 0;
     std::uint32_t slow_cycles_ = 0;
@@ -123,7 +127,7 @@ private:
     int cycles_since_violation_ = kViolationMemory;
     double last_timestamp_ = -1.0;
     bool done_ = false;
-    bool stop_asked_ = false;  // at the dashboard, since it began to brake
+    bool stop_asked_ = false;  // a stop was requested at the dashboard since the braking began
     std::array<Joints, kHistory> history_{};
     std::size_t history_size_ = 0;
     std::size_t history_next_ = 0;

@@ -18,7 +18,7 @@ using device::SafetyState;
 namespace {
 
 constexpr auto kConnectTimeout = 2s;
-constexpr auto kFirstPackage = 1s;  // from the start of RTDE to its first data
+constexpr auto kFirstPackage = 1s;  // longest time from the start of RTDE to its first data
 constexpr std::size_t kMaxJobs = 16;
 constexpr std::int32_t kLinkCycles = 3;
 constexpr double kFullSpeed = 0.99;

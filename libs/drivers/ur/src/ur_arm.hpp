@@ -20,13 +20,13 @@
 
 namespace metier::ur_driver {
 
-/// What an arm is made from.
+/// Options of an arm.
 struct UrArmOptions {
     std::string name;
     std::string host;
-    motion::RobotModel model;  ///< six axes; what the rest of the program plans with
-    UrSettings settings;       ///< with a frequency
-    /// Of the controller's own limits, if it told them [rad/s].
+    motion::RobotModel model;  ///< model with six axes, with which the rest of the program plans
+    UrSettings settings;       ///< settings, with a frequency > 0
+    /// The controller's own velocity limits [rad/s]; zeros if it has not sent them.
     Joints max_velocity{};
 };
 
@@ -77,8 +77,8 @@ private:
     device::SharedValue<Observation> observed_;
     std::atomic<std::int32_t> upload_{0};
     std::atomic<bool> stop_program_{false};
-    ControllerDescription description_;  // of the primary monitor's thread
-    ControllerDescription compared_;     // of the primary monitor's thread
+    ControllerDescription description_;  // primary monitor's thread only
+    ControllerDescription compared_;     // primary monitor's thread only
 
     device::ResetSlot resets_;
 

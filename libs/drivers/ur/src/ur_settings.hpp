@@ -8,7 +8,8 @@
 
 namespace metier::ur_driver {
 
-/// How to talk to one controller. Names, units and ranges: docs/protocols/ur.md#settings.
+/// Settings of the connection to one controller. Names, units and ranges:
+/// docs/protocols/ur.md#settings.
 struct UrSettings {
     enum class PowerOn : std::uint8_t { by_a_person, by_reset };
 
@@ -16,7 +17,7 @@ struct UrSettings {
     std::uint16_t primary_port = 30001;
     std::uint16_t secondary_port = 30002;
     std::uint16_t dashboard_port = 29999;
-    double frequency = 0.0;  ///< of the set-points [Hz]; 0: the controller's highest
+    double frequency = 0.0;  ///< rate of the set-points [Hz]; 0: the controller's highest
     double servoj_gain = 300.0;
     double servoj_lookahead = 0.1;   ///< [s]
     double stop_deceleration = 4.0;  ///< [rad/s2]

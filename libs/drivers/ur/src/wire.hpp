@@ -20,7 +20,7 @@ class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) noexcept : rest_(bytes) {}
 
-    /// Whether every value so far was there.
+    /// Reports whether every value read so far was there.
     bool ok() const noexcept { return ok_; }
     std::size_t remaining() const noexcept { return rest_.size(); }
 

@@ -23,7 +23,7 @@ namespace metier::ur_driver {
 /// The arm follows exactly, one cycle late. Time is the wall clock's, 8 ms per cycle.
 class FakeController {
 public:
-    /// What it is and what it suffers; change it with set().
+    /// Properties and faults of the controller; change them with set().
     struct Knobs {
         // the arm
         std::int32_t robot_mode = 7;
@@ -36,7 +36,7 @@ public:
         bool obeys = true;          ///< the script ends when its token is gone
         bool pause_on_stop = true;  ///< a safety stop pauses the program
         std::int32_t runtime = 1;   ///< runtime_state
-        double coasting = 0.0;      ///< of axis 1, whatever the script says [rad/s]
+        double coasting = 0.0;      ///< speed of axis 1, independent of the script [rad/s]
         // RTDE
         bool accepts_version = true;
         bool accepts_start = true;
@@ -79,7 +79,7 @@ public:
     /// Breaks all connections; nobody can connect again before listen().
     void switchOff();
     void listen();
-    /// Sends it to whoever listens to the primary interface.
+    /// Sends an error to every client of the primary interface.
     void sayError(std::int32_t code, std::int32_t argument, const std::string& text);
     void breakRtde();
 

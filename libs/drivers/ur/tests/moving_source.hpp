@@ -43,7 +43,7 @@ public:
         outcome_.set_value(cause);
     }
 
-    /// How it ended; fails the test that asks if it did not within 10 s.
+    /// Cause of the end; fails the calling test if there is none within 10 s.
     device::EndCause outcome() {
         auto future = outcome_.get_future();
         if (future.wait_for(std::chrono::seconds(10)) != std::future_status::ready) {

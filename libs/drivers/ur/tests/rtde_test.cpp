@@ -198,7 +198,7 @@ std::vector<std::byte> dataWith(std::size_t at, double number) {
     return data;
 }
 
-// Where dataOf() has its numbers: behind the id of the recipe.
+// Offset of the numbers in dataOf(): behind the id of the recipe.
 constexpr std::size_t kTarget = 1 + 8;
 constexpr std::size_t kActual = kTarget + 48;
 constexpr std::size_t kVelocity = kActual + 48;

@@ -1,4 +1,4 @@
-// What stops an arm, and how it goes on.
+// Causes of a stop of the arm, and the way back to motion.
 
 #include <algorithm>
 

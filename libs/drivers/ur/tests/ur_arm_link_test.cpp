@@ -204,7 +204,7 @@ TEST_P(ChatterOn, RtdeIsNoData) {
 INSTANTIATE_TEST_SUITE_P(Kinds, ChatterOn,
                          testing::Values(rtdePackage('M',
                                                      fromHex("02 48 69 02 4D 65 03")),  // a text
-                                         rtdePackage('Z', fromHex("01 02"))));  // what nobody knows
+                                         rtdePackage('Z', fromHex("01 02"))));  // unknown package
 
 TEST_F(ArmTest, UnknownPackagesAndTextsAreSkipped) {
     openReady();

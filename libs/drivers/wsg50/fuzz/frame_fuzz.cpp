@@ -52,7 +52,7 @@ void give(std::span<const std::byte> bytes) {
     });
 }
 
-/// Cuts the input into payloads of a length and an id that it tells itself. Its first byte stays.
+/// Cuts the input into payloads; the input itself gives their length and id. Its first byte stays.
 std::vector<std::byte> framed(std::span<const std::byte> input) {
     std::vector<std::byte> frames(input.begin(), input.begin() + (input.empty() ? 0 : 1));
     input = input.subspan(frames.size());

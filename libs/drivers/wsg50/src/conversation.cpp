@@ -128,7 +128,7 @@ void Conversation::takeAnswer(const Reply& reply, SteadyTime now) {
     follow(now);
 }
 
-/// Whether this is the last reply of a motion that was given up before it came.
+/// Reports whether this is the last reply of a motion that was given up before the reply came.
 bool Conversation::settlesDebt(const Reply& reply) {
     const bool last = reply.status == Status::success || reply.status == Status::aborted ||
                       reply.status == Status::command_failed || reply.status == Status::blocked;

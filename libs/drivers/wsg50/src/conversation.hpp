@@ -11,9 +11,9 @@
 
 namespace metier::wsg50_driver {
 
-/// What a conversation does at its begin, and how long it waits.
+/// Options of a conversation: its first commands and its waiting times.
 struct ConversationOptions {
-    std::chrono::milliseconds update_period{20};  ///< of each of the four values
+    std::chrono::milliseconds update_period{20};  ///< update period of each of the four values
     int silence_periods = 3;    ///< without an update of a value: the gripper is lost
     double acceleration = 0.0;  ///< [m/s2]; 0: the gripper's own
     bool acknowledge = false;   ///< a fault that is there at the begin
@@ -23,10 +23,10 @@ struct ConversationOptions {
     std::chrono::milliseconds settle_timeout{300};
 };
 
-/// Who hears what a conversation finds out, on its thread.
+/// Listener to the findings of a conversation; called on its thread.
 class ConversationListener : public CommandSink {
 public:
-    /// Once, when the gripper has told what it can do.
+    /// Called once, when the gripper has sent its limits.
     virtual void onLimits(const Limits& limits, double force_limit) = 0;
     /// After each update of a value; does not allocate.
     virtual void onState(const device::GripperState& state) = 0;
@@ -36,8 +36,8 @@ public:
     virtual void onResetEnd(Result<void> outcome) = 0;
 };
 
-/// What is said to a gripper from the begin of a connection to its end: which command is sent when,
-/// and what its replies mean. Knows neither sockets nor threads.
+/// Dialogue with a gripper from the begin of a connection to its end: decides which command is sent
+/// when, and interprets the replies. Knows neither sockets nor threads.
 ///
 /// Threading: one thread. Taking an update neither allocates nor throws.
 class Conversation {
@@ -53,22 +53,24 @@ public:
     /// Lets time pass. Errors: the gripper is silent.
     Result<void> tick(SteadyTime now);
 
-    /// Begins a motion; its end is told once. The safety must be normal and no motion under way.
+    /// Begins a motion; its end is reported once. The safety must be normal and no motion under
+    /// way.
     void begin(const Motion& motion, SteadyTime now);
     /// Stops the motion, if one is under way.
     void stop(SteadyTime now);
-    /// Acknowledges a fault, and homes if the gripper is not referenced; the end is told once.
+    /// Acknowledges a fault, and homes the gripper if it is not referenced; the end is reported
+    /// once.
     void reset(SteadyTime now);
 
-    /// Whether all was said that belongs to the begin.
+    /// Reports whether all commands of the begin were sent and answered.
     bool started() const noexcept { return started_; }
-    /// Whether a motion may begin.
+    /// Reports whether a motion may begin.
     bool ready() const noexcept {
         return started_ && !motion_ && safety_.state == device::SafetyState::normal;
     }
 
 private:
-    /// What the begin consists of, in its order.
+    /// Steps of the begin, in their order.
     enum class Step : std::uint8_t {
         limits,
         force_limit,
@@ -102,7 +104,7 @@ private:
 
     Step step_ = Step::limits;
     bool started_ = false;
-    SteadyTime deadline_;  // of the step
+    SteadyTime deadline_;  // deadline of the step
     Limits limits_;
     std::optional<double> force_limit_;
 

@@ -92,7 +92,7 @@ std::optional<Frame> FrameReader::next() noexcept {
     }
 }
 
-/// What begins at begin_.
+/// Examines the bytes at begin_.
 FrameReader::Found FrameReader::look() noexcept {
     const auto bytes = std::span(bytes_).subspan(begin_, end_ - begin_);
     const auto preamble = bytes.first(std::min(bytes.size(), kPreambleSize));

@@ -58,8 +58,8 @@ struct Frame {
     std::span<const std::byte> payload{};
 };
 
-/// Cuts the gripper's stream of bytes into frames. What is no frame, or has a wrong checksum, is
-/// skipped and counted.
+/// Cuts the gripper's stream of bytes into frames. Bytes that are no frame, and frames with a wrong
+/// checksum, are skipped and counted.
 ///
 /// Does not allocate. Threading: one thread.
 class FrameReader {
@@ -67,7 +67,7 @@ public:
     /// Longest payload that is taken for one; the gripper's own are below 100 bytes.
     static constexpr std::size_t kLargestPayload = 512;
 
-    /// Where the next bytes may be written; never empty after next() returned nothing.
+    /// Space for the next bytes; never empty after next() returned nothing.
     std::span<std::byte> space() noexcept;
     /// \param count how many of space() were written
     void received(std::size_t count) noexcept;

@@ -10,7 +10,7 @@
 
 namespace metier::wsg50_driver {
 
-// What frames mean. Units on the wire are mm, mm/s, mm/s2 and N; here m, m/s, m/s2 and N.
+// Meaning of frames. Units on the wire are mm, mm/s, mm/s2 and N; here m, m/s, m/s2 and N.
 
 /// Status codes that the driver acts on; describe() knows them all.
 enum class Status : std::uint16_t {
@@ -69,7 +69,7 @@ enum class GraspingState : std::uint8_t {
 /// The state's name, for texts.
 std::string_view toString(GraspingState state) noexcept;
 
-/// What the gripper can do.
+/// Limits of the gripper.
 struct Limits {
     double stroke = 0.110;     ///< [m]
     double min_speed = 0.005;  ///< [m/s]
@@ -93,7 +93,7 @@ Result<double> parseForce(std::span<const std::byte> data);
 Result<Limits> parseLimits(std::span<const std::byte> data);
 
 Command homeCommand() noexcept;
-/// To a width, not relative; the jaws stop at an obstacle instead of clamping it.
+/// Moves the jaws to an absolute width; they stop at an obstacle instead of clamping it.
 Command positionCommand(double width, double speed) noexcept;
 /// \param width nominal width of the part
 Command graspCommand(double width, double speed) noexcept;

@@ -10,7 +10,7 @@ namespace metier::wsg50_driver {
 namespace {
 
 constexpr double kMillimetre = 1e-3;
-// How far the jaws may be from the width that they were told to go to.
+// Largest distance of the jaws from their commanded width.
 constexpr double kWidthTolerance = 1.0 * kMillimetre;
 
 Command commandFor(const Motion& motion) {
@@ -41,7 +41,7 @@ std::string_view nameOf(MotionKind kind) {
     return "homing";
 }
 
-/// Whether this status ends a motion that was pending, rather than refusing a new one.
+/// Reports whether this status ends a pending motion, rather than refusing a new one.
 bool endsMotion(Status status) {
     return status == Status::success || status == Status::command_failed ||
            status == Status::aborted || status == Status::blocked;
@@ -135,7 +135,7 @@ std::optional<MotionTask::Outcome> MotionTask::outcome(const Observation& seen, 
                                 seen.system().faultText()));
     }
     if (phase_ == Phase::settling && seen.system().moving() && now < rest_by_) {
-        deadline_ = now + timing_.settle;  // from standstill on
+        deadline_ = now + timing_.settle;  // counted from standstill
         return std::nullopt;
     }
     if (phase_ == Phase::settling && seen.renewedSince(mark_) && !seen.system().moving() &&
@@ -145,7 +145,8 @@ std::optional<MotionTask::Outcome> MotionTask::outcome(const Observation& seen, 
     return now < deadline_ ? std::nullopt : late(seen, now);
 }
 
-/// The gripper takes a part for one only near the width that it was told.
+/// Grasps again at the width of the blockage: the gripper detects a part only near the commanded
+/// width.
 bool MotionTask::graspsAnew(const Observation& seen, SteadyTime now) {
     if (!motion_.any_width || last_ != Status::blocked || seen.partHeld() || stopping_) {
         return false;
@@ -156,7 +157,7 @@ bool MotionTask::graspsAnew(const Observation& seen, SteadyTime now) {
     return true;
 }
 
-/// What is to be said when the time for the present phase is over.
+/// Outcome when the time for the present phase is over.
 std::optional<MotionTask::Outcome> MotionTask::late(const Observation& seen, SteadyTime now) {
     const bool settling = phase_ == Phase::settling;
     if ((settling || stopping_) && seen.system().moving()) {
@@ -185,7 +186,7 @@ MotionTask::Outcome MotionTask::stopped() const {
                : fail(Errc::cancelled, "stopped");
 }
 
-/// Whether the state is what a motion that succeeded leaves behind.
+/// Reports whether the state is the one after a successful motion.
 bool MotionTask::asWanted(const Observation& seen) const {
     switch (motion_.kind) {
         case MotionKind::grasp:
@@ -233,7 +234,7 @@ MotionTask::Outcome MotionTask::judgeFailure(const Observation& seen) const {
                 fmt::format("{} failed at {:.1f} mm", nameOf(motion_.kind), width_mm));
 }
 
-/// The gripper told success, but its state says otherwise.
+/// Outcome if the gripper reported success but its state differs.
 MotionTask::Outcome MotionTask::judgeMismatch(const Observation& seen) const {
     const double width_mm = seen.width() / kMillimetre;
     if (motion_.kind == MotionKind::grasp && (seen.grasping() == GraspingState::no_part ||

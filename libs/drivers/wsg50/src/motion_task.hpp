@@ -11,7 +11,7 @@
 
 namespace metier::wsg50_driver {
 
-/// Where commands go to.
+/// Receiver of commands.
 class CommandSink {
 public:
     virtual ~CommandSink() = default;
@@ -26,24 +26,26 @@ struct Motion {
     double width = 0.0;  ///< [m]
     double speed = 0.0;  ///< [m/s]
     double force = 0.0;  ///< limit that is set before [N]
-    /// Of a grasp: the width of the part is not known; `width` is the least that it may be.
+    /// Set for a grasp of a part of unknown width; `width` is then its smallest possible width.
     bool any_width = false;
 };
 
 /// One motion, from its first command to its outcome.
 ///
-/// The gripper acknowledges a motion as pending and tells its end in a second reply. Neither is
-/// trusted: the outcome is what the updates after the last reply show, once the jaws rest: the
-/// gripper tells that a motion was stopped when it begins to brake. A grasp of a part of unknown
-/// width that the part blocks is asked for again, with the width where it was blocked.
+/// The gripper acknowledges a motion as pending and reports its end in a second reply. Neither is
+/// trusted, since the gripper reports a stopped motion already when it begins to brake: the outcome
+/// is read from the updates after the last reply, once the jaws rest. A grasp of a part of unknown
+/// width that was blocked by the part is repeated with the width at which it was blocked.
 ///
 /// Threading: one thread.
 class MotionTask {
 public:
     struct Timing {
-        SteadyTime::duration reply{};   ///< for the first answer to a command
-        SteadyTime::duration motion{};  ///< for the last one, and for the standstill after it
-        SteadyTime::duration settle{};  ///< at standstill, for the state to agree with the last one
+        SteadyTime::duration reply{};   ///< longest time until the first answer to a command
+        SteadyTime::duration motion{};  ///< longest time until the last answer, and until
+                                        ///< standstill after it
+        SteadyTime::duration settle{};  ///< longest time at standstill until the state agrees with
+                                        ///< the last answer
     };
 
     /// Sends the first command. \param sink must outlive this
@@ -53,7 +55,7 @@ public:
     void take(const Reply& reply, const Observation& seen, SteadyTime now);
     /// Asks for a stop; the outcome follows.
     void stop(SteadyTime now);
-    /// What became of it, once that is known. To be called after each update and when time passes.
+    /// Outcome of the motion, once it is known. Call it after each update and when time passes.
     /// Errors: device_fault, cancelled, timeout.
     std::optional<Result<device::GripperOutcome>> outcome(const Observation& seen, SteadyTime now);
     /// The command whose last reply is still to come, if the motion is given up now.

@@ -11,12 +11,12 @@
 
 namespace metier::wsg50_driver {
 
-/// What the gripper's updates have told of it so far.
+/// State of the gripper by its updates so far.
 ///
 /// Taking an update does not allocate. Threading: one thread.
 class Observation {
 public:
-    /// How many updates of each value had come at some time.
+    /// Number of updates of each value at some time.
     using Mark = std::array<std::uint64_t, 4>;
 
     /// Takes a successful reply if it is an update of one of the four values.
@@ -25,7 +25,7 @@ public:
     Result<bool> take(const Reply& reply, SteadyTime now);
 
     Mark mark() const noexcept { return counts_; }
-    /// Whether every value was updated since.
+    /// Reports whether every value was updated since.
     bool renewedSince(const Mark& mark) const noexcept;
     /// The value whose last update is older than `age`, or that came never; nothing if all are
     /// newer.
@@ -36,7 +36,7 @@ public:
     double width() const noexcept { return width_; }  ///< [m]
     double force() const noexcept { return force_; }  ///< [N]
     bool partHeld() const noexcept { return grasping_ == GraspingState::holding; }
-    /// For whoever reads the gripper; its safety is left to the caller.
+    /// State for readers of the gripper; the caller fills in its safety.
     device::GripperState state(SteadyTime now) const noexcept;
 
 private:

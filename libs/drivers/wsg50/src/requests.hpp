@@ -4,10 +4,10 @@
 
 namespace metier::wsg50_driver {
 
-/// What is known of the gripper since its first connection. Trivially copyable.
+/// Facts about the gripper, known since its first connection. Trivially copyable.
 struct Known {
     Limits limits{};
-    double force_limit = 0.0;  ///< that the gripper had then [N]; 0: never connected
+    double force_limit = 0.0;  ///< force limit at the first connection [N]; 0: never connected
 };
 
 /// The motion that a request stands for, with the driver's settings for what it leaves open.

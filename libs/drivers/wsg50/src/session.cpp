@@ -15,7 +15,7 @@ using device::SafetyState;
 
 constexpr auto kConnectTimeout = 1s;
 constexpr auto kSendTimeout = 200ms;
-// How long an order from another thread may lie before the gripper gets it.
+// Longest time after which the gripper gets an order from another thread.
 constexpr auto kSlice = 5ms;
 
 SteadyTime now() {
@@ -100,7 +100,7 @@ void Wsg50Gripper::Session::run(const std::stop_token& stop) {
 Result<void> Wsg50Gripper::Session::connection(const std::stop_token& stop) {
     METIER_ASSIGN(auto link,
                   link::TcpLink::connect(options_.host, options_.port, now() + kConnectTimeout));
-    // What was asked before belongs to the connection before.
+    // An earlier request belongs to the connection before.
     resets_.answer(fail(Errc::connection_lost, named("the connection was lost")));
     link_ = &link;
     sent_ = {};
@@ -167,7 +167,7 @@ void Wsg50Gripper::Session::passOrders(Conversation& conversation) {
     }
 }
 
-/// So that the gripper does not take the end of the connection for a failure.
+/// Announces the end of the connection, so that the gripper does not take it for a failure.
 void Wsg50Gripper::Session::takeLeave() {
     if (slot_.posted() != nullptr) {
         send(Command(CommandId::stop));
@@ -175,7 +175,7 @@ void Wsg50Gripper::Session::takeLeave() {
     send(Command(CommandId::disconnect));
 }
 
-/// The connection is gone, and with it whatever was under way.
+/// Notes that the connection is gone, and ends everything that was under way.
 void Wsg50Gripper::Session::lost(const Error& why) {
     const auto text = named(why.message);
     slot_.close({Errc::connection_lost, why.message});

@@ -59,7 +59,7 @@ private:
     const Wsg50Options options_;
     const device::GripperInfo usual_info_;
     device::GripperInfo read_info_;
-    std::atomic<const device::GripperInfo*> info_{&usual_info_};  // to read_info_ once it is filled
+    std::atomic<const device::GripperInfo*> info_{&usual_info_};  // later read_info_, once filled
     device::SharedValue<Known> known_;
     device::SharedValue<device::GripperState> state_;
     device::SafetyPublisher safety_;

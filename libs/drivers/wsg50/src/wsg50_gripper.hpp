@@ -12,18 +12,19 @@
 
 namespace metier::wsg50_driver {
 
-/// What the driver is told about a gripper.
+/// Options of the driver for one gripper.
 struct Wsg50Options {
     std::string name;
     std::string host;
     std::uint16_t port = 1000;
     ConversationOptions conversation;
-    double speed = 0.1;         ///< of moves and releases that ask for none [m/s]
-    double grasp_speed = 0.05;  ///< of grasps that ask for none [m/s]
-    /// Of grasps that ask for none [m]; not set: any.
+    double speed = 0.1;         ///< speed of moves and releases without a requested speed [m/s]
+    double grasp_speed = 0.05;  ///< speed of grasps without a requested speed [m/s]
+    /// Width of the part for grasps without a requested width [m]; empty: any width.
     std::optional<double> part_width{};
     std::optional<double> force{};  ///< limit of motions that ask for none [N]; not set: as found
-    std::optional<double> open_width{};  ///< of releases that ask for none [m]; not set: the stroke
+    std::optional<double> open_width{};  ///< width of releases without a requested width [m];
+                                         ///< empty: the stroke
 };
 
 /// Reads `settings`: port, update_period, silence_periods, speed, grasp_speed, part_width, force,

@@ -44,7 +44,7 @@ public:
         const std::lock_guard lock(mutex_);
         outgoing_ = outgoing_ + bytes;
     }
-    /// What `id` is answered with instead of a plain success; empty: nothing.
+    /// Sets the answer to `id` instead of a plain success; empty: no answer.
     void answer(int id, Bytes bytes) {
         const std::lock_guard lock(mutex_);
         answers_[id] = std::move(bytes);

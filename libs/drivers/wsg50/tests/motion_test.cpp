@@ -282,8 +282,8 @@ TEST_F(MotionOf, StopEndsItAsCancelled) {
 }
 
 TEST_F(MotionOf, StopEndsItOnceTheJawsRest) {
-    // The gripper tells the motion's end when it begins to brake. Halted was told then, and the
-    // next motion was refused: the jaws still moved.
+    // The gripper reports the end of the motion when it begins to brake. Halted was published then,
+    // and the next motion was refused: the jaws still moved.
     underWay(kMove, 0x21);
     talk.stop();
     talk.hear(reply(0x22, kSuccess) + reply(0x21, kAborted));

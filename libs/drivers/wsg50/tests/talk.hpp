@@ -48,7 +48,7 @@ public:
         hear(force(newton));
     }
 
-    /// Lets time pass, with an unchanged gripper that goes on to tell its state.
+    /// Lets time pass, with an unchanged gripper that goes on sending its state.
     void pass(std::chrono::milliseconds time, std::uint32_t bits, int grasping, float width_mm) {
         for (auto left = time; left.count() > 0; left -= options_.update_period) {
             now_ += options_.update_period;

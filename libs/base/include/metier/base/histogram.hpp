@@ -37,6 +37,7 @@ public:
         std::array<std::uint64_t, kBuckets> counts{};  ///< values in each bucket, not cumulated
         double sum = 0;                                ///< sum of all values [s]
     };
+    /// Copies the present contents. Any thread; neither waits nor allocates.
     Snapshot read() const noexcept {
         Snapshot snapshot;
         for (std::size_t i = 0; i < kBuckets; ++i) {

@@ -24,7 +24,7 @@ struct Vector3 {
     friend bool operator==(const Vector3&, const Vector3&) = default;
 };
 
-/// An interval with both ends included; low <= high. The skill model reads 0..0 as "not set".
+/// An interval with both ends included. The skill model reads 0..0 as "not set".
 struct Range {
     double low = 0.0;
     double high = 0.0;

@@ -14,6 +14,7 @@ namespace metier {
 /// A bounded first-in-first-out queue between threads.
 ///
 /// Threading: any number of producers and consumers. Not for a cycle thread: it locks.
+/// No call waits but popUntil(), which waits until its deadline at most.
 template <typename T>
 class Queue {
 public:

@@ -16,6 +16,7 @@ namespace metier {
 /// not wait.
 class WakeUpDelay {
 public:
+    /// Begins to measure.
     WakeUpDelay() : thread_([this](const std::stop_token& stop) { measure(stop); }) {}
 
     /// Longest delay since the last call; 0 if none was measured.

@@ -139,7 +139,7 @@ struct ServerConfig {
     /// Limits for its clients that differ from the defaults of opcua::ServerLimits.
     std::vector<Limit> limits;
     Discovery discovery;
-    Records records;                     ///< of the cell
+    Records records;                     ///< the same for all servers of a cell
     std::optional<HttpAddress> metrics;  ///< none: no metrics by HTTP
     /// Kind of server, with the keys that only servers of this kind have.
     std::variant<ArmServer, GripperServer, MoveComponent, CompositionServer, SynchronizedServer>
@@ -164,7 +164,7 @@ struct ServerConfig {
 /// A controller without its device, in a process of its own.
 struct VirtualController {
     std::string name;
-    std::string type;                   ///< as "ur"
+    std::string type;                   ///< such as "ur"
     std::string address;                ///< address of all its ports, such as 127.0.1.1
     std::filesystem::path model;        ///< model file of an arm, absolute; empty for other devices
     std::uint16_t control_port = 7400;  ///< for `metier virtual inject`

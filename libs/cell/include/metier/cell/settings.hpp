@@ -23,6 +23,7 @@ public:
     /// \param place begin of each error message, such as "demo.toml:12: server[0].driver"
     Settings(std::string place, std::map<std::string, Value> values);
 
+    /// Reports whether there is a value of that name. The name then counts as read.
     bool has(std::string_view name) const;
     /// Names after "PREFIX.": with the prefix "part", "part.cube" and "part.rod" give cube and rod.
     std::vector<std::string> namesUnder(std::string_view prefix) const;
@@ -53,7 +54,7 @@ private:
 
     std::string place_;
     std::map<std::string, Value, std::less<>> values_;
-    // Reading notes what was asked for and what is wrong.
+    // Reading notes the names that were read, and the errors.
     mutable std::set<std::string, std::less<>> asked_;
     mutable std::vector<std::string> problems_;
 };

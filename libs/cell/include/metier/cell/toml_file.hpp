@@ -51,6 +51,7 @@ private:
 /// long as its TomlFile. Threading: one thread.
 class TomlTable {
 public:
+    /// Reports whether the key exists. The key then counts as read.
     bool has(std::string_view key) const;
     /// The keys as the file spells them. This call does not count as reading them.
     std::vector<std::string> keys() const;
@@ -109,6 +110,7 @@ public:
     TomlFile& operator=(TomlFile&&) noexcept;
     ~TomlFile();
 
+    /// The table of the whole file.
     TomlTable root() const;
     /// Notes an error in a line that only the caller can see; finish() reports it.
     void note(std::uint32_t line, std::string_view what, std::string_view why) const;

@@ -43,6 +43,7 @@ struct ArmInfo {
     std::chrono::nanoseconds cycle{};     ///< period of the set-points, > 0
 
     std::size_t axisCount() const noexcept { return axis_names.size(); }
+    /// Period of the set-points [s].
     double cycleSeconds() const noexcept { return std::chrono::duration<double>(cycle).count(); }
 };
 
@@ -126,6 +127,7 @@ public:
 
     virtual ~Arm() = default;
 
+    /// Properties of the arm; the reference is valid as long as the arm.
     virtual const ArmInfo& info() const noexcept = 0;
 
     /// The newest state.

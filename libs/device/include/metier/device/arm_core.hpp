@@ -13,6 +13,9 @@ namespace metier::device {
 /// Common part of all arm drivers: the attached set-point source, the published state and the
 /// callbacks for safety changes. A driver forwards the functions of device::Arm to it, and has a
 /// Notifier that calls dispatch() whenever toTell() is true.
+///
+/// Threading: stated for each group of functions below. Only attach(), safety(), onSafetyChange(),
+///            setSafety() and dispatch() lock.
 class ArmCore {
 public:
     explicit ArmCore(ArmInfo info);
@@ -26,7 +29,10 @@ public:
     ArmState state() const noexcept { return published_.read(); }
     Safety safety() const { return safety_.safety(); }
     const TimeHistogram* cycleJitter() const noexcept { return &jitter_; }
+    /// Errors: device_fault if the safety state is not normal, resource_unavailable while another
+    ///         source is attached.
     Result<void> attach(std::shared_ptr<SetPointSource> source);
+    /// Asks the cycle thread to stop the source that is active now; neither locks nor waits.
     void stop() noexcept;
     Registration onSafetyChange(Arm::SafetyCallback callback);
 
@@ -39,6 +45,7 @@ public:
     void publish(ArmState state) noexcept;
     /// Lets go of the active source. Call publish() with the state at the end before it.
     void end(EndCause cause) noexcept;
+    /// Safety state without its text, for the cycle thread.
     SafetyState safetyState() const noexcept { return safety_.state(); }
     /// Reports whether dispatch() has something to report.
     bool toTell() const noexcept { return ended_.load() || safety_.toTell(); }

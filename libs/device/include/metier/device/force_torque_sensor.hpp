@@ -31,12 +31,15 @@ public:
 
     virtual ~ForceTorqueSensor() = default;
 
+    /// Name for messages.
     virtual const std::string& name() const noexcept = 0;
     /// Newest measurement. Its health is not normal once the sensor has been silent for 5 periods.
     virtual WrenchSample sample() const noexcept = 0;
+    /// State of the sensor with its reason; normal: its values may be used.
     virtual Safety safety() const = 0;
     /// Takes the present load as zero. Waits for the sensor. Errors: connection_lost, timeout.
     virtual Result<void> tare() = 0;
+    /// Calls `callback` on the sensor's notifying thread after each change of that state.
     virtual Registration onSafetyChange(SafetyCallback callback) = 0;
 };
 

@@ -57,9 +57,11 @@ public:
 
     virtual ~Gripper() = default;
 
+    /// Properties of the gripper; they do not change while this object lives.
     virtual const GripperInfo& info() const noexcept = 0;
     /// The newest state; neither locks nor allocates.
     virtual GripperState state() const noexcept = 0;
+    /// Newest safety state with its reason.
     virtual Safety safety() const = 0;
 
     /// Closes the jaws until they hold a part. `done` gets device_fault if there is none. Errors of

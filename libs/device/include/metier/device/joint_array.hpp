@@ -26,12 +26,14 @@ public:
     }
 
     std::size_t size() const noexcept { return size_; }
+    /// Value of an axis, counted from 0; `axis` must be less than size(), which is not checked.
     double& operator[](std::size_t axis) noexcept { return values_[axis]; }
     double operator[](std::size_t axis) const noexcept { return values_[axis]; }
     double* begin() noexcept { return values_.data(); }
     double* end() noexcept { return values_.data() + size_; }
     const double* begin() const noexcept { return values_.data(); }
     const double* end() const noexcept { return values_.data() + size_; }
+    /// All values, axis 1 first; valid as long as this array.
     std::span<double> values() noexcept { return {values_.data(), size_}; }
     std::span<const double> values() const noexcept { return {values_.data(), size_}; }
 

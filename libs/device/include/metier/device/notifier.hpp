@@ -12,6 +12,7 @@ namespace metier::device {
 /// must not do itself, such as locking.
 ///
 /// Signals that come while the handler runs are handled together by one further call.
+/// Threading: signal() from any thread; one thread creates and destroys it, never the handler.
 class Notifier {
 public:
     /// \param handler runs on the notifier's own thread; must not throw

@@ -10,8 +10,9 @@
 
 namespace metier::device {
 
-/// Request slot for a reset of a device: any thread asks, the driver's own thread resets and
-/// answers. No call waits for the device.
+///
+/// Threading: ask() and underWay() from any thread; taken() and answer() from the driver's own
+/// thread, which does the reset.
 class ResetSlot {
 public:
     /// Requests a reset, unless one is under way. If a reset failed within the last 5 s and nobody

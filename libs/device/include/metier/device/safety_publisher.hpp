@@ -22,7 +22,9 @@ public:
 
     explicit SafetyPublisher(Safety initial);
 
+    /// Newest state with its reason. Locks.
     Safety safety() const;
+    /// Newest state; neither locks nor allocates.
     SafetyState state() const noexcept { return state_.load(); }
     /// Sets the state and its reason.
     void set(Safety safety);

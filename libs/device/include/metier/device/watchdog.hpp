@@ -21,6 +21,9 @@ namespace metier::device {
 ///
 /// A process of an ordinary operating system cannot promise its own reactions: this is no safety
 /// function.
+///
+/// Threading: tick() from the watched thread alone; end() and the destructor wait for the
+///            watchdog's own thread, so no action may call them.
 class Watchdog {
 public:
     /// Functions that the watchdog calls. None may wait for the watched thread; all must stay valid
@@ -48,7 +51,7 @@ public:
     }
 
     /// \param limit longest time from one tick to the next, > 0
-    /// \param clock must outlive this
+    /// \param clock must outlive this and the closures that Actions::post has got
     Watchdog(Actions actions, std::chrono::nanoseconds limit, const Clock& clock);
     ~Watchdog() { end(); }
     Watchdog(const Watchdog&) = delete;

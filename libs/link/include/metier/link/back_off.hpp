@@ -18,6 +18,7 @@ public:
 
     /// Call after a success: makes the next pause the shortest again.
     void reset() noexcept { pause_ = kShortest; }
+    /// Length of the next pause.
     std::chrono::milliseconds next() const noexcept { return pause_; }
     /// Waits for the pause, or until a stop is requested; doubles the next pause.
     void wait(const std::stop_token& stop);

@@ -50,6 +50,7 @@ public:
     /// Ends the child: SIGTERM, and SIGKILL after 2 s.
     ~ChildProcess();
 
+    /// Process id of the child.
     pid_t pid() const noexcept { return pid_; }
     /// File descriptor of the child's standard output, for poll(); -1 once it is closed.
     int outputDescriptor() const noexcept { return output_; }
@@ -63,6 +64,7 @@ public:
     /// Waits for the child's end; returns nothing if it still runs at the deadline.
     /// \return its exit status, or 128 + the number of the signal that ended it
     std::optional<int> waitUntil(SteadyTime deadline);
+    /// Reports whether the child still runs; does not wait.
     bool running() { return !waitUntil(SteadyTime{}).has_value(); }
 
     /// Sends a signal, such as SIGTERM; does nothing if the child has ended already.

@@ -22,6 +22,7 @@ public:
     bool waitUntil(SteadyTime deadline) const;
     /// Waits for a signal without a deadline.
     void wait() const { waitUntil(SteadyTime::max()); }
+    /// Reports whether a signal has come; does not wait.
     bool came() const { return waitUntil(SteadyTime{}); }
 
     /// Bounds the time that the program's end may take: the kernel ends the program if it still

@@ -71,6 +71,7 @@ public:
     TcpListener& operator=(TcpListener&& other) noexcept;
     ~TcpListener() = default;
 
+    /// Port on which it listens, also if a free one was chosen.
     std::uint16_t port() const;
     /// Waits for the next peer. Errors: timeout at the deadline, cancelled after shutdown().
     Result<TcpLink> accept(SteadyTime deadline);

@@ -30,12 +30,14 @@ public:
 
     std::size_t size() const noexcept { return size_; }
     bool empty() const noexcept { return size_ == 0; }
+    /// Value of an axis, counted from 0; `axis` must be less than size(), which is not checked.
     double operator[](std::size_t axis) const noexcept { return values_[axis]; }
     double& operator[](std::size_t axis) noexcept { return values_[axis]; }
     double* begin() noexcept { return values_.data(); }
     double* end() noexcept { return values_.data() + size_; }
     const double* begin() const noexcept { return values_.data(); }
     const double* end() const noexcept { return values_.data() + size_; }
+    /// All values, axis 1 first; valid as long as this vector.
     std::span<const double> span() const noexcept { return {values_.data(), size_}; }
 
     using View = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>>;
@@ -46,6 +48,7 @@ public:
 
     /// Reports whether every value is 0; true if there are no values.
     bool allZero() const noexcept;
+    /// Reports whether no value is infinite or NaN.
     bool allFinite() const noexcept;
     friend bool operator==(const JointVector& a, const JointVector& b) noexcept;
 

@@ -76,6 +76,7 @@ enum class IkKind {
     arm_angle,            ///< spherical shoulder and wrist (iiwa): up to 8 per arm angle
     numeric,              ///< any other chain: Levenberg-Marquardt, one solution
 };
+/// The enumerator's name, for logs.
 std::string_view toString(IkKind kind) noexcept;
 
 /// A rigid transform as matrix and vector, for fast computation. Translation in [m].
@@ -110,6 +111,7 @@ public:
     explicit Kinematics(const ChainDescription& chain);
 
     std::size_t axisCount() const noexcept { return axis_count_; }
+    /// Method that inverse() uses for this chain.
     IkKind ikKind() const noexcept { return kind_; }
     /// Reports whether the closed form fits only nearly, so that every solution is refined by
     /// iteration.
@@ -129,6 +131,7 @@ public:
     /// Computes base_from_joint for every axis (the turned joint frames of the chain), and after
     /// these base_from_flange.
     std::array<motion::Pose, kMaxAxes + 1> forwardAll(const JointVector& q) const noexcept;
+    /// Jacobian of the flange at a joint position.
     Jacobian jacobian(const JointVector& q) const noexcept;
     /// Computes base_from_flange and the Jacobian together, as fast as one of them.
     /// \param jacobian is overwritten

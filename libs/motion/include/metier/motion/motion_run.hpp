@@ -58,6 +58,8 @@ public:
 
     /// Reports whether it stopped because a cycle came too late; false again after resume().
     bool stoppedLate() const noexcept { return stopped_late_; }
+    /// Reports whether the set-points stand still: the end of the path or of the braking is
+    /// reached.
     bool atRest() const noexcept;
     /// Reports whether the arm is at rest at the end of the path.
     bool finished() const noexcept;

@@ -45,7 +45,7 @@ using CartesianVector = std::array<double, 6>;
 /// A motion whose tool frame moves along a straight line and turns the short way meanwhile.
 struct LinRequest {
     JointVector start;    ///< position at which the arm is at rest [rad]
-    motion::Pose target;  ///< of the tool frame
+    motion::Pose target;  ///< pose of the tool frame
     TargetReference reference = TargetReference::base;
     std::string tool_frame;
     /// Limits of the tool frame, > 0 [m/s], [rad/s] and [m/s2], [rad/s2]. 0: the robot's own limit,
@@ -66,7 +66,7 @@ struct JointLinearRequest {
 
 /// A place on a path of several lines.
 struct PathWaypoint {
-    motion::Pose target;  ///< of the tool frame
+    motion::Pose target;  ///< pose of the tool frame
     /// Distance by which the corner here may be cut [m]: 1e-9 m or more, at most half of the
     /// shorter line beside it, where a rotation counts as 0.25 m/rad. Not used for the last
     /// waypoint.
@@ -92,6 +92,7 @@ enum class RefusalReason {
     singularity,           ///< the axes could not follow on the way
     collision,             ///< two links would touch
 };
+/// The enumerator's name, for logs and results.
 std::string_view toString(RefusalReason reason) noexcept;
 
 /// A refused motion; `error.message` has value, limit and unit.
@@ -132,10 +133,13 @@ public:
     explicit Planner(const RobotModel& model, const PlannerOptions& options = {}) noexcept
         : model_(&model), options_(options) {}
 
+    /// Plans a motion straight in joint space; all axes arrive together.
     Planned<Trajectory> ptp(const PtpRequest& request) const;
     /// Plans a straight line; slows down along the path where an axis limits it.
     Planned<Trajectory> lin(const LinRequest& request) const;
+    /// Plans a straight line that ends at a joint position.
     Planned<Trajectory> jointLinear(const JointLinearRequest& request) const;
+    /// Plans several lines with cut corners, without a stop.
     Planned<Trajectory> path(const PathRequest& request) const;
 
 private:

@@ -41,7 +41,9 @@ public:
     /// State after `time` [s]; before 0 the start state, after duration() exactly the end state, at
     /// rest.
     ScalarState at(double time) const noexcept;
+    /// Jerk after `time` [s]; 0 after duration().
     double jerkAt(double time) const noexcept;
+    /// Position at the end, at rest.
     double end() const noexcept { return end_; }
     /// Begin and end of constant velocity [s]; equal if the velocity is constant nowhere.
     double steadyFrom() const noexcept { return steady_from_; }

@@ -28,7 +28,7 @@ struct Capsule {
 
 /// A capped cone with rounded edges to draw a link with.
 struct VisualPrimitive {
-    std::size_t link = 0;  ///< as in Capsule
+    std::size_t link = 0;  ///< link number as in Capsule
     Eigen::Vector3d from;
     Eigen::Vector3d to;
     double from_radius = 0;         ///< [m]
@@ -44,7 +44,7 @@ struct VisualPrimitive {
 class RobotModel {
 public:
     /// Reads a file of models/ (models/README.md).
-    /// Errors: not_found; invalid_argument with file:line, key and what is wrong.
+    /// Errors: not_found; invalid_argument with file:line, key and reason.
     static Result<RobotModel> load(const std::filesystem::path& path);
     /// The same from text; `name` takes the place of the file in messages.
     static Result<RobotModel> parse(std::string_view text, const std::string& name);

@@ -18,8 +18,8 @@ struct TargetStates;
 /// Options of playing out a stream of set-points.
 struct StreamOptions {
     Seconds cycle{0.008};          ///< period of the controller, > 0
-    int playout_delay_cycles = 3;  ///< from a set-point's intended time to its execution, >= 0;
-                                   ///< 0: every cycle takes the newest set-point at once
+    int playout_delay_cycles = 3;  ///< delay from intended time to execution of a set-point,
+                                   ///< >= 0; 0: every cycle takes the newest set-point at once
     int stale_cycles = 6;          ///< cycles with nothing to play before it gives up, >= 1
     /// Without delay: cycles without a set-point during which the motion is extrapolated, >= 0.
     int extrapolated_cycles = 3;
@@ -89,7 +89,9 @@ public:
     void stop() noexcept;
 
     State state() const noexcept { return state_; }
+    /// Reports whether the last set-point stands still: no axis has velocity or acceleration.
     bool atRest() const noexcept;
+    /// Number of set-points taken so far.
     std::uint64_t acceptedCount() const noexcept { return accepted_; }
     /// Number of cycles for which no set-point was there in time; extrapolated cycles without delay
     /// do not count.

@@ -37,6 +37,7 @@ public:
 
     explicit Trajectory(std::shared_ptr<const Plan> plan) noexcept : plan_(std::move(plan)) {}
 
+    /// Time from start to end, at the planned speed.
     Seconds duration() const noexcept;
     std::size_t axisCount() const noexcept;
     /// The exact set-point at `time` after the start; before the start the first one, after the end
@@ -57,12 +58,14 @@ public:
     /// \return profile of the path parameter; near the end of the path it may end beyond 1
     Profile brake(const ScalarState& path, double factor) const noexcept;
 
+    /// Joint position at the start and at the end [rad].
     JointVector start() const noexcept;
     JointVector end() const noexcept;
     /// Planned joint position at a path parameter in [0, 1].
     JointVector positionAt(double fraction) const noexcept;
     /// Planned base_from_tool at a path parameter in [0, 1].
     motion::Pose poseAt(double fraction) const noexcept;
+    /// Planned base_from_tool at the end.
     motion::Pose endPose() const noexcept { return poseAt(1.0); }
     /// base_from_tool of any joint position, with this motion's tool frame.
     motion::Pose toolPose(const JointVector& q) const noexcept;

@@ -12,6 +12,8 @@ namespace metier::security {
 
 /// An X.509 certificate of an OPC UA application or of an authority that signs them (OPC 10000-6,
 /// 6.2). Its texts come from another party: they are printable, but not to be believed.
+///
+/// Threading: any thread; it never changes.
 class Certificate {
 public:
     /// Parses the bytes that a peer sends; of a chain the first certificate.
@@ -23,16 +25,21 @@ public:
 
     /// The certificate in DER form, without bytes that followed it.
     const std::string& der() const noexcept { return der_; }
+    /// The certificate in PEM form.
     std::string pem() const;
     /// SHA-1 of the DER form, 40 hexadecimal digits: the name of a certificate in OPC UA.
     const std::string& thumbprint() const noexcept { return thumbprint_; }
+    /// Names of the holder and of the signer, such as "CN=metier"; control characters are escaped.
     const std::string& subject() const noexcept { return subject_; }
     const std::string& issuer() const noexcept { return issuer_; }
     /// URI in the SubjectAltName; empty if there is none, or several.
     const std::string& applicationUri() const noexcept { return application_uri_; }
+    /// Begin and end of its validity, both included.
     UtcTime notBefore() const noexcept { return not_before_; }
     UtcTime notAfter() const noexcept { return not_after_; }
+    /// Length of the public key [bit]; 0: a key of an unknown kind.
     int keyBits() const noexcept { return key_bits_; }
+    /// Reports whether its signature was made with its own key; the signature is checked.
     bool isSelfSigned() const noexcept { return self_signed_; }
     /// Reports whether it may sign other certificates.
     bool isAuthority() const noexcept { return authority_; }

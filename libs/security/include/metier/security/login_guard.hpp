@@ -40,6 +40,7 @@ public:
                        const std::string& thumbprint);
 
     /// Present role of a user; nothing if the user is not known.
+    /// Does not count as an attempt.
     std::optional<Role> roleOf(const std::string& user);
 
 private:

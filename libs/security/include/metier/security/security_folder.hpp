@@ -58,6 +58,7 @@ public:
     Result<void> setRole(const Certificate& certificate, std::optional<Role> role);
 
     const std::filesystem::path& path() const noexcept { return folder_; }
+    /// Paths in this folder; they need not exist.
     std::filesystem::path identityFolder(const std::string& name) const;
     std::filesystem::path trustFolder() const { return folder_ / "trust"; }
     std::filesystem::path usersFile() const { return folder_ / "users"; }

@@ -26,6 +26,7 @@ enum class RefusalKind {
 };
 std::string_view toString(RefusalKind kind) noexcept;
 
+/// Reason of a refusal, for the program and for a person.
 struct CertificateRefusal {
     RefusalKind kind = RefusalKind::malformed;
     std::string message;  ///< with subject and thumbprint

@@ -19,6 +19,7 @@ enum class Role {
 };
 /// "Observer", "Operator", "Engineer", "SecurityAdmin".
 std::string_view toString(Role role) noexcept;
+/// Role by its name from toString(); nothing for another text.
 std::optional<Role> roleNamed(std::string_view name) noexcept;
 
 struct User {
@@ -41,6 +42,7 @@ public:
     Result<void> save(const std::filesystem::path& file) const;
 
     const std::vector<User>& users() const noexcept { return users_; }
+    /// The user of that name, or nullptr; valid until the table changes.
     const User* find(std::string_view name) const noexcept;
     /// Errors: already_exists; invalid_argument (a name of other characters than letters, digits,
     ///         `.`, `-`, `_`, `@`, or over 64; a password of less than 8 characters or over 256).

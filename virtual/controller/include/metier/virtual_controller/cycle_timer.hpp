@@ -12,8 +12,13 @@ namespace metier::virtual_controller {
 
 /// Calls a function once per period on an exact grid, on the thread that runs the io_context. Late
 /// calls are caught up by the rule of TimeBase.
+///
+/// Threading: created, used and destroyed on the thread that runs the io_context.
 class CycleTimer {
 public:
+    /// Begins at once; the first call is one period later.
+    /// \param context must outlive the timer
+    /// \param period  > 0
     CycleTimer(asio::io_context& context, std::chrono::nanoseconds period,
                std::function<void()> cycle);
     CycleTimer(const CycleTimer&) = delete;

@@ -45,6 +45,7 @@ public:
     void stopOnceAlone(std::chrono::milliseconds longest);
     asio::io_context& context() noexcept { return context_; }
     Controller& controller() noexcept { return *controller_; }
+    /// Port of the control port, also if a free one was chosen.
     std::uint16_t controlPort() const { return control_->port(); }
 
     /// Answers a request: {"inject": NAME, "value": TEXT}, {"state": true} or {"help": true}.

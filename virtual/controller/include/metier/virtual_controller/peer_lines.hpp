@@ -22,6 +22,7 @@ public:
     /// Calls `take` for each complete line, without its line feed.
     void add(TcpPeer& peer, std::span<const std::byte> bytes,
              const std::function<void(std::string_view)>& take);
+    /// Drops the incomplete line of a peer; call it from on_closed.
     void forget(const TcpPeer& peer) { parts_.erase(&peer); }
 
 private:

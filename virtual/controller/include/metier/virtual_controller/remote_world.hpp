@@ -14,8 +14,11 @@ namespace metier::virtual_controller {
 /// The world in a process of its own (virtual/world), reached by lines of JSON over TCP: each
 /// report is answered by one effect. While the world cannot be reached there is no effect, and
 /// connecting is tried again.
+///
+/// Threading: created, used and destroyed on the thread that runs the io_context. Nothing waits.
 class RemoteWorld final : public WorldLink {
 public:
+    /// TCP port of the world, unless another one is given.
     static constexpr std::uint16_t kPort = 7410;
 
     /// \param name name of this controller in the world's settings
@@ -24,8 +27,11 @@ public:
     RemoteWorld(const RemoteWorld&) = delete;
     RemoteWorld& operator=(const RemoteWorld&) = delete;
 
+    /// Sends the newest report as soon as the world has answered the one before; older ones are
+    /// dropped.
     void report(const WorldReport& report) override;
     const WorldEffect& effect() const override { return effect_; }
+    /// Reports whether there is a connection to the world.
     bool connected() const noexcept { return connected_; }
 
 private:

@@ -11,6 +11,8 @@ namespace metier::virtual_controller {
 
 /// Time for which a device has been standing still, by the clock of this machine: the view of an
 /// observer beside the robot, independent of what its controller reports.
+///
+/// Threading: one thread, the controller's.
 class StandingTime {
 public:
     /// Change of position below which nothing counts as motion [rad].

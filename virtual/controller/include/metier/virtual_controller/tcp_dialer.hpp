@@ -21,7 +21,7 @@ public:
     struct Route {
         std::string from;      ///< address of the controller; the peer sees it if both are loopback
                                ///< addresses
-        std::string to;        ///< address to dial
+        std::string to;        ///< address to connect to
         std::uint16_t port{};  ///< > 0
     };
     struct Handlers {

@@ -59,7 +59,9 @@ public:
                                                      LinkFaults& faults, Handlers handlers);
     virtual ~TcpServer() = default;
 
+    /// Port on which it listens, also if a free one was chosen.
     virtual std::uint16_t port() const = 0;
+    /// Calls `action` for every connected peer.
     virtual void forEach(const std::function<void(TcpPeer&)>& action) = 0;
     /// Resets every connection, like a controller that restarts.
     virtual void resetAll() = 0;

@@ -10,7 +10,7 @@ namespace metier::joint_simulator {
 /// Largest dead time of the simulated arm [cycles].
 inline constexpr std::size_t kMaxDelayCycles = 31;
 
-/// Model of the measured arm following the commanded one: a dead time, then a first-order lag.
+/// Model of a measured arm that follows the commanded one: a dead time, then a first-order lag.
 ///
 /// Threading: one thread, the cycle. Does not allocate.
 class Lag {

@@ -9,6 +9,9 @@
 namespace metier::joint_simulator {
 
 /// Cycle thread and notifying thread of a simulated arm; runs it at its real rate.
+///
+/// Threading: one thread creates and destroys it. It starts two threads of its own: one calls
+///            cycle(), the other dispatch().
 class SimulatorDrive {
 public:
     /// Begins at once. The arm must outlive the drive; no other code may call its cycle(),

@@ -14,6 +14,8 @@ namespace metier::joint_simulator {
 /// after the last, and a late thread alone breaks no limit. Only a delay of more than
 /// kLongestCatchUp moves the schedule to the present; the cycles left out count as missed, and the
 /// arm's own time stands still meanwhile.
+///
+/// Threading: a value, used by one thread; reads no clock.
 class TimeBase {
 public:
     static constexpr std::chrono::milliseconds kLongestCatchUp{100};

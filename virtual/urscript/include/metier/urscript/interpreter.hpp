@@ -15,7 +15,7 @@ namespace metier::urscript {
 /// Reason why a program ended early; the controller sends it to primary clients as a runtime
 /// exception.
 struct RuntimeException {
-    int line = 0;    ///< from 1
+    int line = 0;    ///< in the script, from 1
     int column = 0;  ///< from 1
     std::string text;
 };

@@ -46,6 +46,8 @@ private:
 };
 
 /// A value of a script. Integers have 32 bits, as in the controller.
+///
+/// Threading: one thread, since copies share their elements.
 class Value {
 public:
     using Data = std::variant<std::monostate, bool, std::int32_t, double, std::string, List, Pose>;
