@@ -26,7 +26,7 @@ public:
     virtual void start() = 0;
     /// Subscribes to the events of what start() starts.
     virtual void subscribe() = 0;
-    /// Starts an execution; how long until this client's subscription told that it is Running.
+    /// Starts an execution; returns the time until this client's subscription reported Running.
     virtual std::chrono::nanoseconds startUntilRunning() = 0;
     /// Keeps the connection alive without a call.
     virtual void idleUntil(std::chrono::steady_clock::time_point end) = 0;

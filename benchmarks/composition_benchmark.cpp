@@ -1,4 +1,4 @@
-// What composing costs, over OPC UA on loopback; every server has a thread of its own, in one
+// Cost of composition, over OPC UA on loopback; every server has a thread of its own, in one
 // process.
 //
 // - per child step: a composed skill of 100 steps that run a skill of another server which does

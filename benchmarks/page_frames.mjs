@@ -1,4 +1,4 @@
-// What a frame of the page costs while three arms draw squares: the time of the browser's main thread, which every
+// Cost of a frame of the page while three arms draw squares: the time of the browser's main thread, which every
 // machine pays, beside the 33.3 ms that a frame may take at 30 frames/s; and how much it draws, which a graphics card
 // does. Where there is none Chromium draws in software, and the frames/s are those of the processor.
 //

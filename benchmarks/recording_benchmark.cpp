@@ -1,16 +1,16 @@
 // Cost of a record of each execution: executions/s of the spine's benchmark with and without.
 //
-// Clients start executions of one Program again and again for eight seconds: one client a skill
-// that takes a millisecond, eight clients one that ends at once, which no robot does. Meanwhile the
-// server's recording into a SQLite file is turned on and off in slices of 40 ms, two by two, so
-// that both see the same process and the same moods of the machine, which differ by more than what
-// is looked for; of each kind the middle half is taken. That is a round; each has a server process
-// of its own. The writer's thread works through both kinds of slices, so that its time, which is
-// shown for each execution that it records, is taken off the ratio as a share of all cores: eight
-// clients leave none of them idle. How many of the executions are in the file is counted after the
-// server has ended: beyond what the queue takes they are dropped.
+// Clients start executions of one Program again and again for eight seconds: one client with a
+// skill that takes a millisecond; eight clients with one that ends at once, a load that no robot
+// makes. Meanwhile the server's recording into a SQLite file is turned on and off in slices of 40
+// ms, two by two, so that both kinds see the same process and the same state of the machine, whose
+// changes are larger than the wanted difference; of each kind the middle half is used. That is one
+// round; each has a server process of its own. The writer's thread works during both kinds of
+// slices, so its time, which is shown for each recorded execution, is subtracted from the ratio as
+// a share of all cores: eight clients leave none of them idle. The executions in the file are
+// counted after the server has ended; those that exceed the queue are dropped.
 //
-// `recording_benchmark [ROUNDS]`: 10 unless said.
+// `recording_benchmark [ROUNDS]`: 10 by default.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ double mean(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Of the middle half.
+/// Mean of the middle half.
 double middle(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const auto quarter = static_cast<std::ptrdiff_t>(values.size() / 4);
@@ -109,7 +109,7 @@ private:
     std::vector<std::jthread> threads_;  // end before what they use
 };
 
-/// Of all slices of a kind.
+/// Results of all slices of a kind.
 struct Slices {
     std::vector<double> per_second;
     std::vector<double> server_thread;  // us for each execution
@@ -118,7 +118,7 @@ struct Slices {
 struct Round {
     std::array<Slices, 2> slices;  // not recorded, recorded
     double writer = 0;             // us for each recorded execution
-    double in_file = 0;            // of those that began while they were recorded
+    double in_file = 0;            // of the executions that began while recording was on
 };
 
 Round measure(const Case& one, const std::string& file) {

@@ -21,8 +21,8 @@ public:
     /// Returns once it is so. Errors: exceptions.
     void turn(bool on) const;
 
-    /// Calls `turn` with what turn() was called with; `turn` calls `done`. In the server's process,
-    /// on a thread that ends with the answer.
+    /// Called with the argument of turn(); it must call `done`. It runs in the server's process, on
+    /// a thread that ends with the answer.
     using Turn = std::function<void(bool on, std::function<void()> done)>;
     class Serving {
     public:

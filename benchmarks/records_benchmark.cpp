@@ -119,7 +119,7 @@ void fill(const std::string& url, std::int64_t count) {
 struct Case {
     const char* name;
     Filter filter;
-    std::string condition;  ///< of the scan
+    std::string condition;  ///< condition of the scan
 };
 
 std::vector<Case> cases(std::int64_t count) {
@@ -190,14 +190,14 @@ std::vector<Case> cases(std::int64_t count) {
     return all;
 }
 
-/// Of this thread [ms].
+/// Processor time of this thread [ms].
 double processorTime() {
     timespec time{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
     return 1e3 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) / 1e6;
 }
 
-/// Of one page after the other [ms], and how many executions they had.
+/// Times of one page after the other [ms], and the number of their executions.
 struct Measured {
     std::vector<double> pages;
     double most_processor_time = 0;

@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What the child tells once it serves.
+/// Report of the child once it serves.
 struct Report {
     std::array<char, 128> url;
     double seconds;

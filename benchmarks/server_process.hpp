@@ -32,7 +32,7 @@ public:
     const std::string& url() const noexcept { return url_; }
     /// Between the call of `serve` and its end.
     std::chrono::duration<double> startTime() const noexcept { return start_time_; }
-    /// What `serve` added to the memory that is resident [byte].
+    /// Resident memory that `serve` added [byte].
     double memory() const noexcept { return memory_; }
     /// CPU time of all its threads since it began.
     std::chrono::nanoseconds cpuTime() const;
@@ -43,7 +43,7 @@ public:
 
 private:
     pid_t pid_ = -1;
-    int control_ = -1;  // its end tells the child to end
+    int control_ = -1;  // closing it ends the child
     std::string url_;
     std::chrono::duration<double> start_time_{};
     double memory_ = 0;

@@ -10,7 +10,7 @@
 namespace metier::benchmarks {
 namespace {
 
-/// What has arrived of a message that is not complete yet.
+/// Bytes of a message that is not complete yet.
 class Pending {
 public:
     void append(std::span<const std::byte> bytes) {

@@ -1,23 +1,23 @@
-// What skills cost against OPC UA alone: metier and a bare open62541 server in the same run.
+// Cost of skills against OPC UA alone: metier and a bare open62541 server in the same run.
 //
-// Every server is a process of its own; the clients are threads of this one. For lines that take
-// times, the servers of both sides stand side by side and are asked in turn, so that a machine
-// that slows down slows down both. Both clients ask for events every 100 ms.
+// Every server is a process of its own; the clients are threads of this one. For lines that measure
+// times, the servers of both sides run side by side and are called in turn, so that a slowdown of
+// the machine meets both. Both clients ask for events every 100 ms.
 //
-//   Start call        metier's Start, two transitions included, against a bare method without
-//                     arguments that does nothing; one client, nobody subscribed. The same bare
-//                     client for both servers, then metier's own, which waits for its thread
-//   Start to Running  from before the call until the subscriber's callback has the event; the next
-//                     Start follows at once, so the stock server's timer has always just fired
-//   executions        eight clients call Start of one Program for two seconds; the bare method
-//                     raises two events with Time and Severity. Unseen: nobody is subscribed; seen:
-//                     each client is told of all events of that Program
-//   many skills       from an empty process until clients may connect; resident memory is what that
-//                     added. Skills have six parameters each, bare Programs as well; metier's
-//                     NodeSets are part of its figures. Readable and compact: NodeStyle
-//   idle clients      CPU time of the server's process while ten subscribed clients do nothing
+// - Start call: metier's Start, two transitions included, against a bare method without arguments
+//   that does nothing; one client, no subscription. The same bare client for both servers, then
+//   metier's own, which waits for its thread;
+// - Start to Running: from before the call until the subscriber's callback has the event; the next
+//   Start follows at once, so the stock server's timer has always just fired;
+// - executions: eight clients call Start of one Program for two seconds; the bare method raises two
+//   events with Time and Severity. Unseen: no subscription; seen: each client gets all events of
+//   that Program;
+// - many skills: from an empty process until clients may connect; resident memory is the increase
+//   by that. Skills have six parameters each, bare Programs as well; metier's NodeSets are part of
+//   its figures. Readable and compact: NodeStyle;
+// - idle clients: CPU time of the server's process while ten subscribed clients do nothing.
 //
-// `opcua_skill_benchmark [SKILLS]`: of many skills, 10000 unless told.
+// `opcua_skill_benchmark [SKILLS]`: number of skills for "many skills", 10000 by default.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -133,7 +133,7 @@ void executions() {
     }
 }
 
-/// Of many Programs.
+/// Costs of many Programs.
 struct Cost {
     double seconds = 0;
     double megabytes = 0;

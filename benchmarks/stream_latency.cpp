@@ -1,4 +1,4 @@
-// How long a set-point takes from the write of TargetJointPosition to the bytes on the maker's
+// Time that a set-point takes from the write of TargetJointPosition to the bytes on the maker's
 // wire.
 //
 // For each robot `metier virtual run` runs its controller and `metier serve` its server with the
@@ -7,16 +7,15 @@
 // that passes at t_wire is t_wire - (p - p0) / v old: that is the latency, whatever became of the
 // set-point in between.
 //
-//   in step       the client writes half a cycle before the next set-point is due, as the tap saw
-//   it random phase  the client keeps its own time, five streams that begin anywhere in a cycle.
-//   The
-//                 wait for the next cycle alone is then spread evenly from 0 to one cycle
-//   interval      between set-points on the wire: its difference to the controller's cycle
-//   bare write    a write of a variable of a server of open62541 alone, there and back, in another
-//                 process. The ratio is that of the median in step to what nobody can save: half a
-//                 cycle of waiting and such a write
+// - in step: the client writes half a cycle before the next set-point is due, as the tap saw it;
+// - random phase: the client keeps its own time, five streams that begin anywhere in a cycle. The
+//   wait for the next cycle alone is then spread evenly from 0 to one cycle;
+// - interval: between set-points on the wire; its difference to the controller's cycle;
+// - bare write: a write of a variable of a server of open62541 alone, there and back, in another
+//   process. The ratio is that of the median in step to a lower bound: half a cycle of waiting and
+//   such a write.
 //
-// `stream_latency [SECONDS]`: of each stream, 8 unless told.
+// `stream_latency [SECONDS]`: length of each stream, 8 by default.
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -51,7 +50,7 @@ using Time = steady_clock::time_point;
 using Millis = std::chrono::duration<double, std::milli>;
 
 constexpr double kVelocity = 0.1;  // of the ramp [rad/s]
-constexpr auto kLead = 500ms;      // of each stream, in which the follower gets up to speed
+constexpr auto kLead = 500ms;      // of each stream; the follower gets up to speed in it
 constexpr auto kPatience = 60s;
 constexpr int kRandomStreams = 5;
 constexpr int kBareWrites = 5000;
@@ -59,12 +58,12 @@ constexpr int kBareWrites = 5000;
 /// One robot with its controller.
 struct Robot {
     std::string name;
-    std::string type;  ///< of its driver and its virtual controller
+    std::string type;  ///< type of its driver and its virtual controller
     std::string model;
-    std::string address;  ///< of the controller, of this machine
+    std::string address;  ///< of the controller, on this machine
     std::chrono::nanoseconds cycle;
-    std::string port_setting;     ///< of the side that dials
-    std::uint16_t port;           ///< of the side that listens; 0: a free one, told by `port`
+    std::string port_setting;     ///< setting of the side that connects
+    std::uint16_t port;           ///< of the side that listens; 0: a free one, published as `port`
     std::string driver_settings;  ///< more of them
     std::unique_ptr<SetPointReader> (*reader)();
 };
@@ -257,7 +256,7 @@ private:
 
 // ---- streams ---------------------------------------------------------------------------------
 
-/// When to write next.
+/// Chooses the time of the next write.
 using NextWrite = std::function<Time(Time last_write)>;
 
 NextWrite inStep(Tap& tap, std::chrono::nanoseconds cycle) {

@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int kWaitMs = 100;  // until a stop is looked for again
+constexpr int kWaitMs = 100;  // period of the check for a stop
 
 sockaddr_in endpoint(const std::string& address, std::uint16_t port) {
     sockaddr_in there{};
@@ -54,7 +54,7 @@ void sendAtOnce(int socket) {
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
 
-/// -1 if nobody listens there.
+/// Connects; -1 if no server listens there.
 int dial(const std::string& address, std::uint16_t port) {
     const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const auto there = endpoint(address, port);

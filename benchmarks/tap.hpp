@@ -23,7 +23,7 @@ class Tap {
 public:
     enum class Dials : std::uint8_t { driver, controller };
     struct Options {
-        std::string address{};        ///< of both sides, of this machine
+        std::string address{};        ///< of both sides, on this machine
         std::uint16_t port = 0;       ///< of the side that listens
         Dials dials = Dials::driver;  ///< which side connects
         std::function<std::unique_ptr<SetPointReader>()> reader{};
@@ -39,9 +39,9 @@ public:
     Tap(const Tap&) = delete;
     Tap& operator=(const Tap&) = delete;
 
-    /// Where the side that connects is to connect to.
+    /// Port for the side that connects.
     std::uint16_t port() const noexcept { return port_; }
-    /// When the last set-point passed; nothing before the first.
+    /// Time when the last set-point passed; nothing before the first.
     std::optional<std::chrono::steady_clock::time_point> last() const;
     /// Those since the call before.
     std::vector<SetPoint> take();
@@ -62,7 +62,7 @@ private:
     std::jthread thread_;
 };
 
-/// A port of that address that nobody uses now.
+/// A port of that address that is free now.
 std::uint16_t freePort(const std::string& address);
 
 }  // namespace metier::benchmarks

@@ -95,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             std::abort();
         }
     }
-    // What was begun goes on, but a late cycle makes no other late.
+    // Handlers that have begun continue, but a late cycle does not make further cycles late.
     for (int handler = 0; handler < 4 && host.context().poll_one() > 0; ++handler) {
     }
     return 0;

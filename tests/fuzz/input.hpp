@@ -18,7 +18,7 @@ public:
         --left_;
         return *data_++;
     }
-    /// What comes before the next line feed, or the end.
+    /// Text up to the next line feed, or the end.
     std::string line() {
         std::string text;
         while (!isEmpty()) {
@@ -30,7 +30,7 @@ public:
         }
         return text;
     }
-    /// From -bound to bound.
+    /// Number between -bound and bound.
     double number(double bound) { return (next() / 127.5 - 1.0) * bound; }
 
 private:

@@ -1,4 +1,4 @@
-// What a person does with UaExpert, done by node-opcua, which knows nothing of metier: browse from
+// The steps of a person with UaExpert, done by node-opcua, which knows nothing of metier: browse from
 // Objects to a skill, write its parameter, call Start, watch the events.
 'use strict';
 

@@ -26,9 +26,9 @@ public:
     std::vector<std::string> atFarEnd(std::vector<std::string> command) const;
     /// Puts the calling thread there, and the threads that it starts from then on.
     void enterFarEnd() const;
-    /// Where the far end reaches servers of this process.
+    /// Address at which the far end reaches servers of this process.
     static constexpr const char* kNearAddress = "10.77.0.1";
-    /// Of a server of this process, as the far end sees it.
+    /// Address of a server of this process, as the far end sees it.
     static std::string addressOf(const std::string& url);
 
     void unplug();
@@ -39,8 +39,8 @@ public:
     /// Loses packets at random.
     /// \param percent in each direction
     void lose(int percent);
-    /// What is sent from here waits for its turn at this rate, and at most so long: beyond it is
-    /// lost. Holds as long as the cable.
+    /// Makes data that is sent from here wait for its turn at this rate, in a queue of at most that
+    /// length; more is lost. Lasts as long as the cable.
     void slowDown(int bits_per_second, std::chrono::milliseconds queue);
     /// Plugged in, and lets everything through.
     void restore();

@@ -230,7 +230,7 @@ bool TcpRelay::move(Wire& wire, int from) {
         sent_ += bytes;
     }
     if (must_cut) {
-        // What was sent to the server arrives, although the wire ends now.
+        // Data that was sent to the server arrives, although the wire ends now.
         ::shutdown(wire.server, SHUT_WR);
         mode_ = Mode::cut;
         trigger_.clear();

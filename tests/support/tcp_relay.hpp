@@ -11,8 +11,7 @@
 
 namespace metier::testing {
 
-/// A network in miniature: passes on what comes for a port of this machine, until it is told to
-/// misbehave.
+/// A small network: passes on the data for a port of this machine, until it is asked to misbehave.
 ///
 /// Threading: any thread; one of its own does the work.
 class TcpRelay {
@@ -26,7 +25,7 @@ public:
     std::uint16_t port() const { return port_; }
     std::string url() const { return "opc.tcp://127.0.0.1:" + std::to_string(port_); }
 
-    /// From here on all is passed on. Connections that have lost bytes are closed.
+    /// From now on all data is passed on. Connections that have lost bytes are closed.
     void pass();
     /// All connections are closed, and new ones at once.
     void cut();

@@ -1,5 +1,5 @@
-// The robot that docs/guide/add-a-robot.md adds: its driver and its virtual controller are built
-// from examples/add_a_robot, and it does what every robot does.
+// The robot of docs/guide/add-a-robot.md: its driver and its virtual controller are built from
+// examples/add_a_robot, and it behaves as every other robot.
 #include <gmock/gmock.h>
 
 #include <chrono>

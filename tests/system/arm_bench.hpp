@@ -18,10 +18,10 @@ inline constexpr std::chrono::seconds kNoticed{2};
 
 /// One robot of tests/system/devices.
 struct ArmCase {
-    const char* name;             ///< of its file
-    double axis_1;                ///< of a long move [rad]
-    const char* stop_fault = "";  ///< what its controller stops the arm for
-    /// What the arm does when the cable is cut. An iiwa's cabinet does not notice, and ends the
+    const char* name;             ///< name of its file
+    double axis_1;                ///< target of a long move [rad]
+    const char* stop_fault = "";  ///< fault for which its controller stops the arm
+    /// Reaction of the arm when the cable is cut. An iiwa's cabinet does not notice, and ends the
     /// motion that it has accepted (docs/protocols/iiwa.md).
     enum class Cut { stands, goes_on } cut = Cut::stands;
 };
@@ -29,15 +29,15 @@ struct ArmCase {
 /// Every arm for which there is a driver; an e.DO with each generation of its software.
 const std::vector<ArmCase>& allArms();
 
-/// What a skill does when something happens to its device. Suspending and resuming are on the way
-/// to the state of that name, or just there.
+/// Activity of a skill when something happens to its device. Suspending and resuming: on the way to
+/// the state of that name, or just there.
 enum class When { ready, moving, suspending, suspended, resuming, halted };
 
 std::string toString(When when);
 void PrintTo(const ArmCase& arm, std::ostream* out);
 
 /// An arm on its maker's wire, with its virtual controller and a client that moves and watches it.
-/// What fails is a failure of the test, fatal where nothing can go on.
+/// A failure here is a failure of the test, fatal where the test cannot go on.
 class ArmBench {
 public:
     explicit ArmBench(const ArmCase& arm);
@@ -49,12 +49,12 @@ public:
     opcua::Client& client() { return *client_; }
     const std::vector<double>& home() const { return home_; }
     const std::string& address() const { return cell_.virtualAddress("controller"); }
-    /// What the virtual controller shows of itself.
+    /// State that the virtual controller shows.
     nlohmann::json state() const { return cell_.state("controller"); }
 
     /// Something happens to the controller or its cable. Events before it are forgotten.
     void inject(const std::string& fault, const std::string& value = "");
-    /// The same for what somebody else does just after this call.
+    /// The same for an event that another process causes just after this call.
     void happensNow();
     /// Starts a move of axis 1 that takes some seconds, and waits until the controller moves.
     void startLongMove();
@@ -62,7 +62,7 @@ public:
     void awaitProgress(double farther);
     /// Brings the skill where `when` says, with a long move where it needs one.
     void bring(When when);
-    /// Of axis 1, as the virtual controller has it [rad].
+    /// Position of axis 1, as the virtual controller shows it [rad].
     double position() const;
     /// The next transition to Halted or Ready, which must come in time.
     skill::TransitionEvent endWithin(std::chrono::milliseconds time);
@@ -70,18 +70,18 @@ public:
     skill::TransitionEvent haltedAfterInjection();
     /// Waits until the virtual controller shows that.
     void awaitState(const std::string& name, const std::string& value) const;
-    /// Waits until the skill's reason tells of it.
+    /// Waits until the skill's reason text contains `part`.
     void awaitReasonText(const std::string& part);
     /// The arm rests, short of the target.
     void expectAtRestOnTheWay() const;
     /// No axis but the first was moved, and that one not beyond its target.
     void expectNowhereElse() const;
     void expectResetAndMove();
-    /// From where the arm is now.
+    /// Makes the present position the home position.
     void beginAnew() { home_ = jointPosition(*client_, skill_); }
 
 private:
-    /// Between two looks at the controller, which tells nothing by itself.
+    /// Waits between two looks at the controller, which reports nothing by itself.
     void pause() const;
 
     ArmCase arm_;

@@ -55,8 +55,8 @@ std::size_t readAll(RawPeer& peer, std::size_t expected) {
     return total;
 }
 
-// 1 Mbit/s, where what is sent waits for 200 ms: more than the 2 s in which a peer must make
-// progress goes by, and it does.
+// At 1 Mbit/s, with data waiting for 200 ms: more than the 2 s go by in which a peer must make
+// progress, and it makes progress.
 TEST(SlowReader, IsNotCut) {
     if (const auto obstacle = Cable::obstacle(); !obstacle.empty()) {
         GTEST_SKIP() << "NOT TESTED: a slow reader on a network: " << obstacle;

@@ -1,4 +1,4 @@
-// What servers keep of who commanded them, and what becomes of it when somebody changes it.
+// Audit records of servers, and their protection against changes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -178,7 +178,7 @@ TEST_F(AuditedArm, ShowsByItsPublishedAnchorThatTheEndOfItsLogWasCutOff) {
     EXPECT_EQ(runMetier({"audit", "verify", log().string(), "--anchor", "beef"}).status, 2);
 }
 
-// Over a connection as metier makes them unless it is told otherwise.
+// Uses a connection with metier's default security.
 TEST_F(AuditedArm, KeepsWhoWasDeniedWhat) {
     const Installation here("here");
     ASSERT_EQ(here.run({"user", "add", "otto", "--role", "Observer"}, "otto's own").status, 0);

@@ -1,5 +1,5 @@
-// What a robot's server in a process of its own does with bad input: each is refused with its
-// StatusCode and a text with value, limit and unit, the arm stays, and the skill is usable after.
+// Bad input for a robot's server in a process of its own: each one is refused with its StatusCode
+// and a text with value, limit and unit, the arm stays, and the skill can be used afterwards.
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -32,7 +32,7 @@ struct BenchOptions {
 };
 
 /// A server in this process with the skills of one controller, made of functions, and its control.
-/// What cannot be set up throws std::runtime_error.
+/// A failure of the set-up throws std::runtime_error.
 ///
 /// Threading: as opcua::Server; addSkill() and serve() on the thread that made it.
 class BenchServer {
@@ -66,7 +66,7 @@ private:
     SystemClock system_clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
-    std::shared_ptr<skill::Control> control_;  // with the Programs
+    std::shared_ptr<skill::Control> control_;  // shared with the Programs
     opcua_skill::MotionDeviceSystem system_;
 };
 
@@ -91,7 +91,7 @@ void BenchServer::onServer(Work work) {
 /// A client of that name; throws if it cannot connect.
 std::unique_ptr<opcua::Client> connectAs(const std::string& url, const std::string& name);
 
-/// A joint move of two axes: TargetJointPosition (needed, [-100, 100] rad unless told otherwise),
+/// A joint move of two axes: TargetJointPosition (needed, [-100, 100] rad unless set otherwise),
 /// MaxVelocity, SpeedOverride (0.5, [0, 1]), ToolFrame; results Duration and ReachedJointPosition.
 skill::SkillDescription benchDescription(std::string name);
 

@@ -1,5 +1,5 @@
-// How a cell ends: by a signal, with its terminal, when `metier up` is killed, while it starts, and
-// what becomes of it when one of its processes ends.
+// End of a cell: by a signal, with its terminal, when `metier up` is killed, while it starts, and
+// the consequences when one of its processes ends.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/syscall.h>
@@ -28,7 +28,7 @@ using skill::State;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-/// A process that is watched until it ends, whoever its parent is by then.
+/// A process that is watched until it ends, even if its parent changes.
 class WatchedProcess {
 public:
     explicit WatchedProcess(pid_t pid)
@@ -89,7 +89,7 @@ void startLongMove(Watched& move) {
 
 struct EndCase {
     const char* arm;
-    int signal;  ///< to `metier up`
+    int signal;  ///< sent to `metier up`
 };
 
 void PrintTo(const EndCase& end, std::ostream* out) {
@@ -268,7 +268,7 @@ struct SilentPeer {
     explicit SilentPeer(std::uint16_t port)
         : address(fmt::format("127.{}.{}.1", 1 + getpid() / 250 % 250, 1 + getpid() % 250)),
           listener(link::TcpListener::listen(address, port).value()) {}
-    /// Waits until somebody has dialled.
+    /// Waits until a client has connected.
     link::TcpLink awaitCaller() { return listener.accept(inAMinute()).value(); }
 
     std::string address;

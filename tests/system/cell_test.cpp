@@ -24,7 +24,7 @@ using ::testing::Lt;
 using ::testing::SizeIs;
 using ::testing::UnorderedElementsAre;
 
-/// Every arm of the cell goes once around its square, and stays near its path [mm].
+/// Moves every arm of the cell once around its square, and checks that it stays near its path [mm].
 void expectSquares(const RunningCell& cell, double deviation_mm) {
     std::vector<std::string> command{"square", "--json", "--laps",
                                      "1",      "--svg",  ::testing::TempDir() + "square.svg"};
@@ -119,7 +119,7 @@ public:
         ASSERT_EQ(next().event.to, State::running);
     }
 
-    /// Until the arm really moves.
+    /// Waits until the arm really moves.
     void awaitMotion() {
         Queue<double> positions(1'000);
         const auto nodes = client::findKinematics(*client_, skill_.address());
@@ -135,7 +135,7 @@ public:
         } while (*position < home_.front() + 0.01);
     }
 
-    /// Until the server says that its arm has this safety state.
+    /// Waits until the server publishes this safety state of its arm.
     void awaitSafetyState(std::int32_t wanted) {
         Queue<std::int32_t> states(1'000);
         const auto nodes = client::findKinematics(*client_, skill_.address());

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 using skill::Reason;
 using skill::State;
 
-/// What the clock of a server tells.
+/// Present time of a server's clock.
 UtcTime timeOf(opcua::Client& client) {
     return client.read(opcua::NodeId(0, 2258U)).value().as<UtcTime>().value();
 }

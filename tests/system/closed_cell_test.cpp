@@ -1,4 +1,4 @@
-// Servers that are closed, as `metier serve` starts them unless it is told otherwise.
+// Closed servers, which `metier serve` starts by default.
 #include <gmock/gmock.h>
 
 #include "discovered_cell.hpp"

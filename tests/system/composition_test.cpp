@@ -161,7 +161,7 @@ TEST_F(ComposedArm, GoesOnOnceTheArmsServerIsBack) {
     home_ = jointPosition(arm_->client(), **arm_);
     away_ = home_;
     away_.front() += 0.05;
-    // Until its component has connected again, each Start is refused with that.
+    // Each Start is refused with that until its component has connected again.
     const auto deadline = std::chrono::steady_clock::now() + 30s;
     for (int attempt = 1;; ++attempt) {
         if (const auto state = (*wave_)->state(); state == State::halted) {

@@ -1,5 +1,5 @@
-// What a controller can do to a skill by itself, and what people do at it: each row ends in Halted
-// with a reason and a text, within a stated time, and has a way back.
+// Faults of a controller, and actions of people at it: each row ends in Halted with a reason and a
+// text, within a stated time, and has a way back.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -200,7 +200,7 @@ INSTANTIATE_TEST_SUITE_P(
                         Reason::device_lost, "closed the connection"}),
     nameOf);
 
-/// What both generations of an e.DO's software do alike.
+/// Faults that both generations of an e.DO's software have.
 std::vector<ControllerFault> faultsOfAnEdo() {
     std::vector<ControllerFault> faults;
     for (const auto& arm : {kEdo, kClassicEdo}) {
@@ -235,7 +235,7 @@ std::vector<ControllerFault> faultsOfAnEdo() {
 
 INSTANTIATE_TEST_SUITE_P(Edo, FaultOfTheController, ::testing::ValuesIn(faultsOfAnEdo()), nameOf);
 
-/// What happens to a controller and is no reason to halt anything.
+/// An event of a controller that is no reason to halt anything.
 struct Harmless {
     const char* name;
     ArmCase arm;

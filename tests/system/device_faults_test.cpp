@@ -1,5 +1,5 @@
-// Each arm on its maker's wire: it moves, and whatever happens to its controller or its cable ends
-// in a named state, within a stated time, with a way back.
+// Each arm on its maker's wire: it moves, and each fault of its controller or its cable ends in a
+// named state, within a stated time, with a way back.
 #include <gmock/gmock.h>
 
 #include <chrono>

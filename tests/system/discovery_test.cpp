@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// Moves the first axis a little and tells whether that went well.
+/// Moves the first axis a little, and expects success.
 void moveOn(const std::string& url) {
     const auto client = connectTo(url);
     auto skill = openSkill(*client, "JointPtpMoveSkill");

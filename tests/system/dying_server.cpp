@@ -19,7 +19,7 @@ constexpr std::uint16_t kControlPort = 7400;
 // An arm that has been standing for so long has come to rest.
 constexpr std::chrono::duration<double> kAtRest{0.3};
 
-/// Of this test's process alone; each call another one.
+/// Loopback address that only this test's process uses; another one at each call.
 std::string freeAddress() {
     static int used = 0;
     return "127." + std::to_string(100 + ++used % 100) + "." +

@@ -34,10 +34,10 @@ public:
     const std::string& url() const { return server_.url; }
     const std::string& controllerAddress() const { return address_; }
     pid_t pid() const { return server_.process.pid(); }
-    /// How long the first start took.
+    /// Duration of the first start.
     std::chrono::steady_clock::duration startedIn() const { return started_in_; }
 
-    /// To the server. After SIGKILL it returns when the process is gone.
+    /// Sends a signal to the server. After SIGKILL it returns when the process has ended.
     void signal(int number);
     /// The same server for the same robot on the same port, which was killed before.
     void startAgain();

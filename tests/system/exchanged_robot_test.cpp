@@ -31,7 +31,7 @@ void expectSquare(const std::string& url) {
     EXPECT_LT(arms.front().at("closure_mm").get<double>(), 0.05);
 }
 
-/// Whose moves a component serves; "none" while it cannot be reached.
+/// Robot whose moves a component serves; "none" while it cannot be reached.
 std::string robotOf(const std::string& url) {
     const auto client = opcua::Client::connect(url);
     if (!client) {
@@ -49,7 +49,7 @@ protected:
         ASSERT_EQ(robotOf(component_->url()), "UrController");
     }
 
-    /// The UR5 goes, as in a crash, and an e.DO comes.
+    /// Ends the UR5 as in a crash, and starts an e.DO.
     void exchange() {
         ur5_.kill();
         edo_.emplace(serveDiscovered("edo", lds_.url()));

@@ -185,7 +185,7 @@ TEST_F(GripperOnItsWire, SaysWhereItsJawsAreBlocked) {
 }
 
 TEST_F(GripperOnItsWire, IsAtRestOnceHaltedAndMovesAgainAfterReset) {
-    // Halted was told when the jaws began to brake; the next Start was refused.
+    // Halted was published when the jaws began to brake; the next Start was refused.
     for (int i = 0; i < 5; ++i) {
         startGrasp();
         ASSERT_TRUE(grasp_.halt());

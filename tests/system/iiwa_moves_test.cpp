@@ -1,5 +1,5 @@
-// Moves of an iiwa on its own wire, against its virtual cabinet: whoever runs them, the cabinet's
-// planner or metier's set-points, each is the one that was asked for.
+// Moves of an iiwa on its own wire, against its virtual cabinet: run by the cabinet's planner or by
+// metier's set-points, each is the move that was asked for.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -80,7 +80,7 @@ protected:
     double number(const std::string& skill, const std::string& result) {
         return std::get<double>(program(skill).finalResult().at(result));
     }
-    /// Of the fastest axis [rad/s].
+    /// Speed of the fastest axis [rad/s].
     double speed() {
         double fastest = 0.0;
         const auto state = cabinet_.state();
@@ -97,7 +97,7 @@ protected:
             },
             kPatience);
     }
-    /// From asking until standstill is told [s].
+    /// Time from the request until standstill is published [s].
     double timeToRest(const std::string& skill, State rest) {
         const auto asked = std::chrono::steady_clock::now();
         EXPECT_TRUE(rest == State::halted ? program(skill).halt(caller_)
@@ -189,7 +189,7 @@ struct SlowMove {
     const char* name;
     const char* skill;
     ValueMap values;
-    double speed;  ///< of the fastest axis, from which on it is stopped [rad/s]
+    double speed;  ///< speed of the fastest axis at which it is stopped [rad/s]
 };
 
 void PrintTo(const SlowMove& move, std::ostream* out) {

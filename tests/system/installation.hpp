@@ -22,7 +22,8 @@ public:
     Finished run(const std::vector<std::string>& arguments, const std::string& password = "") const;
     /// `metier serve` of one of the simulated cell, at a free port.
     ServerProcess serve(const std::string& server) const;
-    /// What clients of this process need to be its command, which it makes first if need be.
+    /// Options for clients of this process with the command's identity, which is made first if it
+    /// does not exist.
     opcua::ClientOptions asCommand() const;
     /// The thumbprint of an application of this installation.
     std::string thumbprintOf(const std::string& application) const;

@@ -1,5 +1,5 @@
-// What clients may ask of a server: at the limit it does, one beyond is refused with the StatusCode
-// that OPC 10000-4 (of messages: OPC 10000-6) names. The clients are plain sockets.
+// Limits of a server for its clients: at the limit it serves, one beyond is refused with the
+// StatusCode that OPC 10000-4 (for messages: OPC 10000-6) names. The clients are plain sockets.
 #include <gmock/gmock.h>
 
 #include "attacks/requests.hpp"

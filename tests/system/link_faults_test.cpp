@@ -58,7 +58,7 @@ TEST_P(LateLink, WithinWhatTheDriverAllowsStopsNothing) {
     arm_.startLongMove();
     arm_.inject("delay", "100");
     arm_.awaitProgress(0.05);
-    arm_.inject("restore-link");  // what was late comes at once
+    arm_.inject("restore-link");  // delayed packets come at once
     arm_.awaitProgress(0.05);
     ASSERT_TRUE(arm_.skill().halt()) << arm_.skill().reasonText();
     const auto halted = arm_.haltedAfterInjection();

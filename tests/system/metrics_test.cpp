@@ -1,4 +1,4 @@
-// What a server tells of itself by HTTP: figures for Prometheus, and whether it is well.
+// Data that a server publishes by HTTP: figures for Prometheus, and whether it is well.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <httplib.h>
@@ -142,7 +142,7 @@ private:
     std::map<std::string, std::pair<std::optional<double>, double>> buckets_;
 };
 
-/// What a server with `--metrics` answers.
+/// Answer of a server with `--metrics`.
 class Figures {
 public:
     explicit Figures(std::string address) : address_(std::move(address)) {}

@@ -33,7 +33,8 @@ TEST_F(OwnersDeath, StopsARunningArmWithinTheLeaseAsItsStartSays) {
                     {Fault::silent, AtFault::running, suspend, 300ms, 16}});
 }
 
-// At once: no lease has to run out. Continue goes on, the session's end is no second loss.
+// The stop comes at once: no lease has to run out. Continue goes on; the session's end is not a
+// second loss.
 TEST_F(OwnersDeath, StopsARunningArmAtOnceWhenTheSessionIsClosed) {
     expectMastered({{Fault::closed, AtFault::running, halt, 300ms, 10},
                     {Fault::closed, AtFault::running, suspend, 300ms, 4},

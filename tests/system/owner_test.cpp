@@ -1,4 +1,4 @@
-// Who commands, and what becomes of the arm when that process dies or stops.
+// Control, and the behaviour of the arm when the process that has it dies or stops.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // Pick and place by composition: an arm and a gripper of two servers under a component, and a robot
-// that offers the same skill by itself. Parts that are missing, slip or are too wide.
+// that has the same skill itself. Parts that are missing, slip or are too wide.
 #include <gmock/gmock.h>
 
 #include <future>
@@ -45,7 +45,7 @@ protected:
     opcua::Answer<ValueMap> pick(const ValueMap& parameters) {
         return skill_.runWith({"", parameters}, inAMinute());
     }
-    /// After a failure: Halted, the arm stands; Reset, and the next part goes well.
+    /// After a failure: Halted, the arm stands; Reset, and the next part succeeds.
     void expectTheWayBack() {
         EXPECT_EQ(*skill_.state(), State::halted);
         EXPECT_TRUE(armStands());

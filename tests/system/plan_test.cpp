@@ -1,4 +1,4 @@
-// What `metier` tells of a robot without any server: fk, ik, check and plot.
+// Commands of `metier` that need no server: fk, ik, check and plot.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>

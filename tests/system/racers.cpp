@@ -82,7 +82,8 @@ public:
 
     const Track& track() const { return track_; }
 
-    /// What was started since the last call; ends it with its values as result.
+    /// Values with which the skill was started since the last call; ends it with these values as
+    /// result.
     std::vector<Set> endRound() {
         std::vector<Set> starts;
         bench_.onServer([&] {
@@ -177,10 +178,10 @@ private:
     std::vector<Set> starts_;  // the server's thread
 };
 
-/// What a client does in one round.
+/// Behaviour of a client in one round.
 enum class Role { writes_all, writes_some, starts_with, only_starts };
 
-/// What one client did in one round.
+/// Actions of one client in one round.
 struct Attempt {
     Role role = Role::writes_all;
     Set given{};
@@ -223,7 +224,7 @@ private:
                                                                                 : role;
     }
 
-    /// In any order; a client that was refused goes on, as a careless one does.
+    /// Writes in any order; a client that was refused goes on, as a careless one does.
     template <typename Meeting>
     void write(const Track& track, std::int64_t own, Meeting meeting) {
         std::array<std::size_t, kValues> order{0, 1, 2};

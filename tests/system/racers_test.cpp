@@ -20,7 +20,7 @@ TEST_P(Racers, NeverStartASkillWithValuesOfTwoClients) {
 
 INSTANTIATE_TEST_SUITE_P(Clients, Racers, ::testing::Values(2, 3, 5, 8));
 
-// The race can tell: a Program as the standard leaves it starts with values of several clients.
+// Checks the race itself: a Program as in the standard starts with values of several clients.
 TEST(PlainPrograms, MixWhereSkillsDoNot) {
     const auto report = runRace({.rounds = 100, .baseline_rounds = 100, .clients = 4});
     ASSERT_TRUE(report) << report.error().message;

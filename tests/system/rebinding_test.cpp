@@ -1,4 +1,4 @@
-// A component that uses whatever arm it finds, and another one when that is gone.
+// A component that uses any arm that it finds, and another one when that arm is lost.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -47,7 +47,7 @@ protected:
         target.front() = first_axis;
         return {{"Target", target}, {"Speed", speed}};
     }
-    /// What the component says that it uses for `arm`.
+    /// Skill that the component publishes as used for `arm`.
     std::string boundTo() const {
         const auto metier = client_->namespaceIndex("urn:metier:skills").value();
         const auto uses =
@@ -157,10 +157,10 @@ std::string readUntil(link::ChildProcess& program, const std::string& text) {
     throw std::runtime_error("no '" + text + "' in: " + seen);
 }
 
-// The arms and the discovery server are in one network namespace, the component and whoever
-// commands it in another, which reaches them through a cable.
+// The arms and the discovery server are in one network namespace; the component and its client are
+// in another one, which reaches the first through a cable.
 TEST(SearchForAnArm, EndsWithTheStopSignal) {
-    // The signal was blocked, and looked at by nobody, for up to 20 s.
+    // The signal was blocked, and no thread read it, for up to 20 s.
     const DiscoveryProcess lds;
     auto component =
         link::ChildProcess::start(

@@ -32,7 +32,7 @@ using Delivery = opcua::Failure::Delivery;
 
 constexpr const char* kSkill = "JointPtpMoveSkill";
 
-/// What a process says until it ends, or until a line with certain words.
+/// Output of a process until its end, or until a line with certain words.
 class RunningCommand {
 public:
     explicit RunningCommand(const std::vector<std::string>& arguments)
@@ -170,7 +170,7 @@ TEST_F(CutOff, RunningIsOverWhenItsServerWasKilledAndStartedAgain) {
     EXPECT_THAT(run->text(), HasSubstr("server restarted: yes"));
     EXPECT_THAT(run->text(), HasSubstr("not resumed, the motion is over"));
     EXPECT_EQ(*bystanding_->state(), State::ready);
-    expectAtHome();  // where the new server's arm began
+    expectAtHome();  // start of the new server's arm
 }
 
 TEST_F(CutOff, RunningUnderALeaseIsHaltedAndTheRunSaysSo) {

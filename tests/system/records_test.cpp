@@ -1,4 +1,4 @@
-// What servers record of executions, whichever client started them, and what is left after a crash.
+// Records of executions by any client, and the records that remain after a crash.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -193,7 +193,7 @@ TEST_F(RecordedArm, LosesAtMostTheLastSecondToACrashAndIsClosedAtTheNextStart) {
     ASSERT_TRUE((*arm_)->startWith({.execution_id = "over", .parameters = move(0.1)}));
     arm_->awaitEvent(State::ready);
     ASSERT_TRUE((*arm_)->startWith({.execution_id = "killed", .parameters = move(1.0, 0.02)}));
-    double lag = 0;  // how far behind the arm the file is on this machine, at most [s]
+    double lag = 0;  // largest delay of the file behind the arm on this machine [s]
     file_.await({.skill = kMove}, [this, &lag](const auto& one) {
         const auto path = file_.open()->path(one.number);
         if (one.id != "killed" || !path || path->empty()) {
@@ -285,8 +285,8 @@ TEST_F(RecordedComposition, HasItsChildrenOnOtherServersAndTheyHaveTheirParents)
     const auto top = file_.awaitEnd("WaveSkill");
     EXPECT_EQ(top.parent, "");
     const auto store = file_.open();
-    // WaveSkill runs ThereAndBackSkill of the same server, that SwingSkill of another one, and
-    // that the move of a third.
+    // WaveSkill runs ThereAndBackSkill of the same server, which runs SwingSkill of another server,
+    // which runs the move of a third.
     std::vector<ExecutionRow> level{top};
     for (const auto* skill : {"ThereAndBackSkill", "SwingSkill", kMove}) {
         std::vector<ExecutionRow> below;

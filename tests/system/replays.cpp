@@ -23,7 +23,7 @@ using std::chrono::steady_clock;
 
 constexpr const char* kSkill = "Replayed";
 constexpr const char* kMetierUri = "urn:metier:skills";
-constexpr std::size_t kKept = 32;  // of each kind of spoils
+constexpr std::size_t kKept = 32;  // of each kind of recorded bytes
 constexpr std::uint32_t kLeaseMs = 3'600'000;
 
 /// Sends bytes to a server as a client of its own would, and reads until the server closes.
@@ -123,7 +123,7 @@ public:
     bool answers(opcua::Client& client) {
         return client.read(bench_.node(kSkill, "CurrentState")).has_value();
     }
-    /// How often the skill was started, once all that was sent is done; Ready again.
+    /// Number of starts of the skill, once all that was sent is done; it is Ready again then.
     std::uint64_t starts() {
         awaitReady();
         bench_.onServer([] {});
@@ -131,7 +131,7 @@ public:
     }
 
 private:
-    /// Until nothing runs, for 10 s at most.
+    /// Waits until nothing runs, for 10 s at most.
     void awaitReady() {
         constexpr std::uint32_t kReady = 12;
         const auto deadline = steady_clock::now() + 10s;
@@ -181,7 +181,7 @@ public:
     }
 
 private:
-    /// What may be answered to a late command.
+    /// Allowed answers to a late command.
     using Allowed = std::vector<std::string>;
 
     /// Starts the skill in every way, and keeps what was sent.
@@ -273,7 +273,7 @@ private:
               {"BadLocked"});
         expectGood(boot.release(boot.relayed(), epoch));
     }
-    /// What a client library does that keeps a Start for its next session.
+    /// Acts as a client library that keeps a Start for its next session.
     void startOfAnotherSession(Boot& boot) {
         expectGood(boot.write(boot.relayed()));
         static_cast<void>(boot.relayed().close());

@@ -14,17 +14,17 @@ struct ReplayOptions {
     std::uint64_t rounds = 200;
     std::uint64_t rounds_per_boot = 16;  ///< then the server is started again
     std::uint32_t seed = 1;
-    std::filesystem::path folder;  ///< for the server's names; what it has of them is lost
+    std::filesystem::path folder;  ///< for the server's names; its former content is lost
 };
 
 struct ReplayReport {
     std::uint64_t rounds = 0;
     std::uint64_t boots = 0;
-    std::uint64_t starts = 0;  ///< that were meant, and happened
-    /// How often each kind of late command was answered how: "same name: BadNodeIdExists".
+    std::uint64_t starts = 0;  ///< starts that were meant, and happened
+    /// Number of each answer to each kind of late command: "same name: BadNodeIdExists".
     std::map<std::string, std::uint64_t> answers;
     double seconds = 0;
-    std::vector<std::string> defects;  ///< what moved, and what was answered wrongly
+    std::vector<std::string> defects;  ///< motions that must not be, and wrong answers
 };
 
 /// Clients start a skill in every way there is. Then each round brings a command that is too late:

@@ -1,4 +1,4 @@
-// What each role may do with each node of a closed server: its Variables and its Methods.
+// Rights of each role at each node of a closed server: its Variables and its Methods.
 #include <gmock/gmock.h>
 
 #include <map>

@@ -26,16 +26,16 @@ public:
     const std::string& virtualAddress(const std::string& controller) const {
         return virtual_addresses_.at(controller);
     }
-    /// What `--endpoints` of other commands takes.
+    /// File for the option `--endpoints` of other commands.
     const std::filesystem::path& endpoints() const { return endpoints_; }
-    /// How many processes there are below `metier up`.
+    /// Number of processes below `metier up`.
     std::size_t size() const { return urls_.size() + virtual_addresses_.size(); }
     link::ChildProcess& process() { return process_; }
 
     /// Does as `metier virtual inject`. Throws if it is refused.
     void inject(const std::string& controller, const std::string& fault,
                 const std::string& value = "") const;
-    /// What `metier virtual state` shows.
+    /// Output of `metier virtual state`.
     nlohmann::json state(const std::string& controller) const;
 
     /// Handles of the processes, readable once they have ended; the caller closes them.

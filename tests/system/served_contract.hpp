@@ -43,7 +43,7 @@ private:
     std::unique_ptr<opcua::Client> client_;
 };
 
-/// What a handle's call came to: the StatusCode's name.
+/// Outcome of a handle's call: the StatusCode's name.
 template <typename T>
 std::string statusOf(const opcua::Answer<T>& answer) {
     return answer ? "Good" : answer.error().status.name();

@@ -1,4 +1,4 @@
-// What becomes of an arm when the process of its server dies or stops: its controller notices by
+// Behaviour of an arm when the process of its server dies or stops: its controller notices by
 // itself. Times are those of the controller; they count from the signal to the last motion.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -19,16 +19,16 @@ using namespace std::chrono_literals;
 using skill::State;
 using ::testing::HasSubstr;
 
-/// What moves the arm.
+/// Source of the arm's motion.
 enum class Move {
-    ptp,     ///< of the server's own skill
-    line,    ///< of the server's own skill
+    ptp,     ///< by the server's own skill
+    line,    ///< by the server's own skill
     stream,  ///< set-points that another server writes
 };
 
-/// How soon an arm must stand, and what it is.
+/// An arm, and the time in which it must stand.
 struct DeathCase {
-    const char* arm;  ///< of its file in tests/system/deaths
+    const char* arm;  ///< name of its file in tests/system/deaths
     Move move;
     int signal;
     std::chrono::milliseconds longest;
@@ -113,7 +113,7 @@ TEST_P(ServerDeath, LeavesAnArmThatStandsSoon) {
 
 INSTANTIATE_TEST_SUITE_P(Devices, ServerDeath, ::testing::ValuesIn(allDeaths()), nameOf);
 
-/// A server that is stopped for a second during a move and then goes on, as after Ctrl-Z or in a
+/// A server that is stopped for a second during a move and then continues, as after Ctrl-Z or in a
 /// debugger.
 class ServerAway : public ::testing::TestWithParam<const char*> {
 protected:

@@ -17,7 +17,7 @@ public:
         auto subscription = client.subscribeEvents(
             opcua::ids::kServer, {.fields = {{{0, "Message"}}}, .of_type = type},
             [messages = messages_](const opcua::EventNotice& notice) {
-                // Who may not audit is sent Null.
+                // A session that may not audit gets Null.
                 if (notice.kind == opcua::EventNotice::Kind::event && !notice.fields[0].isEmpty()) {
                     messages->tryPush(notice.fields[0].toString());
                 }

@@ -1,5 +1,5 @@
-// The state machine of docs/model.md through a real client: what libs/opcua_skill/tests leave to
-// prove. docs/testing.md tells which test holds which row.
+// The state machine of docs/model.md through a real client: the rows that libs/opcua_skill/tests do
+// not prove. docs/testing.md lists the test of each row.
 #include <array>
 #include <map>
 #include <vector>
@@ -55,7 +55,7 @@ protected:
         onServer([this] { skill_.program->deviceLost("arm test does not answer"); });
     }
 
-    /// What is to stay the same by a refused call.
+    /// Everything that a refused call must not change.
     std::vector<std::string> picture() {
         std::vector<std::string> values;
         for (const char* path : {"CurrentState", "LastTransition", "LastTransition/TransitionTime",
@@ -66,8 +66,8 @@ protected:
         return values;
     }
 
-    /// The methods that the present state allows, as UserExecutable tells them; each other one is
-    /// called and has to be refused without any change.
+    /// The methods that the present state allows, by UserExecutable; each other one is called and
+    /// must be refused without any change.
     std::vector<std::string> allowedMethods() {
         std::vector<std::string> allowed;
         for (const auto method : kMethods) {

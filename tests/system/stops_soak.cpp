@@ -1,4 +1,4 @@
-// How long arms take to stand after Halt and Suspend, from another process.
+// Time until arms stand after Halt and Suspend, asked for by another process.
 //
 // metier_stops_soak [STOPS] [ARM...]: moves of random length and pace of arms on their makers'
 // wires (ur5, iiwa, edo), and of the same arms over a move component (ur5_component, ...), stopped
@@ -31,13 +31,13 @@ namespace {
 using skill::State;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kReserve = 1.2;     // of the time that the limits allow
+constexpr double kReserve = 1.2;     // factor on the time that the limits allow
 constexpr double kGentleStop = 0.5;  // a Suspend may keep the limits of the plan so long [s]
 constexpr double kMostOver = 0.02;   // share of the stops of one kind
 constexpr double kPlayOut = 0.02;    // of a component's stream [s], at least so many cycles:
 constexpr double kPlayOutCycles = 3;
 
-/// From the request until the arm stands [s].
+/// Times from the request until the arm stands [s].
 struct Stop {
     double told = 0;  ///< StoppingTime just before the request
     double allowed = 0;
@@ -161,8 +161,7 @@ private:
         return !move_->awaitRest(std::chrono::time_point_cast<SteadyTime::duration>(stop_at));
     }
 
-    /// What a stop with the robot's own limits takes, if one with twice the limits takes `halt`
-    /// [s].
+    /// Time of a stop with the robot's own limits, if one with twice the limits takes `halt` [s].
     double withOwnLimits(double halt) const {
         const double a = kinematics_.max_joint_acceleration.front();
         const double j = kinematics_.max_joint_jerk.front();

@@ -51,7 +51,7 @@ private:
     std::uint64_t hash_ = 14'695'981'039'346'656'037U;
 };
 
-/// What the server itself knows of one skill's transitions.
+/// Transitions of one skill as the server counts them.
 class ServerCount final : public skill::ProgramObserver {
 public:
     explicit ServerCount(std::atomic<std::uint64_t>& total) : total_(total) {}
@@ -182,7 +182,7 @@ struct SeenSkill {
     std::uint32_t state = static_cast<std::uint32_t>(skill::State::ready);
 };
 
-/// A client that storms, and checks what it hears.
+/// A client that storms, and checks the events that it gets.
 class StormClient {
 public:
     static Result<std::unique_ptr<StormClient>> connect(const std::string& url) {
@@ -205,7 +205,8 @@ public:
             if (random() % kOneHaltIn == 0) {
                 call(skill.object, skill.halt);
             } else if (!call(skill.object, skill.start)) {
-                // Refused because it runs, or because somebody halted it: then anybody resets it.
+                // Refused because it runs, or because another client halted it: then any client
+                // resets it.
                 call(skill.object, skill.reset);
             }
         }

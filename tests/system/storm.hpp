@@ -13,14 +13,14 @@ struct StormOptions {
     std::uint64_t transitions = 50'000;  ///< the storm ends once the server counts as many
     std::size_t clients = 8;
     std::size_t skills = 4;
-    std::uint32_t seed = 1;  ///< of what the clients do
+    std::uint32_t seed = 1;  ///< for the clients' actions
 };
 
 struct StormReport {
     std::uint64_t transitions = 0;  ///< as the server counts them
     std::uint64_t events = 0;       ///< received by all clients together
     double seconds = 0;
-    std::vector<std::string> defects;  ///< what was lost, out of order or not answered
+    std::vector<std::string> defects;  ///< lost, out of order or not answered
 };
 
 /// Clients start, halt and reset skills that do nothing, all at the same time and all the same

@@ -1,4 +1,5 @@
-// How far apart two arms start, move and arrive, and how long one runs on when the other is halted.
+// Time differences of two arms at start, on the way and at arrival, and the time that one runs on
+// when the other is halted.
 //
 // metier_synchronized_soak [MOVES] [HALTS]: three processes on this machine, arms with cycles of
 // 1 and 8 ms; prints median, 99th percentile and largest of each figure.
@@ -82,7 +83,7 @@ struct Watches {
     Watched both;
 };
 
-/// From the Halted of one arm to that of the other, which has to brake before [s].
+/// Time from the Halted of one arm to that of the other, which has to brake before [s].
 double haltOne(Watches& arms, int round) {
     const auto from = jointPosition(arms.left.client(), *arms.left);
     const auto started = arms.both->startWith({fmt::format("halt-{}", round), target(round, 20.0)});

@@ -1,4 +1,4 @@
-// Arms that move together come to rest together, whoever stops one of them; three processes.
+// Arms that move together come to rest together, for a stop of any of them; three processes.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -24,7 +24,7 @@ using ::testing::StartsWith;
 using Seconds = std::chrono::duration<double>;
 using Joints = std::vector<double>;
 
-// How far apart on the common way the arms may stand [s of the planned time].
+// Largest difference at which the arms may stand on the common way [s of the planned time].
 constexpr double kApart = 0.020;
 // The longer cycle of the two arms; a round trip on this machine, which runs other tests, too [s].
 constexpr double kCycle = 0.008;
@@ -43,7 +43,7 @@ ServerProcess serve(const std::string& name, std::vector<std::string> more = {})
     return ServerProcess(name, more, cell());
 }
 
-/// When a skill began to come to rest, by its server's clock.
+/// Time when a skill began to come to rest, by its server's clock.
 class Stops {
 public:
     Stops(opcua::Client& client, const opcua::NodeId& skill) {
@@ -106,7 +106,7 @@ public:
             {fmt::format("home-{}", ++homes_), {{"TargetJointPosition", home_}}}, inAMinute());
         ASSERT_TRUE(gone) << gone.error().message;
     }
-    /// Where it is at equal intervals of the way from home to here.
+    /// Records its places at equal intervals of the way from home to here.
     void learnWay() {
         const auto target = joints();
         goHome();
@@ -196,7 +196,7 @@ protected:
         right_.awaitEvent(State::ready);
         return seen;
     }
-    /// Until one round was held up by nothing else that runs here.
+    /// Repeats a round until one was not disturbed by other load of this machine.
     template <typename Do>
     void expectTogether(Do one) {
         Round round{};
@@ -273,7 +273,7 @@ TEST_F(LikeArms, BrakeAtOnceAndStandAtOnePlaceOfTheirWayIfAnotherClientHaltsOne)
     });
 }
 
-// Where they stand is up to the limits of each: nobody who halts waits for the slower one.
+// Each arm stands by its own limits: a Halt does not wait for the slower one.
 TEST_F(UnlikeArms, BrakeAtOnceWithTheirOwnLimitsIfAnotherClientHaltsOne) {
     double begins_later = 1e9;
     for (int i = 0; i < kRounds && begins_later > kCycle + kRoundTrip; ++i) {

@@ -17,8 +17,8 @@ using skill::ValueMap;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-// How far apart the arms may be on a machine that runs other things, too; they are within a cycle
-// of the slower one, 8 ms, where nothing else runs (docs/guide/synchronised.md) [s].
+// Largest time difference of the arms on a machine with other load [s]; without other load they are
+// within a cycle of the slower one, 8 ms (docs/guide/synchronised.md).
 constexpr double kApart = 0.25;
 
 ServerProcess serve(const std::string& name, std::vector<std::string> more = {}) {

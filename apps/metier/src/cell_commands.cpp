@@ -14,7 +14,7 @@ std::string self() {
     return std::filesystem::read_symlink("/proc/self/exe").string();
 }
 
-/// Some address of this machine that nobody else is likely to use.
+/// Random address of this machine that is hardly used by others.
 std::string freeAddress() {
     const auto part = [](std::uint64_t low, std::uint64_t high) {
         return low + randomNumber() % (high - low + 1);

@@ -9,7 +9,7 @@
 
 namespace metier::app {
 
-/// Where the servers and virtual controllers of a cell listen.
+/// Ports on which the servers and virtual controllers of a cell listen.
 enum class Ports {
     configured,
     free,  ///< each server at a free port, each virtual controller at a free address of this

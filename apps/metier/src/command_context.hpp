@@ -13,7 +13,7 @@ struct CommandContext {
     server::Security security;
     std::string user;  ///< log in as this one; empty: as the application
     CommandIdentity identity{security, user};
-    Exit exit = Exit::success;  ///< how the command ended
+    Exit exit = Exit::success;  ///< exit status of the command
 };
 
 }  // namespace metier::app

@@ -28,7 +28,7 @@ private:
 
     const server::Security& security_;
     const std::string& user_;
-    mutable std::mutex mutex_;  // of what follows
+    mutable std::mutex mutex_;  // guards all that follows
     mutable std::optional<opcua::Credentials> credentials_;
     mutable std::optional<opcua::UserName> login_;
 };

@@ -13,7 +13,7 @@ enum class Exit : int {
     success = 0,
     failed = 1,          ///< a server, a skill or a device refused, failed or was not there
     usage = 2,           ///< the command line or a file is wrong
-    unknown = 3,         ///< the connection was lost: nobody here knows what became of it
+    unknown = 3,         ///< the connection was lost, and the outcome is unknown
     execution_lost = 4,  ///< the server was started again: what ran there is over
 };
 

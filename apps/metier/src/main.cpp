@@ -56,7 +56,7 @@ void addCommands(CLI::App& app, metier::app::CommandContext& context) {
     metier::app::addCompletion(app, context.exit);
 }
 
-/// Standard output belongs to results: the log goes to standard error.
+/// Sends the log to standard error, since standard output belongs to results.
 void setUpLog(const std::string& level) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("metier"));
     spdlog::set_formatter(metier::app::printableLog("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v"));

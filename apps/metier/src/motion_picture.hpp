@@ -12,15 +12,15 @@
 
 namespace metier::app {
 
-/// What is drawn of a motion.
+/// Content of a picture of a motion.
 struct DrawnMotion {
     std::vector<path_evaluation::MotionSample> samples;
     std::vector<Eigen::Vector3d> tool_positions;  ///< [m, base frame]
     std::string note;
-    std::optional<double> asked_speed;  ///< of the tool frame [m/s]
+    std::optional<double> asked_speed;  ///< wanted speed of the tool frame [m/s]
 };
 
-/// Of the robot, for a picture's title.
+/// Name of the robot, for a picture's title.
 std::string titleOf(const motion::RobotModel& model);
 /// \param name of the record, for messages and the note. \param tool of the model; empty: the
 /// flange Errors: invalid_argument (other number of axes, no such tool).
@@ -32,7 +32,7 @@ Result<DrawnMotion> recordedMotion(const motion::RobotModel& model,
 Exit drawInto(const std::string& file, const motion::RobotModel& model, const std::string& title,
               const DrawnMotion& motion);
 
-/// How a recorded execution is drawn.
+/// Options for the drawing of a recorded execution.
 struct ExecutionDrawing {
     std::string records;  ///< URL
     std::string id;       ///< number or id

@@ -9,7 +9,7 @@
 
 namespace metier::app {
 
-/// What a command says about the loss of its client.
+/// Options of a command for the loss of its client.
 struct OwnerOptions {
     std::string on_loss = "default";
     std::uint32_t lease_ms = 0;  ///< 0: none is asked for

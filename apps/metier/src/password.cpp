@@ -38,7 +38,7 @@ private:
 }  // namespace
 
 Result<std::string> readPassword(const std::string& user) {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody changes the environment
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): the environment never changes
     if (const char* given = std::getenv("METIER_PASSWORD"); given != nullptr) {
         return std::string(given);
     }

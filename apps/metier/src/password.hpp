@@ -6,7 +6,8 @@
 
 namespace metier::app {
 
-/// From the environment variable METIER_PASSWORD, else from the terminal, without showing it.
+/// Reads the password from the environment variable METIER_PASSWORD, else from the terminal,
+/// without showing it.
 /// Errors: access_denied, if there is neither.
 Result<std::string> readPassword(const std::string& user);
 

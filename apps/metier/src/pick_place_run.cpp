@@ -35,7 +35,7 @@ struct Tally {
     int placed = 0;
     std::vector<std::string> failures;  // "part 3: why"
     std::vector<std::string> retried;   // the same of parts that were tried again
-    double time = 0.0;                  // of all parts [s]
+    double time = 0.0;                  // total of all parts [s]
 };
 
 Result<std::vector<Component>> findComponents(const CommandIdentity& identity,
@@ -62,7 +62,7 @@ Result<std::vector<Component>> findComponents(const CommandIdentity& identity,
     return found;
 }
 
-/// Where the part of that number is, if the first one is at `first`.
+/// Place of the part with that number, if the first one is at `first`.
 Frame placeOf(int part, const Frame& first, const PickPlaceSettings& settings) {
     const double angle = settings.turn * part;
     const double x = first.x + settings.step.x * part;
@@ -142,7 +142,7 @@ private:
     const TellRow& tell_;
     std::function<void()> recover_;
     Tally tally_;
-    bool overruled_ = false;  // somebody else has halted it, so it is not begun again
+    bool overruled_ = false;  // another client has halted it, so it is not begun again
 };
 
 /// All components at the same time.

@@ -69,7 +69,7 @@ Result<void> readCommon(const MoveOptions& options, const RobotModel& model,
     return {};
 }
 
-/// What Start would say of parameters that cannot be written.
+/// Refusal for parameters that cannot be written.
 tl::unexpected<motion::Refusal> notTaken(Error error) {
     motion::Refusal refusal;
     refusal.error = std::move(error);

@@ -38,9 +38,9 @@ void addMoveOptions(CLI::App& command, MoveOptions& options);
 /// Whether a target is given.
 bool hasTarget(const MoveOptions& options) noexcept;
 
-/// Checks the parameters and plans as the server of the skill does; a value that the server would
-/// not take is a Refusal too.
-/// Errors: invalid_argument if the options are not written as they must be.
+/// Checks the parameters and plans as the skill's server does; a value that the server would refuse
+/// is a Refusal, too.
+/// Errors: invalid_argument if an option cannot be read.
 Result<PlannedMove> planMove(const motion::RobotModel& model, const MoveOptions& options);
 
 }  // namespace metier::app

@@ -33,7 +33,7 @@ public:
         auto printed = message;
         printed.payload = text;
         inner_->format(printed, into);
-        // Where the level is in the line, for its colour.
+        // Position of the level in the line, for its colour.
         message.color_range_start = printed.color_range_start;
         message.color_range_end = printed.color_range_end;
     }

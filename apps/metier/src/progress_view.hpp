@@ -15,7 +15,7 @@ public:
     /// terminal if standard error is one and the user did not set NO_COLOR or TERM=dumb.
     static Output detect();
 
-    /// Progress goes to standard error: standard output belongs to results.
+    /// Writes to standard error, since standard output belongs to results.
     ProgressView(std::vector<std::string> names, Output output);
 
     /// \param fraction done, 0 to 1

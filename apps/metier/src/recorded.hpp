@@ -12,7 +12,7 @@
 
 namespace metier::app {
 
-/// Where this user's servers record: `records.db` in the user's state folder.
+/// Store of this user's servers: `records.db` in the user's state folder.
 std::string defaultRecords();
 /// Refuses where records are with a password in it: everybody sees the command lines of a machine.
 CLI::Validator withoutPassword();
@@ -28,7 +28,7 @@ Result<std::unique_ptr<records::Store>> openRecords(const std::string& url);
 Result<motion::RobotModel> robotOf(const records::ExecutionRow& execution,
                                    const std::string& named);
 
-/// Where the axes were, as far as it was recorded; for the drawings.
+/// Recorded joint positions, for the drawings.
 /// Errors: not_found (nothing was recorded), invalid_argument (too little, or other axes).
 Result<path_evaluation::MotionRecord> pathOf(records::Store& store,
                                              const records::ExecutionRow& execution);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kExtension = ".toml";
 
-/// Where models are: of the installed program, else of the source tree it was built from.
+/// Folder of the models: of the installed program, else of the source tree from which it was built.
 fs::path modelsFolder() {
     std::error_code error;
     const auto program = fs::read_symlink("/proc/self/exe", error);

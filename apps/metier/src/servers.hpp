@@ -32,7 +32,7 @@ Result<std::unique_ptr<opcua::Client>> connectTo(const CommandIdentity& identity
                                                  OnLoss on_loss = OnLoss::fail);
 /// "connection back; server restarted: no", for people.
 std::string textOf(const opcua::ConnectionChange& change);
-/// Has each loss and return of the connection told on standard error.
+/// Prints each loss and return of the connection to standard error.
 void showConnection(opcua::Client& client);
 
 /// Prints what became of an execution that did not finish, and gives the exit status for it.

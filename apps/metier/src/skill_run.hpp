@@ -8,11 +8,11 @@
 
 namespace metier::app {
 
-/// How a command runs a skill.
+/// Options of a command that runs a skill.
 struct SkillRun {
     double timeout = 60.0;  ///< halted after that [s]
     OwnerOptions owner{};
-    bool json = false;  ///< how the result is printed
+    bool json = false;  ///< prints the result as JSON
 };
 
 /// Starts the skill, shows its transitions on standard error, waits for its end and prints its

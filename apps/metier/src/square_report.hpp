@@ -9,7 +9,7 @@
 
 namespace metier::app {
 
-/// What became of one arm: its result, or why there is none.
+/// Outcome of one arm: its result, or the reason why there is none.
 struct SquareOutcome {
     std::string name;
     std::string url;

@@ -14,7 +14,7 @@ namespace metier::app {
 
 /// An arm that a client found: its two skills for a square, whatever robot it is.
 struct SquareArm {
-    std::string name;  ///< of its motion device
+    std::string name;  ///< name of its motion device
     std::string url;
     client::SkillAddress ptp;
     client::SkillAddress linear;
@@ -25,8 +25,8 @@ struct SquareSettings {
     double side = 0.1;  ///< [m]
     /// Longest time for one move.
     std::chrono::seconds move_timeout{60};
-    /// How often a move that failed is tried again, after a Reset. Only for trials in which nobody
-    /// can be in the way.
+    /// Number of further attempts after a failed move, each after a Reset. Only for trials in which
+    /// nobody can be in the way.
     int second_tries = 0;
 };
 
@@ -45,7 +45,8 @@ using SquareProgress = std::function<void(double fraction, const std::string& te
 Result<std::vector<SquareArm>> findSquareArms(opcua::Client& client, const std::string& url);
 
 /// Places a square where the arm has room, goes to its first corner by PTP and around it by LIN.
-/// Waits until it is done. Errors: the first move that was refused or failed, with its reason.
+/// Waits until it is done.
+/// Errors: the first move that was refused or failed, with its reason.
 Result<SquareResult> runSquare(opcua::Client& client, const SquareArm& arm,
                                const SquareSettings& settings, const SquareProgress& progress);
 

@@ -16,8 +16,8 @@ struct SquareOutput {
 /// Adds the options of a square to a command.
 void addSquareOptions(CLI::App& command, SquareSettings& settings, SquareOutput& output);
 
-/// Moves every arm that the servers have along its square, all at the same time, shows how it
-/// goes, and prints the result.
+/// Moves every arm of the servers along its square, all at the same time; shows the progress and
+/// prints the result.
 Exit moveAlongSquares(const CommandIdentity& identity, const std::vector<std::string>& urls,
                       const SquareSettings& settings, const SquareOutput& output);
 

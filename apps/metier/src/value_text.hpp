@@ -14,7 +14,7 @@ namespace metier::app {
 /// Errors: invalid_argument, with what was given and what was expected.
 Result<skill::Value> parseValue(skill::ValueType type, std::string_view text);
 
-/// How a value of that type is written, for help: "x,y,z,a,b,c".
+/// Notation of a value of that type, for help: "x,y,z,a,b,c".
 std::string_view notation(skill::ValueType type) noexcept;
 
 }  // namespace metier::app

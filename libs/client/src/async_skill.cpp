@@ -23,7 +23,7 @@ struct AsyncSkill::Impl {
     opcua::Subscription subscription{};
     opcua::Subscription stopping{};
 
-    /// Calls a method and tells what `read` makes of its outputs.
+    /// Calls a method and passes the result of `read` for its outputs to `done`.
     template <typename T, typename Read>
     Answer<> send(const opcua::NodeId& method, std::string_view name,
                   std::vector<opcua::Value> inputs, Done<T> done, Read read) const {

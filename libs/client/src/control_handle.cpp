@@ -59,10 +59,10 @@ Failure refused(opcua::Client& client, const LeaseNodes& nodes, Failure failure)
 
 }  // namespace
 
-/// Beats until it is lost or ended.
+/// Sends heartbeats until control is lost or ended.
 ///
 /// No heartbeat waits for the answer to another one: while TCP repeats a lost packet, the next
-/// heartbeats are under way already, and their acknowledgements tell TCP of the loss at once.
+/// heartbeats are under way already, and their acknowledgements reveal the loss to TCP at once.
 class ControlHandle::Heart {
 public:
     Heart(opcua::Client& client, LeaseNodes nodes, std::uint64_t epoch,
@@ -101,7 +101,7 @@ public:
     }
 
 private:
-    /// What the server said to the heartbeats; answers may come after the end of the Heart.
+    /// Answers of the server to the heartbeats; they may come after the end of the Heart.
     class Answers {
     public:
         void take(const Answer<opcua::CallResult>& answer) {
@@ -128,7 +128,7 @@ private:
     private:
         mutable std::mutex mutex_;
         std::condition_variable_any refused_;
-        int unanswered_ = 0;  // in succession; each waited for a whole lease
+        int unanswered_ = 0;  // number in succession; each waited for a whole lease
         std::optional<Failure> refusal_;
     };
 
@@ -173,7 +173,7 @@ private:
     const LeaseNodes nodes_;
     const std::uint64_t epoch_;
     const std::chrono::milliseconds lease_;
-    const std::shared_ptr<Answers> answers_;  // with the calls that have no answer yet
+    const std::shared_ptr<Answers> answers_;  // shared with the calls that have no answer yet
     mutable std::mutex mutex_;
     std::optional<Failure> reported_;
     std::function<void(const Failure&)> on_lost_;

@@ -10,7 +10,7 @@
 namespace metier::client {
 namespace {
 
-constexpr std::size_t kCheckOutputs = 5;  // of every server; the stopping way may follow
+constexpr std::size_t kCheckOutputs = 5;  // least number; values of the stop may follow
 constexpr std::size_t kWithStoppingEstimate = 7;
 constexpr std::size_t kExecutionOutputs = 6;
 

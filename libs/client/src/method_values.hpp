@@ -14,8 +14,8 @@
 
 namespace metier::client {
 
-// Arguments of the methods of namespace urn:metier:skills. Errors: BadUnexpectedError, for outputs
-// of another shape, with the skill's name.
+// Arguments of the methods of namespace urn:metier:skills. Errors: BadUnexpectedError, with the
+// skill's name, for outputs of another shape.
 
 opcua::Value pairsOf(const skill::ValueMap& values);
 std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,

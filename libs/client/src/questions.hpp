@@ -8,9 +8,9 @@
 
 namespace metier::client {
 
-/// Asks a server one thing after the other, where its answers decide what it is asked next. A
-/// server that means no good would have more to tell for ever, or tell it slowly: after 30 s, or
-/// 50,000 questions, everything else fails with timeout.
+/// Requests to a server in which the answers decide about the next requests. A hostile server could
+/// give more to ask for without end, or answer slowly: after 30 s, or 50,000 requests, everything
+/// else fails with timeout.
 ///
 /// Threading: as Client. Must end before it.
 class Questions {

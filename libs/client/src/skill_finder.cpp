@@ -91,7 +91,7 @@ private:
         return *answer;
     }
 
-    /// What needs no further look, so many types above the first.
+    /// Answer that needs no further look, for a type that many types above the first.
     std::optional<bool> known(const NodeId& type, std::size_t above) const {
         if (type == opcua::ids::kProgramStateMachineType) {
             return true;

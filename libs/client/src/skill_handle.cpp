@@ -20,7 +20,7 @@ using skill::Method;
 using skill::State;
 using skill::TransitionEvent;
 
-// How long a device that takes its time for a Reset is asked for the outcome, and the pause
+// Longest time for which a device with an unfinished Reset is asked for the outcome, and the pause
 // between.
 constexpr auto kResetTime = std::chrono::seconds(1);
 constexpr auto kResetPause = std::chrono::milliseconds(10);

@@ -14,11 +14,11 @@
 
 namespace metier::client {
 
-/// One execution that somebody waits for.
+/// One execution for whose end a call waits.
 struct AwaitedExecution {
     TransitionLog::Mark from;         ///< transitions since may concern it
     std::uint64_t boot = 0;           ///< run of the server that was asked to start it
-    std::optional<std::string> id{};  ///< none: the transition that starts it tells
+    std::optional<std::string> id{};  ///< none: known only with the transition that starts it
 };
 
 /// Threading: as SkillHandle, but for the log.
@@ -32,7 +32,7 @@ struct SkillHandle::Impl {
     // Shared with the subscription's callback, which may run while this object moves.
     std::shared_ptr<TransitionLog> log = std::make_shared<TransitionLog>();
     opcua::Subscription subscription{};
-    // What this handle has started or resumed, until awaitEnd() has told its end.
+    // Execution that this handle started or resumed last, until awaitEnd() has returned its end.
     std::optional<AwaitedExecution> own{};
 
     /// Reads what the skill is like.
@@ -43,7 +43,8 @@ struct SkillHandle::Impl {
 
     /// Explains a refusal by the skill's own reason.
     opcua::Failure refused(opcua::Failure failure, std::string_view what) const;
-    /// A wrong type is refused before the skill hears of it: its text would be of an older refusal.
+    /// Failure for a value of the wrong type, which is refused before it is sent. The skill's
+    /// ReasonText must not be used for it: it would be of an older refusal.
     opcua::Failure wrongType(opcua::Failure failure, const FieldNode& node,
                              const skill::Value& given) const;
     std::string reasonText() const;
@@ -75,7 +76,8 @@ struct SkillHandle::Impl {
     ///         keeps the name alone; those of the last attempt at the deadline.
     opcua::Answer<skill::ExecutionRecord> learn(const std::string& id, std::uint64_t since_boot,
                                                 SteadyTime deadline);
-    /// What the server's refusal to tell of an execution means, if it means that it is over.
+    /// Failure for an execution that the server does not know any more, if that means that it is
+    /// over.
     std::optional<opcua::Failure> lostExecution(const std::string& id, std::uint64_t since_boot,
                                                 const opcua::Failure& answer) const;
     opcua::Answer<skill::ValueMap> awaitOutcome(AwaitedExecution awaited, SteadyTime deadline);

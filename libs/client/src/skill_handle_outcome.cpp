@@ -243,7 +243,7 @@ Answer<TransitionEvent> SkillHandle::awaitEnd(SteadyTime deadline) {
         }
         if (now && isOver(*now)) {
             impl_->own.reset();
-            TransitionEvent end;  // as far as the state tells
+            TransitionEvent end;  // as far as the state shows it
             end.to = *now;
             end.reason_text = reasonText();
             return end;

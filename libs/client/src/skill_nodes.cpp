@@ -35,7 +35,7 @@ Answer<std::vector<ReferenceDescription>> childrenOf(Questions& questions, const
     return questions.browse({.node = node, .node_classes = {}});
 }
 
-/// What the attributes and properties of a field's Variable say.
+/// Reads a field from the attributes and properties of its Variable.
 class FieldReader {
 public:
     FieldReader(Questions& questions, Place place) : questions_(questions), place_(place) {}

@@ -50,7 +50,7 @@ Answer<SkillReferences> ReferenceReader::read(const NodeId& node) const {
     return result;
 }
 
-/// A property that is missing stays empty, and so nobody is found by it.
+/// Reads a used skill. A missing property stays empty, so that it matches no skill.
 Answer<SkillUse> ReferenceReader::readUse(const opcua::ReferenceDescription& used) const {
     SkillUse use{{}, {}, {}, used.target};
     if (used.type_definition != NodeId(*metier_, kUsedSkillType)) {

@@ -58,7 +58,7 @@ std::optional<TransitionEvent> eventFrom(const std::vector<opcua::Value>& fields
 
 /// \return nothing for any other notice: the transition that follows says the same
 std::optional<skill::StoppingEvent> stoppingFrom(const opcua::EventNotice& notice) {
-    constexpr std::size_t count = 5;  // of the fields that watchStopping() asks for
+    constexpr std::size_t count = 5;  // number of the fields that watchStopping() asks for
     const auto& fields = notice.fields;
     if (notice.kind != opcua::EventNotice::Kind::event || fields.size() != count) {
         return std::nullopt;
@@ -121,7 +121,8 @@ void TransitionLog::add(const opcua::EventNotice& notice) {
     using Kind = opcua::EventNotice::Kind;
     const auto event = notice.kind == Kind::event ? eventFrom(notice.fields) : std::nullopt;
     const bool ended = notice.kind == Kind::ended;
-    const bool doubt = !event && !ended && notice.kind != Kind::interrupted;  // whose end follows
+    // The end of an interruption follows.
+    const bool doubt = !event && !ended && notice.kind != Kind::interrupted;
     Watch watch;
     {
         const std::lock_guard lock(mutex_);

@@ -32,7 +32,7 @@ public:
 
     /// A point in what arrives.
     struct Mark {
-        std::uint64_t number = 0;  ///< of the next transition
+        std::uint64_t number = 0;  ///< number of the next transition
         std::uint64_t doubts = 0;  ///< times that transitions may have been missed before
     };
     Mark mark() const;
@@ -69,7 +69,7 @@ opcua::Answer<opcua::Subscription> watchStopping(
     opcua::Client& client, const opcua::NodeId& skill,
     std::function<void(const skill::StoppingEvent&)> on_stopping);
 
-/// What to ask of an event so that TransitionLog understands it.
+/// Filter for the fields of events that TransitionLog needs.
 /// \param device_namespace index of the Device namespace on this server
 opcua::EventFilter transitionFilter(std::uint16_t device_namespace);
 

@@ -111,7 +111,7 @@ protected:
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
-    std::shared_ptr<skill::Control> control_;  // with the Programs
+    std::shared_ptr<skill::Control> control_;  // shared with the Programs
     std::unique_ptr<opcua::Client> alice_;
     std::unique_ptr<opcua::Client> bob_;
 };
@@ -196,7 +196,7 @@ TEST_F(ControlOfASkill, LastsWithHeartbeatsAndIsGivenBackAtTheEnd) {
 }
 
 TEST_F(ControlOfASkill, WithoutAHeartbeatTheSkillOfItsHolderIsHaltedInTime) {
-    // Taken by hand: nobody sends heartbeats.
+    // Acquired by a plain call, so that no heartbeats are sent.
     const auto controller = findSkill(*alice_, "JointPtpMoveSkill").value().controller()->node;
     const auto index = alice_->namespaceIndex("urn:metier:skills").value();
     const auto method = alice_->translate(controller, {{index, "AcquireControl"}}).value();

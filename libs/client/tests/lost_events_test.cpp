@@ -56,7 +56,7 @@ protected:
     }
     bool until(const std::function<bool()>& done) { return executor_->runUntil(done); }
 
-    skill::ExecutionHandle execution_;  // of the server's thread
+    skill::ExecutionHandle execution_;  // used on the server's thread
     system_tests::BenchServer bench_{{.limits = shortQueues()}};
     skill::Program* program_ = nullptr;
     std::shared_ptr<skill::testing::ManualExecutor> executor_ =
@@ -83,7 +83,8 @@ TEST_F(LostEvents, OfAnEndThatTheServersQueueHasDroppedDoNotHideIt) {
 }
 
 TEST_F(LostEvents, ThatHaveEndedAreTheLossOfTheSkillUntilTheComponentHasConnectedAgain) {
-    connection_->client().close();  // no loss of a connection: nobody else says that it is away
+    // No loss of a connection: nothing else reports that it is away
+    connection_->client().close();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
     EXPECT_THAT(listener_.end->text, ::testing::HasSubstr("its events have ended"));

@@ -30,7 +30,7 @@ SteadyTime soon() {
     return std::chrono::steady_clock::now() + 60s;
 }
 
-/// What all runs of the server together have done.
+/// Totals over all runs of the server.
 class Works {
 public:
     void begin(const skill::ExecutionHandle& execution) {
@@ -115,7 +115,7 @@ private:
     SystemClock clock_;
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua_skill::SkillServer> skills_;
-    std::shared_ptr<skill::Control> control_;  // with the Program
+    std::shared_ptr<skill::Control> control_;  // shared with the Program
 };
 
 using Outcome = opcua::Answer<skill::ValueMap>;
@@ -385,7 +385,7 @@ TEST_F(SurvivingClient, DoesNotTakeControlAgainByItself) {
     auto told = lost.get_future();
     ASSERT_EQ(told.wait_for(60s), std::future_status::ready);
     EXPECT_EQ(told.get().code, Errc::connection_lost);
-    control.onLost(nullptr);  // nobody is to be told again, and nobody is
+    control.onLost(nullptr);  // the callback must not be called again, and is not
     comeBack();
     EXPECT_FALSE(control.held());
     auto again = ControlHandle::acquire(*client_, controller, {});

@@ -24,7 +24,7 @@ using skill::Reason;
 using skill::State;
 using ::testing::HasSubstr;
 
-/// Keeps what it is told.
+/// Keeps all that it is notified of.
 class Listener final : public composition::UsedSkillListener {
 public:
     void onReset(const Result<void>& outcome) override { reset = outcome; }
@@ -197,7 +197,7 @@ TEST_F(RemoteUsedSkillTest, TakesASkillThatIsReadyMeanwhileForReset) {
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
     ASSERT_TRUE(used_->reset(listener_));
     ASSERT_TRUE(move_.hand->await("reset"));
-    Listener next;  // whose Reset comes to a skill that is Ready
+    Listener next;  // its Reset comes to a skill that is Ready
     ASSERT_TRUE(used_->reset(next));
     ASSERT_TRUE(until([&] { return next.reset.has_value(); }));
     EXPECT_TRUE(*next.reset);
@@ -368,7 +368,7 @@ TEST_F(RemoteUsedSkillTest, HaltsWhatIsLeftOverOfItsOwnAndNothingElse) {
 /// Counts what is logged while it is there.
 class Log final : public spdlog::sinks::base_sink<std::mutex> {
 public:
-    /// Waits until `text` was told that often, at any level.
+    /// Waits until `text` was logged that often, at any level.
     bool await(const std::string& text, int count) {
         std::unique_lock lock(reported_mutex_);
         return changed_.wait_for(lock, 10s,
@@ -422,7 +422,7 @@ protected:
     }
 
     std::shared_ptr<spdlog::logger> former_ = spdlog::default_logger();  // as spdlog shares it
-    std::shared_ptr<Log> log_ = std::make_shared<Log>();                 // with the logger
+    std::shared_ptr<Log> log_ = std::make_shared<Log>();                 // shared with the logger
 };
 
 TEST_F(LoggedRemoteUsedSkill, TellsOnceThatItsServerIsAway) {
@@ -443,7 +443,7 @@ TEST_F(LoggedRemoteUsedSkill, TellsALossOnceThatIsHeardOfInTwoWays) {
     EXPECT_EQ(log_->warnings("its events have ended"), 0);
 }
 
-/// A used skill that hears of no transition, as if all were lost on their way.
+/// A used skill that gets no transition, as if all were lost on their way.
 class DeafUsedSkill : public RemoteUsedSkillTest {
 protected:
     DeafUsedSkill()

@@ -21,7 +21,7 @@ namespace metier::client {
 class ServedArm : private skill::ProgramObserver {
 public:
     /// \param port 0: a free one
-    /// \param fastest of the greatest joint velocities that it tells of, a factor
+    /// \param fastest factor on the largest joint velocities that it publishes
     explicit ServedArm(std::uint16_t port = 0, double fastest = 1.0);
     ~ServedArm() override;
     ServedArm(const ServedArm&) = delete;
@@ -38,7 +38,7 @@ public:
     bool awaitStreamStart() { return awaitRunning(true); }
     bool awaitStreamEnd() { return awaitRunning(false); }
 
-    /// Holds up the server's thread until the result goes, at most 10 s.
+    /// Blocks the server's thread until the result is destroyed, at most 10 s.
     std::shared_ptr<void> keepBusy();
 
 private:

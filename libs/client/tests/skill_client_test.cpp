@@ -44,7 +44,7 @@ skill::SkillDescription jointMove() {
     return description;
 }
 
-/// What a test lets the skill do.
+/// Settings of a test for the skill's behaviour.
 struct Behaviour {
     std::atomic<bool> finish_at_once{true};
     std::atomic<bool> refuse{false};

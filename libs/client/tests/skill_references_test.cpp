@@ -1,4 +1,4 @@
-// What a client reads of references that a server of metier has.
+// References of a metier server, as a client reads them.
 #include "metier/client/skill_references.hpp"
 
 #include <gmock/gmock.h>

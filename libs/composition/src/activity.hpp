@@ -29,14 +29,14 @@ inline StepFailure cancelled() {
     return {skill::Reason::by_client, "halted", StepFailure::Kind::cancelled};
 }
 
-/// What became of a step: nothing if it succeeded.
+/// Outcome of a step: nothing if it succeeded.
 using Outcome = std::optional<StepFailure>;
 using OnEnd = std::function<void(Outcome)>;
 
 /// One step under way.
 ///
-/// It ends exactly once, after everything below it has ended, and is told so by a later turn of the
-/// Run; whoever made it then destroys it. Threading: the owner's thread.
+/// It ends exactly once, after all steps below it have ended, and reports that in a later turn of
+/// the Run. Its owner destroys it then. Threading: the owner's thread.
 class Activity {
 public:
     /// \param path of the step, with what it is in: "prepare/open"
@@ -64,7 +64,7 @@ private:
     OnEnd on_end_;
 };
 
-/// What runs a step, with its attempts and time limit.
+/// Makes the activity that runs a step, with its attempts and time limit.
 std::unique_ptr<Activity> makeActivity(Run& run, const Step& step, const std::string& above,
                                        OnEnd on_end);
 /// One after the other. \param path of the step that they belong to

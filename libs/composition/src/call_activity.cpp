@@ -240,7 +240,7 @@ void CallActivity::onResumed() {
     run_.enter([this] {
         stopping_ = suspended_ = false;
         if (run_.held()) {
-            suspend();  // somebody else resumed it, but the whole is to stand still
+            suspend();  // another client resumed it, but the whole is to stand still
         }
     });
 }

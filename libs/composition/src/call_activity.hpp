@@ -63,11 +63,11 @@ private:
     bool suspended_ = false;
     double progress_ = 0.0;
     SteadyTime begun_{};
-    std::string refusal_;                 // of the last Suspend, Halt or Reset
-    std::optional<StepFailure> failure_;  // that it is halted for
+    std::string refusal_;                 // text of the last refused Suspend, Halt or Reset
+    std::optional<StepFailure> failure_;  // the failure for which it is halted
     skill::Timer rest_timer_;
-    StepTimer reset_limit_{run_};  // from the first Reset to Ready
-    StepTimer reset_pause_{run_};  // to the next attempt; parked meanwhile
+    StepTimer reset_limit_{run_};  // time from the first Reset to Ready
+    StepTimer reset_pause_{run_};  // time to the next attempt; the activity is parked meanwhile
 };
 
 }  // namespace metier::composition

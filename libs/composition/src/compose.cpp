@@ -18,7 +18,8 @@ using skill::ValueType;
 
 constexpr std::size_t kShiftOfFrame = 3;
 
-/// How many numbers a value of that type has; nothing if that is up to the value, or it has none.
+/// Number of numbers in a value of that type; nothing if it depends on the value, or there are
+/// none.
 std::optional<std::size_t> sizeOf(ValueType type) {
     switch (type) {
         case ValueType::number:
@@ -32,7 +33,7 @@ std::optional<std::size_t> sizeOf(ValueType type) {
     }
 }
 
-/// What one element of a value is; Null if it has none.
+/// Type of one element of a value; Null if it has none.
 ValueType elementOf(ValueType type) {
     switch (type) {
         case ValueType::frame:
@@ -67,7 +68,7 @@ std::string namesOf(const skill::Fields& fields) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What an execution tells of itself.
+/// Values that an execution publishes about itself.
 const skill::Fields& executionFields() {
     static const skill::Fields kFields(
         {Field{.name = std::string(kExecutionSteps), .type = ValueType::texts},
@@ -198,7 +199,7 @@ private:
         bindTo(condition.operand, *field);
     }
 
-    /// What a reference gives; nothing, noted, if there is no such thing.
+    /// Field to which a reference leads; nothing, with a noted problem, if there is no such field.
     std::optional<Field> fieldOf(const Reference& reference, const Binding& at) {
         const Field* field = nullptr;
         if (reference.step.empty()) {

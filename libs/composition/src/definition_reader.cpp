@@ -153,7 +153,7 @@ Use readUse(const TomlTable& table, const std::string& alias) {
     return use;
 }
 
-/// What `read` makes of each table within `[key]`, in the order of the file.
+/// Results of `read` for each table within `[key]`, in the order of the file.
 template <typename T, typename Read>
 std::vector<T> readEach(const TomlTable& root, std::string_view key, Read read) {
     std::vector<T> all;

@@ -75,7 +75,7 @@ std::string textOf(const Condition& condition) {
     return text;
 }
 
-/// What stands in the frame around the steps of one.
+/// Title of the frame around the steps of a step.
 std::string titleOf(const Step& step) {
     std::string title = step.name;
     switch (step.kind) {

@@ -5,10 +5,10 @@
 
 namespace metier::composition {
 
-/// What the execution of a used skill is named after.
+/// Parts of the id of a used skill's execution.
 struct StepExecution {
     const std::string& origin;     ///< component, skill and life of the component
-    const std::string& execution;  ///< of the skill that uses it
+    const std::string& execution;  ///< id of the using skill's execution
     const std::string& step;
     std::uint64_t count;
 };

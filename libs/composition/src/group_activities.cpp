@@ -78,7 +78,7 @@ void ParallelActivity::branchEnded(std::size_t index, Outcome outcome) {
     awaited_ -= step_.steps[index].background ? 0 : 1;
     const bool all = step_.wait_for == WaitFor::all;
     if (!deciding_) {
-        // What does not stop outranks what was decided before.
+        // A skill that does not come to rest outranks an earlier decision.
         if (outcome && outcome->kind == Kind::final) {
             outcome_ = std::move(outcome);
         }

@@ -48,10 +48,10 @@ private:
     };
     std::vector<Branch> branches_;
     std::size_t open_ = 0;
-    std::size_t awaited_ = 0;  // of those, without what is in the background
-    bool deciding_ = true;     // until the outcome is known
+    std::size_t awaited_ = 0;  // of the open branches, those that are not in the background
+    bool deciding_ = true;     // false once the outcome is known
     Outcome outcome_;
-    std::string failures_;  // that did not decide
+    std::string failures_;  // texts of failures that did not decide the outcome
 };
 
 /// The first step that succeeds.

@@ -11,11 +11,11 @@ namespace metier::composition {
 /// The constant that a TOML value stands for; nothing if it is none.
 std::optional<Literal> literalOf(const cell::TomlValue& value);
 
-/// The constant as a value of that type.
-/// Errors: type_mismatch, telling how such a value is written.
+/// Converts the constant to a value of that type.
+/// Errors: type_mismatch, with the notation of such a value.
 Result<skill::Value> valueOf(const Literal& literal, skill::ValueType type);
 
-/// How a value of that type is written in a file.
+/// Notation of a value of that type in a file, for messages.
 std::string_view howToWrite(skill::ValueType type) noexcept;
 
 }  // namespace metier::composition

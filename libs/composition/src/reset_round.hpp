@@ -12,11 +12,11 @@ namespace metier::composition {
 
 class Run;
 
-/// Resets the used skills that an execution has halted itself, so that whoever comes next finds
+/// Resets the used skills that an execution has halted itself, so that the next execution finds
 /// them Ready.
 ///
-/// What is refused, or not answered within the Run's time to come to rest, stays Halted: the next
-/// use resets it. Threading: the owner's thread.
+/// A skill whose Reset is refused, or not answered within the Run's time to come to rest, stays
+/// Halted; its next use resets it. Threading: the owner's thread.
 class ResetRound {
 public:
     /// \param done called once, from start() or later, maybe not at all after this has ended

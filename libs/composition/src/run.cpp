@@ -220,7 +220,7 @@ void Run::ended(Outcome outcome) {
     }
 }
 
-/// A background step that was ended by Halt, and the like: whoever comes next finds it Ready.
+/// Resets what was halted on the way, such as background steps: the next execution finds it Ready.
 void Run::tidyUp() {
     tidying_ = true;
     resets_.start(setup_.used);

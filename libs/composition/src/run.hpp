@@ -47,7 +47,7 @@ private:
     skill::Timer timer_;
 };
 
-/// What an execution of a composed skill is given.
+/// Setup of one execution of a composed skill.
 struct RunSetup {
     const Composition& composition;
     BoundSkills& used;
@@ -78,7 +78,7 @@ public:
 
     /// Does `work`, and all that follows from it.
     void enter(const std::function<void()>& work);
-    /// Does `work` after what goes on now.
+    /// Does `work` after the call that is under way.
     void later(std::function<void()> work) { due_.push_back(std::move(work)); }
     /// Does `work` in a later turn of the thread, so that others get theirs.
     void nextTurn(std::function<void()> work);
@@ -93,7 +93,8 @@ public:
     /// A step has finished. \param time that it took
     void finished(const std::string& path, std::chrono::nanoseconds time);
     SteadyTime now() const { return setup_.clock.now(); }
-    /// The next execution of a used skill, named and told to whoever watches this one.
+    /// Makes the start of a used skill's next execution: gives it an id, and reports it to the
+    /// observers of this one.
     skill::StartRequest stepExecution(const std::string& step, const UsedSkill& used);
     void attach(CallActivity& call) { calls_.push_back(&call); }
     /// Somebody else has suspended a used skill: the whole follows. \param why for a person
@@ -125,7 +126,7 @@ private:
     std::optional<StepFailure> gave_up_;  // because something did not come to rest
     std::uint64_t begun_ = 0;
     std::vector<std::string> finished_;  // paths
-    std::vector<double> times_;          // of these [s]
+    std::vector<double> times_;          // their times [s]
     std::string reported_step_;
     double published_progress_ = -1.0;
     std::vector<CallActivity*> calls_;

@@ -102,7 +102,7 @@ Result<Value> shifted(Value value, const std::vector<double>& by, ShiftAxes axes
     return value;
 }
 
-/// An error that tells where in the file it came up.
+/// An error whose text names its place in the file.
 template <typename T>
 Result<T> at(const Binding& binding, Result<T> result) {
     return std::move(result).map_error([&](Error error) {

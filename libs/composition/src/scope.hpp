@@ -13,7 +13,7 @@ class Scope {
 public:
     explicit Scope(skill::ValueMap parameters) : parameters_(std::move(parameters)) {}
 
-    /// Of the last time that the step ran.
+    /// Sets the result of the latest run of the step.
     void setResult(const std::string& step, skill::ValueMap result) {
         results_[step] = std::move(result);
     }
@@ -22,7 +22,7 @@ public:
     /// Errors: invalid_argument, out_of_range, with the place in the file.
     Result<skill::Value> evaluate(const Binding& binding, skill::ValueType type) const;
     Result<bool> holds(const Condition& condition) const;
-    /// Of a number of any type.
+    /// Value of a binding to a number of any type.
     Result<double> number(const Binding& binding) const;
     Result<skill::Value> read(const Reference& reference) const;
 

@@ -51,7 +51,7 @@ void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& ali
 
 }  // namespace
 
-/// A Reset of a used skill that nobody waits for: what it leads to shows at the next Start.
+/// A Reset of a used skill for which nothing waits: its outcome shows at the next Start.
 class SequenceSkill::Unheard final : public UsedSkillListener {
 public:
     explicit Unheard(BoundSkill& used) : used_(used) {}

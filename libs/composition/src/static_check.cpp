@@ -29,13 +29,13 @@ void forEachComparison(const Condition& condition, const Visit& visit) {
     }
 }
 
-/// What a step adds to the calls that have certainly finished.
+/// Calls that a step adds to those that have certainly finished.
 struct Added {
     std::vector<std::string_view> names{};
-    bool nothing_after = false;  ///< it always fails: whatever is asked for, nobody comes to ask
+    bool nothing_after = false;  ///< it always fails, so no step after it runs
 };
 
-/// What both add.
+/// Calls that both of them add.
 Added intersection(Added a, Added b) {
     if (a.nothing_after || b.nothing_after) {
         return a.nothing_after ? std::move(b) : std::move(a);
@@ -45,7 +45,7 @@ Added intersection(Added a, Added b) {
     return a;
 }
 
-/// What either adds, put to `all`.
+/// Adds the calls of `one` to `all`.
 void append(Added& all, Added&& one) {
     all.names.insert(all.names.end(), one.names.begin(), one.names.end());
     all.nothing_after = all.nothing_after || one.nothing_after;
@@ -140,7 +140,8 @@ private:
         dead_ends_ -= added.nothing_after ? 1 : 0;
     }
 
-    /// What has certainly finished once the step has, besides what had before; it is known then.
+    /// Calls that have certainly finished once the step has, besides the earlier ones. They are in
+    /// known_ then.
     Added after(const Step& step) {
         switch (step.kind) {
             case StepKind::call:

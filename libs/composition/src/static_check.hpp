@@ -5,8 +5,8 @@
 
 namespace metier::composition {
 
-/// What a definition alone tells to be wrong: names that there are none of, values that are used
-/// before they are there, loops without an end, one skill in two branches at the same time.
+/// Finds the mistakes that a definition alone shows: unknown names, values that are used before
+/// they exist, loops without an end, one skill in two branches at the same time.
 Problems checkDefinition(const Definition& definition);
 
 }  // namespace metier::composition

@@ -19,7 +19,7 @@ constexpr std::int64_t kMostRounds = 1'000'000;
 constexpr std::int64_t kMostRetries = 1'000;
 constexpr double kLongestTime = 7.0 * 24 * 3600;
 
-/// What a step does, by the key that says so.
+/// Kind of a step, and the key that stands for it.
 struct KindKey {
     std::string_view key;
     StepKind kind;
@@ -163,7 +163,7 @@ Step readStep(const TomlTable& table, std::string key) {
     return step;
 }
 
-/// Of a frame or vector its letter, else a number from 0.
+/// Element of a frame or vector by its letter, else of a list by its number from 0.
 std::optional<std::size_t> readElement(const TomlTable& table, std::string_view key) {
     constexpr std::array<std::string_view, 6> kLetters{"x", "y", "z", "a", "b", "c"};
     const auto given = table.value(key);

@@ -15,7 +15,7 @@ using testing::kHeadWithGrip;
 constexpr const char* kTwoSteps =
     "[[step]]\nname = \"first\"\nrun = \"a\"\n[[step]]\nname = \"second\"\nrun = \"b\"\n";
 
-/// What is wrong with a file.
+/// Mistakes that are found in a file.
 std::string problemsOf(const std::string& text) {
     const auto definition = parseDefinition(text, "c.toml");
     return definition ? "nothing" : definition.error().message;

@@ -169,7 +169,7 @@ TEST_F(LocalUsedSkills, TellTheirProgress) {
     outer.detach(observer);
 }
 
-/// Keeps what a UsedSkill tells.
+/// Keeps the reports of a UsedSkill.
 class Listener final : public UsedSkillListener {
 public:
     void onReset(const Result<void>& outcome) override {
@@ -197,7 +197,7 @@ public:
 
 class OneLocalUsedSkill : public LocalUsedSkills {
 protected:
-    /// What was told since the last time.
+    /// Reports since the last call.
     std::vector<std::string> told() {
         executor_->run();
         return std::exchange(listener_.told, {});

@@ -52,7 +52,7 @@ public:
     void halt() override { calls.emplace_back("halt"); }
     void release() override { listener = nullptr; }
 
-    // What happens to it.
+    // Events of its execution.
     void finish(skill::ValueMap result = {}) {
         state_now = skill::State::ready;
         listener->onEnd({UsedSkillEnd::Kind::finished, std::move(result)});
@@ -81,7 +81,7 @@ public:
         state_now = outcome ? skill::State::ready : skill::State::halted;
         listener->onReset(outcome);
     }
-    /// What was called since the last time.
+    /// Calls since the last time.
     std::vector<std::string> heard() { return std::exchange(calls, {}); }
     bool runs() const { return listener != nullptr; }
 

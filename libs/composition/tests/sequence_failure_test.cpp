@@ -1,5 +1,5 @@
-// Whatever becomes of a used skill ends the composed one with a text that tells it, and leaves
-// nothing running.
+// Every failure of a used skill ends the composed one with a text that names it, and leaves nothing
+// running.
 #include <gmock/gmock.h>
 
 #include "bench.hpp"

@@ -123,7 +123,7 @@ TEST(ResetOfASequence, ResetsWhatItHaltedItself) {
     ASSERT_TRUE(bench.call(Method::halt));
     bench["a"].halted();
     bench.run();
-    bench["b"].state_now = State::halted;  // by somebody else
+    bench["b"].state_now = State::halted;  // by another client
     bench["a"].heard();
     ASSERT_TRUE(bench.call(Method::reset));
     EXPECT_THAT(bench["a"].heard(), ElementsAre("reset"));
@@ -132,7 +132,7 @@ TEST(ResetOfASequence, ResetsWhatItHaltedItself) {
 }
 
 TEST(ResetOfASequence, GivesNoRightToAnotherReset) {
-    // What a client halted after it was reset by the next Start.
+    // A skill halted by a client after it was reset by the next Start.
     Bench bench(kTwoSteps);
     ASSERT_TRUE(bench.start());
     ASSERT_TRUE(bench.call(Method::halt));
@@ -163,7 +163,7 @@ TEST(StartOfASequence, ResetsWhatMayBeReset) {
     ASSERT_TRUE(bench.call(Method::halt));
     bench["a"].halted();
     bench.run();
-    ASSERT_TRUE(bench.call(Method::reset));  // whose outcome is not there yet
+    ASSERT_TRUE(bench.call(Method::reset));  // its outcome is not there yet
     ASSERT_TRUE(bench.start());
     ASSERT_EQ(bench.program->startWith(testing::kClient, {"run", {}}), "run")
         << "an id that is known starts nothing";

@@ -1,4 +1,4 @@
-// What each kind of step does when all goes well, and where values come from.
+// Each kind of step without a failure, and the sources of values.
 #include <gmock/gmock.h>
 
 #include "bench.hpp"

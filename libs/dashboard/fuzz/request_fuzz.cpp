@@ -1,4 +1,4 @@
-// What is read from requests, whatever is in them: the first byte says what the others are.
+// Reading of requests with any content: the first byte chooses the kind of the others.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -52,7 +52,7 @@ void readBody(std::string_view text) {
     if (!values) {
         return require(!values.error().message.empty() && values.error().message.size() < 500);
     }
-    // What was taken is told back as the same.
+    // A value that was accepted is printed as the same value.
     const auto told = metier::skill::toJson(*values);
     const auto again = parametersIn({{"parameters", inLists(told)}}, skill());
     require(again && *again == *values);

@@ -8,7 +8,7 @@
 
 namespace metier::dashboard {
 
-// What a request must be like before it is looked at any further. Threads: any; pure.
+// Checks of a request before it is handled. Threads: any; pure.
 
 /// Whether a browser may have been made to send it by another page: the Host must be an address or
 /// `localhost`, so that no foreign name was pointed at this machine, and the Origin, if there is
@@ -29,9 +29,8 @@ Result<void> checkLocal(const httplib::Request& request);
 /// Errors: access_denied; invalid_argument.
 Result<void> checkIntent(const httplib::Request& request);
 
-/// Of the cookie that says who is logged in: `metier_` and the port that the browser asked at,
-/// since browsers send the cookies of all ports of a host to each of them; `metier` where it named
-/// none.
+/// Name of the cookie with the log-in: `metier_` and the port in the request's Host, since browsers
+/// send the cookies of all ports of a host to each of them; `metier` if the Host has no port.
 std::string sessionCookieName(const httplib::Request& request);
 
 /// The value of a cookie; empty if there is none.

@@ -18,7 +18,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::size_t kNameDigits = 32;  // 128 bits: nobody guesses the name of a tab
+constexpr std::size_t kNameDigits = 32;  // 128 bits: the name of a tab cannot be guessed
 
 Reply notLoggedIn() {
     return errorReply(401, "login_required", "log in first");

@@ -30,7 +30,7 @@ public:
         RecordsView& records;
     };
 
-    /// What it is given must outlive this, and this the server's end.
+    /// `parts` must outlive this, and this must outlive the HTTP server.
     explicit Api(const Parts& parts);
 
     /// Tells the server every path.
@@ -40,7 +40,7 @@ private:
     using Get = std::function<Reply(const httplib::Request&, const std::shared_ptr<Person>&)>;
     using Post = std::function<Reply(const nlohmann::json&, const std::shared_ptr<Person>&)>;
 
-    /// Who asks; nullptr: nobody that is known.
+    /// Person who sent the request; nullptr: not logged in.
     std::shared_ptr<Person> personOf(const httplib::Request& request) const;
     void get(http::HttpServer& server, const std::string& path, Get handler);
     void post(http::HttpServer& server, const std::string& path, Post handler);

@@ -25,7 +25,7 @@ Frame jointFrame(const KinematicsData& data, std::size_t axis) {
     return axis == 0 ? data.base_from_first_joint : data.joint_frames[axis];
 }
 
-/// How far apart two joints are, 1 at the most that still is the same kind of arm.
+/// Distance between two joints; up to 1 they are of the same kind of arm.
 double distance(const KinematicsData& data, std::size_t axis,
                 const motion::JointDescription& joint) {
     constexpr double kMetres = 0.005;

@@ -17,16 +17,16 @@ namespace metier::dashboard {
 
 // Threads: any; pure.
 
-/// What is known of an arm besides its kinematics.
+/// Facts about an arm besides its kinematics.
 struct ArmOrigin {
     std::string key;
     std::string server;
     std::string device;                      ///< BrowseName of the motion device
-    std::optional<Frame> world_from_base{};  ///< none: nobody says
+    std::optional<Frame> world_from_base{};  ///< none: not known
 };
 
-/// An arm as the page draws it. Shape, maker and tool frames are those of the model whose axes are
-/// as the server tells, none if there is no such model.
+/// Description of an arm for drawing. Shape, maker and tool frames come from the model whose axes
+/// are those that the server publishes; none if there is no such model.
 nlohmann::json armJson(const ArmOrigin& origin, const opcua_skill::KinematicsData& data,
                        const std::vector<motion::RobotModel>& models);
 

@@ -18,26 +18,26 @@
 
 namespace metier::dashboard {
 
-/// What a skill is doing.
+/// Present state of a skill.
 struct SkillState {
     std::string state =
         "Unknown";  ///< Halted, Ready, Running, Suspended; Unknown without its server
     std::string sub_state{};
-    std::string step{};                ///< of a sequence
+    std::string step{};                ///< present step of a sequence
     std::optional<double> progress{};  ///< 0 to 1
     std::string reason{};
     std::string reason_text{};
     std::string execution{};  ///< id of the present or the last one
-    double since = 0.0;       ///< of the state, s since 1970 UTC; 0: not told
+    double since = 0.0;       ///< begin of the state, s since 1970 UTC; 0: not published
 
     bool operator==(const SkillState&) const = default;
 };
 
-/// Who commands the skills of a controller.
+/// Holder of control over a controller's skills.
 struct ControlState {
     std::string server{};
     std::string controller{};
-    std::string owner{};    ///< as it calls itself; empty: nobody
+    std::string owner{};    ///< name that the holder gives itself; empty: nobody
     double lease_ms = 0.0;  ///< left when it was read; 0: no lease
     double until = 0.0;     ///< when it ends without a heartbeat, s since 1970 UTC; 0: no lease
     std::string held_by{};  ///< tab of this dashboard that holds it; empty: none
@@ -45,7 +45,7 @@ struct ControlState {
     bool operator==(const ControlState&) const = default;
 };
 
-/// What a server is like, as far as it told.
+/// Content of a server, as far as it publishes it.
 struct ServerShown {
     std::string name{};
     std::string url{};
@@ -79,8 +79,8 @@ public:
     /// \param clock must outlive this
     Board(nlohmann::json cell, const Clock& clock);
 
-    /// What is to happen when the first tab comes or the last one has gone, on the thread that
-    /// opened or closed it. Before the first tab.
+    /// Sets the callback for the first tab that comes and the last one that goes, on the thread
+    /// that opened or closed it. Call it before the first tab.
     void onWatched(std::function<void(bool watched)> callback);
     /// \param most_bytes that may wait for it
     std::shared_ptr<Outbox> openTab(const std::string& tab, std::size_t most_bytes);
@@ -101,7 +101,7 @@ public:
     /// A record is new or has changed.
     void noteRecord(std::int64_t number);
 
-    /// Parts of the virtual world, by name: {pose, size, held_by}, as far as it told.
+    /// Parts of the virtual world, by name: {pose, size, held_by}, as far as known.
     void setParts(const nlohmann::json& parts);
     /// Values that change all the time; sent by tick().
     void changeLive(const std::function<void(LiveValues&)>& change);
@@ -117,7 +117,7 @@ public:
 private:
     struct Tab {
         std::string id;
-        std::shared_ptr<Outbox> outbox;  // with the thread that sends
+        std::shared_ptr<Outbox> outbox;  // shared with the thread that sends
     };
 
     void send(const Message& message);
@@ -130,9 +130,9 @@ private:
     const Clock& clock_;
     std::function<void(bool)> on_watched_;
 
-    mutable std::mutex mutex_;  // of all that follows
+    mutable std::mutex mutex_;  // guards all that follows
     std::vector<Tab> tabs_;
-    std::vector<std::string> order_;  // of the servers
+    std::vector<std::string> order_;  // names of the servers
     std::map<std::string, ServerShown> servers_;
     std::map<std::string, SkillState> skills_;
     std::map<std::string, ControlState> controls_;

@@ -24,7 +24,7 @@ namespace {
 struct Named {
     ReachedSkill reached;
     std::shared_ptr<TabSession> tab;        // null: a session of the person is used
-    std::shared_ptr<SkillSession> session;  // of the person
+    std::shared_ptr<SkillSession> session;  // session of the person
     std::shared_ptr<AsyncSkill> skill;
 };
 
@@ -43,8 +43,8 @@ Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, con
     return Named{std::move(reached), std::move(session), nullptr, std::move(skill)};
 }
 
-/// As somebody who needs no control; as the tab, if it has control: a server tells others that the
-/// skill is not theirs.
+/// Skill for a command that needs no control. It is sent as the tab if that has control, since the
+/// server shows other clients that the skill is not theirs.
 Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person& person) {
     const auto key = textIn(body, "key");
     METIER_ASSIGN(const auto tab,
@@ -210,7 +210,7 @@ std::map<std::string, std::vector<std::string>> Commands::skillsOf(const std::st
                 keys.push_back(skill.at("key").get<std::string>());
             }
         }
-        // A server that is away is asked all the same: people are to hear that it did not halt.
+        // A server that cannot be reached is included: the answer must show that it did not halt.
         if (!keys.empty() || (!link && arm.empty())) {
             wanted[name] = std::move(keys);
         }
@@ -227,7 +227,7 @@ Commands::Halted Commands::haltServer(const std::string& server,
         halted.error = fmt::format("{} is not connected", server);
         return halted;
     }
-    // In a lab everybody may halt, so that nobody needs a session of his own for it.
+    // In a lab everybody may halt, so no session of the person is needed.
     auto session = person->isOfLab() ? Result<std::shared_ptr<SkillSession>>(nullptr)
                                      : person->session(server);
     if (!session) {

@@ -14,13 +14,13 @@
 
 namespace metier::dashboard {
 
-/// What people have the servers do. Each function is one request of the API: its body and who sent
-/// it give the answer.
+/// Commands of people to servers. Each function handles one request of the API: it takes the
+/// request's body and the sender, and returns the answer.
 ///
 /// Threading: any; each waits for the servers that it asks, with deadlines.
 class Commands {
 public:
-    /// What it is given must outlive this.
+    /// `watches` and `tabs` must outlive this.
     Commands(Watches& watches, Tabs& tabs) : watches_(watches), tabs_(tabs) {}
 
     /// {tab, server or all, action: take or release}. Taking all leaves out servers that others
@@ -62,7 +62,7 @@ private:
 Result<skill::ValueMap> parametersIn(const nlohmann::json& body,
                                      const skill::SkillDescription& skill);
 
-/// What a Check found: verdict, duration [s] and the planned joint path, thinned out.
+/// Result of a Check: verdict, duration [s] and the planned joint path, thinned out.
 nlohmann::json checkJson(const skill::CheckReport& report);
 
 }  // namespace metier::dashboard

@@ -19,7 +19,7 @@ struct ChangedControl {
     json done = json::array();
     json failed = json::array();
     json left_out = json::array();
-    std::optional<Error> first{};  // of the failures
+    std::optional<Error> first{};  // first failure
 };
 
 /// \param used are left out

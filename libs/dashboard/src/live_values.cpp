@@ -36,7 +36,7 @@ void LiveValues::setJoints(const std::string& arm, const std::vector<double>& jo
                            UtcTime time) {
     auto& before = joints_[arm];
     const double elapsed = std::chrono::duration<double>(time - before.time).count();
-    // Samples that are far apart are of different motions, and tell no velocity.
+    // Samples that are far apart belong to different motions, and give no velocity.
     constexpr double kLongest = 1.0;
     std::vector<double> velocity(joints.size(), 0.0);
     if (before.position.size() == joints.size() && elapsed > 0.0 && elapsed < kLongest) {

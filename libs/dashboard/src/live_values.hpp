@@ -12,7 +12,7 @@
 
 namespace metier::dashboard {
 
-/// What changes all the time: joint positions, forces, safety, cycles, grippers, parts.
+/// Values that change all the time: joint positions, forces, safety, cycles, grippers, parts.
 ///
 /// Threading: one thread at a time.
 class LiveValues {
@@ -26,12 +26,12 @@ public:
     void setOfArm(const std::string& arm, const std::string& name, nlohmann::json value);
     void setOfGripper(const std::string& gripper, const std::string& name, nlohmann::json value);
     void setPart(const std::string& part, nlohmann::json value);
-    /// Parts that are not among these any more are gone.
+    /// Removes the parts that are not in `present`.
     void keepParts(const nlohmann::json& present);
 
     /// All there is.
     nlohmann::json all(UtcTime now) const;
-    /// What has changed since the last call; null if nothing did.
+    /// Values that have changed since the last call; null if none has.
     nlohmann::json changes(UtcTime now);
     /// Whether an arm's joints changed since the last changes().
     bool moving() const noexcept { return moving_; }

@@ -23,9 +23,9 @@ Message makeMessage(std::string_view event, const nlohmann::json& data);
 /// JSON as text, in one line, whatever text is in it.
 std::string dump(const nlohmann::json& json);
 
-/// What waits to be sent to one tab.
+/// Queue of messages to one tab.
 ///
-/// Whoever puts something in never waits: a tab for which too much waits is given up.
+/// Adding a message never waits: a tab with too much in its queue is given up.
 /// Threading: any.
 class Outbox {
 public:

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMostLogins = 200;
 constexpr std::size_t kMostLoginsOfUser = 20;
 constexpr std::size_t kMostFailures = 1'000;
-constexpr std::size_t kTokenDigits = 32;  // 128 bits: nobody guesses it
+constexpr std::size_t kTokenDigits = 32;  // 128 bits: it cannot be guessed
 constexpr auto kLongestLogin = 12h;
 constexpr auto kLongestRest = 1h;
 constexpr int kFreeAttempts = 3;  // wrong passwords for one name before waiting begins
@@ -91,7 +91,7 @@ Result<std::shared_ptr<SkillSession>> Person::session(const std::string& server)
     METIER_ASSIGN(auto client, connect(server, fmt::format("metier dashboard{}{}",
                                                            user_.empty() ? "" : " of ", user_)));
     auto session = std::make_shared<SkillSession>(std::move(client));
-    auto before = session;  // what was there ends after the lock
+    auto before = session;  // so that the former one ends after the lock is released
     const std::lock_guard lock(mutex_);
     sessions_[server].swap(before);
     return session;
@@ -141,7 +141,8 @@ Result<void> People::beginAttempt(const std::string& user) {
     return {};
 }
 
-/// With the lock. A name that was tried once goes before one that somebody guesses at.
+/// Forgets one name with failures; needs the lock. A name that was tried once goes before one that
+/// is being guessed.
 void People::forgetLeast() {
     failures_.erase(std::min_element(
         failures_.begin(), failures_.end(), [](const auto& left, const auto& right) {
@@ -154,7 +155,7 @@ void People::takeBack(const std::string& user) {
     const std::lock_guard lock(mutex_);
     if (const auto found = failures_.find(user); found != failures_.end()) {
         --found->second.count;
-        found->second.barred_until = {};  // nobody is let try while it is in the future
+        found->second.barred_until = {};  // no attempt is allowed while it is in the future
     }
 }
 

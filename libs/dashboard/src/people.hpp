@@ -19,10 +19,10 @@ namespace metier::dashboard {
 /// Whether people are to log in. The same as long as a page is served, whatever servers answer.
 enum class Access {
     log_in,
-    lab,  ///< nobody logs in, and everybody on this machine may command
+    lab,  ///< without login: everybody on this machine may command
 };
 
-/// Somebody who has logged in; in a lab, whoever reaches the page.
+/// A person who has logged in; in a lab, everybody who reaches the page.
 ///
 /// Threading: any.
 class Person {
@@ -48,7 +48,7 @@ public:
     /// A session of this person to Check and Halt by; kept until it is lost.
     /// Errors: as connect().
     Result<std::shared_ptr<SkillSession>> session(const std::string& server);
-    /// Has a session with every server that is connected, so that nobody waits for it later.
+    /// Opens a session with every connected server, so that no later request waits for it.
     void openSessions();
 
 private:
@@ -58,20 +58,20 @@ private:
     const std::string password_;
     mutable std::mutex mutex_;
     std::string role_ = "observer";
-    // With whoever asks something by them at this moment.
+    // Shared with the requests that use them at this moment.
     std::map<std::string, std::shared_ptr<SkillSession>> sessions_;
 };
 
-/// Who is logged in.
+/// The people who are logged in.
 ///
-/// A name and password are good if a server lets them in. Wrong ones make the next attempt for that
-/// name wait, from one second up to a minute, without asking a server again: who guesses here does
-/// not lock this program out there. Other names are not held up, whatever address they come from;
-/// four attempts are made at a time, and others wait for their turn.
+/// A name and password are accepted if a server accepts them. After a wrong one, the next attempt
+/// for that name must wait, from one second up to a minute, and no server is asked meanwhile: so a
+/// person who guesses passwords here does not lock this program out of the servers. Other names are
+/// not delayed, from any address; four attempts are made at a time, and others wait for their turn.
 /// Threading: any.
 class People {
 public:
-    /// What it is given must outlive this.
+    /// All arguments must outlive this.
     People(const Connector& connector, Watches& watches, Access access, const Clock& clock);
 
     bool isLab() const noexcept { return access_ == Access::lab; }
@@ -81,13 +81,13 @@ public:
     ///         connection_lost, no server could be asked.
     Result<std::string> login(const std::string& user, const std::string& password);
     void logout(const std::string& token);
-    /// Whose token it is, which counts as a request of theirs; nullptr: nobody's. Nobody needs a
-    /// token in a lab.
+    /// Person to whom the token belongs; counts as a request of that person. nullptr: unknown
+    /// token. In a lab no token is needed.
     std::shared_ptr<Person> find(const std::string& token);
 
 private:
     struct Login {
-        std::shared_ptr<Person> person;  // with its tabs
+        std::shared_ptr<Person> person;  // shared with their tabs
         SteadyTime begun{};
         SteadyTime used{};
     };
@@ -113,10 +113,10 @@ private:
     Watches& watches_;
     const Access access_;
     const Clock& clock_;
-    const std::shared_ptr<Person> anybody_;  // of the lab
+    const std::shared_ptr<Person> anybody_;  // for a lab
     std::mutex mutex_;
     Logins logins_;
-    std::map<std::string, Failures> failures_;  // by user
+    std::map<std::string, Failures> failures_;  // by user name
     LoginQueue queue_{kMostAsking};
 };
 

@@ -75,7 +75,7 @@ json jsonOf(const records::PathSample& sample) {
     return shown;
 }
 
-/// Of a long path as many samples as a page can draw, the first and the last among them.
+/// Path with as many samples as a page can draw, the first and the last among them.
 json pathJson(const std::vector<records::PathSample>& path) {
     constexpr std::size_t kMost = 20'000;
     const auto kept = std::min(path.size(), kMost);

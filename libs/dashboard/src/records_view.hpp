@@ -18,10 +18,10 @@
 
 namespace metier::dashboard {
 
-/// Records of servers as the page shows them; notes new ones at the board while somebody looks. The
-/// store is opened once and kept.
+/// Records of servers as the page shows them. Reports new ones to the board while a tab shows them.
+/// The store is opened once and kept.
 ///
-/// Threading: any; a thread of its own looks for what is new, twice a second.
+/// Threading: any; a thread of its own looks for new records, twice a second.
 class RecordsView {
 public:
     /// \param url   as records::Store::open() takes it; empty: nothing is recorded
@@ -32,7 +32,7 @@ public:
     Reply list(const httplib::Request& request);
     /// GET /api/records/NUMBER. Waits for the disk.
     Reply one(std::int64_t number);
-    /// Whether somebody looks.
+    /// Sets whether a tab shows the records.
     void show(bool shown);
 
 private:

@@ -10,7 +10,7 @@ namespace metier::dashboard {
 namespace {
 
 constexpr std::size_t kLongestText = 1'000;
-/// Whoever copies or prints JSON goes one call deeper for each level.
+/// Deepest level of JSON that is accepted: copying and printing go one call deeper for each level.
 constexpr int kDeepest = 32;
 
 int statusOf(Errc code) {

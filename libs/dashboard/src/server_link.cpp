@@ -57,7 +57,7 @@ void ServerLink::showLive(bool shown) {
     }
 }
 
-/// What a server does not have, or does not let be read, is not shown.
+/// Subscribes to a Variable. One that the server lacks, or does not let us read, is not shown.
 void ServerLink::subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
                            std::function<void(const DataValue&)> callback) {
     if (node.isNull()) {

@@ -20,7 +20,7 @@ class RobotModel;
 
 namespace metier::dashboard {
 
-/// What a link to one server needs to know of the cell.
+/// Facts of the cell that a link to one server needs.
 struct LinkContext {
     CellServer server;
     /// Name of the server at an address; empty: none of the cell. Any thread.
@@ -38,28 +38,28 @@ struct LinkedSkill {
     std::unique_ptr<client::AsyncSkill> skill;
 };
 
-/// A controller of a server, whose skills somebody may take control of.
+/// A controller of a server, of whose skills a tab may take control.
 struct LinkedController {
     std::string key;
     std::string name;
     opcua::NodeId node;
 };
 
-/// A connection to one server, all that it offers, and the subscriptions by which the board hears
-/// of it. Good for one run of the server.
+/// A connection to one server, with all that the server publishes, and the subscriptions that keep
+/// the board up to date. Valid for one run of the server.
 ///
 /// Threading: made by one thread; then any, but showLive(), which is of that thread.
 class ServerLink {
 public:
-    /// Connects and looks; tells the board of every skill's state from then on. Waits, seconds at
-    /// most for each question.
-    /// \param on_lost once, on the client's thread
+    /// Connects and reads; from then on reports every skill's state to the board. Waits, at most
+    /// seconds for each request.
+    /// \param on_lost called once, on the client's thread
     /// Errors: those of the server.
     static opcua::Answer<std::shared_ptr<ServerLink>> open(
         const LinkContext& context, opcua::ClientOptions options,
         std::function<void(const opcua::Failure&)> on_lost);
 
-    /// What it offers, for the board.
+    /// Content of the server, for the board.
     const ServerShown& offer() const noexcept { return offer_; }
     opcua::Client& client() noexcept { return *client_; }
     const std::vector<LinkedSkill>& skills() const noexcept { return skills_; }
@@ -87,7 +87,7 @@ private:
     void showSkill(const LinkedSkill& skill);
     void subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
                    std::function<void(const opcua::DataValue&)> callback);
-    /// \param change is told values of that type alone, with the time at which they were true
+    /// \param change called with values of that type only, and the time at which they were true
     template <typename T>
     void subscribeLive(const opcua::NodeId& node, std::chrono::milliseconds interval,
                        std::function<void(LiveValues&, const T&, UtcTime)> change);

@@ -95,7 +95,7 @@ void ServerWatch::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         if (auto link = connect()) {
             pause = kShortestPause;
-            present(link);  // before anybody hears of it
+            present(link);  // before any listener is notified
             context_.board.setOffer(context_.server.name, link->offer());
             keep(*link, stop);
             present(nullptr);

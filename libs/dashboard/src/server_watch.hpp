@@ -32,7 +32,7 @@ public:
     void showLive(bool shown);
 
 private:
-    /// What the client's thread tells of a link; outlives this if the client does.
+    /// Reports of the client's thread about a link; outlives this if the client does.
     struct News {
         std::mutex mutex;
         std::condition_variable_any changed;
@@ -49,9 +49,10 @@ private:
 
     const LinkContext context_;
     const Connector& connector_;
-    const std::shared_ptr<News> news_ = std::make_shared<News>();  // with a client's callback
-    mutable std::mutex mutex_;                                     // of the next
-    std::shared_ptr<ServerLink> link_;  // with whoever uses it at this moment
+    // Shared with a client's callback
+    const std::shared_ptr<News> news_ = std::make_shared<News>();
+    mutable std::mutex mutex_;          // guards the next one
+    std::shared_ptr<ServerLink> link_;  // shared with the requests that use it at this moment
     std::jthread thread_;               // last: it uses everything above
 };
 

@@ -32,7 +32,7 @@ public:
 private:
     const std::unique_ptr<opcua::Client> client_;  // first: the skills use it
     std::mutex mutex_;
-    // With whoever waits for an answer at this moment.
+    // Shared with the threads that wait for an answer at this moment.
     std::map<std::string, std::shared_ptr<client::AsyncSkill>> skills_;
 };
 

@@ -32,7 +32,7 @@ std::string_view roleOf(const Field& field) {
     return "";
 }
 
-/// How many elements a list has; those of joints one per axis; 0: any.
+/// Number of elements of a list; for joints one per axis; 0: any number.
 std::size_t rankOf(const Field& field, std::size_t axes) {
     if (!isList(field.type)) {
         return 0;

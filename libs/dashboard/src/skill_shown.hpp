@@ -17,7 +17,7 @@ struct MovedArm {
     std::vector<std::string> tools{};  ///< names of its tool frames
 };
 
-/// What a skill is, as the page makes a form of it.
+/// Description of a skill, from which the page makes a form.
 nlohmann::json skillJson(const std::string& key, const std::string& server,
                          const client::AsyncSkill& skill, const MovedArm& arm);
 
@@ -26,8 +26,8 @@ nlohmann::json fieldJson(const skill::Field& field, const MovedArm& arm);
 /// A value with frames, vectors and ranges as lists of numbers, however deep they are.
 nlohmann::json inLists(const nlohmann::json& value);
 
-/// How far a gripper with these skills opens [m], as the range of their parameters says; 0: none
-/// does.
+/// Largest width of a gripper with these skills [m], from the range of their parameters; 0:
+/// unknown.
 double strokeIn(const nlohmann::json& skills);
 
 }  // namespace metier::dashboard

@@ -8,7 +8,7 @@
 namespace metier::dashboard {
 namespace {
 
-/// How often a peer that is sent nothing is looked for.
+/// Period of the check whether a peer to which nothing is sent is still there.
 constexpr std::chrono::milliseconds kLook{200};
 
 /// Sends what waits. \return false: the stream is over

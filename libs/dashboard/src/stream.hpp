@@ -17,13 +17,13 @@ namespace metier::dashboard {
 /// Threading: any; each stream keeps the thread of its connection.
 class Streams {
 public:
-    /// What it is given must outlive this.
+    /// Both must outlive this.
     Streams(Board& board, const http::HttpLimits& limits) : board_(board), limits_(limits) {}
 
-    /// Whose stream it is. Called on the connection's thread.
+    /// Callbacks for the owner of a stream. Called on the connection's thread.
     struct Listener {
         std::function<bool()> may_listen;  ///< asked several times a second: else the stream ends
-        std::function<void()> on_end;      ///< once, when the tab is gone
+        std::function<void()> on_end;      ///< called once, when the tab has gone
     };
 
     /// Has the response be the stream of a new tab, of that name.

@@ -29,7 +29,7 @@ std::string applicationUri(opcua::Client& client) {
     return uris && !uris->empty() ? opcua::sanitise(uris->front()) : "";
 }
 
-/// s since 1970 UTC; 0 if the server does not tell.
+/// Time of the last transition, s since 1970 UTC; 0 if the server does not publish it.
 double lastTransition(opcua::Client& client, const NodeId& skill) {
     const auto node = client.translate(skill, {{0, "LastTransition"}, {0, "TransitionTime"}});
     const auto value = node ? client.read(*node) : Answer<opcua::Value>();
@@ -172,7 +172,7 @@ Answer<MovedArm> Survey::addArm(const KinematicsNodes& nodes, const std::string&
 void Survey::readState(const LinkedSkill& linked) {
     const auto now = linked.skill->now();
     if (!now) {
-        return;  // the next transition tells
+        return;  // the next transition updates it
     }
     const auto since = lastTransition(link_.client(), linked.address.node);
     context_.board.changeSkill(linked.key, [&](SkillState& state) {

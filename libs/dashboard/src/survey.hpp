@@ -29,7 +29,7 @@ private:
     opcua::Answer<MovedArm> addArm(const client::KinematicsNodes& nodes, const std::string& used);
     /// Notes the other servers of the cell whose skills this one uses, and names the first.
     std::string noteUses(const client::SkillAddress& address);
-    /// Largest width of the gripper [m]: as the server tells, else as its parameters may be.
+    /// Largest width of the gripper [m]: the published one, else the upper bound of its parameters.
     double stroke();
     void readState(const LinkedSkill& linked);
     void subscribeAlarms();

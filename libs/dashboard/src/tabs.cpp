@@ -13,7 +13,7 @@ using client::ControlHandle;
 
 namespace {
 
-/// As which a tab is known to servers and to whoever is refused because of it.
+/// Name of a browser tab in server sessions and refusals.
 std::string nameOf(const std::string& tab, const Person& person) {
     constexpr std::size_t kShort = 4;
     return fmt::format("metier dashboard{}{}, tab {}", person.user().empty() ? "" : " of ",

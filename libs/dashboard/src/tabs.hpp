@@ -14,7 +14,7 @@
 
 namespace metier::dashboard {
 
-/// What a tab commands by: a session of its own with a server, and control of its controllers.
+/// Means by which a tab commands: a session of its own with a server, and control of controllers.
 ///
 /// Threading: any.
 class TabSession {
@@ -29,7 +29,8 @@ public:
     /// Takes control of a controller for a tab. Errors: locked, with the holder's name.
     Result<void> take(const LinkedController& controller, const std::string& tab,
                       const std::string& name);
-    /// Of the lease, for a start. Errors: locked, if it holds none, or does no longer.
+    /// Epoch of the lease, for a start.
+    /// Errors: locked, if it holds no lease, or does not hold it any more.
     Result<std::uint64_t> epochOf(const std::string& control) const;
     /// Whether nothing of what it took was lost.
     bool holdsAll() const;
@@ -47,7 +48,7 @@ private:
 /// Threading: any; take() and release() wait for servers.
 class Tabs {
 public:
-    /// What it is given must outlive this.
+    /// Both must outlive this.
     Tabs(Board& board, Watches& watches) : board_(board), watches_(watches) {}
 
     void open(const std::string& tab, const std::shared_ptr<Person>& person);
@@ -69,8 +70,8 @@ public:
 
 private:
     struct Tab {
-        std::shared_ptr<Person> person;  // with its log-in
-        // With whoever gives a command at this moment.
+        std::shared_ptr<Person> person;  // shared with their log-in
+        // Shared with the commands that use them at this moment.
         std::map<std::string, std::shared_ptr<TabSession>> sessions{};
     };
     Result<void> checkLocked(const std::string& tab, const Person& person) const;

@@ -9,7 +9,7 @@
 
 namespace metier::dashboard {
 
-/// Has the board send what changes all the time, 30 times a second while somebody looks.
+/// Makes the board send live values, 30 times a second while a tab is open.
 ///
 /// Threading: a thread of its own; run() from any.
 class Ticker {

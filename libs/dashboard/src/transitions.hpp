@@ -9,11 +9,12 @@
 
 namespace metier::dashboard {
 
-/// Has the board told of each transition of a skill, and of an alarm for one that nobody called.
-/// \param board must outlive what it is given to
+/// Makes a callback that reports each transition of a skill to the board, and raises an alarm for
+/// one that nobody asked for.
+/// \param board must outlive the callback
 client::AsyncSkill::OnTransition transitionsTo(Board& board, std::string key);
 
-/// What an event with the fields Message, Severity and Time tells; nothing if it is not one.
+/// Alarm in an event with the fields Message, Severity and Time; nothing for other events.
 std::optional<Alarm> alarmOf(const std::string& server, const opcua::EventNotice& notice);
 
 }  // namespace metier::dashboard

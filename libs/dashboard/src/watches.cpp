@@ -95,7 +95,7 @@ std::map<std::string, std::string> Watches::usedServers() const {
     std::map<std::string, std::string> used;
     for (const auto& watch : watches_) {
         const auto& user = watch->server();
-        // What the cell file says holds before the server was reached, too.
+        // Uses in the cell file are shown even before the server was reached.
         for (const auto& name : user.uses) {
             used.emplace(name, user.name);
         }

@@ -22,7 +22,7 @@ struct ReachedSkill {
 /// Threading: any.
 class Watches {
 public:
-    /// What it is given must outlive this.
+    /// All arguments must outlive this.
     Watches(Board& board, const Connector& connector,
             const std::vector<motion::RobotModel>& models);
 

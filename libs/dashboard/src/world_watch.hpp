@@ -13,7 +13,7 @@
 
 namespace metier::dashboard {
 
-/// Has the board told where the parts of a world of virtual controllers are, while somebody looks:
+/// Reports to the board where the parts of a world of virtual controllers are, while a tab is open:
 /// 30 times a second while one moves, else twice.
 ///
 /// Threading: a thread of its own; show() from any.
@@ -34,7 +34,7 @@ private:
     Board& board_;
     std::optional<link::TcpLink> link_;
     std::string received_;
-    nlohmann::json parts_;  // as they were told last
+    nlohmann::json parts_;  // parts as reported last
     std::mutex mutex_;
     std::condition_variable_any changed_;
     bool shown_ = false;

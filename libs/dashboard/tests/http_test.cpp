@@ -1,4 +1,4 @@
-// What the page's server says to requests of every kind, without any OPC UA server.
+// Answers of the page's server to requests of every kind, without any OPC UA server.
 #include <gmock/gmock.h>
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// How what servers tell becomes JSON, and what is read from requests.
+// Conversion of servers' data to JSON, and reading of requests.
 #include <gmock/gmock.h>
 
 #include <string>

@@ -11,7 +11,7 @@ namespace metier::dashboard {
 /// A peer that sends what it wants, byte by byte.
 class RawBrowser {
 public:
-    /// Throws if nobody listens.
+    /// Throws if no server listens.
     explicit RawBrowser(std::uint16_t port)
         : link_(link::TcpLink::connect("127.0.0.1", port, inTime()).value()) {}
 

@@ -48,7 +48,7 @@ protected:
         });
         port_ = server_.serve("127.0.0.1", 0).value();
     }
-    /// Ready once the tab of that number is gone.
+    /// Becomes ready once the tab of that number has ended.
     std::future<void> endOf(const std::string& tab) {
         const std::lock_guard lock(mutex_);
         return ended_[tab].get_future();

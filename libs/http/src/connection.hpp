@@ -20,17 +20,17 @@ public:
     /// \param socket stays the caller's
     Connection(int socket, const HttpLimits& limits);
 
-    /// Waits for the first byte of a request. \return false: none came in HttpLimits::idle_time,
-    /// or the peer has gone
+    /// Waits for the first byte of a request.
+    /// \return false: none came within HttpLimits::idle_time, or the peer has closed the connection
     bool awaitRequest();
-    /// From here on a new request counts against the limits.
+    /// Starts a request: its time and size count against the limits from now on.
     void beginRequest();
     /// Its head is complete; now its body counts.
     void beginBody();
     /// Whether a read failed: what comes next is no beginning of a request.
     bool isSpent() const noexcept { return spent_; }
 
-    // As httplib wants it. A read beyond a limit fails, as if the peer had gone.
+    // Interface of httplib. A read beyond a limit fails, as if the peer had closed the connection.
     bool is_readable() const override;
     /// Whether something can be sent within HttpLimits::send_time to a peer that is there.
     bool is_writable() const override;

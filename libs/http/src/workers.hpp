@@ -13,10 +13,10 @@
 
 namespace metier::http {
 
-/// A thread for each connection, as many as there are at the same time, up to a limit; beyond it
-/// the work is done at once by whoever brings it.
+/// A thread for each connection, up to a limit; beyond it the thread that calls enqueue() does the
+/// work itself.
 ///
-/// Threading: enqueue() and shutdown() of the one thread that accepts.
+/// Threading: enqueue() and shutdown() on the one thread that accepts connections.
 class Workers final : public httplib::TaskQueue {
 public:
     explicit Workers(std::size_t most) : most_(most) {}

@@ -22,7 +22,7 @@ constexpr UA_UInt32 kNothing = 100'001;
 constexpr UA_UInt32 kStart = 100'002;
 constexpr UA_UInt32 kFirstProgram = 200'000;
 constexpr UA_UInt32 kNodesOfProgram = 40;
-constexpr UA_UInt32 kMethods = 3;  // of each, then its parameters
+constexpr UA_UInt32 kMethods = 3;  // of each Program, then its parameters
 constexpr UA_UInt16 kSeverity = 300;
 
 UA_NodeId own(UA_UInt32 id) {

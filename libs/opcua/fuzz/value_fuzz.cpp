@@ -16,7 +16,7 @@ namespace {
 using namespace metier::opcua;
 using metier::UtcTime;
 
-/// `value` was read as a T: it can be told and read again.
+/// Checks a value that was read as a T: it can be printed and read again.
 template <ValueType T>
 void tryAs(const Value& value) {
     if (const auto read = value.as<T>()) {
@@ -54,7 +54,7 @@ void use(const Value& value) {
     }
 }
 
-/// What a message holds, as one of the stack's types; nothing if the bytes are none.
+/// Content of a message as one of the stack's types; nothing if it cannot be decoded.
 template <typename Native, typename Use>
 void decoded(const UA_ByteString& bytes, const UA_DataType& type, Use use_it) {
     Owned<Native> native(type);

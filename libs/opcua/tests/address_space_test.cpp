@@ -335,7 +335,7 @@ TEST_F(AddressSpaceTest, InstancesHaveTheMandatoryChildrenOfTheirType) {
               NodeId(2, "Cell.Program.CurrentState.Number"));
 }
 
-/// An ObjectType is made of a Program's; Start of two instances is told apart.
+/// An ObjectType is derived from a Program's; the handler of Start distinguishes two instances.
 TEST_F(AddressSpaceTest, SharedMethodsTellTheirObject) {
     const NodeId start = nodes_.find(ids::kProgramStateMachineType, {0, "Start"}).value();
     std::vector<NodeId> started;

@@ -37,7 +37,7 @@ enum Selected {
     kCertificate,
 };
 
-/// The audit events that a client hears of.
+/// The audit events that a client gets.
 class AuditEvents {
 public:
     explicit AuditEvents(Client& client, std::optional<NodeId> type = ids::kAuditEventType) {
@@ -124,7 +124,8 @@ TEST_F(AuditedServer, RaisesEventsOfLoginsAndPeersAndItsOwnActs) {
                 HasSubstr("ControlLost of Arm (ns=2;s=Arm) by the server: no heartbeat"));
 }
 
-// The stack sends an event to whoever subscribed; its content it reads as the subscriber may.
+// The stack sends an event to every subscriber; a subscriber that may not audit must read no
+// content.
 TEST_F(AuditedServer, HidesWhatEventsSayFromWhoMayNotAudit) {
     serveClosed();
     const auto engineer = connected("Engineer");

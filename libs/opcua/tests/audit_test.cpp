@@ -1,4 +1,4 @@
-// What the hook of a server is told of those who command it, and of those who may not.
+// Audit records that a server's hook gets of commands, and of denied ones.
 #include <gmock/gmock.h>
 
 #include "audited_server.hpp"

@@ -17,7 +17,7 @@
 
 namespace metier::opcua::testing {
 
-/// What the hook of a server was told, from its thread to the test's.
+/// Records that the hook of a server got, passed from its thread to the test's.
 class Records {
 public:
     std::function<void(const AuditRecord&)> hook() {
@@ -59,9 +59,8 @@ inline const NodeId kStart{2, "Arm.Start"};
 inline const NodeId kBeat{2, "Arm.Beat"};
 inline const NodeId kTell{2, "Arm.Tell"};
 
-/// With methods below an Arm: Start(What: BaseDataType), which refuses "refuse"; Beat(), which
-/// renews; Tell(), which tells.
-/// A server of the test, whose hook keeps what it was told.
+/// A server of the test whose hook keeps its records. It has methods below an Arm: Start(What:
+/// BaseDataType), which refuses "refuse"; Beat(), which renews; Tell(), which only reports.
 class AuditedServer : public ::testing::Test {
 protected:
     static constexpr const char* kServerUri = "urn:test:server";

@@ -38,7 +38,7 @@ public:
 
     std::string url() const { return url_; }
     std::uint16_t port() const { return port_; }
-    /// From here on it answers nothing and its connections stay open, until resume().
+    /// From now on it answers nothing and its connections stay open, until resume().
     void pause();
     void resume();
     /// Runs work in the server's thread and waits for it.

@@ -28,7 +28,7 @@ protected:
 
     ClientCalls calls;
     std::vector<StatusCode> outcomes;
-    bool sent = true;  // of the last
+    bool sent = true;  // of the last call
 };
 
 TEST_F(ClientCallsTest, HandsTheServiceResultOverOnce) {

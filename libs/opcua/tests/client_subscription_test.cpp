@@ -22,7 +22,7 @@ const std::vector<QualifiedName> kOfAnotherType{{0, "MethodId"}};
 const NodeId kTransitionEventType{0, 2311U};  // the events raised here are of a subtype
 const NodeId kSystemEventType{0, 2130U};
 
-/// What a subscriber heard, in order.
+/// Notifications that a subscriber got, in order.
 template <typename Notice>
 class Heard {
 public:

@@ -73,7 +73,7 @@ protected:
         EXPECT_EQ(client_.connect(server_->endpointUrl()), status::kGood);
     }
     ~EventEmitterTest() override {
-        client_.disconnect();  // first: a bare client waits 5 s for a server that is gone
+        client_.disconnect();  // first: a bare client waits 5 s for a server that has ended
         server_->stop();
     }
 

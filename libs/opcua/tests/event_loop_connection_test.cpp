@@ -63,7 +63,7 @@ private:
     int socket_;
 };
 
-/// Listens, and notes what it is told of every connection.
+/// Listens, and records the callbacks for every connection.
 class LoopConnections : public ::testing::Test {
 protected:
     struct Report {
@@ -149,7 +149,7 @@ protected:
     std::vector<ConnectionId> closed_;
     std::string heard_;
     std::function<void(ConnectionId)> on_message_;
-    std::optional<AsioEventLoop> loop_;  // last: its end is told to the members above
+    std::optional<AsioEventLoop> loop_;  // last: its end notifies the members above
 };
 
 TEST_F(LoopConnections, CarryBytesBothWaysAndEndOnce) {
@@ -183,7 +183,7 @@ TEST_F(LoopConnections, TellTheEndLaterWhenClosedFromTheirOwnCallback) {
     EXPECT_THAT(closed_, ElementsAre(opened_.front()));
 }
 
-// What somebody has to say may make events, which would be lost on who is no longer there.
+// The data of one peer may cause events, which would be lost on a peer that has left.
 TEST_F(LoopConnections, TellWhoHasLeftBeforeWhatOthersSay) {
     start();
     const auto port = listen();

@@ -15,7 +15,7 @@ std::size_t openFiles() {
     return static_cast<std::size_t>(std::distance(begin(files), end(files)));
 }
 
-/// A port nobody listens on: it was used a moment ago.
+/// A port on which nobody listens: it was used a moment ago.
 std::uint16_t freePort() {
     return TestServer().port();
 }

@@ -1,4 +1,4 @@
-// Who keeps his place among the connections of a server, and who loses it to others.
+// Connections that keep their place at a server, and strangers that lose it to others.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <netinet/in.h>

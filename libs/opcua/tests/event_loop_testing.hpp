@@ -46,7 +46,7 @@ public:
     TestServer(const TestServer&) = delete;
     TestServer& operator=(const TestServer&) = delete;
 
-    /// What UA_Server_run_startup returned.
+    /// Result of UA_Server_run_startup.
     UA_StatusCode started() const { return started_; }
     std::uint16_t port() const { return port_; }
     std::string url() const;
@@ -67,7 +67,7 @@ public:
     EventLoopStatistics statistics() {
         return inServer([this](UA_Server*) { return loop_->statistics(); });
     }
-    /// Who called `echo` last; on the server's thread.
+    /// Connection that called `echo` last; on the server's thread.
     ConnectionId lastCaller() const { return last_caller_; }
     /// On the server's thread: triggers an event and asks for publishing.
     void fire();
@@ -88,7 +88,7 @@ private:
     friend struct TestServerCallbacks;
 };
 
-/// How many Subscriptions the server holds, on its thread.
+/// Number of Subscriptions that the server holds, on its thread.
 std::size_t subscriptionCount(UA_Server* server);
 
 /// A bare open62541 client, run by the test's thread.
@@ -115,7 +115,7 @@ public:
         bool events = true;
     };
     UA_UInt32 subscribe(SubscriptionOptions options);
-    /// When each event notification arrived, in order.
+    /// Arrival times of the event notifications, in order.
     const std::vector<SteadyTime>& events() const { return events_; }
     std::size_t deleted() const { return deleted_; }
     /// Runs the client until `done`, at most kDeadline. \return whether it was

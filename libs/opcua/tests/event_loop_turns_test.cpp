@@ -92,7 +92,7 @@ TEST(FairQueue, WhoIsForgottenIsNotServed) {
     turns.forget(1);
     turns.forget(3);
     EXPECT_THAT(served(turns, 2), ElementsAre(2));
-    turns.forget(2);  // whose turn it was last
+    turns.forget(2);  // the connection that had the last turn
     turns.used(1ms);
     EXPECT_TRUE(turns.empty());
 }

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A D-Bus that nobody serves, until its end.
+/// A D-Bus address without a daemon, until its end.
 class NoBus {
 public:
     NoBus() {

@@ -1,4 +1,5 @@
-// A Subscription that outlives its session: the stack goes on to sample for it, for no session.
+// A Subscription that outlives its session: the stack continues to sample for it, without a
+// session.
 #include <gmock/gmock.h>
 
 #include <atomic>

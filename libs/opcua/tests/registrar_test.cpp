@@ -82,7 +82,7 @@ TEST(Registrar, AsksAgainUntilTheDiscoveryServerIsBack) {
         ASSERT_TRUE(desk.calls.popUntil(soon()));
         desk.open = true;
         ASSERT_TRUE(desk.calls.popUntil(soon()));
-        ASSERT_TRUE(desk.calls.popUntil(soon()));  // at least this one was asked once it was back
+        ASSERT_TRUE(desk.calls.popUntil(soon()));  // at least one call came once it was back
     }
     auto last = ServerRegistration::Presence::online;
     while (const auto call = desk.calls.popUntil(SteadyTime{})) {

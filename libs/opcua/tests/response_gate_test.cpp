@@ -61,7 +61,7 @@ TEST(ResponseGate, LetsMessagesPassThatGoOnInSeveralChunks) {
     EXPECT_TRUE(passes(message("\1\0\x7a\2"s, "MSGC") + message("", "MSGA")));
 }
 
-// What the stack takes for a response that it has to free, though it never filled it.
+// Messages that the stack takes for a response that it has to free, though it never filled it.
 TEST(ResponseGate, KeepsBackWhatDoesNotBeginWithANumericId) {
     EXPECT_FALSE(passes(opened(kNone) + message("")));
     EXPECT_FALSE(passes(message("\1\0\x7a"s)));

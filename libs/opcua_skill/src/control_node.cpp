@@ -35,7 +35,7 @@ Result<std::uint64_t> epochIn(Inputs inputs) {
     return inputs[0].as<std::uint64_t>();
 }
 
-/// What Heartbeat and ReleaseControl do with the epoch that they are given.
+/// Work of Heartbeat and ReleaseControl with the epoch in their argument.
 template <typename Work>
 opcua::MethodHandler withEpoch(Work work) {
     return [work](const CallContext& context, Inputs inputs) -> Result<std::vector<Value>> {

@@ -57,7 +57,7 @@ private:
     // Shared with the Programs of the controller.
     std::shared_ptr<skill::Control> control_;
     opcua::Server& server_;
-    std::shared_ptr<spdlog::logger> log_;  // with its other users, as spdlog does
+    std::shared_ptr<spdlog::logger> log_;  // shared with its other users, as spdlog does
     opcua::NodeId controller_;
     std::vector<std::unique_ptr<opcua::VariableSlot>> slots_;
 };

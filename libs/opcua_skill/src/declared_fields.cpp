@@ -26,7 +26,7 @@ Result<Reference> childOf(const AddressSpace& nodes, const NodeId& parent, std::
                : Result<Reference>(*found);
 }
 
-/// Where fields of one kind hang, and what stands for them in the type.
+/// Folder for fields of one kind, and their placeholder in the type.
 struct Folder {
     std::string_view name;
     std::string_view placeholder;

@@ -66,7 +66,7 @@ Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t 
     return foundOrAdded(nodes, spec);
 }
 
-/// Of the execution that came `back` before the latest.
+/// Adds the record of the execution that came `back` before the latest.
 Result<void> addRecord(AddressSpace& nodes, const NodeId& folder, const NodeId& type,
                        const skill::Program& program, std::size_t back) {
     opcua::ObjectSpec spec;

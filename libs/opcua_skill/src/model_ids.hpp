@@ -23,7 +23,7 @@ opcua::NodeId stateId(skill::State state);
 /// The transition's node in ProgramStateMachineType.
 opcua::NodeId transitionId(skill::TransitionNumber number);
 
-/// What a server's own namespaces make of the model.
+/// Ids of the model's nodes with the namespace indices of one server.
 struct ModelIds {
     std::uint16_t device = 0;
     std::uint16_t metier = 0;

@@ -133,7 +133,7 @@ std::optional<NodeRole> partRole(NodeKind kind, std::string_view below) {
     return NodeRole{kind, detailOf(found->part), 0};
 }
 
-/// Where the fields of one place hang, and what their nodes are for.
+/// Folder of the fields of one place, and the node_role of their nodes.
 struct FieldGroup {
     std::string_view folder;
     skill::Place place;
@@ -239,8 +239,8 @@ const LayoutNode* findNode(const SkillLayout& layout, std::string_view path) {
     return found == layout.end() ? nullptr : &*found;
 }
 
-/// Whether an instance may lack the node: it is declared as Optional, or hangs below such a one
-/// that the instance lacks, too.
+/// Whether an instance may lack the node: it is declared as Optional, or is below such a node that
+/// the instance lacks, too.
 bool isOptional(const SkillLayout& declared, const SkillLayout& instance, std::string_view path) {
     for (const auto* node = findNode(declared, path);
          node != nullptr && findNode(instance, node->path) == nullptr;

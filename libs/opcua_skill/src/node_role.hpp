@@ -11,7 +11,7 @@
 
 namespace metier::opcua_skill {
 
-/// What a node below a skill tells or takes.
+/// Meaning of a node below a skill.
 enum class NodeKind : std::uint8_t {
     method,  ///< detail: skill::Method
     check,
@@ -35,7 +35,7 @@ enum class NodeKind : std::uint8_t {
     diagnostic,  ///< detail: DiagnosticItem
     reason_text,
     execution_id,
-    steps,  ///< of a sequence
+    steps,  ///< step names of a sequence
     current_step,
     progress,
 };
@@ -69,14 +69,14 @@ struct NodeRole {
 
 /// A node of a layout that a skill uses.
 struct UsedNode {
-    std::size_t index = 0;  ///< in the layout
+    std::size_t index = 0;  ///< index in the layout
     NodeRole node_role;
 };
 
-/// The nodes that a skill of that description uses, in the order of the layout.
-/// \param declared what the type of an instance declares. Fields that it declares as Optional may
-/// be
-///                 missing: results, and parameters that nobody need give. Empty: none may be
+/// Assigns a skill's description to the nodes that it uses, in the order of the layout.
+/// \param declared what the type declares for an instance. Fields that it declares as Optional may
+///                 be missing: results, and parameters that no client must give. Empty: none may be
+///                 missing
 /// Errors: not_found, naming every other field that the layout lacks.
 Result<std::vector<UsedNode>> assignNodeRoles(const SkillLayout& layout,
                                               const skill::SkillDescription& description,

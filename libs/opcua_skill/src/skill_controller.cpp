@@ -45,7 +45,7 @@ Result<NodeId> addVariable(AddressSpace& nodes, const NodeId& parent,
     return nodes.addVariable(spec);
 }
 
-/// What the lease's interface declares, at the controller itself.
+/// Adds the nodes that the lease's interface declares to the controller itself.
 Result<void> addLease(AddressSpace& nodes, const NodeId& controller, const NodeId& interface) {
     METIER_ASSIGN(const auto declared, nodes.browse(interface, {opcua::ids::kHasComponent}));
     for (const auto& declaration : declared) {

@@ -23,7 +23,7 @@ const NodeId kHasDictionaryEntry{0, 17597U};
 
 constexpr std::string_view kUriHead = "urn:metier:dictionary:";
 
-/// What a task may ask for, and the types that do it.
+/// A term for a task, and the types for that task.
 struct Term {
     std::string_view name;
     std::string_view text;

@@ -87,7 +87,8 @@ bool isOf(std::string_view path, std::string_view node) {
     return path == node || (path.substr(0, node.size()) == node && path[node.size()] == '/');
 }
 
-/// A compact instance tells its diagnostic as one value only, and has the methods of Part 10.
+/// Removes nodes: a compact instance has its diagnostic as one value only, and only the methods of
+/// Part 10.
 void dropWhatCompactLacks(SkillLayout& layout) {
     for (auto& node : layout) {
         const bool dropped = node.path.substr(0, kDiagnosticParts.size()) == kDiagnosticParts ||

@@ -76,7 +76,7 @@ private:
 
     opcua::AddressSpace& nodes_;
     const ModelIds& ids_;
-    std::map<std::string, Plan> plans_;  ///< by type and fields
+    std::map<std::string, Plan> plans_;  ///< key: type and fields
 };
 
 }  // namespace metier::opcua_skill

@@ -19,7 +19,8 @@ struct LayoutNode {
 
     std::string path;             ///< names only: "ParameterSet/MaxVelocity/EURange"
     std::size_t parent = kSkill;  ///< index of the node above; kSkill: the skill object itself
-    opcua::Reference reference;   ///< from the node above; its target is the node described
+    /// Reference from the node above; its target is the node described
+    opcua::Reference reference;
     Rule rule = Rule::mandatory;
     /// A field that the skill declares by itself stands for the type's placeholder.
     bool declared_by_skill = false;
@@ -28,19 +29,20 @@ struct LayoutNode {
 /// All nodes below a skill; each comes after the one above it.
 using SkillLayout = std::vector<LayoutNode>;
 
-/// What an instance of `type` has: inherited and of interfaces, the nearest declaration first.
+/// Nodes of an instance of `type`: inherited ones and those of interfaces, the nearest declaration
+/// first.
 /// Errors: not_found.
-/// \param also what it has besides as an instance of that type, too; null: nothing
+/// \param also further type whose nodes the instance has, too; null: none
 Result<SkillLayout> layoutOfType(const opcua::AddressSpace& nodes, const opcua::NodeId& type,
                                  const opcua::NodeId& also = {});
 
-/// What `instance` has.
+/// Nodes of `instance`.
 /// Errors: not_found.
 Result<SkillLayout> layoutOfInstance(const opcua::AddressSpace& nodes,
                                      const opcua::NodeId& instance);
 
-/// Adds nodes for the fields of `description` that have none yet, in the place of the placeholders
-/// of the SequenceSkillType `type`.
+/// Adds nodes for those fields of `description` that have none yet, made from the placeholders of
+/// the SequenceSkillType `type`.
 /// Errors: not_found, if the type has no placeholder.
 Result<void> addDeclaredFields(const opcua::AddressSpace& nodes, const opcua::NodeId& type,
                                const skill::SkillDescription& description, SkillLayout& layout);

@@ -39,14 +39,14 @@ private:
     std::map<opcua::NodeId, Entry> last_;
 };
 
-/// What all skills of one server share.
+/// Data that all skills of one server share.
 struct SkillContext {
     ModelIds ids;
-    opcua::EventEmitter emitter;   ///< of transitions
-    opcua::EventEmitter stopping;  ///< of what begins to come to rest
+    opcua::EventEmitter emitter;   ///< for transitions
+    opcua::EventEmitter stopping;  ///< for executions that begin to come to rest
     Refusals refusals;
     opcua::Server& server;
-    std::shared_ptr<spdlog::logger> log;  // with its other users, as spdlog does
+    std::shared_ptr<spdlog::logger> log;  // shared with its other users, as spdlog does
 };
 
 /// Serves one Program at the nodes of one skill: values are read from the Program when a client
@@ -89,8 +89,7 @@ private:
     Result<std::vector<opcua::Value>> check(const opcua::Session& session,
                                             std::span<const opcua::Value> inputs);
     Result<std::vector<opcua::Value>> getExecution(std::span<const opcua::Value> inputs) const;
-    /// The skill's parameters by name from KeyValuePair[].
-    /// What StartWith and Check are called with.
+    /// Arguments of StartWith and Check: the parameters by name, from a KeyValuePair[].
     struct Given {
         skill::ValueMap parameters{};
         skill::ParentExecution parent{};
@@ -110,10 +109,10 @@ private:
     SkillContext& context_;
     std::unique_ptr<skill::Program> program_;
     NodeLimits limits_;
-    std::vector<opcua::VariableSlot> slots_;  ///< of all Variables; never moves
+    std::vector<opcua::VariableSlot> slots_;  ///< slots of all Variables; never move
 };
 
-/// Who calls, as Programs know it.
+/// Caller that a Program sees for a session.
 skill::Caller callerOf(const opcua::Session& session);
 
 /// The fields of the transition event, in the order of transitionFields().

@@ -7,7 +7,7 @@
 
 namespace metier::opcua_skill {
 
-/// That part of a field's value, as it travels; the empty value if there is none.
+/// That part of a field's value, in the form in which it is sent; the empty value if there is none.
 opcua::Value partOf(const skill::Value& value, Part part);
 
 /// The field's value with one part replaced; parts that were never set are zero.

@@ -46,7 +46,7 @@ bool isParameterPath(std::string_view path) {
     return path.substr(0, 13) == "ParameterSet/" || path.substr(0, 8) == "Options/";
 }
 
-/// What the type of an instance declares.
+/// Declarations of the type of an instance.
 Result<SkillLayout> declarationsOf(const AddressSpace& nodes, const NodeId& instance) {
     METIER_ASSIGN(const auto types, nodes.browse(instance, {opcua::ids::kHasTypeDefinition}));
     return types.empty() ? SkillLayout() : layoutOfType(nodes, types.front().target);

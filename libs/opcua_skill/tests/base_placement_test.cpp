@@ -62,14 +62,14 @@ protected:
     opcua::ThreeDFrame pose() {
         return client_->read(pose_).value().as<opcua::ThreeDFrame>().value();
     }
-    /// What the audit noted so far.
+    /// Audit records so far.
     std::vector<opcua::AuditRecord> acts() {
         std::vector<opcua::AuditRecord> noted;
         EXPECT_TRUE(server_->call([&] { noted = acts_; }));
         return noted;
     }
 
-    std::vector<opcua::AuditRecord> acts_;  // of the server's thread
+    std::vector<opcua::AuditRecord> acts_;  // used on the server's thread
     std::unique_ptr<opcua::Server> server_;
     std::unique_ptr<opcua::Client> client_;
     opcua::NodeId pose_;

@@ -106,7 +106,7 @@ TEST_F(Events, NeverComeBeforeTheStateThatTheyTell) {
 }
 
 TEST_F(Events, OfTheAuditTellWhatTheServerDidByItself) {
-    const auto messages = std::make_shared<Queue<std::string>>(100);  // with the callback
+    const auto messages = std::make_shared<Queue<std::string>>(100);  // shared with the callback
     const auto subscription = client_->subscribeEvents(
         opcua::ids::kServer,
         {.fields = {{{0, "Message"}}, {{0, "EventType"}}}, .of_type = opcua::ids::kAuditEventType},

@@ -29,7 +29,7 @@ private:
         return {};
     }
 
-    std::shared_ptr<Hand> hand_;  // with the skill and the test
+    std::shared_ptr<Hand> hand_;  // shared with the skill and the test
 };
 
 skill::Field field(std::string name, skill::ValueType type, skill::Unit unit,

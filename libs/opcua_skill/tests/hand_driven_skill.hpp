@@ -18,12 +18,12 @@ class Hand {
 public:
     /// The execution that runs, once it was started.
     skill::ExecutionHandle execution() const;
-    /// What the skill was last started with.
+    /// Parameters of the skill's last start.
     skill::ValueMap snapshot() const;
     /// Whether the work is asked to `what` ("start", "suspend", ...), or the skill to "reset",
-    /// within 5 s; each is told once.
+    /// within 5 s; each request is returned once.
     bool await(const std::string& what);
-    /// From now on Start, or Reset, is refused with this.
+    /// From now on Start, or Reset, is refused with this error.
     void refuseStart(Error error);
     void refuseReset(Error error);
     void allowReset();
@@ -55,7 +55,7 @@ public:
 
 private:
     skill::SkillDescription description_;
-    std::shared_ptr<Hand> hand_;  // with the test
+    std::shared_ptr<Hand> hand_;  // shared with the test
 };
 
 /// JointPtpMoveSkill of an arm with two axes.

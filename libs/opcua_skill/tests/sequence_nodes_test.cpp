@@ -70,7 +70,7 @@ TEST_F(SequenceNodes, TellStepProgressExecutionAndResult) {
     TransitionWatch watch(*client, pick.id);
     execution.step("grasp");
     execution.progress(0.5);
-    // What was posted before has been done once the server has answered.
+    // Work that was posted before is done once the server has answered.
     ASSERT_TRUE(server().call([] {}));
     EXPECT_EQ(readAs<std::string>(*client, pick, "CurrentStep"), "grasp");
     EXPECT_EQ(readAs<double>(*client, pick, "Progress"), 0.5);

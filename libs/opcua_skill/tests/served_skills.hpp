@@ -20,7 +20,7 @@ namespace metier::opcua_skill::testing {
 /// The transition events of one notifier, in order.
 class TransitionWatch {
 public:
-    /// What one event tells; the fields of model.md, section 2.
+    /// Content of one event; the fields of model.md, section 2.
     struct Seen {
         opcua::NodeId event_type;
         opcua::NodeId source;

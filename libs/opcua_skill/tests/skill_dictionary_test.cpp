@@ -1,4 +1,4 @@
-// What skill types are for, as any client reads it.
+// NodeRoles of skill types, as any client reads them.
 #include "metier/opcua_skill/skill_dictionary.hpp"
 
 #include <gmock/gmock.h>

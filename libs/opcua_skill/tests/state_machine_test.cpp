@@ -41,7 +41,7 @@ protected:
         ASSERT_EQ(call("Halt"), "Good");
         ASSERT_EQ(watch_->nextName(), "ReadyToHalted");
     }
-    /// What each method answers in the present state, which must not change by it.
+    /// Answers of the methods in the present state, which must not change by them.
     std::string refusals(std::initializer_list<const char*> methods) {
         std::string answers;
         for (const char* method : methods) {

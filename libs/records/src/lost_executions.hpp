@@ -9,9 +9,9 @@ namespace metier::records {
 /// Opening of the store by a server's recorder.
 enum class Opening { first, again };
 
-/// Shows all others who open the store that the server is there, as Database::attend() does. The
-/// first time, closes what a server of that name left under way when it died, unless another one of
-/// that name is there.
+/// Shows all others who open the store that the server is running, as Database::attend() does. The
+/// first time, closes the executions that a server of that name left under way when it died, unless
+/// another server of that name is running.
 Result<Presence> attend(Database& database, const std::string& server, Opening opening);
 
 /// Closes what servers left under way that are there no longer.

@@ -30,7 +30,7 @@ struct KeyedSample {
 struct Batch {
     std::deque<Message> messages{};
     std::deque<KeyedSample> samples{};
-    std::size_t bytes = 0;  ///< of the messages
+    std::size_t bytes = 0;  ///< total size of the messages
 
     bool isEmpty() const noexcept { return messages.empty() && samples.empty(); }
 };

@@ -254,7 +254,7 @@ Result<Presence> PostgresDatabase::attend(const std::string& server) {
 
 Result<bool> PostgresDatabase::isAttendedByOthers(const std::string& server) {
     const auto hash = static_cast<std::int32_t>(stableHash(server));
-    // A lock that excludes all others is had by whoever is alone, and given back at once.
+    // An exclusive lock can be taken only if no other session holds it; it is given back at once.
     return number(fmt::format("SELECT CASE WHEN pg_try_advisory_lock({0}, {1}) THEN "
                               "pg_advisory_unlock({0}, {1}) ELSE false END::int",
                               kServerLocks, hash))

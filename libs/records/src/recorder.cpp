@@ -35,8 +35,8 @@ std::uint64_t sumOf(const Dropped& dropped) {
     return dropped.executions + dropped.events + dropped.samples;
 }
 
-/// Lets robots come first where every core is busy: the writer has its share of the time, and takes
-/// it from nobody who runs.
+/// Makes this thread wait longer for a core, so that robots come first where every core is busy:
+/// the writer keeps its share of the time, but does not interrupt a running thread.
 void yieldToOthers() {
     // For this thread alone. Should the system refuse it, the writer is one thread among others.
     const sched_param no_priority{};
@@ -50,8 +50,8 @@ std::string lossText(const Dropped& d) {
 
 }  // namespace
 
-/// Queue of a recorder, the thread that writes, and the thread that reports how that goes, also
-/// while the first one hangs in a call to the disk.
+/// Queue of a recorder, the thread that writes, and the thread that reports its write_state, even while
+/// the first one hangs in a call to the disk.
 class Recorder::Impl {
 public:
     explicit Impl(Options options);
@@ -85,7 +85,7 @@ private:
 
     const Options options_;
 
-    mutable std::mutex mutex_;  // for what follows, until the line
+    mutable std::mutex mutex_;  // guards all that follows, until the line
     std::condition_variable_any changed_;
     Batch waiting_;
     std::size_t taken_ = 0;        // messages that the writer has and are not written yet
@@ -96,7 +96,7 @@ private:
     std::uint64_t answered_ = 0;  // flushes
     std::uint64_t written_ = 0;
     std::optional<SteadyTime> unwritten_since_;  // begin of the first round since one went well
-    std::string error_;  // of the last round; empty: it went well, or others were in the way
+    std::string error_;  // of the last round; empty: it succeeded, or others held the lock
     WriteState reported_ = WriteState::writing;
     std::uint64_t reported_loss_ = 0;
     // ---- used by the writer's thread alone
@@ -246,7 +246,8 @@ Result<void> Recorder::Impl::writeRound() {
         done = trim();
     }
     if (!done && done.error().code != Errc::timeout) {
-        database_.reset();  // after a timeout it is as good as before, and shows that this is there
+        // Not after a timeout: the store still works, and keeps showing that this server is there.
+        database_.reset();
         trimming_.reset();
     }
     return done;
@@ -277,7 +278,7 @@ Result<void> Recorder::Impl::openStore() {
     return {};
 }
 
-/// If others are in the way nothing is lost: it goes on in the next round.
+/// Trims the store. If others hold the lock nothing is lost: it goes on in the next round.
 Result<void> Recorder::Impl::trim() {
     auto done = trimPart();
     return !done && done.error().code == Errc::timeout ? Result<void>() : done;

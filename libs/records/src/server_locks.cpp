@@ -13,7 +13,7 @@ namespace metier::records {
 namespace {
 
 constexpr mode_t kOwnerOnly = 0600;
-constexpr int kBits = 62;  // of an off_t
+constexpr int kBits = 62;  // number of bits used of an off_t
 
 /// The byte of a server; the file stays empty.
 struct flock rangeOf(const std::string& server, short type) {

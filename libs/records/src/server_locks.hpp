@@ -14,7 +14,7 @@ namespace metier::records {
 /// Threading: one thread at a time.
 class ServerLocks {
 public:
-    /// The file is made, for its owner alone. Shared by whoever holds the names.
+    /// Creates the file, for its owner alone. Shared by the holders of names.
     /// Errors: resource_unavailable.
     static Result<std::shared_ptr<ServerLocks>> open(const std::string& file);
     /// Frees what it holds.

@@ -24,8 +24,8 @@ constexpr Dialect kDialect{
         "SELECT (page_count - freelist_count) * page_size FROM pragma_page_count(), "
         "pragma_freelist_count(), pragma_page_size()",
     .shrink = "PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE)"};
-/// Longest wait for others that write; only ever on a thread that may wait. A recorder tries
-/// again; whoever reads waits for nothing but the last one who closes a file.
+/// Longest wait for others that write; only on a thread that may wait. A recorder tries again; a
+/// reader waits only for the last user, while that closes a file.
 constexpr std::chrono::milliseconds kLongestWrite{2'000};
 constexpr std::chrono::milliseconds kLongestRead{10'000};
 /// Statements that are kept; lists make many that are used once.
@@ -67,7 +67,8 @@ std::string encoded(std::string_view path) {
     return text;
 }
 
-/// SQLite counts what it allocates under a lock, which nobody asks for; before its first use.
+/// Turns off SQLite's counts of its memory, which need a lock and are not used. Call it before its
+/// first use.
 void withoutMemoryCounts() {
     static std::once_flag once;
     std::call_once(once, [] { sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0); });
@@ -174,8 +175,8 @@ Result<void> SqliteDatabase::connect(Store::Access access) {
     const bool read_only_folder =
         access == Store::Access::read &&
         ::access(fs::absolute(name_, none).parent_path().c_str(), W_OK) != 0;
-    // A reader, too, needs the files beside, and in a folder that it cannot write they are there
-    // only while somebody writes. Without them nobody does.
+    // A reader needs the files beside it, too. In a folder that it cannot write they exist only
+    // while a server writes. Without them nobody writes.
     if (read_only_folder && !fs::exists(name_ + "-wal", none)) {
         uri += "?immutable=1";
     }

@@ -9,15 +9,15 @@
 
 namespace metier::records {
 
-/// Longest JSON or other text that nobody searches [byte].
+/// Longest JSON or other text that is never searched [byte].
 inline constexpr std::size_t kLongestText = 1'000'000;
 /// Longest name of which an index has eight together; PostgreSQL takes 2704 byte [byte].
 inline constexpr std::size_t kLongestName = 300;
 /// Longest id or reason's text, which an index has alone [byte].
 inline constexpr std::size_t kLongestKey = 2'000;
 
-/// Well-formed UTF-8 without NUL, as both databases take it: what does not fit becomes U+FFFD, and
-/// what is beyond `longest` is cut off.
+/// Makes text fit for both databases: well-formed UTF-8 without NUL. Bytes that do not fit become
+/// U+FFFD; text beyond `longest` is cut off.
 std::string storable(std::string_view text, std::size_t longest = kLongestText);
 
 /// Replaces a text by what storable() makes of it.

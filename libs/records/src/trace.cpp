@@ -22,7 +22,8 @@ class Trace {
 public:
     Trace(Store& store, UtcTime origin) : store_(store), origin_(toMicroseconds(origin)) {}
 
-    /// With all that it started. \param parent whose arrow leads to it; nullptr: nobody's
+    /// Adds an execution with all that it started.
+    /// \param parent start of the arrow to it; nullptr: no arrow
     Result<void> add(const ExecutionRow& execution, const ExecutionRow* parent);
     ordered_json events() && { return std::move(events_); }
 

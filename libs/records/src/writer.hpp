@@ -40,7 +40,7 @@ private:
         ExecutionRow execution{};
         std::int64_t parts = 0;
         std::size_t events_kept = 0;
-        std::vector<Event> events{};  // that are not written yet
+        std::vector<Event> events{};  // not written yet
         Bytes samples{};              // as well
         bool row_changed = true;
         bool changed = false;

@@ -32,7 +32,7 @@ TEST_P(ExportedStore, IsWholeAlthoughNothingIsInTheFileOfTheStoreYet) {
     recorder->transition(key, {.time = at(1), .from = "Ready", .to = "Running"});
     recorder->sample(key, sampleAt(0.5, 1.5));
     recorder->end(key, halted(at(2), "axis 1"));
-    constexpr int kMore = 1'100;  // than are copied at once
+    constexpr int kMore = 1'100;  // more than are copied at once
     for (int i = 0; i < kMore; ++i) {
         recordOne(*recorder, moveOf("n-" + std::to_string(i), at(i)), finished(at(i + 1)));
     }

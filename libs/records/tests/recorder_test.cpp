@@ -1,4 +1,4 @@
-// The recorder while its store is slow, full, away or somebody else's.
+// The recorder while its store is slow, full, away or in use by others.
 #include "metier/records/recorder.hpp"
 
 #include <sched.h>
@@ -147,7 +147,7 @@ TEST_F(TroubledRecorder, DelaysNobodyWhileTheDiskHangsAndDropsTheOldestSamples) 
                                    .reason = {},
                                    .reason_text = {}});
         EXPECT_EQ(alarms_.await(0).write_state, WriteState::failing);
-        // The file is locked until the end of this block: nobody may wait for it.
+        // The file is locked until the end of this block: no call may wait for it.
         for (int i = 0; i < kSamples; ++i) {
             recorder->sample(key, sampleAt(i, i));
         }

@@ -17,7 +17,7 @@ namespace {
 using namespace metier::records;
 using namespace std::chrono_literals;
 
-/// Between two executions of a server that goes on for ever, as of a fast skill.
+/// Pause between two executions of a server that runs for ever, as of a fast skill.
 constexpr auto kPause = 5ms;
 
 void show(const std::string& line) {

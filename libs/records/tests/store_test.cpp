@@ -200,7 +200,7 @@ TEST_P(EitherStore, FindsChildrenOnAnyServer) {
     own.parent = "p";
     recordOne(*pick, own, finished(at(4'000)));
     auto of_another = moveOf("x/1");
-    of_another.parent = "p";  // of its own server, which is not that of p
+    of_another.parent = "p";  // an execution of its own server, which is not that of p
     recordOne(*ur5, of_another, finished(at(4'000)));
     ASSERT_TRUE(pick->flush(soon()) && ur5->flush(soon()));
 

@@ -125,7 +125,7 @@ void TemporaryPostgres::start() {
 }
 
 void TemporaryPostgres::kill() {
-    server_->signal(SIGQUIT);  // no shutdown: what was not committed is gone
+    server_->signal(SIGQUIT);  // no shutdown: data that was not committed is lost
     server_->waitUntil(soon());
     server_.reset();
 }

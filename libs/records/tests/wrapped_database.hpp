@@ -34,7 +34,7 @@ private:
     Database& database_;
 };
 
-/// Commits and does not hear that it did, once.
+/// Commits, but reports a failure, once.
 class DeafDatabase final : public WrappedDatabase {
 public:
     using WrappedDatabase::WrappedDatabase;
@@ -48,8 +48,8 @@ private:
     bool heard_ = true;
 };
 
-/// Is changed by somebody else right after the first look at it, unless a transaction that
-/// writes keeps others out.
+/// A database that another writer changes right after the first look at it, unless a transaction
+/// that writes keeps others out.
 class RacedDatabase final : public WrappedDatabase {
 public:
     RacedDatabase(Database& database, std::function<void()> somebody)

@@ -31,7 +31,7 @@ ChildProcess writer(const std::string& url, const std::string& server, int count
     return ChildProcess::start({METIER_RECORDS_WRITER, url, server, std::to_string(count)}).value();
 }
 
-/// When it showed each of its executions, as far as it does until `lines` of them.
+/// Times at which it showed each of its executions, up to `lines` of them.
 std::map<std::string, UtcTime> shown(ChildProcess& writer, int lines) {
     std::map<std::string, UtcTime> times;
     while (static_cast<int>(times.size()) < lines) {
@@ -58,7 +58,7 @@ TEST(KilledServer, LosesAtMostTheLastSecondOfItsRecords) {
     dying.signal(SIGKILL);
     const auto killed = std::chrono::system_clock::now();
     ASSERT_EQ(dying.waitUntil(soon()), 128 + SIGKILL);
-    times.merge(shown(dying, 1'000'000));  // what was still on its way here
+    times.merge(shown(dying, 1'000'000));  // lines that were still on their way
     const auto bound = 1s + 3 * lateness.worst();
     const auto store = Store::open(file).value();
     std::size_t kept = 0;

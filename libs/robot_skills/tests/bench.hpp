@@ -21,7 +21,7 @@ inline motion::RobotModel modelOf(const std::string& robot) {
     return motion::RobotModel::load(std::string(METIER_MODELS_DIR) + "/" + robot + ".toml").value();
 }
 
-/// Notes the states that a Program goes through.
+/// Records the states of a Program.
 class States final : public skill::ProgramObserver {
 public:
     void onTransition(const skill::TransitionEvent& event) override {
@@ -36,7 +36,7 @@ public:
 };
 
 using Change = std::function<void(joint_simulator::JointSimulatorOptions&)>;
-/// What else there is of the simulated arm.
+/// Further interfaces of the simulated arm.
 using MakeDevices =
     std::function<ArmDevices(joint_simulator::JointSimulator&, const motion::RobotModel&)>;
 

@@ -1,5 +1,5 @@
-// Who runs a move of an arm whose controller plans, too: the controller where its motion is the one
-// that was asked for, else metier's set-points. A client sees no difference.
+// Choice of the planner for a move of an arm whose controller plans, too: the controller if its
+// motion is the one that was asked for, else metier's set-points. A client sees no difference.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -36,7 +36,7 @@ protected:
     skill::Program& line() { return bench.program(kCartesianLinear); }
     bool startedUp() {
         const bool started = bench.start(kCartesianLinear, kUp).has_value();
-        bench.steps(150);  // of 1 ms: near the middle
+        bench.steps(150);  // steps of 1 ms: near the middle
         return started && line().state() == State::running;
     }
 

@@ -110,7 +110,7 @@ TEST_P(StoppedMoveOverAStreamOf, StandsAPlayOutDelayLaterIfItIsSuspendedInItsSto
     expectTheSameMotionLater(0.5, [&](MotionRun& execution) { execution.stopIn(Seconds(length)); });
 }
 
-/// How far a joint position is from the straight line of a PTP, in the axis that is farthest off.
+/// Distance of a joint position from the straight line of a PTP, of the axis that is farthest off.
 double offLine(const motion::Trajectory& line, const JointVector& q) {
     const auto from = line.start();
     const auto to = line.end();
@@ -140,7 +140,7 @@ protected:
         const double speed = std::abs(played_.back()[0] - played_[played_.size() - 2][0]) / cycle_;
         const double needed = speed / limits.acceleration + limits.acceleration / limits.jerk;
         auto before = bench_.commanded();
-        double moved = 0.0;  // until it moved last [s]
+        double moved = 0.0;  // time of its last movement [s]
         for (double time = cycle_; program_.state() == State::running; time += cycle_) {
             bench_.step();
             const auto now = bench_.commanded();

@@ -58,7 +58,7 @@ TEST_F(Stream, FollowsItsClientAFewCyclesLater) {
     for (int i = 0; i < 250; ++i) {
         streamSine(1);
         if (i > 5) {
-            const double lag = 0.3 * std::numbers::pi * 0.008 * 6;  // of 6 cycles at the top speed
+            const double lag = 0.3 * std::numbers::pi * 0.008 * 6;  // 6 cycles at the top speed
             ASSERT_NEAR(bench.commanded()[0], sine(i), lag);
         }
     }

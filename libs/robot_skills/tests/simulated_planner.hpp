@@ -18,13 +18,14 @@ namespace metier::robot_skills {
 /// Stands for the planner of a controller: plans by itself and moves a simulated arm.
 class SimulatedPlanner final : public device::MotionPlanner {
 public:
-    /// How it behaves from now on.
+    /// Settings of its behaviour from now on.
     struct Behaviour {
         std::optional<Error> refuses{};      ///< the next motions
         std::optional<double> contact_at{};  ///< part of the path after which the force is there
         std::array<double, 3> force{};       ///< of the contact, in flange axes [N]
         double misses_by = 0.0;              ///< axis 1 ends so far from the target [rad]
-        bool stops_by_itself = false;        ///< in the middle, as by hand at the panel
+        /// In the middle, as when stopped by hand at the panel
+        bool stops_by_itself = false;
     };
 
     SimulatedPlanner(joint_simulator::JointSimulator& arm, const motion::RobotModel& model)

@@ -20,8 +20,8 @@ using ::testing::HasSubstr;
 
 constexpr auto kLimit = 250ms;
 
-/// Watches the arm of a bench. The owner's thread is the test: it stalls when time goes on without
-/// it. The watchdog's thread is a real one, which looks at this clock.
+/// Watches the arm of a bench. The owner's thread is the test: it stalls when the time moves on
+/// without it. The watchdog's thread is a real one, which reads this clock.
 class Watched {
 public:
     explicit Watched(Bench& bench) : Watched(bench, [&bench] { bench.arm().stop(); }) {}
@@ -72,7 +72,7 @@ public:
         return stopped_.get_future().wait_for(60s) == std::future_status::ready;
     }
 
-    /// The arm goes on without the owner's thread, until it rests.
+    /// Moves the arm on without the owner's thread, until it rests.
     void armRests() {
         for (int i = 0; i < 1000 && !bench_.arm().state().standstill; ++i) {
             bench_.arm().step();

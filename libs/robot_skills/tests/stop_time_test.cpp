@@ -30,7 +30,7 @@ JointMoveParameters randomTurn(std::mt19937& random, std::size_t axes) {
     return parameters;
 }
 
-/// From the last time at which the motion is about as fast as ever to its end [s].
+/// Time from the last moment at which the motion is about as fast as ever to its end [s].
 double brakingOf(const Trajectory& trajectory) {
     constexpr int count = 50;
     std::vector<double> speeds;

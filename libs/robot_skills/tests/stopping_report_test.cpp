@@ -1,4 +1,4 @@
-// How soon an arm would stand is told before, and kept.
+// The time in which an arm would stand is published before a stop, and is kept.
 #include "metier/robot_skills/stopping_report.hpp"
 
 #include <gmock/gmock.h>

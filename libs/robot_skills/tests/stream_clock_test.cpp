@@ -1,4 +1,4 @@
-// A client whose clock steps, or tells no time; what the stream's report shows of it.
+// A client whose clock steps, or that sends no times; the figures of the stream's report.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -58,7 +58,7 @@ protected:
             bench_.step();
         }
     }
-    /// How far the arm is behind the sine in time [s], 0.25 s to 0.75 s after its begin.
+    /// Delay of the arm behind the sine [s], 0.25 s to 0.75 s after its begin.
     double behind() const {
         const double angle = (bench_.commanded()[0] - home_[0]) / 0.3;
         return 0.008 * (cycle_ - 1) - std::acos(1 - angle) / std::numbers::pi;

@@ -17,7 +17,7 @@ using skill::Value;
 using ::testing::HasSubstr;
 
 constexpr std::chrono::milliseconds kCycle{8};
-// What fading in of the first cycles of a sine leaves, and rounding [rad].
+// Largest error [rad] by the fading in of the first cycles of a sine, and by rounding.
 constexpr double kExact = 1e-6;
 
 /// A stream of axis 1 of a UR5 that is played after `delay` [s].

@@ -9,7 +9,7 @@ namespace metier::server {
 namespace {
 
 std::filesystem::path variable(const char* name) {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody changes the environment
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): the environment never changes
     const char* value = std::getenv(name);
     return value == nullptr ? "" : value;
 }

@@ -26,7 +26,7 @@ public:
     Result<void> resetFault() override { return {}; }
     device::Registration onSafetyChange(SafetyCallback callback) override;
 
-    /// Whether somebody waits for changes of the safety state.
+    /// Whether there is a listener for changes of the safety state.
     bool isWatched() const;
     /// Changes the safety state, and says so.
     void become(device::SafetyState safety, const std::string& why = "");
@@ -63,9 +63,9 @@ private:
 /// process has at a time, by its setting "port".
 std::vector<device::Driver> fakeDrivers();
 
-/// What the driver "gripper" or "locked" was asked for the last time.
+/// Last request to the driver "gripper" or "locked".
 const device::OpenRequest& lastRequest();
-/// The gripper that it opened, while somebody has it.
+/// The gripper that it opened, as long as it is in use.
 std::shared_ptr<FakeGripper> lastGripper();
 
 }  // namespace metier::server::testing

@@ -14,7 +14,7 @@ const std::vector<double> kAway{0.2, -1.4, 0.3, -1.4, 0.1, 0.1};
 
 class MoveComponentOfACell : public Lab {
 protected:
-    /// A component that takes whatever robot the discovery server tells of.
+    /// A component that takes any robot that the discovery server lists.
     static cell::ServerConfig seeking(const DiscoveryServer& discovery, double reach = 0) {
         cell::MoveComponent move;
         move.discover = true;

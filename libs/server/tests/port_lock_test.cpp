@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A port of loopback that somebody listens at, or nobody does any more.
+/// A port of loopback with a listener, or with a listener that has ended.
 class Port {
 public:
     Port() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {

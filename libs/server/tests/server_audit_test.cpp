@@ -40,7 +40,8 @@ TEST_F(AuditedServer, ShowsTheNewestChainValueOfItsLog) {
     server = opcua::Server::create(std::move(made)).value();
     ASSERT_TRUE(audit->follow(*server, std::make_shared<opcua_skill::ServerExecutor>(*server)));
     ASSERT_TRUE(server->start());
-    const auto client = opcua::Client::connect(server->endpointUrl()).value();  // which is noted
+    // This is recorded
+    const auto client = opcua::Client::connect(server->endpointUrl()).value();
     const auto metier = client->namespaceIndex(opcua_skill::kMetierUri).value();
     const auto anchor = client->translate(opcua::ids::kServer, {{metier, kAuditAnchor}}).value();
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);

@@ -42,7 +42,7 @@ SurveyedServer server(const std::string& name, std::vector<SurveyedSkill> skills
     return {{"opc.tcp://" + name, name, "test"}, std::move(skills)};
 }
 
-/// Of the first skill of the first server.
+/// Figures of the first skill of the first server.
 KnownFigures figures(const std::vector<SurveyedServer>& servers) {
     return figuresOf(servers, 0, 0);
 }

@@ -1,4 +1,4 @@
-// What a Program costs by itself: run with --benchmark_min_time=1.
+// Cost of a Program by itself: run with --benchmark_min_time=1.
 #include <benchmark/benchmark.h>
 
 #include <functional>

@@ -28,7 +28,7 @@ Result<void> refusedBySystem(const std::filesystem::path& file, std::string_view
 
 struct Lines {
     std::unordered_set<std::string> whole;
-    std::uintmax_t size = 0;  ///< of the whole lines [byte]
+    std::uintmax_t size = 0;  ///< size of the complete lines [byte]
 };
 
 /// A line without end was cut off by a crash: its execution has not begun.

@@ -36,7 +36,7 @@ private:
 
     std::filesystem::path file_;
     int descriptor_ = -1;
-    std::uintmax_t size_ = 0;  ///< of the file [byte]
+    std::uintmax_t size_ = 0;  ///< size of the file [byte]
 };
 
 }  // namespace metier::skill

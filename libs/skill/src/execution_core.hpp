@@ -10,7 +10,7 @@
 
 namespace metier::skill {
 
-/// What the handles of one execution share with its Program.
+/// Data that the handles of one execution share with its Program.
 struct ExecutionCore {
     ExecutionCore(const std::shared_ptr<Executor>& owner, std::string execution_id,
                   ExecutionSink& program)
@@ -26,8 +26,8 @@ struct ExecutionCore {
     ExecutionSink* sink;
 };
 
-/// Has `tell` called with the sink on the owner's thread, if the execution still goes on then. Any
-/// thread.
+/// Posts `tell` to the owner's thread; there it is called with the sink if the execution still goes
+/// on. Any thread.
 template <typename Tell>
 void post(const std::shared_ptr<ExecutionCore>& core, Tell tell) {
     const auto executor = core ? core->executor.lock() : nullptr;

@@ -16,9 +16,10 @@
 
 namespace metier::skill {
 
-/// Thread that writes names to their file, so that nobody else waits for the disk.
+/// Thread that writes names to their file, so that no other thread waits for the disk.
 ///
-/// Threading: any. Its end waits for the write that is under way, and for what is left.
+/// Threading: any. The destructor waits for the write that is under way, and for those in the
+/// queue.
 class NameWriter {
 public:
     struct Job {
@@ -46,7 +47,7 @@ private:
     std::condition_variable_any changed_;
     std::deque<Job> waiting_;
     std::optional<SteadyTime> writing_since_;
-    bool begins_anew_ = false;  ///< of the thread: the file has still to
+    bool begins_anew_ = false;  ///< used by the thread only: the file must be begun anew
     std::jthread thread_;       // last: it uses everything above
 };
 

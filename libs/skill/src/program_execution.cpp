@@ -110,7 +110,7 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
     return {};
 }
 
-/// Has the name written. The work starts when it is there: an execution of which nobody knows after
+/// Has the name written. The work starts once it is on disk: so an execution that is unknown after
 /// the death of the process has moved nothing.
 Result<void> Program::noteName(const std::shared_ptr<ExecutionCore>& core) {
     const auto noted =
@@ -468,7 +468,8 @@ void Program::actOnOwnerLoss(OwnerLossAction action, std::string text) {
             break;
         }
     }
-    owner_session_.clear();  // also if it goes on: the end of the session is no second loss
+    // Even if it goes on, so that the end of the session is not a second loss.
+    owner_session_.clear();
     if (action == OwnerLossAction::keep_going) {
         return;
     }

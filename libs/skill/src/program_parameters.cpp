@@ -93,7 +93,7 @@ void Program::configurationTimedOut() {
     }
 }
 
-/// Ready stays, but nobody has configured it any more.
+/// Ends the binding to a session; the state stays Ready.
 void Program::endConfiguration() {
     releaseParameters();
     setSubState(SubState::ready_not_configured);

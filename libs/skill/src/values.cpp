@@ -146,7 +146,7 @@ std::optional<Value> typedFrom(const json& value, ValueType type) {
     return std::nullopt;
 }
 
-/// What was given, cut: it came from somebody else.
+/// The given value, cut for a message: it came from a client.
 std::string shortText(const json& value) {
     constexpr std::size_t kMost = 60;
     auto text = value.dump(-1, ' ', true, json::error_handler_t::replace);

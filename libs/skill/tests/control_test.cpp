@@ -73,7 +73,7 @@ TEST_F(Controlled, TellsNoListenerThatHasDetachedItself) {
     EXPECT_EQ(losses.told.size(), 1U);
 }
 
-// Memory that is given back is overwritten, so that whoever still calls something there fails.
+// Memory that is given back is overwritten, so that a call of a destroyed object fails.
 TEST_F(Controlled, TellsNoProgramThatIsGone) {
     ::mallopt(M_PERTURB, 0xA5);
     const auto shared = std::make_shared<Control>(executor, executor->clock());

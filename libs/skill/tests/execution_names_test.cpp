@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A file of the test's own, gone after it.
+/// A file of the test's own, which is removed after it.
 class KeptNames : public ::testing::Test {
 protected:
     KeptNames() { std::filesystem::remove_all(folder_); }

@@ -1,4 +1,4 @@
-// A server whose disk hangs, or is full: nothing starts unnoted, and nobody waits.
+// A server whose disk hangs, or is full: no execution starts without a record, and no call waits.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -94,7 +94,7 @@ protected:
     Result<std::string> start(const std::string& name) {
         return bench_.program->startWith(kAlice, {.execution_id = name});
     }
-    /// Lets the disk go on, and the Program hear of it.
+    /// Lets the disk continue, and runs the Program's notification.
     void letGo() {
         const auto posts = bench_.executor->posts();
         disk_.letGo();

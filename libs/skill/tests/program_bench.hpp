@@ -16,9 +16,9 @@ namespace metier::skill::testing {
 inline const Caller kAlice{"alice", "Alice's client", "alice"};
 inline const Caller kBob{"bob", "Bob's client", "bob"};
 
-/// What a ScriptedWork does, and what was asked of it; the test holds it, too.
+/// Behaviour of a ScriptedWork, and the calls that it got; shared with the test.
 struct Script {
-    /// What prepare() and reset() say.
+    /// Results of prepare() and reset().
     Result<void> prepared{};
     Result<void> reset{};
     Result<void> suspended{};
@@ -30,7 +30,7 @@ struct Script {
     std::function<void(const ExecutionHandle&)> on_stop{};
 
     std::vector<std::string> calls{};
-    std::vector<std::string> refusals{};  ///< of live values
+    std::vector<std::string> refusals{};  ///< of refused live values
     std::optional<UtcTime> meant_for{};   ///< of the last live value
     ValueMap snapshot{};
     ExecutionHandle execution{};
@@ -83,7 +83,7 @@ private:
         }
     }
 
-    // Shared with the test, which looks at it after the work is gone.
+    // Shared with the test, which reads it after the work was destroyed.
     std::shared_ptr<Script> script_;
 };
 
@@ -183,7 +183,7 @@ struct ProgramBench {
         }
         return metier::fail(Errc::internal, "no such method");
     }
-    /// What work tells takes effect.
+    /// Runs the posted reports of work.
     void run() const { executor->run(); }
 
     std::shared_ptr<ManualExecutor> executor;

@@ -104,7 +104,7 @@ TEST(Race, BetweenWorkersAndCommandsLosesAndReordersNoEvent) {
     EXPECT_TRUE(areInOrder(observer.events));
 }
 
-/// Every thread tells an end; returns when all have.
+/// Makes every thread report an end; returns when all have.
 void endFromManyThreads(const ExecutionHandle& execution) {
     const auto end = [&execution] {
         execution.step("race");

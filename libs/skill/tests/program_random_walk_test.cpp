@@ -20,7 +20,7 @@ constexpr auto kConfigurationTimeout = 10'000ms;
 constexpr auto kRestDeadline = 5'000ms;
 constexpr auto kLease = 3001ms;  // odd, so that nothing else falls due at the same time
 
-/// What can happen to a Program.
+/// Events for a Program.
 enum class Act {
     start,
     suspend,
@@ -79,7 +79,7 @@ public:
     std::vector<std::string> transitions;
 
 private:
-    /// Of a client that may need control for it.
+    /// Command of a client, which may need control for it.
     bool command(const Step& step) {
         switch (step.act) {
             case Act::start_with:
@@ -328,7 +328,7 @@ private:
     OwnerLossAction lease_action_ = OwnerLossAction::skill_default;
 };
 
-/// Does to a Program what the Model was told.
+/// Applies the steps of the Model to a Program.
 class Walker {
 public:
     bool take(const Step& step) {

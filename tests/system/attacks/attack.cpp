@@ -18,7 +18,7 @@ using std::chrono::steady_clock;
 
 constexpr int kSmallWindow = 4096;  // [byte] of a peer that does not mean to read
 constexpr std::size_t kMostConnections = 1000;
-constexpr std::size_t kMostNodes = 1000;  // of a request
+constexpr std::size_t kMostNodes = 1000;  // in one request
 
 /// One attack, from its begin to its end.
 class Raid {
@@ -249,7 +249,8 @@ private:
         }
     }
 
-    /// A fifth each: nothing, a Hello, a channel, a session that is not let in, somebody unknown.
+    /// Attempts, a fifth each: nothing, a Hello, a channel, a session that is refused, an unknown
+    /// user.
     void knock() {
         constexpr std::size_t kKept = 300;
         std::vector<RawPeer> peers;

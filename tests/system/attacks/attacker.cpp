@@ -1,5 +1,5 @@
-// A peer that attacks a server of the tests, and nobody else: metier_attacker ATTACK HOST PORT
-// SECONDS NAMESPACE STRANGER SKILL... . It ends after that time, or at a SIGTERM.
+// A peer that attacks a server of the tests only: metier_attacker ATTACK HOST PORT SECONDS
+// NAMESPACE STRANGER SKILL... . It ends after that time, or at a SIGTERM.
 #include <fmt/format.h>
 #include <sched.h>
 
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
     sigemptyset(&end);
     sigaddset(&end, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &end, nullptr);
-    // Real-time priority that it may have inherited is for those whom it attacks.
+    // Gives back an inherited real-time priority: that is for the attacked processes.
     const sched_param usual{};
     sched_setscheduler(0, SCHED_OTHER, &usual);
     try {

@@ -30,10 +30,9 @@ void trustIn(const std::filesystem::path& folder, const security::Identity& peer
     orThrow(orThrow(security::TrustStore::open(folder)).trust(peer.certificate));
 }
 
-/// A server that trusts the operator, whom it is trusted by, and lets in whoever knows the
-/// password.
-BenchOptions closed(const std::filesystem::path& folder,
-                    const security::Identity& operator_identity) {
+/// A server that trusts the operator's certificate, is trusted by it, and accepts everybody who
+/// knows the password.
+BenchOptions closed(const std::filesystem::path& folder, const security::Identity& operator_identity) {
     std::filesystem::remove_all(folder);
     const auto server = identityOf("server");
     trustIn(folder / "server", operator_identity);

@@ -11,21 +11,21 @@
 
 namespace metier::system_tests {
 
-/// How soon an operator has a Session while strangers come and go.
+/// Longest time until an operator has a Session while strangers come and go.
 inline constexpr double kConnectMaxMs = 2'000;
 
 struct ChurnOutcome {
     Durations quiet;             ///< connecting before the attack
     Durations near;              ///< connecting from this machine, strangers from another address
     Durations far;               ///< connecting from the strangers' own address
-    std::uint64_t attempts = 0;  ///< that these connections took
+    std::uint64_t attempts = 0;  ///< attempts that these connections took
     AttackCount attack;
     std::string defect;  ///< empty: nothing
 };
 
-/// A closed server, an operator whom it trusts, and strangers: connections that say nothing, that
-/// only say Hello, that open channels without security, that ask for Sessions, and that show a
-/// certificate which is not trusted; as many as there can be, all of the time.
+/// A closed server, an operator whom it trusts, and strangers: connections that send nothing, that
+/// send only Hello, that open channels without security, that ask for Sessions, and that show a
+/// certificate which is not trusted; as many as possible, all of the time.
 ///
 /// Threading: one thread, as BenchServer; the operator at the far end has one of his own.
 class Churn {

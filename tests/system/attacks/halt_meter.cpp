@@ -36,8 +36,8 @@ HaltMeter::HaltMeter(BenchServer& server) : server_(server) {
     description.name = kSkill;
     description.type = "PositionStreamSkillType";
     skill::SkillFunctions functions;
-    functions.start = [](const skill::ValueMap&, const skill::ExecutionHandle&) {
-    };  // until it is halted
+    // Runs until it is halted
+    functions.start = [](const skill::ValueMap&, const skill::ExecutionHandle&) {};
     functions.halt = [this](const skill::ExecutionHandle& execution) {
         told_ = steady_clock::now();
         execution.atRest();

@@ -10,7 +10,7 @@
 
 namespace metier::system_tests {
 
-/// How long something took, of many times.
+/// Durations of many repetitions of one action.
 struct Durations {
     std::size_t count = 0;
     double median_ms = 0;
@@ -19,16 +19,16 @@ struct Durations {
 };
 Durations summaryOf(std::vector<double> milliseconds);
 
-/// How long Halt took, and the last time that it did not work.
+/// Durations of Halt, and its last failure.
 struct HaltTimes {
     Durations answered;   ///< from the call to its answer
-    Durations commanded;  ///< from the call to the skill's being told, on the server's thread
+    Durations commanded;  ///< from the call to the skill's halt(), on the server's thread
     std::string defect;   ///< empty: each Halt halted
 };
 
 /// An operator on this machine, who starts a skill and halts it again and again.
 ///
-/// Threading: one thread; the server's thread tells when the skill is told.
+/// Threading: one thread; the skill's halt() runs on the server's thread.
 class HaltMeter {
 public:
     /// Adds its skill to the server, which does not serve yet.

@@ -20,7 +20,7 @@ constexpr std::uint32_t kBadTimeout = 0x800A0000;
 constexpr std::uint32_t kForEver = 3'600'000;  // [ms]
 constexpr std::string_view kNone = "http://opcfoundation.org/UA/SecurityPolicy#None";
 constexpr std::string_view kAnonymous = "anonymous-none#None";  // the server's name for the policy
-// Of a MSG: header, channel, token, sequence, request, type of the answer.
+// Size of a MSG's begin: header, channel, token, sequence, request, type of the answer.
 constexpr std::size_t kResponseHeader = 28;
 constexpr std::size_t kServiceResult = kResponseHeader + 12;
 constexpr std::size_t kBehindHeader = kServiceResult + 4 + 1 + 4 + 3;

@@ -22,8 +22,8 @@ public:
     WireBytes& text(std::string_view text);
     WireBytes& nothing() { return put(std::int32_t{-1}); }  ///< a null String or array
     WireBytes& raw(std::string_view bytes);
-    WireBytes& node(std::uint16_t number);                             ///< of namespace 0
-    WireBytes& node(std::uint16_t name_space, std::string_view text);  ///< with a text as its id
+    WireBytes& node(std::uint16_t number);                             ///< id of namespace 0
+    WireBytes& node(std::uint16_t name_space, std::string_view text);  ///< text id
     const std::string& str() const { return bytes_; }
 
 private:
@@ -47,11 +47,11 @@ inline constexpr std::uint16_t kPublish = 826;
 
 /// To create a Session. \param nonce of the client, of any length
 WireBytes sessionOf(std::chrono::milliseconds timeout, std::string_view nonce = {});
-/// That the server gave, by its answer.
+/// Session time-out in a server's answer.
 std::chrono::milliseconds sessionTimeout(const std::string& answer);
 
 /// A peer on a plain socket, which speaks OPC UA without security as far as an attack needs it, and
-/// reads only when it is told to.
+/// reads only on request.
 ///
 /// Threading: one thread. Nothing waits for longer than a second.
 class RawPeer {
@@ -74,7 +74,8 @@ public:
     /// All of the above.
     bool logIn() { return hello() && openChannel() && createSession() && activateSession(); }
 
-    /// Sends a request and does not read its answer. \return false if the server is gone
+    /// Sends a request and does not read its answer.
+    /// \return false if the server has closed the connection
     bool request(std::uint16_t type, const WireBytes& body);
     /// Sends a request and reads its answer; nothing if there is none within a second.
     /// \return the body, behind its ResponseHeader, of a Good one

@@ -10,7 +10,8 @@ namespace metier::system_tests {
 // Bodies of requests, each about nodes that every server has.
 
 WireBytes browseOf(std::size_t nodes);
-/// What leads away from and to a node that thousands refer to, of a class that none of them has.
+/// Browse of the references in both directions of a node to which thousands refer, for a class that
+/// none of them has.
 WireBytes costlyBrowseOf(std::size_t nodes);
 WireBytes readOf(std::size_t nodes);
 WireBytes writeOf(std::size_t nodes);
@@ -25,7 +26,7 @@ WireBytes subscriptionOf(const Subscribing& subscribing);
 /// Monitored items of one node.
 struct Items {
     std::size_t count = 1;
-    bool events = false;  ///< of the Server object; otherwise the values of CurrentTime
+    bool events = false;  ///< events of the Server object; otherwise the values of CurrentTime
     std::uint32_t queue = 10'000;
 };
 WireBytes itemsOf(std::uint32_t subscription, const Items& items);

@@ -13,12 +13,12 @@
 
 namespace metier::system_tests {
 
-/// What Halt may take while a server is attacked.
+/// Longest time of a Halt while a server is attacked.
 inline constexpr double kHaltP99Ms = 50;
 inline constexpr double kHaltMaxMs = 200;
 
-/// Whether these bounds hold as they are, or are widened by what Halt takes without an attack, and
-/// by how late threads wake up.
+/// Whether these bounds hold as they are, or are widened by the time of a Halt without an attack
+/// and by the delay with which threads wake up.
 enum class HaltBounds { strict, by_load };
 
 /// A process at the other end of a Cable that attacks a server of this process.
@@ -40,8 +40,8 @@ struct SiegeOutcome {
     HaltTimes quiet;   ///< before the attack
     HaltTimes during;  ///< the attack
     AttackCount attack;
-    double load_ms = 0;  ///< how late threads woke up at worst
-    std::string defect;  ///< what was not as it has to be; empty: nothing
+    double load_ms = 0;  ///< longest delay with which threads woke up
+    std::string defect;  ///< mistake that was found; empty: none
 };
 
 /// A server of skills that is attacked over a cable while an operator on this machine halts one.

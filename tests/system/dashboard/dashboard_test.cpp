@@ -34,7 +34,7 @@ class DashboardTest : public ::testing::Test {
 protected:
     void SetUp() override { awaitConnected(arm_->url()); }
 
-    /// Until the page shows what the server offers.
+    /// Waits until the page shows the content of the server.
     void awaitConnected(const std::string& url) {
         Tab tab(page_.url());
         const auto key = keyOf(url);

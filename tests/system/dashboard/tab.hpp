@@ -17,11 +17,11 @@ class Client;
 
 namespace metier::system_tests {
 
-/// What a dashboard answered.
+/// Answer of a dashboard.
 struct PageAnswer {
-    int status = 0;  ///< of HTTP; 0: there was no answer
+    int status = 0;  ///< status of HTTP; 0: there was no answer
     nlohmann::json body{};
-    std::string cookie{};  ///< that it set
+    std::string cookie{};  ///< cookie that it set
 
     std::string error() const;  ///< its words; empty: none
 };
@@ -59,11 +59,12 @@ public:
     /// Throws if none comes within a minute.
     nlohmann::json await(const std::string& name,
                          const std::function<bool(const nlohmann::json&)>& wanted);
-    /// Waits until the skill is in that state, as far as this tab was told. \return its last event
+    /// Waits until the skill is in that state, as far as this tab was notified.
+    /// \return its last event
     nlohmann::json awaitState(const std::string& key, const std::string& state);
     /// Waits until the page has ended the stream; false after a minute.
     bool awaitEnd();
-    /// How many bytes the stream has brought.
+    /// Number of bytes that the stream has brought.
     std::size_t bytes() const;
     std::size_t count(const std::string& name) const;
 

@@ -30,8 +30,8 @@ int replay(const char* file) {
     return divergence ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
-/// A client gives its connection up after some seconds without an answer, which a machine that is
-/// busy enough can bring about; what follows tells nothing.
+/// Whether a difference means nothing: on a very busy machine a client gives its connection up
+/// after some seconds without an answer, and the rest of the history is not comparable.
 bool isVoid(const Divergence& divergence) {
     return divergence.text.find("seen:\n  BadNotConnected") != std::string::npos ||
            divergence.text.find("seen:\n  BadConnectionClosed") != std::string::npos;

@@ -12,7 +12,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 
-/// A model that tells what happened to it: replies and events, each once.
+/// A model that records its events: replies and events, each once.
 class Witness final : public Taker {
 public:
     Witness(const std::array<std::string, kSkills>& results, std::set<std::string>& witnessed)

@@ -13,13 +13,13 @@
 
 namespace metier::system_tests {
 
-/// Whoever takes steps and can be asked what clients see: the server, or the model of it.
+/// Taker of steps that can be asked what clients see: the server, or the model of it.
 class Taker {
 public:
     virtual ~Taker() = default;
     /// \return the reply to the client
     virtual std::string take(const Step& step) = 0;
-    /// What clients see now, a line each; among it the events since the call before.
+    /// View of the clients now, one text per line; it includes the events since the last call.
     virtual std::vector<std::string> seen() = 0;
 };
 
@@ -70,7 +70,7 @@ private:
         std::string result{};
         std::optional<Session> bound{};
         std::int64_t bound_until = 0;
-        std::uint32_t name = 0;  ///< of the execution, 0: given by the server
+        std::uint32_t name = 0;  ///< of the execution; 0: made by the server
         double started_speed = 0;
         std::optional<Session> owner{};
         skill::OwnerLossAction on_owner_loss = skill::OwnerLossAction::skill_default;
@@ -140,10 +140,10 @@ private:
     std::int64_t locked_until_ = 0;
 };
 
-/// How an event shows itself.
+/// Line for an event.
 std::string eventLine(skill::State from, skill::State to, skill::Reason reason,
                       const std::string& execution);
-/// How numbers show themselves.
+/// Text of a number.
 std::string numberText(double number);
 
 }  // namespace metier::system_tests

@@ -1,4 +1,4 @@
-// What happens to skills without being asked for, and who has control.
+// Events of skills that no command causes, and the holder of control.
 #include <fmt/format.h>
 
 #include <algorithm>

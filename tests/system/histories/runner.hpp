@@ -17,11 +17,12 @@ std::unique_ptr<Taker> makeModel(const std::array<std::string, kSkills>& results
 /// A step after which server and model differ.
 struct Divergence {
     std::size_t step = 0;
-    std::string text;  ///< what was expected and what was seen
+    std::string text;  ///< the expected and the real view
 };
 
-/// Takes a history on the server and on the model, and compares replies and all that clients see
-/// after each step. \return the first step after which they differ
+/// Takes a history on the server and on the model, and compares replies and the clients' view after
+/// each step.
+/// \return the first step after which they differ
 std::optional<Divergence> findDivergence(World& world, const History& history,
                                          const ModelMaker& make_model = makeModel);
 

@@ -13,7 +13,7 @@ namespace {
 
 struct ActRow {
     std::string_view name;
-    std::uint32_t weight;  ///< how often it happens, so that every state is reached
+    std::uint32_t weight;  ///< frequency, so that every state is reached
 };
 
 /// In the order of Act.

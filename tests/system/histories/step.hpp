@@ -10,7 +10,7 @@
 
 namespace metier::system_tests {
 
-/// What can happen to a server: commands of clients, and what becomes of clients and device.
+/// Events for a server: commands of clients, and events of clients and of the device.
 enum class Act : std::uint8_t {
     write_target,      ///< value / 100 - 1 rad
     write_speed,       ///< value / 100
@@ -58,7 +58,7 @@ struct Step {
 };
 using History = std::vector<Step>;
 
-/// What the value of a start_with says.
+/// Choices of a start_with.
 struct StartChoice {
     explicit StartChoice(std::uint32_t value);
 

@@ -54,7 +54,7 @@ opcua::ServerLimits limits() {
 
 }  // namespace
 
-/// Counts what the onlooker is to hear.
+/// Counts the events that the onlooker must get.
 class World::Emitted final : public skill::ProgramObserver {
 public:
     void onTransition(const skill::TransitionEvent&) override { ++count; }

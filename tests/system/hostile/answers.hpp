@@ -10,7 +10,7 @@
 
 namespace metier::hostile {
 
-/// Whoever behaves well is answered within it; sanitizers take some of the time.
+/// Longest wait of a well-behaved client for an answer; sanitizers take some of the time.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr std::chrono::milliseconds kLongestAnswer{4'000};
 #else
@@ -27,8 +27,8 @@ inline constexpr std::uint32_t kBadSessionIdInvalid = 0x8025'0000;
 /// Takes over ids of subscriptions, monitored items and continuation points.
 void learn(std::uint32_t type, Reader& content, Known& known);
 
-/// What was done for a stranger that must not be, of an open server: nodes or references were added
-/// or deleted. Empty if nothing was.
+/// Forbidden effect of a stranger's request on an open server: nodes or references were added or
+/// deleted. Empty if there was none.
 std::string permitted(std::uint32_t type, std::uint32_t result, std::string_view content);
 
 /// The same of a closed server: anything but discovery.

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kMostItems = 2'000;
 
-/// What precedes the array of a request whose elements are counted.
+/// Bytes before the array of a request whose elements are counted.
 std::size_t bytesBeforeItems(std::uint32_t type, Reader& reader) {
     switch (type) {
         case 527:  // Browse: view, and how many references at most

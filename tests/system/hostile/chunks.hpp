@@ -7,7 +7,7 @@
 
 namespace metier::hostile {
 
-/// What a SecureChannel without security puts around a message (OPC 10000-6, 6.7).
+/// State of a SecureChannel without security, for the frame of a message (OPC 10000-6, 6.7).
 struct Channel {
     std::uint32_t id = 0;
     std::uint32_t token = 0;
@@ -18,8 +18,8 @@ struct Channel {
 Bytes hello(Writer writer, std::string_view url);
 /// OPN, without security.
 Bytes openChunk(Channel& channel, std::string_view body);
-/// MSG, or CLO. One in `wrong_one_in` is wrong: type, size, ids, sequence number, chunks that do
-/// not end, or too many of them.
+/// Chunks of a message, MSG or CLO. One in `wrong_one_in` is wrong: type, size, ids, sequence
+/// number, chunks that do not end, or too many of them.
 Bytes chunks(Random& random, Channel& channel, std::string_view body, std::size_t wrong_one_in);
 Bytes closeChunk(Channel& channel, std::string_view body);
 

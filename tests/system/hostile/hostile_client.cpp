@@ -81,7 +81,7 @@ void HostileClient::sendOpen(Random& random, std::size_t wrong_one_in) {
         transmit(secureOpenChunk(random, channel_, target_.certificates, body));
         return awaitStage(Stage::opened, 1);
     }
-    // It answers only whom it has taken a right HEL from.
+    // The server answers only after it has got a right HEL.
     const bool is_right = stage_ == Stage::greeted && !damaged && wrong_one_in == 0;
     transmit(openChunk(channel_, body));
     awaitStage(Stage::opened, is_right ? 0 : 1);
@@ -141,7 +141,7 @@ void HostileClient::sendOther(Random& random) {
             damage(random, noise);
             transmit(noise);
             if (stage_ == Stage::greeted) {
-                stage_ = Stage::connected;  // what comes next may be taken for the rest of it
+                stage_ = Stage::connected;  // the next bytes may be taken for the rest of it
             }
             break;
         }

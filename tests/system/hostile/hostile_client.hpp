@@ -17,17 +17,18 @@ enum class ServerKind {
     closed,  ///< answers discovery alone, without security
 };
 
-/// What came of the messages.
+/// Outcome of the messages.
 struct Tally {
     std::uint64_t connections = 0;
     std::uint64_t answers = 0;
     std::uint64_t faults = 0;    ///< answers that refuse a whole request
-    std::uint64_t sessions = 0;  ///< that were let in
+    std::uint64_t sessions = 0;  ///< accepted sessions
     std::vector<std::string> defects;
 };
 
-/// Sends messages that are mostly right and wrong in some place. What one of them is depends on the
-/// seed, its number, and on what the server told before: ids of channels, sessions, subscriptions.
+/// Sends messages that are mostly right and wrong in some place. The content of a message depends
+/// on the seed, its number, and on ids that the server sent before: of channels, sessions,
+/// subscriptions.
 ///
 /// Threading: one thread.
 class HostileClient {
@@ -74,7 +75,7 @@ private:
     std::uint64_t number_ = 0;
     bool listens_ = true;
     bool in_parts_ = false;  // an answer came in several chunks, which is left out
-    int attempts_ = 0;       // to activate the session that it has
+    int attempts_ = 0;       // to activate its session
 };
 
 }  // namespace metier::hostile

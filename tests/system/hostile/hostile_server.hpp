@@ -12,8 +12,9 @@
 
 namespace metier::hostile {
 
-/// Takes connections of clients, one at a time, and answers mostly as a server does: a seed says
-/// where it lies, is silent, does not end, hangs up, or answers something else.
+/// Takes connections of clients, one at a time, and answers mostly as a server does. A seed decides
+/// where it sends wrong data, is silent, does not end, closes the connection, or sends another
+/// answer.
 ///
 /// Threading: a thread of its own answers.
 class HostileServer {

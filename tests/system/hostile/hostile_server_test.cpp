@@ -23,8 +23,8 @@ using opcua::NodeId;
 using opcua::Value;
 using ::testing::HasSubstr;
 
-constexpr auto kTimeout = 300ms;  ///< of a call
-constexpr auto kLook = 30s;       ///< of what asks a server again and again
+constexpr auto kTimeout = 300ms;  ///< of one call
+constexpr auto kLook = 30s;       ///< longest time for work of repeated requests
 const NodeId kNode(1, 7'001U);
 
 opcua::ClientOptions hasty() {

@@ -1,4 +1,4 @@
-// A server goes on serving whoever behaves well, whatever others send.
+// A server goes on serving well-behaved clients, with any messages from others.
 #include <gmock/gmock.h>
 
 #include <string>
@@ -11,7 +11,7 @@ namespace {
 using ::testing::IsEmpty;
 
 #if defined(__SANITIZE_ADDRESS__)
-// What is freed is kept for a while, so that its use is seen.
+// Freed memory is kept for a while, so that its use is detected.
 constexpr std::size_t kMostGrowth = 1'000'000;
 #else
 constexpr std::size_t kMostGrowth = 16'000;  ///< [kB]

@@ -19,11 +19,11 @@ struct AddressMap {
     std::vector<Method> methods;
 };
 
-/// What a hostile client has learnt.
+/// Facts that a hostile client has read from the server.
 struct Known {
     const AddressMap& map;
     std::string endpoint_url;
-    /// Of the user's identity, as the endpoints tell it.
+    /// Policy of the anonymous token, as the endpoints give it.
     std::string anonymous_policy = "anonymous#None";
     Bytes authentication_token = standardId(0);
     std::vector<std::uint32_t> subscriptions{};

@@ -1,5 +1,5 @@
-// What servers and clients call themselves and their skills comes from outside: it must not reach
-// a terminal or a log as it is.
+// Names of servers, clients and skills come from outside: they must not reach a terminal or a log
+// unchanged.
 #include <gmock/gmock.h>
 
 #include <string>
@@ -84,7 +84,7 @@ TEST_F(OddNames, AreNotPrintedByWatch) {
     EXPECT_THAT(*line, HasSubstr(kShown));
 }
 
-// A client's own name is told to others, and logged.
+// A client's own name is shown to others, and logged.
 TEST_F(OddNames, OfAClientAreNotToldToOthers) {
     const auto odd = connectAs(server_.url(), kOdd);
     const auto other = connectAs(server_.url(), "other");

@@ -98,7 +98,8 @@ private:
         }
     }
 
-    /// The hostile clients have gone; the server closes its ends as it comes to them.
+    /// Waits for the end of the hostile clients' connections; the server closes its ends one by
+    /// one.
     void awaitDescriptors() {
         const auto deadline = Clock::now() + std::chrono::seconds(10);
         do {

@@ -16,27 +16,27 @@ struct OnslaughtOptions {
     std::size_t clients = 4;  ///< hostile ones; they take turns
     ServerKind kind = ServerKind::open;
     std::uint64_t ask_every = 100;  ///< messages between questions of the client that behaves
-    /// Where a closed server's certificates are made.
+    /// Folder in which a closed server's certificates are made.
     std::string folder{};
     /// Prints how far it is.
     bool tells = false;
 };
 
-/// What a server did under fire.
+/// Behaviour of a server under attack.
 struct OnslaughtReport {
     Tally tally;
-    std::chrono::milliseconds longest_wait{};  ///< of the client that behaves
+    std::chrono::milliseconds longest_wait{};  ///< of the well-behaved client
     std::size_t resident_before = 0;           ///< [kB], when half of the messages were sent
     std::size_t resident_after = 0;            ///< [kB]
     std::size_t descriptors_before = 0;        ///< of the server, without hostile clients
-    std::size_t descriptors_after = 0;         ///< when they have gone
+    std::size_t descriptors_after = 0;         ///< after they have left
     double seconds = 0;
 };
 
-/// Starts a server with three skills as a process, and sends it messages while another client asks
-/// for the state of a skill again and again. What must not be is a defect: the server ends, answers
-/// late, does for a stranger what it must not, or a skill leaves Halted though nobody may reset it.
-/// Throws if it cannot be set up.
+/// Starts a server with three skills as a process, and sends it messages while another client reads
+/// the state of a skill again and again. A defect is: the server ends, answers late, does something
+/// forbidden for a stranger, or a skill leaves Halted though nobody may reset it. Throws if it
+/// cannot be set up.
 OnslaughtReport runOnslaught(const OnslaughtOptions& options);
 
 /// As text for people, with the seed.

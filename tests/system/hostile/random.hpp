@@ -23,7 +23,7 @@ public:
         mixed = (mixed ^ (mixed >> 27U)) * 0x94D049BB133111EBU;
         return mixed ^ (mixed >> 31U);
     }
-    /// From 0 to limit - 1; limit > 0.
+    /// Number from 0 to limit - 1; limit > 0.
     std::size_t below(std::size_t limit) { return static_cast<std::size_t>(next() % limit); }
     /// True once in `count` times; never for 0.
     bool oneIn(std::size_t count) { return count != 0 && below(count) == 0; }

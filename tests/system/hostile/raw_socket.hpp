@@ -21,7 +21,7 @@ public:
     RawSocket(RawSocket&& other) noexcept;
     RawSocket& operator=(RawSocket&& other) noexcept;
 
-    /// To 127.0.0.1; whether somebody is there.
+    /// Connects to 127.0.0.1; false if no server is there.
     bool connect(std::uint16_t port);
     bool isOpen() const { return descriptor_ >= 0; }
     /// Ends it at once, without what was not sent yet.

@@ -39,9 +39,9 @@ private:
     bool ok_ = true;
 };
 
-/// What begins every response.
+/// Begin of every response.
 struct ResponseHeader {
-    std::uint32_t type = 0;  ///< of its Binary encoding
+    std::uint32_t type = 0;  ///< id of its Binary encoding
     std::uint32_t request = 0;
     std::uint32_t result = 0;  ///< StatusCode
 };

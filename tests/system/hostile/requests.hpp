@@ -7,13 +7,13 @@
 
 namespace metier::hostile {
 
-/// What follows a RequestHeader.
+/// Writer of a request's content after its RequestHeader.
 using WriteBody = void (*)(Writer&, const Known&);
 
 struct Request {
-    std::uint32_t type;  ///< of its Binary encoding (OPC 10000-6, annex A)
+    std::uint32_t type;  ///< id of its Binary encoding (OPC 10000-6, annex A)
     WriteBody write;
-    std::size_t weight;  ///< how often it comes, relative to the others
+    std::size_t weight;  ///< frequency, relative to the others
 };
 
 /// All services of OPC 10000-4 but those that open and close channels and sessions.

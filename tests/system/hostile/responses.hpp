@@ -8,10 +8,10 @@
 
 namespace metier::hostile {
 
-/// What is special about the address space of a hostile server.
+/// Peculiarity of a hostile server's address space.
 enum class Landscape {
     loops,    ///< a few nodes that refer to one another, types that are derived from themselves
-    endless,  ///< each node has children that nobody has seen before
+    endless,  ///< each node has new children, without end
     plenty,   ///< more references and elements than anybody needs
 };
 

@@ -104,7 +104,7 @@ Bytes secureOpenChunk(Random& random, Channel& channel, const PublicCertificates
     put(plain, ++channel.sequence);
     put(plain, ++channel.request);
     plain.append(body);
-    plain.append(kBlock, '\x5a');  // where the signature would be
+    plain.append(kBlock, '\x5a');  // in place of the signature
 
     Bytes content;
     put(content, 0);

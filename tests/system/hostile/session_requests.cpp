@@ -178,7 +178,7 @@ std::span<const Request> discoveryRequests() {
          {437, writeRegisterServer, 1},
          {12'211, writeRegisterServer, 1},
          {479, writeCancel, 1},
-         // Of no service: a response, a fault, nothing.
+         // Messages of no service: a response, a fault, nothing.
          {464, writeNothing, 1},
          {397, writeNothing, 1},
          {64'000, writeNothing, 1}}};

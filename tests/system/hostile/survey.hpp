@@ -5,8 +5,8 @@
 
 namespace metier::hostile {
 
-/// What hostile clients may aim at: all that is below the Objects folder, each node once.
-/// Throws if the server does not tell it.
+/// Targets for hostile clients: all nodes below the Objects folder, each once. Throws if the server
+/// does not return them.
 AddressMap survey(opcua::Client& client);
 
 }  // namespace metier::hostile

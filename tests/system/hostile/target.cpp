@@ -22,7 +22,7 @@ skill::SkillFunctions suspendable() {
     return functions;
 }
 
-/// Once halted, nobody gets it out of there.
+/// A skill that nobody can reset once it is halted.
 skill::SkillFunctions guarded() {
     skill::SkillFunctions functions;
     functions.reset = []() -> Result<void> {

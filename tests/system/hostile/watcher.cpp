@@ -18,7 +18,7 @@ client::SkillHandle guardedSkill(opcua::Client& client) {
         client::SkillHandle::open(client, orThrow(client::findSkill(client, "Guarded"))));
 }
 
-/// It waits long, so that it can tell how long a late answer took.
+/// Options with long time-outs, so that the length of a late answer can be measured.
 opcua::ClientOptions patient(opcua::ClientOptions options) {
     options.application_name = "watcher";
     options.call_timeout = std::chrono::seconds(30);

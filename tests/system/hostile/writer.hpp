@@ -16,7 +16,7 @@ using Bytes = std::string;
 /// NodeIds as their bytes.
 Bytes numericId(std::uint16_t namespace_index, std::uint32_t id);
 Bytes textId(std::uint16_t namespace_index, std::string_view id);
-/// Of the standard's namespace.
+/// NodeId in the standard's namespace.
 inline Bytes standardId(std::uint32_t id) {
     return numericId(0, id);
 }
@@ -54,7 +54,7 @@ public:
     }
     void real(double value);
     void boolean(bool value) { number(static_cast<std::uint8_t>(value)); }
-    /// How many elements follow.
+    /// Writes the number of the elements that follow.
     void count(std::size_t elements);
     /// String, ByteString.
     void text(std::string_view text);

@@ -22,7 +22,7 @@ public:
 
     /// Why processes cannot have such a clock in this build; empty: they can.
     static std::string obstacle();
-    /// How far it is ahead of the right time.
+    /// Sets how far it is ahead of the right time.
     void set(std::chrono::nanoseconds ahead);
     /// A command that starts a process with this clock.
     std::vector<std::string> of(std::vector<std::string> command) const;

@@ -1,10 +1,10 @@
-// What a server keeps of skills that come to their end and of clients that are killed: nothing.
-//   metier_memory [CYCLES] [CRASHES]   a server in a process of its own is given so many
-//   executions,
-//                                      then so many clients that start a skill and are killed
+// Memory that a server keeps of finished executions and of killed clients: none.
+//
+// metier_memory [CYCLES] [CRASHES]: a server in a process of its own gets so many executions, then
+// so many clients that start a skill and are killed.
+//
 // Ends with status 1 if its memory grows by more than 1 MB per 100,000 executions, or by more than
-// 1 MB over the clients, after a warm-up; or if it has more open files at the
-// end.
+// 1 MB over the clients, after a warm-up; or if it has more open files at the end.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -51,8 +51,8 @@ std::string startLong(SkillHandle& skill) {
     return started ? "started" : started.error().message;
 }
 
-/// The client that is killed: it has started a skill, and hears of its transitions. Sessions and
-/// Subscriptions of those before it may have to run out first.
+/// The client that is killed: it has started a skill, and receives its transitions. Sessions and
+/// Subscriptions of earlier clients may have to run out first.
 int runClient(const std::string& url) {
     std::string problem;
     for (const auto deadline = std::chrono::steady_clock::now() + kPatience;

@@ -42,7 +42,7 @@ std::int64_t microseconds(UtcTime time) {
 void tell(const std::string& what, UtcTime time = std::chrono::system_clock::now()) {
     const auto line = fmt::format("{} {}\n", microseconds(time), what);
     if (::write(STDOUT_FILENO, line.data(), line.size()) < 0) {
-        std::_Exit(EXIT_FAILURE);  // nobody listens any more
+        std::_Exit(EXIT_FAILURE);  // nobody reads the output any more
     }
 }
 
@@ -107,7 +107,7 @@ int awaitSignal(const sigset_t& signals, std::chrono::nanoseconds time) {
     return signal < 0 ? 0 : signal;  // 0 also when it was stopped and continued
 }
 
-/// What a commander tries that does not know yet that it is one no more.
+/// Commands of a commander that does not know yet that it has lost control.
 class Commander {
 public:
     Commander(opcua::Client& client, const CommanderOrder& order)

@@ -10,10 +10,10 @@
 
 namespace metier::system_tests {
 
-/// Where a skill is when its commander is struck. Suspending and halting: braking.
+/// State of a skill when its commander is struck. Suspending and halting: braking.
 enum class AtFault { ready, running, suspended, suspending, halting };
 
-/// What `metier_commander` is to do: take control, bring the skill there, tell it, wait for
+/// Order for `metier_commander`: take control, bring the skill to a state, report that, wait for
 /// signals.
 struct CommanderOrder {
     std::string url;
@@ -21,7 +21,7 @@ struct CommanderOrder {
     std::chrono::milliseconds lease{};
     skill::OwnerLossAction on_loss = skill::OwnerLossAction::skill_default;
     AtFault at = AtFault::ready;
-    std::chrono::milliseconds delay{};  ///< from Start on, before it suspends, halts or tells
+    std::chrono::milliseconds delay{};  ///< from Start until it suspends, halts or reports
     skill::ValueMap parameters{};       ///< numbers and lists of numbers
 };
 

@@ -12,7 +12,7 @@
 
 namespace metier::system_tests {
 
-/// A process of `metier` whose log is read along: when it took the control of somebody for lost.
+/// A process of `metier` whose log is read for losses of control.
 ///
 /// Threading: a thread of its own reads the output.
 class OwnedServer {
@@ -22,8 +22,8 @@ public:
     explicit OwnedServer(const std::vector<std::string>& arguments);
 
     const std::string& url() const noexcept { return url_; }
-    /// When the server commanded the stop, by its own clock, to the millisecond below; nothing at
-    /// the deadline. Losses from before forgetLosses() are left out.
+    /// Time at which the server commanded the stop, by its own clock, rounded down to the
+    /// millisecond; nothing at the deadline. Losses before forgetLosses() are left out.
     std::optional<UtcTime> awaitLoss(SteadyTime deadline) { return losses_.popUntil(deadline); }
     void forgetLosses();
 

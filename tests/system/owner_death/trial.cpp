@@ -16,14 +16,14 @@ using skill::Reason;
 using skill::State;
 using skill::TransitionEvent;
 
-constexpr double kDistance = 0.6;     // of axis 1 [rad]
+constexpr double kDistance = 0.6;     // distance of axis 1 [rad]
 constexpr double kSpeed = 0.2;        // part of the arm's own
 constexpr double kStandstill = 1e-4;  // [rad]
 constexpr double kAtTarget = 1e-3;    // [rad]
 constexpr auto kLogResolution = 1ms;  // times of the log are cut off to it
 constexpr auto kTolerance = 100ms;    // after the end of the lease
 constexpr int kLatePerStop = 4;       // threads on the way from a heartbeat to a stop
-constexpr auto kLongEnough = 20s;     // for what has no bound of its own
+constexpr auto kLongEnough = 20s;     // for waits without a bound of their own
 
 SteadyTime in(std::chrono::nanoseconds time) {
     return std::chrono::steady_clock::now() + time;
@@ -53,7 +53,7 @@ bool commandsAgain(Fault fault) {
     return fault == Fault::silent || fault == Fault::stale;
 }
 
-/// What has to happen to a skill whose owner was lost at `stop`, given its next transition.
+/// Expected reaction of a skill whose owner was lost at `stop`, by its next transition.
 struct Expected {
     State state;
     Reason reason;
@@ -259,7 +259,7 @@ void DeathRow::judgeTransition(const Trial& trial, Outcome& outcome, UtcTime sto
         return event.number == skill::TransitionNumber::ready_to_running;
     };
     auto event = transitions_.popUntil(in(kLongEnough));
-    while (event && !started(*event)) {  // of the trial before
+    while (event && !started(*event)) {  // skips those of the trial before
         event = transitions_.popUntil(in(kLongEnough));
     }
     event = transitions_.popUntil(in(kLongEnough));
@@ -312,7 +312,7 @@ void DeathRow::judgeStale(const Trial& trial, link::ChildProcess& commander, See
     }
 }
 
-/// What moved meanwhile; empty if nothing.
+/// Arms that moved meanwhile; empty if none did.
 std::string DeathRow::movedWithin(std::chrono::milliseconds time) {
     const auto first = jointPosition(*watcher_, skill_);
     const auto deadline = in(time);

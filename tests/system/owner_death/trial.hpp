@@ -16,7 +16,7 @@
 
 namespace metier::system_tests {
 
-/// What becomes of the client that has control.
+/// Fault of the client that has control.
 enum class Fault {
     killed,     ///< kill -9
     stopped,    ///< SIGSTOP
@@ -47,20 +47,20 @@ struct Trial {
     AtFault at = AtFault::running;
     skill::OwnerLossAction policy = skill::OwnerLossAction::halt;
     std::chrono::milliseconds lease{300};
-    int point = kPoints / 2;  ///< of the part of the move in which a loss can still come, 0 to 19
+    int point = kPoints / 2;  ///< in the part of the move in which a loss can still come, 0 to 19
 };
 std::string toString(const Trial& trial);
 
 /// Times are those that server and client took on this machine.
 struct Outcome {
-    /// From the end of the lease, begun by the last heartbeat that the server answered, to the stop
-    /// [ms]. The heartbeat counts from when it was sent, so this is at most too large.
+    /// Time from the end of the lease, begun by the last heartbeat that the server answered, to the
+    /// stop [ms]. The heartbeat counts from its sending, so the value is never too small.
     double after_lease_ms = 0;
     double after_fault_ms = 0;            ///< from the fault to the stop [ms]
-    std::chrono::nanoseconds load{};      ///< how late threads woke up meanwhile
-    std::optional<double> standstill_ms;  ///< from the stop to a transition for OwnerLost [ms]
+    std::chrono::nanoseconds load{};      ///< longest delay with which threads woke up meanwhile
+    std::optional<double> standstill_ms;  ///< from the stop to a transition with OwnerLost [ms]
     int refused = 0;                      ///< commands of a stale commander, all of those it tried
-    std::string defect;                   ///< what was not as it has to be; empty: nothing
+    std::string defect;                   ///< mistake that was found; empty: none
 };
 
 /// Whether the bounds of time hold as they are, or are widened by how late threads wake up.

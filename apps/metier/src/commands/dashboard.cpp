@@ -30,7 +30,7 @@ using dashboard::Cell;
 using dashboard::CellServer;
 using dashboard::Dashboard;
 
-// From the signal to the end of the process.
+// Longest time from the signal to the end of the process.
 constexpr std::chrono::seconds kLongestEnd{10};
 
 struct DashboardOptions {
@@ -91,8 +91,8 @@ Result<Cell> cellOf(const DashboardOptions& options) {
     return cell;
 }
 
-/// Where the servers record: as the command line says, the cell's file, or where those of this user
-/// do; empty: nowhere.
+/// Store of the servers' records: from the command line, the cell's file, or the default of this
+/// user; empty: none.
 std::string recordsOf(const DashboardOptions& options, const Cell& cell) {
     const auto& said = options.records.empty() ? cell.records : options.records;
     return said.empty() ? defaultRecords() : said == "off" ? "" : said;
@@ -103,7 +103,7 @@ std::string urlOf(const std::string& address, std::uint16_t port) {
     return fmt::format("http://{}{}{}:{}", v6 ? "[" : "", address, v6 ? "]" : "", port);
 }
 
-/// Servers that discovery tells of are added as they come, until the signal.
+/// Adds servers that discovery finds, until the signal.
 void watchDiscovery(Dashboard& page, const DashboardOptions& options,
                     const link::StopSignal& stop) {
     constexpr std::chrono::seconds kBetween{10};
@@ -122,7 +122,7 @@ void watchDiscovery(Dashboard& page, const DashboardOptions& options,
     }
 }
 
-/// How the page connects to servers: as a command does.
+/// Connections of the page to servers: the same as those of a command.
 dashboard::Connector connectorOf(const CommandIdentity& identity) {
     return {
         .options = [&identity](const std::string& url) -> Result<opcua::ClientOptions> {

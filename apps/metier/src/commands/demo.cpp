@@ -34,7 +34,7 @@ struct DemoOptions {
     SquareOutput output;
 };
 
-/// Until Enter; Ctrl-C ends the program, and the cell with it.
+/// Waits for Enter; Ctrl-C ends the program, and the cell with it.
 void waitForEnter(server::CellRunner& cell, const server::Security& security) {
     fmt::print(
         "\nThe cell stays up: connect UaExpert to an address above, or try `metier{0} list URL` "
@@ -112,7 +112,7 @@ Exit runPickAndPlace(const DemoOptions& options, const CommandContext& context,
     return exit;
 }
 
-/// Squares in the first cell, then parts in the second; both stay up for whoever wants to look.
+/// Draws squares in the first cell, then moves parts in the second; both keep running until Enter.
 Exit runDemo(const DemoOptions& options, const CommandContext& context) {
     link::StopSignal::outliveOutput();
     printLabNotice(context.security);

@@ -14,7 +14,7 @@
 namespace metier::app {
 namespace {
 
-constexpr std::uint32_t kLongest = 86'400;  // to remember a server [s]
+constexpr std::uint32_t kLongest = 86'400;  // longest time for which a server is remembered [s]
 
 struct DiscoveryOptions {
     server::DiscoveryServer::Options server;

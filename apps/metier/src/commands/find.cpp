@@ -16,7 +16,7 @@
 namespace metier::app {
 namespace {
 
-// Where OPC 10000-12 has the discovery server of a machine.
+// Address of a machine's discovery server, by OPC 10000-12.
 constexpr const char* kLocalDiscovery = "opc.tcp://127.0.0.1:4840";
 
 struct FindOptions {

@@ -22,7 +22,7 @@ struct GraphOptions {
     std::string format = "dot";
 };
 
-/// A file that is gone with this.
+/// A file that the destructor removes.
 class TemporaryFile {
 public:
     explicit TemporaryFile(const std::string& text)
@@ -43,7 +43,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// What Graphviz makes of it.
+/// Picture that Graphviz makes.
 Result<std::string> drawn(const std::string& dot) {
     const TemporaryFile file(dot);
     auto program = link::ChildProcess::start({"dot", "-Tsvg", file.path()});

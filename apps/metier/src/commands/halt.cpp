@@ -45,7 +45,7 @@ Result<void> awaitHalted(opcua::Client& client, const SkillAddress& address,
     if (!stands) {
         return fail(stands.error());
     }
-    tell(address, "halted");  // also if somebody has reset it since
+    tell(address, "halted");  // even if a client has reset it since
     return {};
 }
 

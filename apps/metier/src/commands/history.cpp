@@ -1,4 +1,4 @@
-// What servers have recorded: a list of executions, and all that is known of one.
+// Records of servers: a list of executions, and all details of one.
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
@@ -164,7 +164,7 @@ private:
     std::int64_t revision_ = -1;
 };
 
-/// Whether the reader of the output has gone: without output nothing else would show it.
+/// Whether the reader of the output has closed it: without output nothing else would show that.
 bool isOutputClosed() {
     pollfd output{STDOUT_FILENO, 0, 0};
     return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
@@ -182,7 +182,7 @@ Exit runFollow(const HistoryOptions& options) {
     do {
         const auto looked = follower.look();
         const auto problem = looked ? std::string() : looked.error().message;
-        // A file that nobody has written to yet may come.
+        // A file that no server has written yet may still appear.
         if (!looked && looked.error().code != Errc::not_found &&
             looked.error().code != Errc::resource_unavailable &&
             looked.error().code != Errc::timeout && looked.error().code != Errc::connection_lost) {

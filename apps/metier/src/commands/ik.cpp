@@ -28,13 +28,13 @@ struct IkOptions {
     bool json = false;
 };
 
-/// What is asked, read from the command line.
+/// Question read from the command line.
 struct IkQuestion {
     RobotModel model;
     motion::ToolFrame tool;
     Pose base_from_tool;
     JointVector reference;
-    std::optional<double> arm_angle;  ///< of a 7-axis arm
+    std::optional<double> arm_angle;  ///< only for a 7-axis arm
 
     Pose flange() const { return base_from_tool * tool.flange_from_tool.inverse(); }
 };

@@ -64,7 +64,8 @@ nlohmann::json jsonOf(const std::string& url, const std::vector<ListedSkill>& sk
     return {{"url", url}, {"skills", list}};
 }
 
-/// A server that does not answer is told of, and the others are listed all the same.
+/// Lists the skills of all servers. A server that does not answer is reported, and the others are
+/// listed all the same.
 Exit runList(const ListOptions& options, const CommandIdentity& identity) {
     const auto urls = addressesOf(options.servers);
     if (!urls) {

@@ -19,7 +19,7 @@ struct PlotOptions {
     MoveOptions move;
     std::string record;
     std::string records;
-    std::string robot;  // of a recorded execution
+    std::string robot;  // robot of a recorded execution
     std::string title;
     std::string svg = "motion.svg";
 };

@@ -23,9 +23,8 @@ struct ReplayOptions {
     SkillRun how;
 };
 
-/// Where the execution's server is now.
-Result<std::string> addressOf(const records::ExecutionRow& execution,
-                              const ReplayOptions& options) {
+/// Present address of the execution's server.
+Result<std::string> addressOf(const records::ExecutionRow& execution, const ReplayOptions& options) {
     if (!options.url.empty()) {
         return options.url;
     }

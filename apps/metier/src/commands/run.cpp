@@ -73,7 +73,7 @@ Result<skill::ValueMap> parseSettings(const SkillHandle& skill,
     return values;
 }
 
-/// A skill that is Halted runs nothing until somebody resets it.
+/// Prints how to reset a skill that is Halted: until then it runs nothing.
 void showWayOut(SkillHandle& skill, const SkillChoice& choice) {
     if (skill.state() == skill::State::halted) {
         fmt::print(stderr, "metier: {} is Halted; `metier reset {} {}` makes it Ready\n",

@@ -19,7 +19,7 @@
 namespace metier::app {
 namespace {
 
-// From the signal to the end of the process: what moves brakes within 2 s of it.
+// Longest time from the signal to the end of the process; the arm brakes within 2 s of it.
 constexpr std::chrono::seconds kLongestEnd{10};
 
 struct ServeOptions {
@@ -39,7 +39,8 @@ struct ServeOptions {
     std::string metrics;
 };
 
-/// A server on any free port is another one each time, and keeps nothing unless it is told where.
+/// Folder for the server's state. A server on any free port is another one each time, and keeps no
+/// state unless a folder is given.
 std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t port) {
     if (!options.state.empty()) {
         return options.state;
@@ -54,7 +55,7 @@ std::filesystem::path stateFolder(const ServeOptions& options, std::uint16_t por
     return folder;
 }
 
-/// Beside what else outlives a server, unless somebody says where.
+/// Sets the default store for records: in the state folder, unless one is given.
 void chooseRecords(const ServeOptions& options, cell::ServerConfig& config) {
     auto& url = config.records.url;
     url = options.records.empty() ? url : options.records;
@@ -96,7 +97,7 @@ void chooseControllers(const ServeOptions& options, cell::ServerConfig& config) 
 /// Addresses of used servers that the command line says instead of the file.
 Result<void> chooseUsed(const std::vector<std::string>& given, cell::ServerConfig& config) {
     if (config.driver() != nullptr) {
-        return {};  // it has a device and uses nobody
+        return {};  // it has a device and uses no other server
     }
     const auto used = config.usedServers();
     for (const auto& option : given) {
@@ -199,8 +200,9 @@ void addServe(CLI::App& app, CommandContext& context) {
     command->add_option("--port", options->port, "Another TCP port than the file's; 0: a free one");
     command
         ->add_option("--again-at", options->again_at,
+                     // For `metier up`, when it restarts a server.
                      "With --port 0: the free port that the server had before it ended")
-        ->group("");  // for `metier up`, which starts a server again
+        ->group("");
     command
         ->add_flag("--lab-is-known", options->lab_is_known,
                    "Do not warn of an insecure lab: who started this has")

@@ -37,7 +37,7 @@ Result<void> writeEndpoints(const std::string& file, const server::CellRunner& c
     return {};
 }
 
-/// Writes a line to standard error, which may be a terminal that is gone.
+/// Writes a line to standard error, which may be a closed terminal.
 void say(const std::string& text) {
     std::fputs(fmt::format("metier: {}\n", printable(text)).c_str(), stderr);
 }

@@ -24,7 +24,8 @@ using namespace std::chrono_literals;
 using virtual_controller::Host;
 
 constexpr std::uint16_t kControlPort = 7400;
-// The servers of a cell may be told to end at the same moment: they brake first.
+// Longest time that a controller stays for its servers, if all get the signal at the same moment:
+// they brake first.
 constexpr auto kLongestCompany = 3s;
 constexpr auto kLongestEnd = 10s;
 

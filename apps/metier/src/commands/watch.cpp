@@ -85,8 +85,8 @@ public:
         }
     }
 
-    /// Until enough was printed, a signal came, or the connection was given up, which is a failure.
-    /// `look_again` is called after each restart of the server.
+    /// Waits until enough was printed, a signal came, or the connection was given up, which is a
+    /// failure. `look_again` is called after each restart of the server.
     Exit wait(const link::StopSignal& signal, const std::function<void()>& look_again) {
         while (!done_ && !given_up_ && !signal.came()) {
             news_.wait(signal);

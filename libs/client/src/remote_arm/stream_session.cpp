@@ -120,7 +120,7 @@ void StreamSession::Notes::noteBroken(const std::string& why) {
 }
 
 void StreamSession::Notes::noteAnswer(const opcua::Answer<>& answer) {
-    // A stream that ended meanwhile refuses: its transition tells why.
+    // A stream that ended meanwhile refuses; its transition has the reason.
     if (answer || answer.error().status == opcua::status::kBadInvalidState) {
         return;
     }

@@ -23,17 +23,18 @@ namespace metier::client {
 /// Threading: one owner; what comes in is noted by the client's thread, which rings the wake_up.
 class StreamSession {
 public:
-    /// What the server told last.
+    /// Values that the server published last.
     struct Observed {
         device::JointArray position;     ///< measured [rad]; empty before the first
         SteadyTime sampled{};            ///< when `position` came
         SteadyTime moved{};              ///< when the measured arm was last seen in motion
-        std::optional<bool> standstill;  ///< as the server judges; nothing if it does not tell
+        std::optional<bool> standstill;  ///< as the server judges; none if it does not publish it
         device::SafetyState safety = device::SafetyState::normal;
         SteadyTime safety_since{};  ///< when `safety` became what it is
         std::string words;          ///< the robot's own, of why the stream skill is Halted
         std::uint64_t missed_cycles = 0;
-        std::optional<skill::TransitionEvent> stream_end;  ///< of the stream that was started last
+        /// End of the stream that was started last
+        std::optional<skill::TransitionEvent> stream_end;
         std::string refused;  ///< why a set-point was refused, since the stream was started
         std::string broken;   ///< why nothing more will come
     };
@@ -51,8 +52,7 @@ public:
     Result<void> startStream(const skill::ParentExecution& parent);
     /// Sends a set-point; nothing waits. Its failure shows in observed().
     void send(const device::JointArray& set_point, UtcTime meant_for);
-    /// Tells the server that no set-point comes any more, without waiting. False if it knows no end
-    /// of a stream but silence.
+    /// Writes EndOfStream, without waiting. False if the server ends a stream only by silence.
     bool endStream();
     Result<skill::State> streamState();
     Result<void> haltStream();

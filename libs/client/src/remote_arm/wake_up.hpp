@@ -21,7 +21,7 @@ public:
         changed_.notify_all();
     }
 
-    /// Until it was notified since the last wait(), the deadline, or a stop request.
+    /// Waits until it was notified since the last wait(), for the deadline, or for a stop request.
     void wait(const std::stop_token& stop, SteadyTime deadline) {
         std::unique_lock lock(mutex_);
         changed_.wait_until(lock, stop, deadline, [this] { return notified_; });

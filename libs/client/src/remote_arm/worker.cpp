@@ -14,22 +14,23 @@ using device::Safety;
 using device::SafetyState;
 
 constexpr auto kIdlePause = 100ms;
-// How long the server's safety state may take to follow its Reset.
+// Longest time until the server's safety state follows its Reset.
 constexpr auto kResetWait = 2s;
-// How long the words of a robot that has stopped are waited for; it stands meanwhile.
+// Longest wait for the reason of a robot that has stopped; it stands meanwhile.
 constexpr auto kLongestSilence = 100ms;
-// How long a stream may take to be Ready again after its last set-point.
+// Longest time until a stream is Ready again after its last set-point.
 constexpr auto kLongestEnding = 2s;
-// Where the server does not tell it, the arm stands without a change of the measured position for
-// so long: the shorter time where it is at its last set-point, the longer one elsewhere, since news
-// of its motion may be late.
+// Time without a change of the measured position after which the arm counts as standing, where the
+// server does not publish Standstill: the shorter time if it is at its last set-point, the longer
+// one elsewhere, since news of its motion may be late.
 constexpr auto kStandstillAtTarget = 60ms;
 constexpr auto kStandstill = 300ms;
-// How near its last set-point an arm is there [rad].
+// Largest distance from its last set-point at which an arm counts as there [rad].
 constexpr double kAtTarget = 1e-3;
 // After a longer pause of this thread it does not catch up set-point by set-point.
 constexpr std::uint64_t kMostCyclesBehind = 50;
-// Where the measured arm is farther from the last set-point, it was moved by someone else [rad].
+// Distance of the measured arm from the last set-point over which it was moved by someone else
+// [rad].
 constexpr double kMoved = 2e-3;
 
 device::ArmInfo infoOf(const StreamSession& session) {
@@ -330,7 +331,8 @@ void RemoteArm::Worker::beginReset() {
     fault_is_limit_ = false;
 }
 
-/// The server's safety state follows its Reset a moment later: only then the fault is gone.
+/// Answers resetFault(). The server's safety state follows its Reset a moment later; the fault is
+/// only gone then.
 void RemoteArm::Worker::answerReset() {
     if (!reset_deadline_) {
         return;
@@ -392,7 +394,7 @@ SteadyTime RemoteArm::Worker::nextWake() const {
     if (stream_ == Stream::running) {
         return stream_start_ + sent_ * info_.cycle;
     }
-    // What is under way is looked at often, so that its end and its deadline are seen in time.
+    // Poll often during a motion or a fault, so that its end and its deadline are seen in time.
     const bool busy = source_ != nullptr || state_.safety != SafetyState::normal;
     return std::chrono::steady_clock::now() + (busy ? 10ms : kIdlePause);
 }
@@ -405,7 +407,8 @@ void RemoteArm::Worker::cycle() {
     const auto now = std::chrono::steady_clock::now();
     const auto due = static_cast<std::uint64_t>((now - stream_start_) / info_.cycle) + 1;
     if (due > sent_ + kMostCyclesBehind) {
-        sent_ = due - 1;  // the stream paused: it goes on from here, the path is not jumped over
+        // The stream paused: it goes on from here; no part of the path is skipped
+        sent_ = due - 1;
     }
     while (stream_ == Stream::running && sent_ < due) {
         nextSetPoint();
@@ -428,7 +431,7 @@ void RemoteArm::Worker::nextSetPoint() {
     }
 }
 
-/// The source is told once the stream has ended: then the arm is free for whoever is next.
+/// Reports the end to the source once the stream has ended: then the arm is free for the next user.
 void RemoteArm::Worker::finishStream() {
     enterEnding();
     if (!session_->endStream()) {
@@ -448,7 +451,7 @@ void RemoteArm::Worker::letGo(EndCause cause) {
         return;
     }
     settled_ = cause == EndCause::done;
-    publish();  // whoever hears of the end may ask for the state at once
+    publish();  // a listener to the end may ask for the state at once
     {
         const std::lock_guard lock(mutex_);
         taken_ = false;

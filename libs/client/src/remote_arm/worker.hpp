@@ -47,7 +47,7 @@ private:
     };
     void run(const std::stop_token& stop);
     void reconnect(const std::stop_token& stop);
-    /// Empty, or in which way what a server tells now is not the arm that it was.
+    /// Difference between the arm that the server publishes now and the former arm; empty: none.
     std::string changeIn(const StreamSession& session) const;
     void noteAbsence(std::optional<Absence> absence);
     void observe();
@@ -92,13 +92,14 @@ private:
     std::shared_ptr<device::SetPointSource> pending_;
     std::optional<Absence> absence_;
 
-    // Of the thread alone.
+    // Used by the thread only.
     device::ArmState state_;
     SteadyTime sampled_;  // when its position was measured
     std::shared_ptr<device::SetPointSource> source_;
-    std::optional<SteadyTime> reset_deadline_;  // of the reset that has begun
+    std::optional<SteadyTime> reset_deadline_;  // deadline of a Reset under way
     Stream stream_ = Stream::none;
-    bool done_ = false;     // the source has nothing more; it is told when the stream has ended
+    // The source has no more set-points; it gets its end when the stream has ended.
+    bool done_ = false;
     bool settled_ = false;  // the last source came to its end, where the arm stands
     bool halted_by_stop_ = false;
     SteadyTime ending_since_;

@@ -31,7 +31,7 @@ Connection::~Connection() {
     thread_.request_stop();
     thread_ = {};
     jobs_.clear();
-    client_.reset();  // its thread may still tell of a loss until here
+    client_.reset();  // its thread may report a loss until here
 }
 
 opcua::Answer<std::unique_ptr<opcua::Client>> Connection::connect(
@@ -186,13 +186,14 @@ bool Connection::reconnect() {
     {
         const std::lock_guard lock(mutex_);
         client_.swap(former);
-        lost_.clear();  // that of the former
+        lost_.clear();  // the loss of the former connection
         loss_noted_ = false;
         uses = uses_;
     }
     watch(*present());
-    former.reset();  // without the lock: its thread may still tell of a loss
-    // All or none: a used skill that was told would begin, and be told again in the next attempt.
+    former.reset();  // without the lock: its thread may still report a loss
+    // All or none: a used skill that was notified would begin, and be notified again in the next
+    // attempt.
     std::vector<std::function<void()>> adoptions;
     for (const auto& use : uses) {
         adoptions.push_back(adoptionOf(use));
@@ -203,7 +204,7 @@ bool Connection::reconnect() {
     for (const auto& adopt : adoptions) {
         adopt();
     }
-    spdlog::warn("{}: connected again", options_.url);  // heard by whoever heard of the loss
+    spdlog::warn("{}: connected again", options_.url);  // as loud as the report of the loss
     reported_loss_.clear();
     reported_attempt_.clear();
     const std::lock_guard lock(mutex_);

@@ -35,8 +35,9 @@ public:
     /// The owner's thread.
     void attach(RemoteUsedSkill* used) { used_ = used; }
 
+    // Shared by what its thread owns
 private:
-    std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
+    std::shared_ptr<skill::Executor> executor_;
     RemoteUsedSkill* used_ = nullptr;
 };
 
@@ -96,8 +97,8 @@ private:
     std::condition_variable_any changed_;
     std::vector<std::function<void()>> jobs_;
     std::string lost_;         // why; empty while connected
-    bool loss_noted_ = false;  // of client_; guarded by mutex_
-    // Of the thread: what the log has been told of since the connection was there.
+    bool loss_noted_ = false;  // loss of client_ was noted; guarded by mutex_
+    // Used by the thread only: text of the loss that was logged, since the last connection.
     std::string reported_loss_;
     std::string reported_attempt_;
     std::jthread thread_;

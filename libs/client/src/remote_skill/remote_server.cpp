@@ -83,7 +83,7 @@ std::unique_ptr<composition::UsedSkill> RemoteServer::usedSkill(PendingUse use) 
     auto used = std::make_unique<RemoteUsedSkill>(worker_->connection, use.link,
                                                   std::move(use.name), std::move(use.origin));
     used->adopt(use.skill, use.now);
-    // What happened since it was opened has reached no used skill.
+    // No used has got the events since it was opened.
     worker_->connection.run([skill = std::move(use.skill), link = std::move(use.link)] {
         if (const auto now = skill->skill.now()) {
             link->post([now = *now](RemoteUsedSkill& other) { other.refresh(now); });

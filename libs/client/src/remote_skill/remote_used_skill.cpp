@@ -60,7 +60,7 @@ void RemoteUsedSkill::adopt(std::shared_ptr<OpenSkill> skill, const AsyncSkill::
     }
 }
 
-/// What was read while nothing runs from here; all else is told by events.
+/// Takes the state that was read while nothing runs from here; all other changes come as events.
 void RemoteUsedSkill::refresh(const AsyncSkill::Now& now) {
     if (skill_ && execution_.empty() && !reset_ && !left_over_) {
         state_ = now.state;
@@ -155,7 +155,7 @@ void RemoteUsedSkill::started(const std::string& id, const opcua::Answer<std::st
     });
 }
 
-/// What was sent may have been carried out, though nobody has heard of it.
+/// Halts an execution whose start was sent and not answered: the server may have begun it.
 void RemoteUsedSkill::haltIfRuns(const std::string& id) {
     if (!skill_) {
         return;
@@ -166,7 +166,7 @@ void RemoteUsedSkill::haltIfRuns(const std::string& id) {
                 link->post([id](RemoteUsedSkill& used) { used.haltLeftOver(id); });
             }
         });
-    static_cast<void>(sent);  // nothing can be done about a server that does not hear
+    static_cast<void>(sent);  // nothing can be done about a server that cannot be reached
 }
 
 /// Halt names no execution: one that was begun meanwhile must not be hit.
@@ -375,7 +375,7 @@ void RemoteUsedSkill::halt() {
         halt_wanted_ = true;
         return;
     }
-    static_cast<void>(command(Method::halt));  // a server that is lost is told by lost()
+    static_cast<void>(command(Method::halt));  // if the server is lost, lost() reports it
 }
 
 /// Each is sent, also while the answer to another is awaited: that may be a refusal.

@@ -42,7 +42,7 @@ public:
     void halt() override;
     void release() override;
 
-    // What the connection tells.
+    // Reports of the connection.
     void adopt(std::shared_ptr<OpenSkill> skill, const client::AsyncSkill::Now& now);
     void refresh(const client::AsyncSkill::Now& now);
     void lost(const std::string& why);
@@ -63,7 +63,7 @@ private:
     /// \param call the Reset that is answered
     void wasReset(std::uint64_t call, const opcua::Answer<>& answer);
     void tellReset(const Result<void>& outcome);
-    /// Sends a command and tells the listener if it is refused.
+    /// Sends a command; a refusal goes to the listener.
     Result<void> command(skill::Method method);
     /// \param id of the execution that it was meant for
     void refused(skill::Method method, const std::string& id, const opcua::Failure& failure);
@@ -76,12 +76,13 @@ private:
     void drop();
 
     Connection& connection_;
-    std::shared_ptr<UsedSkillLink> link_;  // with whatever is on its way here
+    std::shared_ptr<UsedSkillLink> link_;  // shared with messages that are on their way here
     std::string name_;
     std::string origin_;
     skill::SkillDescription description_;
-    std::shared_ptr<OpenSkill> skill_;  // with the work that waits for the server; null: lost
-    std::string lost_;                  // why there is none
+    // Shared with the work that waits for the server; null: lost
+    std::shared_ptr<OpenSkill> skill_;
+    std::string lost_;  // why there is none
     skill::State state_ = skill::State::halted;
     std::string reason_text_;
     bool left_over_ = false;

@@ -16,7 +16,7 @@ using skill::Reason;
 namespace {
 
 const std::string kStopTime = "StopTime";
-constexpr double kLongestStop = 3.0;  // that arms take [s]
+constexpr double kLongestStop = 3.0;  // longest StopTime that arms take [s]
 
 double seconds(std::chrono::nanoseconds time) {
     return std::chrono::duration<double>(time).count();
@@ -108,13 +108,15 @@ bool ArmMove::takes(const std::string& parameter) const {
                        [&](const skill::Field& field) { return field.name == parameter; });
 }
 
-/// A motion slowed down by a factor brakes from a speed less by that factor: the time falls with
-/// the factor where acceleration counts, with its root where jerk does. One at its limits brakes at
-/// its end with all that the axes have: there the pace can fall only slowly. Both numbers bound
-/// from above what random moves of all arms need (tests: StopTime.IsTakenByArmsOfAllKinds...).
+/// If a motion is slowed down by a factor, it brakes from a speed that is less by that factor: the
+/// braking time falls with the factor where acceleration limits it, with its root where jerk does.
+/// A motion at its limits brakes at its end with all that the axes have, so the pace can fall only
+/// slowly there. Both numbers are upper bounds for random moves of all arms (tests:
+/// StopTime.IsTakenByArmsOfAllKinds...).
 double ArmMove::stopTime(double duration) const noexcept {
     constexpr double slow = 1.15;
-    constexpr double reserve = 0.1;  // of being slower, that makes the end of the way no matter
+    // Slowness, as a share of the shortest duration, at which the end of the way matters less.
+    constexpr double reserve = 0.1;
     const double slowed = shortest_ > 0.0 ? std::max(duration / shortest_, 1.0) : 1.0;
     const double needed = slow / std::sqrt(slowed) + std::exp(-(slowed - 1.0) / reserve);
     return std::min(braking_ * needed, kLongestStop);
@@ -199,7 +201,7 @@ void ArmMove::onResumed() {
 }
 
 void ArmMove::onRefused(skill::Method method, const Error& error) {
-    // An arm that ends by itself meanwhile refuses, and tells its end.
+    // An arm that ends by itself meanwhile refuses, and reports its end.
     if (method != skill::Method::suspend) {
         owner_.failed(failure(fmt::format("refused {}: {}", toString(method), error.message)));
     }
@@ -231,7 +233,7 @@ void ArmMove::onStopping(const composition::UsedSkillStop& stop) {
         return;
     }
     if (stop.to == skill::State::halted) {
-        halt_asked_ = true;  // by somebody else: it is not to be reset here
+        halt_asked_ = true;  // by another client: do not reset it from here
         owner_.failed(haltedFailure(stop.reason, stop.text));
     } else if (!std::exchange(rest_asked_, true)) {
         owner_.suspendedByOther(fmt::format("{} was suspended {}", name(), stop.text));

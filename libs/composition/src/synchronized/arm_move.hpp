@@ -11,13 +11,13 @@
 
 namespace metier::composition {
 
-/// What became of one arm's part.
+/// Failure of one arm's part of the move.
 struct ArmFailure {
     skill::Reason reason = skill::Reason::error;
     std::string text{};
 };
 
-/// What hears of the arms' parts.
+/// Listener to the arms' parts.
 class ArmMoveOwner {
 public:
     virtual ~ArmMoveOwner() = default;
@@ -70,16 +70,16 @@ public:
     double shortestDuration() const noexcept { return shortest_; }
     const composition::ClockOffset& clockOffset() const noexcept { return offset_; }
     bool hasPath() const noexcept { return shortest_ > 0.0; }
-    /// How long a stop must take that this arm can make at any time of a motion of that length,
-    /// slowing its planned time down as all do [s]. After ask().
+    /// Shortest duration of a stop [s] that this arm can make at any time of a motion of that
+    /// length, if it slows its planned time down as all arms do. Call it after ask().
     double stopTime(double duration) const noexcept;
 
     struct Start {
         std::string execution_id;
         std::string parent;  ///< execution that moves the arms
         double duration;     ///< [s]
-        double stop_time;    ///< of a Suspend, the same for all arms [s]
-        UtcTime time;        ///< by the clock of this machine
+        double stop_time;    ///< duration of a Suspend, the same for all arms [s]
+        UtcTime time;        ///< begin of the motion, by the clock of this machine
     };
     void begin(const Start& start);
     /// The skill that moves the arm.
@@ -92,7 +92,8 @@ public:
     void drop();
     void halt();
 
-    /// Of an arm that has arrived, by the clock of this machine [s since 1970-01-01 UTC].
+    /// Start time of an arm that has arrived, by the clock of this machine [s since 1970-01-01
+    /// UTC].
     double startTime() const { return localTime("MotionStartTime"); }
     double endTime() const { return localTime("MotionEndTime"); }
     double lateness() const { return number("LargestLateness"); }  ///< [s]
@@ -107,7 +108,7 @@ public:
 private:
     using Done = std::function<void(std::optional<ArmFailure>)>;
 
-    /// What calls `take` with an answer, as long as this is there.
+    /// Makes a callback that calls `take` with an answer, as long as this object exists.
     template <typename Answer, typename Take>
     auto whileAlive(Take take) {
         return [alive = alive_, take = std::move(take)](const Result<Answer>& answer) {
@@ -132,7 +133,7 @@ private:
     bool halt_asked_ = false;
     JointPath joint_path_;   ///< as first asked for; its end is the target
     double shortest_ = 0.0;  ///< [s]
-    double braking_ = 0.0;   ///< at the end of the shortest motion [s]
+    double braking_ = 0.0;   ///< braking time at the end of the shortest motion [s]
     composition::ClockOffset offset_;
     skill::ValueMap result_;
     // Answers that come late ask it whether this is still there.

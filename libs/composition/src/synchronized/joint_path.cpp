@@ -11,7 +11,7 @@ namespace metier::composition {
 namespace {
 
 struct Off {
-    std::size_t axis = 0;                                 ///< that is furthest off
+    std::size_t axis = 0;                                 ///< axis with the largest distance
     double by = std::numeric_limits<double>::infinity();  ///< [rad]
 };
 
@@ -24,7 +24,7 @@ Off offPlace(const std::vector<double>& place, const std::vector<double>& now) {
     return off;
 }
 
-/// Where `now` is nearest on the line between two places.
+/// Point nearest to `now` on the line between two places.
 std::vector<double> nearest(const std::vector<double>& from, const std::vector<double>& to,
                             const std::vector<double>& now) {
     double along = 0.0;

@@ -56,7 +56,7 @@ Result<void> checkReachable(const Arm& arm) {
 
 }  // namespace
 
-/// A Reset that nobody waits for: what it leads to shows at the next Start.
+/// A Reset for which nothing waits: its outcome shows at the next Start.
 class SynchronizedMoveSkill::Unheard final : public composition::UsedSkillListener {
 public:
 };

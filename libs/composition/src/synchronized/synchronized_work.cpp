@@ -14,7 +14,7 @@ using Stage = ArmMove::Stage;
 
 namespace {
 
-// What is left of the start delay when every arm must have said that it runs.
+// Share of the start delay that remains when every arm must have reported Running.
 constexpr double kShareForDoubt = 0.25;
 // The arms and their clocks are asked for this long at most.
 constexpr std::chrono::seconds kLongestAnswer{10};
@@ -116,7 +116,7 @@ void SynchronizedWork::begin() {
                                       [this] { checkBegun(); });
 }
 
-/// Before the moment has come: an arm that did not hear of it would be left behind.
+/// Halts the whole if an arm does not run yet shortly before the begin: it would be left behind.
 void SynchronizedWork::checkBegun() {
     const auto late = std::find_if(arm_moves_.begin(), arm_moves_.end(), [](const auto& arm_move) {
         return arm_move->stage() == Stage::runs && !arm_move->begun();
@@ -239,7 +239,7 @@ void SynchronizedWork::forceStop() noexcept {
     }
 }
 
-/// Those that have moved together; an arm that was where it should be, or arrived before a Resume
+/// Arms that have moved together. An arm that was at its target already, or arrived before a Resume
 /// of the others, has no times to compare.
 std::vector<const ArmMove*> SynchronizedWork::measured() const {
     auto arm_moves = begun_arms_;

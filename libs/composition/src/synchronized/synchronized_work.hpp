@@ -81,7 +81,7 @@ private:
     skill::Timer timer_;
 };
 
-/// What the arms' results say together.
+/// Combines the results of all arms.
 Results resultsOf(const std::vector<const ArmMove*>& arm_moves);
 
 }  // namespace metier::composition

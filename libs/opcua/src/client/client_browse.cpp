@@ -10,7 +10,7 @@ namespace metier::opcua {
 
 namespace {
 
-/// Of one node; a server that sends more, or sends on for ever, is not listened to.
+/// Limit for the references of one node; a server that sends more is refused.
 constexpr std::size_t kMostReferences = 100'000;
 
 /// One Browse and the BrowseNexts that complete it.

@@ -14,7 +14,7 @@
 
 namespace metier::opcua {
 
-/// When a call must have ended, and how long it was allowed to take.
+/// Deadline of a call, and the length of its time-out.
 struct Deadline {
     SteadyTime at = SteadyTime::max();
     std::chrono::milliseconds allowed{};
@@ -32,13 +32,13 @@ struct Deadline {
 /// Threading: the client's thread.
 class ClientCalls {
 public:
-    /// How a call ended.
+    /// End of a call.
     struct Ending {
         StatusCode status;         ///< the service result, or why there is none
         void* response = nullptr;  ///< none: no answer came
         bool sent = true;          ///< false: the request never left
     };
-    /// Hears how the call ended; called once.
+    /// Callback for the end of a call; called once.
     using Finish = std::function<void(const Ending&)>;
     struct Call {
         ClientCalls* calls = nullptr;
@@ -71,7 +71,7 @@ private:
     static void end(Call& call, const Ending& ending);
 
     std::list<Call> calls_;
-    std::multimap<SteadyTime, Call*> due_;  // of those not ended
+    std::multimap<SteadyTime, Call*> due_;  // calls that have not ended
 };
 
 }  // namespace metier::opcua

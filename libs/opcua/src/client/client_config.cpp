@@ -36,8 +36,8 @@ void setTimes(const ClientOptions& options, UA_ClientConfig& config) {
     config.timeout = static_cast<UA_UInt32>(std::min(options.connect_timeout, check).count());
 }
 
-/// Discovery needs no Endpoint of its own: a closed server has none without security. The stack
-/// looks for none if it is told of one.
+/// Sets an Endpoint for discovery, so that the stack does not look for one: a closed server has
+/// none without security.
 void setDiscoveryEndpoint(const std::string& url, UA_ClientConfig& config) {
     auto& endpoint = config.endpoint;
     toNative(url, endpoint.endpointUrl);

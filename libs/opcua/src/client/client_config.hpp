@@ -30,7 +30,7 @@ private:
     std::string last_;
 };
 
-/// What a connection is for.
+/// Purpose of a connection.
 enum class ConnectionKind {
     session,    ///< everything a Client offers
     discovery,  ///< services that need no session
@@ -40,7 +40,7 @@ struct ClientPlugins {
     UA_EventLoop* loop = nullptr;
     UA_Logger* logger = nullptr;
     PeerCheck* peers = nullptr;  ///< for a connection with security
-    std::string url{};           ///< where to connect to
+    std::string url{};           ///< address to connect to
 };
 
 /// The stack's configuration for one client. Who calls owns it, until it is handed to

@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kLongestIdle{1'000};
-constexpr milliseconds kGoodbye{1'000};         // for the server to answer CloseSession
+constexpr milliseconds kGoodbye{1'000};         // longest wait for the answer to CloseSession
 constexpr milliseconds kLateAnswers{60'000};    // kept apart from attacks that long
 constexpr std::size_t kMostUnanswered = 2'000;  // besides PublishRequests
 constexpr int kMostAttempts = 4;                // an endpoint may send us elsewhere
@@ -25,7 +25,8 @@ ClientCore& coreOf(UA_Client* client) {
     return *static_cast<ClientCore*>(UA_Client_getConfig(client)->clientContext);
 }
 
-/// What the stack reports when a connection breaks differs by the moment; all mean the same.
+/// Makes one failure for all codes with which the stack reports a broken connection: they differ by
+/// the moment.
 Failure lostFailure(std::string_view doing, StatusCode status,
                     Failure::Delivery delivery = Failure::Delivery::not_sent) {
     return {{Errc::connection_lost,
@@ -35,7 +36,7 @@ Failure lostFailure(std::string_view doing, StatusCode status,
             delivery};
 }
 
-/// Whether the server said so; if not, nobody knows what it did.
+/// Whether the server answered; if not, its action is unknown.
 bool isAnswer(const ClientCalls::Ending& ending) {
     return ending.response != nullptr && errcFrom(ending.status) != Errc::connection_lost;
 }
@@ -162,7 +163,7 @@ bool ClientCore::awaitChange(SteadyTime deadline) const {
 void ClientCore::setState(Client::State state) {
     {
         const std::lock_guard lock(state_mutex_);
-        if (state_ != Client::State::closed) {  // which stays
+        if (state_ != Client::State::closed) {  // closed is final
             state_ = state;
         }
     }
@@ -177,13 +178,13 @@ void ClientCore::onConnectionLost(std::function<void(const Failure&)> callback) 
             on_lost_ = std::move(callback);
         }
     });
-    static_cast<void>(posted);  // closed: nobody is to be told any more
+    static_cast<void>(posted);  // closed: there is no listener any more
 }
 
 void ClientCore::onConnectionChange(std::function<void(const ConnectionChange&)> callback) {
     const auto posted = post(
         [this, callback = std::move(callback)]() mutable { on_change_ = std::move(callback); });
-    static_cast<void>(posted);  // closed: nobody is to be told any more
+    static_cast<void>(posted);  // closed: there is no listener any more
 }
 
 void ClientCore::tell(ConnectionChange change) {

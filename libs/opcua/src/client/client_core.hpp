@@ -21,10 +21,10 @@
 
 namespace metier::opcua {
 
-/// What a request does to the server.
+/// Effect of a request on the server.
 enum class Effect { asks, commands };
 
-/// What is being done, for messages, and until when.
+/// Name of an action, for messages, and its deadline.
 struct Task {
     std::string doing;
     Deadline deadline;
@@ -38,12 +38,12 @@ struct DeleteClient {
 
 /// One client of the stack with its event loop and the thread that runs both.
 ///
-/// The stack's callbacks never call out: what users are told is queued with later() and said
+/// The stack's callbacks never call user code: notifications are queued with later() and delivered
 /// between two iterations of the loop, when the stack is not at work and none of its locks is held.
 ///
 /// With a connection it is `open`. Without one it is `waiting` for the next attempt, then
-/// `attempting` until the session is there and the server known, then `restoring` what was
-/// subscribed; any failure leads back to `waiting`, and `over` is the end.
+/// `attempting` until there is a session with a known server, then `restoring` the subscriptions;
+/// any failure leads back to `waiting`. `over` is the final state.
 class ClientCore {
 public:
     ClientCore(ClientOptions options, ConnectionKind kind);
@@ -54,8 +54,8 @@ public:
 
     // Any thread.
 
-    /// Connects and waits for the outcome; once. After a failure it is closed.
-    /// For a session the outcome is its own; for discovery, what settle() is told.
+    /// Connects and waits for the outcome; once. After a failure it is closed. For a session the
+    /// outcome is that of the session; for discovery, the one given to settle().
     Answer<> connect(const std::string& url);
     /// Before connect(), for discovery: what to do whenever the SecureChannel is open. The stack
     /// may open several until it is content with the server's address.
@@ -80,8 +80,9 @@ public:
 
     // The own thread.
 
-    /// Sends a request and hears of its outcome once, in the stack: valid is what the pointer
-    /// leads to only then. Fails at once if the deadline has passed or there is no connection.
+    /// Sends a request. Its outcome is delivered once, by a callback within the stack; the pointer
+    /// given there is valid only during that callback. Fails at once if the deadline has passed or
+    /// there is no connection.
     template <typename Request>
     void send(Request& request, Task task, OnResponse<Request> done);
     /// Runs call_out when the stack is not at work.
@@ -138,7 +139,7 @@ private:
     const ConnectionKind kind_;
     std::atomic<Client::State> state_ = Client::State::connected;
     std::atomic<std::uint64_t> boot_ = 1;
-    std::atomic<std::uint64_t> connection_ = 1;  // of requests; one more with each connection
+    std::atomic<std::uint64_t> connection_ = 1;  // increased with each connection
     mutable std::mutex state_mutex_;
     mutable std::condition_variable state_changed_;
     std::optional<Failure> why_lost_;  // under state_mutex_
@@ -149,7 +150,7 @@ private:
     std::mutex joining_;
 
     // The own thread's, once it runs.
-    std::unique_ptr<PeerCheck> peers_;  // of a connection with security
+    std::unique_ptr<PeerCheck> peers_;  // for a connection with security
     ClientComplaints complaints_;
     AsioEventLoop loop_;
     ClientCalls calls_;
@@ -165,9 +166,9 @@ private:
     Phase phase_ = Phase::connecting;
     std::optional<ReconnectSchedule> schedule_;
     ServerIdentity server_;
-    ServerIdentity found_;                     // by the attempt under way
-    bool identifying_ = false;                 // what it finds
-    bool session_kept_ = false;                // by the attempt under way
+    ServerIdentity found_;                     // by the present attempt
+    bool identifying_ = false;                 // `found_` is being read
+    bool session_kept_ = false;                // by the present attempt
     std::optional<Failure> outage_;            // while there is no connection
     std::optional<std::uint64_t> request_of_;  // connection of the request that is being sent
     std::function<void(const Failure&)> on_lost_;

@@ -1,4 +1,4 @@
-// How a ClientCore comes back from the loss of its connection.
+// Reconnection of a ClientCore after the loss of its connection.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -65,7 +65,7 @@ void ClientCore::attemptIfDue() {
         return;
     }
     if (client_ && channelState() != UA_SECURECHANNELSTATE_CLOSED) {
-        return loop_.dropOpened();  // the next iteration tells the stack
+        return loop_.dropOpened();  // the next iteration reports it to the stack
     }
     session_kept_ = hasSession();
     if (!session_kept_) {

@@ -165,8 +165,8 @@ Answer<std::vector<EndpointDescription>> getEndpoints(const std::string& url,
 Answer<std::vector<ServerDescription>> findServers(const std::string& url,
                                                    std::chrono::milliseconds timeout) {
     using List = std::vector<ServerDescription>;
-    // No EndpointUrl: a discovery server on open62541 1.4 would tell it as the address of all that
-    // registered there.
+    // No EndpointUrl: a discovery server on open62541 1.4 would return it as the address of all
+    // servers that registered there.
     Question<UA_FindServersRequest, List> question(
         url, optionsFor(timeout), [](auto& /*request*/) {},
         [](const UA_FindServersResponse& response) {

@@ -34,7 +34,7 @@ NamespaceMove::NamespaceMove(const std::vector<std::string>& before,
                            ? std::nullopt
                            : std::optional(static_cast<std::uint16_t>(found - after.begin())));
     }
-    // Namespace 1 is the server's own, whose URI may tell one run from another.
+    // Namespace 1 is the server's own; its URI may differ from run to run.
     if (now_.size() > 1 && !now_[1]) {
         now_[1] = std::uint16_t{1};
     }

@@ -11,7 +11,7 @@
 
 namespace metier::opcua {
 
-/// When to try to connect again.
+/// Times of the attempts to connect again.
 ///
 /// Threading: one thread.
 class ReconnectSchedule {
@@ -22,9 +22,9 @@ public:
     void begin(SteadyTime now);
     /// An attempt failed: the next pause is twice as long.
     void failed(SteadyTime now);
-    /// What failed says nothing about the server: try again without a pause.
+    /// The last failure was not the server's: try again without a pause.
     void retry(SteadyTime now) { next_ = now; }
-    /// When the next attempt is due.
+    /// Time of the next attempt.
     SteadyTime next() const noexcept { return next_; }
     /// Whether it has been tried for too long.
     bool expired(SteadyTime now) const;
@@ -39,23 +39,24 @@ private:
     std::minstd_rand random_{std::random_device{}()};
 };
 
-/// One run of a server, told from others.
+/// Identity of one run of a server.
 struct ServerIdentity {
-    UtcTime start_time{};  ///< the epoch: the server does not tell
+    UtcTime start_time{};  ///< the epoch: the server does not publish it
     std::vector<std::string> namespaces{};
 };
 
-/// Where the namespaces of a server are found after it was started again.
+/// Mapping of a server's namespace indices after it was started again.
 class NamespaceMove {
 public:
     NamespaceMove() = default;
     NamespaceMove(const std::vector<std::string>& before, const std::vector<std::string>& after);
 
-    /// The index now of what had `before` as its index; none: the namespace is gone.
+    /// Present index of the namespace that had index `before`; none: the namespace does not exist
+    /// any more.
     std::optional<std::uint16_t> operator()(std::uint16_t before) const;
 
 private:
-    std::vector<std::optional<std::uint16_t>> now_;  // by former index; beyond: as it was
+    std::vector<std::optional<std::uint16_t>> now_;  // by former index; beyond: unchanged
 };
 
 }  // namespace metier::opcua

@@ -23,8 +23,8 @@ Failure miscounted(const std::string& doing, std::size_t answered, std::size_t a
             {}};
 }
 
-/// Hands what `convert` makes of a response, or why there is none, to `done` when the stack is not
-/// at work.
+/// Passes the result of `convert` for a response, or the reason why there is none, to `done` when
+/// the stack is not at work.
 template <typename Request, typename T, typename Convert>
 OnResponse<Request> converted(ClientCore& core, Done<T> done, Convert convert) {
     using Response = typename Service<Request>::Response;

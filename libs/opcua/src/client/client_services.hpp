@@ -73,7 +73,7 @@ struct Service<UA_RegisterServer2Request>
     : ServiceTypes<UA_RegisterServer2Response, UA_TYPES_REGISTERSERVER2REQUEST,
                    UA_TYPES_REGISTERSERVER2RESPONSE> {};
 
-/// Hears the response to a request; what the pointer leads to is gone when it returns.
+/// Receives the response to a request; the pointer is valid only during the call.
 template <typename Request>
 using OnResponse = std::function<void(Answer<typename Service<Request>::Response*>)>;
 

@@ -32,7 +32,7 @@ std::span<Element> all(Element* first, std::size_t count) {
     return {first, count};
 }
 
-/// An event that only tells that others were lost; it may have fewer fields than were asked for.
+/// Whether an event only reports that others were lost; it may have fewer fields than requested.
 bool isOverflow(const UA_EventFieldList& event) {
     const auto fields = all(event.eventFields, event.eventFieldsSize);
     return std::any_of(fields.begin(), fields.end(), [](const UA_Variant& field) {
@@ -219,7 +219,7 @@ void ClientSubscriptions::itemCreated(std::uint32_t handle,
     const auto found = items_.find(handle);
     const auto item = found == items_.end() ? nullptr : found->second;
     const auto* result = answer && (*answer)->resultsSize == 1 ? &(*answer)->results[0] : nullptr;
-    if (!item) {  // nobody wants it any more
+    if (!item) {  // it was removed meanwhile
         if (result != nullptr && !StatusCode(result->statusCode).isBad()) {
             deleteItem(result->monitoredItemId);
         }
@@ -292,7 +292,7 @@ void ClientSubscriptions::published(const Answer<UA_PublishResponse*>& answer) {
 
 void ClientSubscriptions::publishFailed(const Failure& failure) {
     if (failure.code == Errc::connection_lost || (core_.reconnects() && resting_)) {
-        return;  // the loss of the connection is told, or will be
+        return;  // the loss of the connection is or will be notified
     }
     if (failure.status == status::kBadTimeout) {  // the server let it run out unused
         return refill();

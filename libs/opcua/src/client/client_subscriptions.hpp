@@ -20,7 +20,7 @@ class ClientCore;
 using EventCallback = std::function<void(const EventNotice&)>;
 using DataCallback = std::function<void(const DataValue&)>;
 
-/// A node, what is asked of it and who hears the answers.
+/// A node, the filter for its events, and the callback for them.
 struct EventItem {
     NodeId node;
     EventFilter filter;
@@ -38,14 +38,15 @@ using ItemRequest = std::variant<EventItem, DataItem>;
 ///
 /// Several PublishRequests are kept with the server, so that it can publish at any time.
 ///
-/// While the connection is lost they rest: interrupt(), then resume(). A session that was kept has
-/// its Subscription still, with what was to be told meanwhile; for another, all is made anew.
+/// While the connection is lost they rest: interrupt(), then resume(). A session that was kept
+/// still has its Subscription and the notifications of the time between; for a new session, all is
+/// made anew.
 ///
 /// Threading: the client's thread, but for newHandle().
 class ClientSubscriptions {
 public:
     using Added = std::function<void(Answer<>)>;
-    /// What the connection is like that came back.
+    /// State of a connection that came back.
     struct Return {
         bool session_kept = false;
         NamespaceMove move{};
@@ -55,23 +56,23 @@ public:
 
     /// Names an item; any thread.
     std::uint32_t newHandle() noexcept { return ++last_handle_; }
-    /// `added` hears the outcome while the stack is not at work.
+    /// Adds an item; `added` gets the outcome while the stack is not at work.
     void add(std::uint32_t handle, ItemRequest request, Deadline deadline, Added added);
-    /// From here on its callback does not run. Unknown handles are ignored.
+    /// Removes an item: from now on its callback does not run. Unknown handles are ignored.
     void remove(std::uint32_t handle);
     /// Tells all items that nothing will come any more, each once.
     void end(StatusCode status);
-    /// The connection is lost; all items are told.
+    /// The connection is lost; all items are notified.
     void interrupt(StatusCode status);
-    /// Goes on over a new connection. `resumed` runs once, when all items are told that they go on
-    /// or, each with its reason, that they have ended; not if it is interrupted before.
+    /// Continues over a new connection. `resumed` runs once, when every item was notified that it
+    /// goes on or, with a reason, that it has ended; not if the connection is interrupted before.
     void resume(const Return& how, std::function<void()> resumed);
 
 private:
     struct Item {
         ItemRequest request;
         Deadline deadline;            // for its creation
-        Added added;                  // empty: was told
+        Added added;                  // empty: was called
         std::uint32_t server_id = 0;  // 0: the server does not know it (any more)
         bool ended = false;
         bool renewing = false;  // is being made again
@@ -118,7 +119,7 @@ private:
     std::vector<std::uint32_t> unacknowledged_;
     std::vector<std::uint32_t> unwanted_;  // items of the server's to be deleted after a resume()
     bool resting_ = false;                 // nothing is sent
-    bool interrupted_ = false;             // as the items were told
+    bool interrupted_ = false;             // as the items were notified
     std::size_t renewing_ = 0;             // items that are being made again
     std::function<void()> resumed_;        // not empty: resume() is under way
 };

@@ -1,4 +1,4 @@
-// What becomes of MonitoredItems when their connection or their Subscription is lost.
+// Handling of MonitoredItems whose connection or Subscription was lost.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -85,7 +85,7 @@ void ClientSubscriptions::resume(const Return& how, std::function<void()> resume
     }
 }
 
-/// The Subscription is where it was, and tells what it could not tell meanwhile.
+/// The Subscription still exists, and sends the notifications that it kept meanwhile.
 void ClientSubscriptions::goOn() {
     for (const auto& [handle, item] : items_) {
         if (!item->ended && !item->added) {

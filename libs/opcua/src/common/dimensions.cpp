@@ -49,7 +49,7 @@ bool objectFits(const UA_ExtensionObject& object) noexcept {
            dimensionsFit(object.content.decoded.data, *object.content.decoded.type);
 }
 
-/// What is at `position`, which goes beyond it.
+/// Value at `position`; moves `position` past it.
 template <typename T>
 T taken(const std::byte*& position) noexcept {
     T value;
@@ -58,7 +58,7 @@ T taken(const std::byte*& position) noexcept {
     return value;
 }
 
-/// What a member of a structure holds, and where the next one begins.
+/// Checks the value of a structure's member; moves `position` to the next member.
 bool memberFits(const std::byte*& position, const UA_DataTypeMember& member) noexcept {
     position += member.padding;
     const auto& type = *member.memberType;

@@ -16,7 +16,7 @@ namespace metier::opcua {
 
 namespace {
 
-/// What the stack calls info is about single sessions and channels: detail for us.
+/// Level for the log. The stack's level info is about single sessions and channels: debug for us.
 spdlog::level::level_enum levelOf(UA_LogLevel level) noexcept {
     if (level >= UA_LOGLEVEL_ERROR) {
         return spdlog::level::err;

@@ -133,8 +133,8 @@ StatusCode PeerCheck::refuse(std::string_view der, StatusCode status) const {
     return status;
 }
 
-/// The whole URI: the stack's own plugin is content with a part of it. The stack asks when a
-/// Session is to be created, and tells the client what it is told here.
+/// Compares the whole URI; the stack's own plugin compares only a part of it. The stack calls this
+/// when a Session is to be created, and sends the result to the client.
 StatusCode PeerCheck::checkUri(std::string_view der, std::string_view application_uri) {
     const auto certificate = security::Certificate::fromDer(der);
     if (certificate && !application_uri.empty() &&

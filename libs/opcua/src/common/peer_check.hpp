@@ -42,7 +42,8 @@ public:
     }
     /// Why the last peer was refused; empty if it was not.
     const std::string& lastRefusal() const noexcept { return last_refusal_; }
-    /// Keeps each that is not trusted for somebody to decide on, besides telling of it.
+    /// Stores each certificate that is not trusted for a later decision of a person, besides
+    /// reporting it.
     void keepUntrusted() noexcept { keeps_untrusted_ = true; }
 
 private:

@@ -37,7 +37,7 @@ constexpr std::array kTable{
     Entry{Errc::internal, status::kBadInternalError},
 };
 
-/// What else a peer's stack may answer.
+/// Further codes that a peer's stack may return.
 constexpr std::array kFromStack{
     Entry{Errc::invalid_argument, status::kBadArgumentsMissing},
     Entry{Errc::invalid_argument, status::kBadTooManyArguments},

@@ -30,7 +30,7 @@ std::string pathFrom(AvahiStringList* txt) {
     return plain ? path : std::string();
 }
 
-/// What the daemon tells of, until it has nothing more to tell for now.
+/// Collects the services that the daemon reports, until it has no more for now.
 ///
 /// Threading: one thread.
 class Browse {

@@ -16,9 +16,9 @@ namespace {
 constexpr int kTcpRtoMinUs = 45;
 constexpr int kRepeatAfterUs = 50'000;  // above the 40 ms that Linux may hold back an answer
 
-/// What little a connection has under way, as heartbeats are, is repeated 50 ms, not 200 ms, after
-/// its loss, and then at a steady pace for a while instead of ever more slowly. Systems without
-/// these options do without.
+/// Makes the system repeat the packets of a connection with little traffic, such as heartbeats, 50
+/// ms after a loss instead of 200 ms, and then at a steady pace for a while instead of ever more
+/// slowly. Does nothing on systems without these options.
 void repeatSoon(int socket) {
     const int on = 1;
     static_cast<void>(::setsockopt(socket, IPPROTO_TCP, TCP_THIN_LINEAR_TIMEOUTS, &on, sizeof(on)));
@@ -91,7 +91,7 @@ bool Connection::progressed() {
 
 void Connection::close() {
     closing_ = true;
-    asio::error_code ignored;  // there is nobody left to tell
+    asio::error_code ignored;  // nothing more can be done
     socket_.close(ignored);
     timer_.cancel();
     patience_.cancel();

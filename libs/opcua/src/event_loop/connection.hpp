@@ -16,7 +16,7 @@
 
 namespace metier::opcua {
 
-/// Whom the stack wants told about a connection.
+/// Application of the stack that gets the events of a connection.
 struct Application {
     UA_ConnectionManager_connectionCallback callback = nullptr;
     void* application = nullptr;
@@ -37,7 +37,7 @@ public:
     Origin origin() const { return origin_; }
     asio::ip::tcp::socket& socket() { return socket_; }
     asio::steady_timer& timer() { return timer_; }
-    /// Until it is closed if its peer is still a stranger.
+    /// Timer that closes the connection if its peer is not admitted in time.
     asio::steady_timer& patience() { return patience_; }
     Application& application() { return application_; }
     bool closing() const { return closing_; }
@@ -53,19 +53,19 @@ public:
     /// Whether the peer's TCP acknowledged anything since the last call.
     bool progressed();
 
-    /// Closes the socket and drops what is queued. The application is told later, by the manager.
+    /// Closes the socket and drops queued data. The manager notifies the application later.
     void close();
     /// Makes the kernel drop, on close(), what the peer did not take.
     void forget();
 
     bool connected;  ///< an opened connection is connected later
     bool awaits_writable = false;
-    MessageCounter incoming;  ///< of an opened connection, as the next
+    MessageCounter incoming;  ///< of an opened connection, as the next one
     ResponseGate gate;
     Standing standing = Standing::member;
-    std::size_t sessions = 0;  ///< of a member
-    std::string address{};     ///< of an accepted one: the peer's
-    Inbox inbox{};             ///< of an accepted one
+    std::size_t sessions = 0;  ///< number of its Sessions, if admitted
+    std::string address{};     ///< the peer's address, of an accepted connection
+    Inbox inbox{};             ///< of an accepted connection
 
 private:
     ConnectionId id_;

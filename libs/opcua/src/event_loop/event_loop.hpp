@@ -22,7 +22,7 @@ class Loop;
 /// A TCP connection of the loop; never used again for another. 0: none.
 using ConnectionId = std::uintptr_t;
 
-/// When notifications of events leave the server.
+/// Time at which notifications of events leave the server.
 enum class Publishing {
     at_once,      ///< as soon as flushPublishing() asks for it
     at_interval,  ///< strictly at the Subscription's publishing interval; flushPublishing() is void
@@ -30,11 +30,12 @@ enum class Publishing {
 
 struct EventLoopOptions {
     std::size_t send_queue_limit = std::size_t{8} << 20U;  ///< [byte] per peer, beyond: cut
-    std::chrono::milliseconds stall_limit{2000};    ///< a peer that takes nothing so long is cut
-    std::chrono::milliseconds connect_limit{5000};  ///< for an outgoing connection to open
-    std::size_t max_connections = 1000;             ///< beyond: accepted and closed at once
-    /// Whoever is not admitted within this time is closed, and sooner if his place is needed; 0:
-    /// everybody is as good as admitted.
+    std::chrono::milliseconds stall_limit{2000};  ///< a peer that takes nothing so long is cut
+    /// Longest time for an outgoing connection to open
+    std::chrono::milliseconds connect_limit{5000};
+    std::size_t max_connections = 1000;  ///< beyond: accepted and closed at once
+    /// Longest time until a peer must be admitted; a stranger is closed earlier if its place is
+    /// needed. 0: every peer counts as admitted.
     std::chrono::milliseconds stranger_limit{0};
     int kernel_send_buffer = 0;  ///< [byte] SO_SNDBUF, 0: as the kernel chooses
     Publishing publishing = Publishing::at_once;
@@ -46,10 +47,10 @@ struct EventLoopStatistics {
     std::size_t queued_bytes = 0;  ///< [byte] waiting for peers to read, now
     std::uint64_t accepted = 0;
     std::uint64_t refused = 0;            ///< beyond max_connections
-    std::uint64_t dropped_strangers = 0;  ///< not admitted in time, or their place was needed
+    std::uint64_t dropped_strangers = 0;  ///< closed, not admitted in time or its place was needed
     std::uint64_t cut_peers = 0;          ///< did not take what was sent to them
     std::uint64_t flushes = 0;            ///< publish callbacks run at once
-    std::uint64_t fruitless_flushes = 0;  ///< of these, with nothing to say
+    std::uint64_t fruitless_flushes = 0;  ///< of these, without anything to publish
     std::uint64_t iterations = 0;
 };
 
@@ -65,10 +66,10 @@ struct ListenAddress {
 /// share a port, and a restart needs no waiting. Only TCP: other event sources are refused.
 ///
 /// Ownership: this object owns the loop's memory, always; the stack's `free` only ends the stack's
-/// use of it. A server goes with `externalEventLoop` false, the default: UA_Server_run_shutdown
-/// then drains and stops the loop (with true, open62541 1.4 never reaches the state Stopped, so
-/// the server cannot be deleted). A client alone on its loop too. Clients that share a server's
-/// loop need `externalEventLoop` true, and are deleted before the server is shut down.
+/// use of it. A server uses `externalEventLoop` false, the default: UA_Server_run_shutdown then
+/// drains and stops the loop (with true, open62541 1.4 never reaches the state Stopped, so the
+/// server cannot be deleted). A client alone on its loop uses false, too. Clients that share a
+/// server's loop need `externalEventLoop` true, and are deleted before the server is shut down.
 /// Destroy the loop after the servers and clients that use it.
 ///
 /// Threading: one owner thread calls everything but post() and lastIteration(), which any thread
@@ -107,19 +108,20 @@ public:
     /// The connection has one Session less; without any it is as good as vouched for.
     void dismiss(ConnectionId connection);
 
-    /// How long the owner thread has worked, waiting left out, on what it read last from a peer; 0
-    /// outside of that. Owner thread.
+    /// Time that the owner thread has worked, without waiting, on the data that it last read from a
+    /// peer; 0 at other times. Owner thread.
     std::chrono::nanoseconds workOnTurn() const;
 
-    /// Publishes what Subscriptions of these connections have to say, right after the handlers
-    /// that run now. Ask only for connections that have a MonitoredItem for the event: a publish
-    /// callback with nothing to say counts towards the Subscription's keep-alive. Connections
-    /// without a queued PublishRequest are published to when the next one arrives.
-    /// A connection stands also for the Subscriptions created on it that moved to another since.
+    /// Publishes the waiting notifications of the Subscriptions of these connections, right after
+    /// the handlers that run now. Ask only for connections that have a MonitoredItem for the event:
+    /// a publish callback without a notification counts towards the Subscription's keep-alive.
+    /// Connections without a queued PublishRequest are published to when the next one arrives. A
+    /// connection also stands for the Subscriptions that were created on it and have moved to
+    /// another one since.
     ///
-    /// How Subscriptions are known: the first cyclic callback with data that is added while a
-    /// message of an accepted connection is processed must be a Subscription's publish callback.
-    /// So add no repeated server callback inside a method or read callback.
+    /// Subscriptions are recognised by this rule: the first cyclic callback with data that is added
+    /// while a message of an accepted connection is processed must be a Subscription's publish
+    /// callback. So add no repeated server callback inside a method or read callback.
     void flushPublishing(std::span<const ConnectionId> connections);
 
     /// Closes the connections that were opened from here. What their peers have not taken yet is
@@ -127,15 +129,15 @@ public:
     void dropOpened();
 
     EventLoopStatistics statistics() const;
-    /// Where the loop listens, with the real port if 0 was asked for.
+    /// Addresses on which the loop listens, with the real port if 0 was asked for.
     std::vector<ListenAddress> listening() const;
     /// Why listening or connecting failed last, with address and port; empty: it never did.
     std::string lastNetworkError() const;
-    /// When the loop last did something: the start of an iteration or of a flush. A loop in use
-    /// with nothing to do iterates at least as often as its owner's timeout.
+    /// Time of the loop's last activity: the start of an iteration or of a flush. A loop in use
+    /// without work iterates at least as often as its owner's timeout.
     /// Threads: any.
     SteadyTime lastIteration() const noexcept;
-    /// From flushPublishing() until what there was to say has been handed to the sockets, for each
+    /// Times from flushPublishing() until the notifications were handed to the sockets, one per
     /// Subscription.
     /// Threads: any.
     const TimeHistogram& publishLatency() const noexcept;

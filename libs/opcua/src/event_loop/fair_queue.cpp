@@ -6,7 +6,7 @@ namespace metier::opcua {
 
 namespace {
 
-constexpr int kTurnsToWait = 200;                 // for each of one's own
+constexpr int kTurnsToWait = 200;                 // for each turn of its own
 constexpr std::chrono::milliseconds kUnknown{1};  // cost of a turn of a new one
 constexpr int kRemembered = 8;                    // turns, about
 

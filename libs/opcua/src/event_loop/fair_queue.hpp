@@ -12,17 +12,17 @@
 
 namespace metier::opcua {
 
-/// What is known of the peer of a connection.
+/// Knowledge about the peer of a connection.
 enum class Standing {
     stranger,  ///< nothing
     known,     ///< it showed a certificate that is trusted
     member,    ///< it has a Session
 };
 
-/// Whose turn it is among connections that have something to be read. Each may have to wait for 200
-/// times what its own turns cost, of late; whose time is up soonest comes first. So one whose
-/// messages cost little waits for no more than the turn of one whose cost much, and nobody waits
-/// for ever. Strangers and the others share the thread evenly.
+/// Order in which connections with waiting data are served. A connection may have to wait for 200
+/// times the recent cost of its own turns; the one whose wait is over first is served first. So a
+/// connection with cheap messages waits at most for one turn of an expensive one, and none waits
+/// for ever. Strangers and admitted peers share the thread evenly.
 ///
 /// Threading: under the loop's mutex.
 class FairQueue {
@@ -31,9 +31,9 @@ public:
 
     /// The connection waits for its turn; nothing if it does already.
     void ready(ConnectionId connection, Standing standing, SteadyTime now);
-    /// Whose turn it is; it waits no longer. Nothing if nobody waits.
+    /// Connection to serve next; it is taken out of the order. Nothing if none waits.
     std::optional<ConnectionId> next();
-    /// What the turn of the connection that next() gave last has cost.
+    /// Cost of the turn of the connection that next() returned last.
     void used(Cost cost);
     void forget(ConnectionId connection);
     bool empty() const { return lines_[0].waiting.empty() && lines_[1].waiting.empty(); }
@@ -47,10 +47,10 @@ private:
     };
     struct Line {
         std::set<Place> waiting;
-        Cost used{};  ///< by all of it
+        Cost used{};  ///< total of its turns
     };
     struct Account {
-        Cost turn{};  ///< what one costs
+        Cost turn{};  ///< cost of one turn
         std::size_t line = 0;
         std::optional<Place> place{};
     };

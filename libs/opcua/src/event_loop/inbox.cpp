@@ -34,7 +34,8 @@ std::size_t Inbox::sizeOfNext() {
     return of_header + of_body;
 }
 
-/// What is no chunk never ends: the stack closes such a connection.
+/// Size of the chunk's body. Data that is not a chunk never ends: the stack closes such a
+/// connection.
 std::size_t Inbox::bodySize() const {
     std::size_t size = 0;
     for (std::size_t i = kHeader; i > kHeader - 4; --i) {

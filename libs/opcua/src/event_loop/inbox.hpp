@@ -8,8 +8,8 @@
 
 namespace metier::opcua {
 
-/// What a peer has sent and the stack has not got yet, in pieces that reach no further than the end
-/// of a chunk: so the loop can turn to others between two messages that came together.
+/// Data that a peer has sent and the stack has not got yet, in pieces that end with a chunk at the
+/// latest: so the loop can serve other connections between two messages that came together.
 ///
 /// Only the size in each chunk's header is read (OPC 10000-6, 6.7.2.2); it is never encrypted.
 class Inbox {

@@ -85,7 +85,7 @@ Listener::Listener(ConnectionId id, asio::ip::tcp::acceptor acceptor, Applicatio
 
 void Listener::close() {
     closing_ = true;
-    asio::error_code ignored;  // there is nobody left to tell
+    asio::error_code ignored;  // nothing more can be done
     acceptor_.close(ignored);
     timer_.cancel();
 }

@@ -27,13 +27,13 @@ public:
     Application& application() { return application_; }
     const ListenAddress& address() const { return address_; }
     bool closing() const { return closing_; }
-    /// Closes the socket. The application is told later, by the manager.
+    /// Closes the socket. The manager notifies the application later.
     void close();
 
 private:
     ConnectionId id_;
     asio::ip::tcp::acceptor acceptor_;
-    asio::steady_timer timer_;  ///< until accepting is tried again
+    asio::steady_timer timer_;  ///< pause before accepting is tried again
     Application application_;
     ListenAddress address_;
     bool closing_ = false;

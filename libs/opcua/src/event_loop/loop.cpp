@@ -13,8 +13,9 @@ namespace metier::opcua {
 namespace {
 
 constexpr int kHandlersPerTurn = 16;
-constexpr std::chrono::milliseconds kSlice{5};  // of reading from peers, then timers are looked at
-constexpr std::chrono::milliseconds kSliceForPeers{2};  // of timers that work for peers
+// Reads from peers for so long, then checks the timers.
+constexpr std::chrono::milliseconds kSlice{5};
+constexpr std::chrono::milliseconds kSliceForPeers{2};  // for timers that work for peers
 constexpr std::chrono::microseconds kLongestCoalescing{100};
 
 }  // namespace
@@ -33,7 +34,7 @@ Loop::~Loop() {
     if (handle_.state == UA_EVENTLOOPSTATE_STARTED) {
         stop();
     }
-    while (handle_.state == UA_EVENTLOOPSTATE_STOPPING) {  // bounded: closing waits for nobody
+    while (handle_.state == UA_EVENTLOOPSTATE_STOPPING) {  // bounded: closing waits for no peer
         run(std::chrono::milliseconds::zero());
     }
     release();
@@ -78,7 +79,8 @@ void Loop::iterate(std::chrono::milliseconds timeout,
     const auto now = stamp();
     runTimers(now);
     if (tcp_.deliverLeftovers()) {
-        timeout = std::chrono::milliseconds::zero();  // what its owner waits for may have come
+        // The awaited event of its owner may have come.
+        timeout = std::chrono::milliseconds::zero();
     }
     delayed_.run();
     flush();

@@ -8,8 +8,8 @@ namespace metier::opcua {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestRest{100};
-constexpr std::chrono::milliseconds kLongestFlush{2};  // then peers are heard, then it goes on
-constexpr unsigned kDoublings = 7;                     // to 128 ms, more than the longest
+constexpr std::chrono::milliseconds kLongestFlush{2};  // then peers are read before it goes on
+constexpr unsigned kDoublings = 7;                     // up to 128 ms, more than the longest
 
 std::chrono::milliseconds restAfter(unsigned fruitless_in_a_row) {
     return std::min(kLongestRest,

@@ -26,7 +26,7 @@ public:
     /// \param during the accepted connection whose message is processed, or 0
     void timerAdded(const Timer& timer, ConnectionId during);
     void timerRemoved(TimerId id) { subscriptions_.erase(id); }
-    /// Calls a due timer, and learns where its notifications go.
+    /// Calls a due timer, and notes the connection to which its notifications go.
     void runTimer(const Timer& timer);
 
     void accepted(ConnectionId connection) { peers_[connection]; }
@@ -38,12 +38,12 @@ public:
     /// Whether flush() may have something to do, and since when it was asked for.
     std::optional<SteadyTime> requestedAt() const { return requested_at_; }
     void flush(SteadyTime now);
-    /// When a resting Subscription may be published again.
+    /// Time at which a resting Subscription may be published again.
     std::optional<SteadyTime> retryAt() const { return retry_at_; }
 
     std::uint64_t flushes() const { return flushes_; }
     std::uint64_t fruitless() const { return fruitless_; }
-    /// From the request to what it led to. Any thread.
+    /// Times from a request to its publication. Any thread.
     const TimeHistogram& latency() const { return latency_; }
 
 private:
@@ -54,7 +54,7 @@ private:
     struct Subscription {
         Timer publish;
         ConnectionId created_on = 0;
-        ConnectionId connection = 0;  ///< where its notifications went last
+        ConnectionId connection = 0;  ///< connection to which its notifications went last
         bool wanted = false;
         unsigned fruitless_in_a_row = 0;
         SteadyTime rests_until{};
@@ -73,7 +73,7 @@ private:
     std::optional<SteadyTime> requested_at_;
     std::optional<SteadyTime> retry_at_;
     bool publishing_ = false;
-    ConnectionId sent_to_ = 0;  ///< by the publish callback that runs
+    ConnectionId sent_to_ = 0;  ///< connection used by the running publish callback
     std::uint64_t flushes_ = 0;
     std::uint64_t fruitless_ = 0;
     TimeHistogram latency_;

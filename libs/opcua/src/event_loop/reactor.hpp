@@ -9,10 +9,10 @@
 
 namespace metier::opcua {
 
-/// Asio's side of the loop: where it waits, and the mutex that the stack's interface demands.
+/// Asio's side of the loop: the waiting, and the mutex that the stack's interface demands.
 ///
 /// The mutex is recursive because open62541 takes it again from callbacks that run under it. It is
-/// free only while the loop waits, so whoever calls the stack from another thread finds a loop
+/// free only while the loop waits, so a call of the stack from another thread finds the loop
 /// between two handlers. The owner thread takes it uncontended.
 class Reactor {
 public:

@@ -8,7 +8,7 @@ namespace metier::opcua {
 namespace {
 
 constexpr std::size_t kHeader = 8;      // type, final or not, size
-constexpr std::size_t kSymmetric = 24;  // with channel, token, sequence number, request
+constexpr std::size_t kSymmetric = 24;  // header with channel, token, sequence number, request
 constexpr std::size_t kPolicyLength = 12;
 constexpr std::string_view kNone = "http://opcfoundation.org/UA/SecurityPolicy#None";
 
@@ -75,7 +75,7 @@ bool ResponseGate::judge() const {
 }
 
 bool ResponseGate::beginsWithAnId() const {
-    constexpr std::array<std::size_t, 3> lengths{2, 4, 7};  // by how it is encoded
+    constexpr std::array<std::size_t, 3> lengths{2, 4, 7};  // length for each encoding
     if (size_ <= kSymmetric) {
         return false;
     }

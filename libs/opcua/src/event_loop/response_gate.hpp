@@ -7,12 +7,12 @@
 
 namespace metier::opcua {
 
-/// Looks at what a server sends before the stack does.
+/// Checks a server's messages before the stack gets them.
 ///
 /// The stack (1.4) frees a response that it never filled if it cannot decode the NodeId with which
-/// the message begins. Without security that is to be seen from outside: each message must begin
-/// with a numeric NodeId, which is whole within its first chunk. Messages of a channel that is
-/// signed or encrypted pass: they come from a server that is trusted.
+/// the message begins. Without security this can be seen here: each message must begin with a
+/// numeric NodeId that is complete within its first chunk. Messages of a channel that is signed or
+/// encrypted pass, since they come from a trusted server.
 /// Source: OPC 10000-6, 5.2.2.9 NodeId, 6.7.2 MessageChunk structure.
 class ResponseGate {
 public:
@@ -33,7 +33,7 @@ private:
     std::array<std::uint8_t, kSeen> seen_{};
     std::size_t taken_ = 0;  // [byte] of this chunk
     std::size_t size_ = 0;   // [byte] of this chunk; 0: not known yet
-    bool open_ = true;       // what the channel carries is plain to see
+    bool open_ = true;       // the channel's content is not encrypted
     bool goes_on_ = false;   // the chunk before did not end its message
     bool refused_ = false;
 };

@@ -9,7 +9,7 @@
 
 namespace metier::opcua {
 
-/// A buffer of the stack, freed when it goes.
+/// A buffer of the stack; freed by the destructor.
 class NetworkBuffer {
 public:
     /// Takes the memory over: `bytes` is empty afterwards.
@@ -28,7 +28,7 @@ private:
     std::size_t sent_ = 0;
 };
 
-/// What a peer has not taken yet.
+/// Data that a peer has not read yet.
 class SendQueue {
 public:
     void push(NetworkBuffer buffer);

@@ -14,10 +14,10 @@ namespace {
 
 constexpr std::size_t kReceiveBufferSize = std::size_t{64} << 10U;
 constexpr int kStallChecks = 8;                // within the stall limit
-constexpr std::chrono::milliseconds kTurn{1};  // after it no other message is begun
+constexpr std::chrono::milliseconds kTurn{1};  // after it no further message is begun
 
-/// Whether the peer closed and nothing of it is left to be read. That is no work that has to wait
-/// for its turn: until it is known, others' events would be sent to it, and be lost.
+/// Whether the peer has closed and all its data was read. This is checked out of turn: until it is
+/// known, events of others would be sent to the peer, and be lost.
 bool hasLeft(Connection& connection) {
     char next = 0;
     return ::recv(connection.socket().native_handle(), &next, 1, MSG_PEEK | MSG_DONTWAIT) == 0;

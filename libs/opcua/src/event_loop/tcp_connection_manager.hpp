@@ -26,7 +26,7 @@ public:
     UA_ConnectionManager* handle() { return &handle_; }
 
     /// Errors: those of readTcpParameters() and openAcceptors(); cancelled (the loop stops).
-    /// That connecting failed is told by the CLOSING callback.
+    /// A failure to connect is reported by the CLOSING callback.
     Result<> open(const UA_KeyValueMap* parameters, const Application& application);
     /// Takes `buffer` over in every case.
     UA_StatusCode send(ConnectionId id, UA_ByteString* buffer);
@@ -36,7 +36,7 @@ public:
     void dropOpened();
 
     void start();
-    /// Closes everything; stopped() once the last application was told.
+    /// Closes everything; calls stopped() once the last application was notified.
     void stop();
     bool stopped() const;
 
@@ -49,7 +49,8 @@ public:
     /// \return whether there was something to look at
     bool deliverLeftovers();
 
-    /// Reads from whoever's turn it is, and has the stack process it. \return whether there was one
+    /// Reads from the connection whose turn it is, and has the stack process the data.
+    /// \return whether there was one
     bool takeTurn();
     std::chrono::nanoseconds workOnTurn() const;
     bool turnsWait() const { return !turns_.empty(); }
@@ -115,7 +116,7 @@ private:
     std::unordered_map<ConnectionId, std::unique_ptr<Listener>> listeners_;
     std::vector<ConnectionId> leftovers_;
     FairQueue turns_;
-    std::optional<std::chrono::nanoseconds> turn_began_;  // in the thread's own time
+    std::optional<std::chrono::nanoseconds> turn_began_;  // in the thread's CPU time
     std::size_t closing_ = 0;                             // connections
     std::minstd_rand chance_;
     std::vector<std::uint8_t> receive_buffer_;

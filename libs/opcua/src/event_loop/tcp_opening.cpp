@@ -1,4 +1,4 @@
-// How TcpConnectionManager opens connections: listening, accepting and connecting.
+// Opening of connections by TcpConnectionManager: listening, accepting and connecting.
 
 #include <open62541/plugin/log.h>
 
@@ -16,7 +16,8 @@ namespace {
 
 using asio::ip::tcp;
 
-constexpr std::chrono::milliseconds kAcceptRetry{100};  // after running out of file descriptors
+// Pause after running out of file descriptors.
+constexpr std::chrono::milliseconds kAcceptRetry{100};
 
 /// Tells the peer BadTcpServerTooBusy and no reason (OPC 10000-6, 7.1.2.5), if it listens; closes.
 void refuse(tcp::socket& socket) {
@@ -164,7 +165,8 @@ void TcpConnectionManager::resolve(ConnectionId id, const TcpParameters& paramet
         tryNext(id, {{address, parameters.port}}, target);
         return;
     }
-    resolver_.async_resolve(  // in a thread of Asio's: the owner thread waits for no name server
+    // In a thread of Asio's: the owner thread never waits for a name server
+    resolver_.async_resolve(
         host, std::to_string(parameters.port),
         reactor_.guarded(
             [this, id, target](const asio::error_code&, const tcp::resolver::results_type& found) {
@@ -190,7 +192,7 @@ void TcpConnectionManager::tryNext(ConnectionId id, Endpoints endpoints,
     }
     const auto endpoint = endpoints.back();
     endpoints.pop_back();
-    asio::error_code ignored;  // of the attempt before, or told by async_connect
+    asio::error_code ignored;  // of the attempt before, or reported by async_connect
     connection->socket().close(ignored);
     connection->socket().async_connect(
         endpoint, reactor_.guarded([this, id, endpoints = std::move(endpoints),

@@ -10,9 +10,10 @@
 
 namespace metier::opcua {
 
-/// What the stack asks for when it opens a connection.
+/// Parameters that the stack gives when it opens a connection.
 struct TcpParameters {
-    std::vector<std::string> addresses;  ///< to listen on (none: all), or the one to connect to
+    /// Addresses to listen on (none: all), or the one to connect to
+    std::vector<std::string> addresses;
     std::uint16_t port = 0;
     bool listen = false;
     bool validate = false;  ///< check the parameters, open nothing

@@ -1,4 +1,4 @@
-// How TcpConnectionManager gives its places away: strangers lose theirs to others.
+// Strangers of TcpConnectionManager: they lose their places to others.
 
 #include <open62541/plugin/log.h>
 
@@ -61,8 +61,9 @@ void TcpConnectionManager::makeRoom() {
     }
 }
 
-/// A stranger of the address that has most of them, whichever chance picks, so that nobody can be
-/// kept out on purpose; without any, who has been known for longest and has no Session.
+/// Connection to close for a new one: a random stranger of the address that has most strangers, so
+/// that nobody can be kept out on purpose; without strangers, the oldest connection without a
+/// Session.
 Connection* TcpConnectionManager::mostExpendable() {
     std::unordered_map<std::string_view, std::vector<Connection*>> strangers;
     Connection* idle = nullptr;

@@ -58,7 +58,7 @@ std::optional<Timer> Timers::take(Order& order, SteadyTime now) {
         return timer;
     }
     auto due = entry.due + timer.interval;
-    if (due <= now) {  // at least one cycle was missed
+    if (due <= now) {  // it missed at least one cycle
         due = timer.policy == UA_TIMER_HANDLE_CYCLEMISS_WITH_BASETIME
                   ? nextCycle(now, entry.due, timer.interval)
                   : now + timer.interval;

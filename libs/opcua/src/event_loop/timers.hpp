@@ -15,7 +15,7 @@ namespace metier::opcua {
 
 using TimerId = UA_UInt64;
 
-/// What the stack wants called, and how often.
+/// A callback of the stack, and its period.
 struct Timer {
     UA_Callback callback = nullptr;
     void* application = nullptr;
@@ -40,8 +40,8 @@ public:
     void remove(TimerId id);
     void clear();
 
-    /// The earliest timer due at `now` that cannot wait. A cyclic one is already scheduled again,
-    /// later than `now`; a one-shot is gone.
+    /// Takes the earliest timer due at `now` that cannot wait. A cyclic one is scheduled again,
+    /// later than `now`; a one-shot is removed.
     std::optional<Timer> takeDue(SteadyTime now) { return take(order_, now); }
     /// The same of those that can.
     std::optional<Timer> takeWaiting(SteadyTime now) { return take(waiting_order_, now); }

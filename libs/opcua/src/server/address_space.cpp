@@ -18,7 +18,7 @@ Result<> outcome(UA_StatusCode code, std::string_view doing, const NodeId& id) {
     return fail(errorFrom(StatusCode(code), fmt::format("{} {}", doing, id.toString())));
 }
 
-/// What the stack has to know of any new node; borrows from the spec.
+/// Attributes of a new node for the stack; borrows from the spec.
 struct NewNode {
     explicit NewNode(const NodeSpec& spec)
         : id(spec.id.isNull() ? childId(spec.parent, spec.browse_name) : spec.id),
@@ -45,7 +45,7 @@ struct NewNode {
 };
 
 UA_Byte accessBits(Access access) noexcept {
-    // From 1.4.18 on the stack refuses a written SourceTimestamp without its own bit.
+    // Since 1.4.18 the stack refuses a written SourceTimestamp without this bit.
     constexpr UA_Byte kWrite = UA_ACCESSLEVELMASK_WRITE | UA_ACCESSLEVELMASK_TIMESTAMPWRITE;
     return access == Access::read_write ? UA_ACCESSLEVELMASK_READ | kWrite
                                         : UA_ACCESSLEVELMASK_READ;

@@ -9,11 +9,11 @@
 
 namespace metier::opcua {
 
-/// How many Sessions each application has, by its certificate: those it uses, and those it only
-/// created and did not activate yet.
+/// Number of Sessions of each application, known by its certificate: activated ones, and ones that
+/// were created and not activated yet.
 ///
-/// The stack tells of a Session by its id first when it is activated or gone, so one that was only
-/// created is counted by who created it, and no longer than it can live.
+/// The stack reports the id of a Session only when it is activated or ends. So one that was only
+/// created is counted by its creator, for no longer than it can live.
 /// Threading: one thread.
 class ApplicationSessions {
 public:
@@ -31,9 +31,9 @@ public:
     bool create(const Application& application, SteadyTime now);
     /// A Session is used for the first time.
     void activated(const std::string& thumbprint);
-    /// A Session that was used is gone.
+    /// A Session that had been activated has ended.
     void closed(const std::string& thumbprint);
-    /// A Session that never was used is gone.
+    /// A Session that was never activated has ended.
     void abandoned(const std::string& uri);
 
     std::size_t of(const std::string& thumbprint) const;
@@ -41,7 +41,7 @@ public:
 private:
     struct Created {
         Application by;
-        SteadyTime gone;  ///< at the latest
+        SteadyTime gone;  ///< latest end
     };
 
     std::size_t most_;

@@ -103,7 +103,7 @@ std::vector<BrowsePath> fieldsOf(const NodeId& type) {
     return fields;
 }
 
-/// In the order of fieldsOf(). The stack does not tell the AuditEntryId of a request.
+/// Values in the order of fieldsOf(). The stack does not give the AuditEntryId of a request.
 std::vector<Value> valuesOf(const AuditRecord& record, Shape shape, const std::string& server) {
     std::vector<Value> values{Value::of(record.time), Value::of(!record.status.isBad()),
                               Value::of(server), Value::of(std::string()),

@@ -50,7 +50,7 @@ private:
     ServerCore& core_;
     AuditEvents events_;
     std::array<Limit, 5> limits_;
-    TimerHandle timer_;  ///< until what was left out is told
+    TimerHandle timer_;  ///< time until the left-out records are reported
     bool waiting_ = false;
 };
 

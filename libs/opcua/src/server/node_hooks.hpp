@@ -19,7 +19,7 @@ struct MethodHooks {
     MethodEffect effect = MethodEffect::commands;
 };
 
-/// What a node does beyond holding values: the stack keeps a pointer to it as the node's context.
+/// Functions of a node; the stack keeps a pointer to them as the node's context.
 struct NodeHooks {
     ServerCore* core = nullptr;
     std::variant<std::monostate, MethodHooks, DataSource> work;
@@ -62,7 +62,7 @@ void* auditorsOnly() noexcept;
 /// Whether the role of a session allows a Method.
 bool mayCall(UA_Server* server, const void* session_context, const UA_NodeId& method_id,
              const void* method_context) noexcept;
-/// What clients read as UserExecutable.
+/// Value of UserExecutable for a client.
 UA_Boolean userExecutable(UA_Server* server, UA_AccessControl* control, const UA_NodeId* session_id,
                           void* session_context, const UA_NodeId* method_id,
                           void* method_context) noexcept;

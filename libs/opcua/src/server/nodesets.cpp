@@ -20,7 +20,7 @@ struct Nodeset {
     UA_StatusCode (*load)(UA_Server*);
 };
 
-/// What every NodeSet of ours is loaded with, in this order.
+/// NodeSets that all of ours need, in the order of loading.
 constexpr std::array kModel{
     Nodeset{"di", namespace_di_generated},
     Nodeset{"ia", namespace_ia_generated},

@@ -88,7 +88,7 @@ void setSessionLimits(const ServerLimits& limits, UA_ServerConfig& config) {
 
 void setSubscriptionLimits(const ServerLimits& limits, UA_ServerConfig& config) {
     constexpr std::chrono::hours kLongestSampling{1};
-    constexpr std::uint32_t kKeepAlivesPerLifetime = 3;  // at least, says OPC 10000-4
+    constexpr std::uint32_t kKeepAlivesPerLifetime = 3;  // at least, by OPC 10000-4
     config.maxSubscriptions = limits.subscriptions;
     config.maxSubscriptionsPerSession = limits.subscriptions_per_session;
     config.maxMonitoredItems = limits.monitored_items;

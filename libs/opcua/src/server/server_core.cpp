@@ -31,7 +31,7 @@ EventLoopOptions loopOptions(const ServerOptions& options, const UA_Logger* logg
 
 }  // namespace
 
-/// What the stack calls about nodes and monitored items.
+/// Callbacks of the stack for nodes and monitored items.
 struct ServerCore::Callbacks {
     /// The stack makes an Object for each session, by the session's id.
     static UA_StatusCode nodeMade(UA_Server* server, const UA_NodeId* /*session_id*/,
@@ -161,7 +161,7 @@ Result<> ServerCore::build() {
                                  .write = {}});
 }
 
-/// Of a closed server.
+/// Installs the check of peers' certificates; for a closed server.
 Result<> ServerCore::checkPeers() {
     if (!options_.security) {
         return {};
@@ -325,7 +325,8 @@ void ServerCore::close() {
 }
 
 void ServerCore::stop() {
-    // What work owns may use the server's timers: it ends when the thread has.
+    // Posted work may own things that use the server's timers: it is destroyed once the thread has
+    // ended.
     const auto dropped = queue_.close();
     if (thread_.joinable()) {
         thread_.request_stop();

@@ -61,15 +61,15 @@ public:
     void structureChanged() { notifiers_.clear(); }
     /// Publishes to those who watch the events of an Object, if the options ask for it.
     void publishEventsOf(const NodeId& source);
-    /// Whether the message that is processed may still be worked on: nobody keeps the others
-    /// waiting with one that names the most expensive nodes again and again.
+    /// Whether work on the present message may go on: no client may keep the others waiting with a
+    /// message that names the most expensive nodes again and again.
     bool mayWorkOn() const { return loop_.workOnTurn() < kLongestWorkOnAMessage; }
     Result<> renewIdentity(const security::Identity& identity);
     /// A session called what its role does not allow.
     void tellDenial(const CallContext& context);
     /// Whether anybody subscribed the events of an Object.
     bool isWatched(const NodeId& notifier) const { return watch_.watchesAny({&notifier, 1}); }
-    /// Whether an event of a source that raised one before would reach nobody.
+    /// Whether an event of a source that raised one before would reach no subscriber.
     bool nobodyHears(const NodeId& source) const;
 
 private:
@@ -100,7 +100,7 @@ private:
     Sessions sessions_;
     std::unique_ptr<PeerCheck> peers_;  ///< of a closed server
     EventWatch watch_;
-    std::unordered_map<NodeId, ConnectionId> seats_;  ///< where each Session is used
+    std::unordered_map<NodeId, ConnectionId> seats_;  ///< connection on which each Session is used
     HookRegistry hooks_;
     StackMethods stack_methods_;
     AddressSpace nodes_;

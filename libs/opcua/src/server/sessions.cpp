@@ -75,7 +75,7 @@ StatusCode refusalOf(const Error& error) noexcept {
 
 }  // namespace
 
-/// What the stack calls. It passes the session's context, which is ours or null.
+/// Callbacks of the stack. It passes the session's context, which is ours or null.
 struct Sessions::Callbacks {
     static Sessions& owner(UA_AccessControl* control) noexcept {
         return *static_cast<Sessions*>(control->context);
@@ -112,8 +112,9 @@ struct Sessions::Callbacks {
         return context == nullptr || mayCommand(owner(control).of(context).role) ? kAllAccess
                                                                                  : kReadAccess;
     }
-    /// Diagnostics of a session, which the stack keeps in namespace 1. Asked for by a Subscription
-    /// that has outlived its session, they would be looked up for a session that is null.
+    /// Whether a node belongs to the diagnostics of a session, which the stack keeps in namespace
+    /// 1. If a Subscription that has outlived its session asks for them, the stack would use a
+    /// session that is null.
     static bool isOfTheStack(const UA_NodeId& node, const void* node_context) noexcept {
         return node.namespaceIndex == 1 && node_context == nullptr;
     }
@@ -246,7 +247,7 @@ Result<Admission> Sessions::authenticate(const Login& login) const {
                  : fail(Errc::access_denied, "unknown user or wrong password");
 }
 
-/// A Session that nobody was let in to would count until its time-out.
+/// Closes a Session whose login was refused; it would count until its time-out.
 void Sessions::closeUnused(UA_Server* server, const NodeId& id) const {
     if (sessions_.find(id) == sessions_.end()) {
         ServerCore::of(server).post([server, id] {

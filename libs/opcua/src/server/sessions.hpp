@@ -13,10 +13,10 @@
 
 namespace metier::opcua {
 
-/// Who is logged in; decides who may. Installed as the stack's access control.
+/// The logged-in sessions, and the decision about logins. Installed as the stack's access control.
 ///
-/// Clients may read and browse; those whose role commands may also write and call. Nodes and
-/// references only the server itself changes.
+/// Clients may read and browse; those whose role commands may also write and call. Only the server
+/// itself changes nodes and references.
 /// Threading: the server's thread.
 class Sessions {
 public:
@@ -48,7 +48,7 @@ public:
 private:
     struct Callbacks;
 
-    /// What a client presents to be let in.
+    /// Data that a client presents to log in.
     struct Presented {
         const UA_ExtensionObject& token;
         std::string thumbprint;   ///< empty without security

@@ -8,12 +8,12 @@
 
 namespace metier::opcua {
 
-/// The Methods of the stack that sessions may call: they tell of, or change, only what the own
-/// session has subscribed. All others are closed to everybody, among them those that would add and
-/// delete nodes.
+/// The Methods of the stack that sessions may call: they read or change only subscriptions of the
+/// calling session. All others are closed to everybody, among them those that would add and delete
+/// nodes.
 ///
-/// The stack takes an empty array for a value where a scalar is asked for, and reads what is not
-/// there: these Methods get scalars alone.
+/// The stack (1.4) takes an empty array for a value where a scalar is expected, and reads beyond
+/// it: these Methods get only scalars.
 /// Threading: the server's thread.
 class StackMethods {
 public:

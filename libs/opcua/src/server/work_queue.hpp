@@ -14,7 +14,7 @@ class WorkQueue {
 public:
     enum class Pushed { first, further, refused };
 
-    /// \return first if the queue was empty and its thread has to be told
+    /// \return first if the queue was empty and its thread must be woken
     Pushed push(std::function<void()> work);
     /// Does what was there at the beginning, oldest first, without holding the lock.
     void drain(const std::function<void(const std::function<void()>&)>& run);

@@ -23,7 +23,7 @@ constexpr double kMillimetre = 1e-3;
 using Parameters = skill::FieldList<GripperParameters>;
 using Ask = Result<void> (Gripper::*)(const device::GripperRequest&, Gripper::Done);
 
-/// What makes one skill of a gripper different from the others.
+/// Differences between the skills of a gripper.
 struct Kind {
     skill::SkillDescription description;
     Parameters fields;
@@ -87,7 +87,7 @@ public:
           check_(kind.check),
           needs_width_(kind.needs_width) {}
 
-    /// Errors: also timeout while jaws that were told to stop move on; it is to be called again.
+    /// Errors: also timeout, while jaws that were asked to stop still move; call it again.
     Result<void> reset() override {
         if (moving_->load()) {
             return fail(Errc::timeout, gripper_.info().name + ": the jaws still move");

@@ -49,7 +49,7 @@ void GripperWork::tell(const Telling& telling, const Result<device::GripperOutco
     }
 }
 
-/// While the jaws rest there is no motion whose end tells that the gripper is gone.
+/// Watches the gripper's safety state: while the jaws rest, no end of a motion reports a loss.
 void GripperWork::watchSafety() {
     safety_watch_ = gripper_.onSafetyChange([telling = telling_](const device::Safety& safety) {
         if (safety.state == SafetyState::normal || telling->moving->load()) {

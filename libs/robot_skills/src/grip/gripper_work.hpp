@@ -34,7 +34,7 @@ public:
     void forceStop() noexcept override;
 
 private:
-    /// What the gripper's end of a motion needs, which may come when the work is gone.
+    /// Data for reporting a motion's end, which may come after the work is destroyed.
     struct Telling {
         skill::ExecutionHandle execution;
         Judge judge;

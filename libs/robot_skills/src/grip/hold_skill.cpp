@@ -16,11 +16,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A gripper tells its state 20 to 100 times a second.
+// Grippers send their state 20 to 100 times a second.
 constexpr auto kInterval = 20ms;
 constexpr double kMillimetre = 1e-3;
 
-/// Errors: the gripper does not hold a part, or nobody knows.
+/// Errors: the gripper does not hold a part, or its state is unknown.
 Result<void> checkHeld(const Gripper& gripper) {
     const auto safety = gripper.safety();
     if (safety.state != SafetyState::normal) {

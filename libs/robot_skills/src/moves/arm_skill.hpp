@@ -9,9 +9,9 @@ namespace metier::robot_skills {
 /// Errors: device_fault with the controller's reason; invalid_state while the arm still moves.
 Result<void> checkReady(const device::Arm& arm);
 
-/// Brings the arm back after a fault, so that it could begin to move.
-/// Errors: those of Arm::resetFault(); invalid_state while the arm still moves, as it may after a
-/// link was lost whose controller goes on by itself.
+/// Clears a fault of the arm, so that it could begin to move.
+/// Errors: those of Arm::resetFault(); invalid_state while the arm still moves, which it may after
+/// the link to a controller was lost that goes on by itself.
 Result<void> resetArm(device::Arm& arm);
 
 /// Errors: invalid_argument if arm and model differ in their number of axes.

@@ -10,17 +10,18 @@ namespace metier::robot_skills {
 /// Most that any axis may have been moved during a rest for Resume to go on [rad].
 inline constexpr double kMovedTolerance = 2e-3;
 
-/// How far the tool frame is at one joint position from where it is at another [m], for texts.
+/// Distance of the tool frame between two joint positions [m], for messages.
 using ToolDistance = std::function<double(const device::JointArray&, const device::JointArray&)>;
 
-/// An execution that moves an arm, whoever plans its motion.
+/// An execution that moves an arm by any planner.
 class ArmWork : public skill::ExecutionWork {
 protected:
     /// \param arm must outlive the work
     ArmWork(device::Arm& arm, ToolDistance tool_distance);
 
-    /// From now on a change of the safety state ends the execution while the arm is not in motion,
-    /// and has nobody to tell it otherwise. \param in_motion any thread
+    /// From now on a change of the safety state ends the execution if it comes while the arm is not
+    /// in motion; during a motion the set-points' source reports it.
+    /// \param in_motion called on any thread
     void begin(skill::ExecutionHandle execution, std::function<bool()> in_motion);
     /// Errors: out_of_range with the distance if the arm is no longer where it came to rest.
     Result<void> checkNotMoved(const device::JointArray& rest) const;

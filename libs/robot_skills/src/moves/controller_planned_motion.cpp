@@ -19,7 +19,7 @@ using motion::Trajectory;
 
 namespace {
 
-// Where a path is looked at.
+// Number of points at which a path is checked.
 constexpr int kSamples = 50;
 // The tool frame may be this far off its line [m].
 constexpr double kStraight = 1e-4;
@@ -54,7 +54,7 @@ double pathSpeed(const Trajectory& trajectory) noexcept {
 /// Largest speed of an axis along the path.
 struct AxisSpeed {
     double absolute = 0.0;  ///< [rad/s]
-    double share = 0.0;     ///< of what the axis can
+    double share = 0.0;     ///< share of the axis' limit
 };
 
 AxisSpeed fastestAxis(const ControllerPlannedRequest& request, double path_speed) {

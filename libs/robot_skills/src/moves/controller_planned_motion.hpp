@@ -17,16 +17,15 @@ struct ControllerPlannedRequest {
     const MoveParameters& parameters;
 };
 
-/// The request to a controller's own planner for exactly this move, no faster than planned.
+/// Makes the request to a controller's own planner for exactly this move, no faster than planned.
 ///
 /// A PTP becomes a motion to the joints at its end, so that the controller chooses no other
 /// configuration. A line becomes a line of the flange. Accelerations are the robot's own, so that
 /// the controller can stop as soon as the robot can.
-/// Errors: not_supported with the reason, where the controller's motion would be another one: a
-/// Duration, a StartTime, a StopTime, a lower MaxAcceleration, a line that only turns, on which the
-/// tool frame would leave its line or the elbow turns, and a motion too slow to tell from
-/// standstill.
-Result<device::ControllerPlannedMotion> controllerPlannedMotion(
-    const ControllerPlannedRequest& request);
+/// Errors: not_supported with the reason, where the controller's motion would differ: for a
+/// Duration, a StartTime, a StopTime, a lower MaxAcceleration, a line that only turns, a line on
+/// which the tool frame would leave it or the elbow turns, and a motion too slow to be
+/// distinguished from standstill.
+Result<device::ControllerPlannedMotion> controllerPlannedMotion(const ControllerPlannedRequest& request);
 
 }  // namespace metier::robot_skills

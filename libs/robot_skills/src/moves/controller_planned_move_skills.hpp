@@ -22,22 +22,22 @@ struct PlanningArm {
     const Clock& clock;
     /// Watches the force of force moves that are streamed; nullptr: such moves are refused.
     device::ForceTorqueSensor* sensor = nullptr;
-    /// Where its moves report how soon they would stand; shared with whoever shows it.
+    /// Receives the stopping times of its moves; shared with those who publish them.
     std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
 };
 
-/// The four moves of makeCartesianPtpMoveSkill() and its like: the same names, parameters, checks
-/// and results.
+/// The four moves of makeCartesianPtpMoveSkill() and its neighbours: the same names, parameters,
+/// checks and results.
 ///
-/// metier plans each motion. At Start it decides who runs it: the controller's own planner where
-/// its motion is what was asked for, else the arm takes metier's set-points. The latter run a move
-/// with Duration, StartTime, a MaxAcceleration below the robot's own, a line that only turns, on
-/// which the elbow turns or the tool frame would leave its line, and a motion of less than 0.002
-/// rad/s (controller_planned_motion.hpp). The controller may not be faster than the plan; a move to
-/// joints must end at them, else it fails.
+/// metier plans each motion. At Start it decides who runs it: the controller's own planner if its
+/// motion is the one asked for, else metier with set-points. metier runs a move with Duration,
+/// StartTime or a MaxAcceleration below the robot's own, a line that only turns, a line on which
+/// the elbow turns or the tool frame would leave it, and a motion of less than 0.002 rad/s
+/// (controller_planned_motion.hpp). The controller may not be faster than the plan; a move to joints must end
+/// at them, else it fails.
 ///
-/// Suspend and Halt brake and are answered at standstill, whoever runs the move. Resume goes on to
-/// the same target, from where the arm stands; it is refused if an axis was moved by over 2 mrad.
+/// Suspend and Halt brake and are answered at standstill, with either planner. Resume goes on to
+/// the same target, from the present position; it is refused if an axis was moved by over 2 mrad.
 /// Errors: invalid_argument if arm and model differ in their number of axes.
 Result<std::vector<std::unique_ptr<skill::Skill>>> makeControllerPlannedMoveSkills(
     const PlanningArm& arm);

@@ -17,7 +17,7 @@ namespace metier::robot_skills {
 using TellMove = std::function<void(const skill::ExecutionHandle&, const MoveResults&,
                                     const device::MotionOutcome&)>;
 
-/// tell.finish(): for moves that know no force.
+/// Calls tell.finish(), for moves without forces.
 void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results,
                   const device::MotionOutcome& outcome);
 
@@ -44,7 +44,7 @@ public:
     void abandon() noexcept { in_motion_.store(false); }
     /// Any thread.
     bool inMotion() const noexcept { return in_motion_.load(); }
-    /// Whoever stops the motion says so before; what stops else is an error.
+    /// Notes that the motion is to be stopped. A stop without this note before it is an error.
     void stopAsked() noexcept { stop_asked_.store(true); }
     /// Owner's thread while not in motion: where it came to rest [rad].
     const device::JointArray& restingPlace() const noexcept { return rest_; }

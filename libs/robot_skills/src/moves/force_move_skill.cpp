@@ -40,7 +40,7 @@ Result<std::unique_ptr<skill::Skill>> makeForceSkill(ForceSkill::Setup setup) {
 
 // ---- by the controller --------------------------------------------------------------------------
 
-/// \param results whose joints tell how the flange is turned
+/// \param results their joint positions give the orientation of the flange
 MetForce metForce(const RobotModel& model, const MoveResults& results,
                   const MotionOutcome& outcome) {
     const auto joints = motion::JointVector::from(results.reached_joint_position);
@@ -113,7 +113,8 @@ Result<std::unique_ptr<skill::ExecutionWork>> feelingWork(const FeelingArm& arm,
 
 // ---- by either --------------------------------------------------------------------------------
 
-/// What the controller is asked for. Errors: not_supported, where it cannot do just this.
+/// Makes the request to the controller.
+/// Errors: not_supported, where it cannot do exactly this.
 Result<device::ControllerPlannedMotion> plannedForceMotion(const RobotModel& model,
                                                            const Trajectory& trajectory,
                                                            const ForceMoveParameters& parameters) {

@@ -29,7 +29,7 @@ struct FeelingArm {
     device::ForceTorqueSensor& sensor;  ///< its axes are those of the flange frame
     const motion::RobotModel& model;
     const Clock& clock;
-    /// Where its moves report how soon they would stand; shared with whoever shows it.
+    /// Receives the stopping times of its moves; shared with those who publish them.
     std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
 };
 

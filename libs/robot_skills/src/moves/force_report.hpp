@@ -9,7 +9,7 @@
 
 namespace metier::robot_skills {
 
-/// What a force move met, in the base frame.
+/// Forces that a force move measured, in the base frame.
 struct MetForce {
     motion::Wrench contact;                             ///< at the end
     Eigen::Vector3d largest = Eigen::Vector3d::Zero();  ///< along each axis, without sign [N]

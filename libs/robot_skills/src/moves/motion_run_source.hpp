@@ -10,7 +10,7 @@
 
 namespace metier::robot_skills {
 
-/// A source of set-points that tells a skill's execution why the arm let go of it.
+/// A source of set-points that reports to a skill's execution why the arm has stopped using it.
 ///
 /// While attached() the arm's cycle thread owns what next() uses; ended() hands it back to the
 /// owner's thread.

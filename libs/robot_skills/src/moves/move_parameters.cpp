@@ -48,7 +48,7 @@ Result<void> checkBounds(const std::vector<Range>& bounds, std::size_t axis_coun
     return {};
 }
 
-// What the NodeSet says of joint positions [rad].
+// Range of joint positions in the NodeSet [rad].
 constexpr Range kUsualJointRange{-6.5, 6.5};
 
 struct Maximum {

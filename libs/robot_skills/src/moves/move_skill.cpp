@@ -4,7 +4,7 @@ namespace metier::robot_skills {
 
 namespace {
 
-// Of the joint path that Check shows.
+// Number of points in the joint path that Check returns.
 constexpr std::size_t kPreviewPoints = 50;
 
 }  // namespace

@@ -19,14 +19,15 @@ template <typename Parameters>
 using MakeWork = std::function<Result<std::unique_ptr<skill::ExecutionWork>>(
     const motion::Trajectory&, const Parameters&)>;
 
-/// How far the tool frame of `trajectory` is from one joint position to another.
+/// Makes the function for the distance of the tool frame of `trajectory` between two joint
+/// positions.
 ToolDistance toolDistance(const motion::Trajectory& trajectory);
 
-/// What Check tells of a plan.
+/// Makes the answer of Check from a plan.
 skill::CheckReport reportOf(const motion::Planned<motion::Trajectory>& plan);
 
-/// A move: planned by metier at Start, which refuses what cannot be run to its end, then executed
-/// by whatever work is made for the plan.
+/// A move that metier plans at Start. Start refuses a motion that cannot be run to its end; the
+/// work made for the plan executes it.
 template <typename Parameters, typename Results = MoveResults>
 class MoveSkill final : public skill::TypedSkill<Parameters, Results> {
 public:

@@ -15,12 +15,12 @@ struct StreamedArm {
     device::Arm& arm;
     const motion::RobotModel& model;
     const Clock& clock;
-    /// Where its moves report how soon they would stand; shared with whoever shows it.
+    /// Receives the stopping times of its moves; shared with those who publish them.
     std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
 };
 
-/// The moves of an arm. Each plans the whole motion at Start, from where the arm is commanded
-/// to stand, and refuses what cannot be run to its end; then the arm's cycle thread takes the
+/// The moves of an arm. Each plans the whole motion at Start, from the commanded joint position,
+/// and refuses a motion that cannot be run to its end; then the arm's cycle thread takes the
 /// set-points from the plan.
 ///
 /// With StartTime the arm is made ready at once, holds its position, and begins to move in the
@@ -28,8 +28,8 @@ struct StreamedArm {
 ///
 /// Suspend and Halt brake on the path and are answered at the arm's standstill. Resume goes on
 /// along the same path; it is refused if an axis was moved by over 2 mrad meanwhile. Safety stops
-/// of the arm end in Halted: limit_violated if a set-point broke a limit of the controller, error
-/// for every other, device_lost if the arm is gone.
+/// of the arm end in Halted: limit_violated if a set-point broke a limit of the controller,
+/// device_lost if the arm is lost, error for every other one.
 ///
 /// All skills of one arm need one common Resource.
 /// Errors of all: invalid_argument if arm and model differ in their number of axes.

@@ -12,8 +12,8 @@ namespace metier::robot_skills {
 
 namespace {
 
-// How long the way back to the path takes after a rest [s]. kMovedTolerance (arm_work.hpp) in this
-// time is at most 0.02 rad/s and 0.3 rad/s2, which every arm can.
+// Duration of the way back to the path after a rest [s]. kMovedTolerance (arm_work.hpp) in this
+// time is at most 0.02 rad/s and 0.3 rad/s2, which every arm can do.
 constexpr double kWayBack = 0.2;
 
 }  // namespace
@@ -110,7 +110,7 @@ void MoveSource::measure(const device::ArmState& state) noexcept {
 
 device::SetPointSource::Next MoveSource::settle(const device::ArmState& state) noexcept {
     if (in_contact_ && state.standstill) {
-        outcome_ = Outcome::in_contact;  // what it pressed against may keep it off its set-point
+        outcome_ = Outcome::in_contact;  // the touched object may keep it off its set-point
         return Next::done;
     }
     switch (settling_.take(state, restingPlace(), cycle_)) {

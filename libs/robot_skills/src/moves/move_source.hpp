@@ -13,7 +13,7 @@
 
 namespace metier::robot_skills {
 
-/// Watches for a contact that ends a motion before its target, and tells how the motion ended.
+/// Watches for a contact that ends a motion before its target, and reports how the motion ended.
 class ContactWatch {
 public:
     virtual ~ContactWatch() = default;
@@ -32,8 +32,9 @@ public:
         PathDeviationMeter::Path path;
         Timetable timetable;
         std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
-        double stop_time = 0.0;                   ///< of a Suspend [s]; 0: as the limits have it
-        /// Where it reports how soon it would stand.
+        /// Duration of a Suspend [s]; 0: as short as the limits allow
+        double stop_time = 0.0;
+        /// Receives its stopping time.
         std::shared_ptr<StoppingReport> stopping = std::make_shared<StoppingReport>();
     };
 
@@ -66,7 +67,7 @@ private:
     Settling settling_;
     std::unique_ptr<ContactWatch> contact_;
     bool in_contact_ = false;
-    device::JointArray offset_;  ///< from the path when the motion went on after a rest
+    device::JointArray offset_;  ///< distance from the path when the motion went on after a rest
     double way_back_ = 0.0;      ///< time since then [s]
     double in_motion_ = 0.0;     ///< [s]
     bool stop_asked_ = false;

@@ -14,13 +14,13 @@ template <typename Parameters>
 using MovePlan = std::function<motion::Planned<motion::Trajectory>(
     const motion::RobotModel&, const motion::JointVector&, const Parameters&)>;
 
-/// What a motion must have reached besides its path's end.
+/// Conditions for the end of a motion besides the end of its path.
 enum class MoveEnd : std::uint8_t {
     pose,    ///< the tool frame there, with whichever joints
     joints,  ///< just these joints
 };
 
-/// What makes one move different from the others, whoever plans the set-points of its motion.
+/// Differences between the moves, for any planner of the set-points.
 template <typename Parameters>
 struct MoveVariant {
     skill::SkillDescription description;

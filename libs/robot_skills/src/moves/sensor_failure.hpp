@@ -22,7 +22,7 @@ public:
     /// The sensor is not well now. Later calls change nothing.
     void keep(device::SafetyState health) noexcept;
     bool kept() const noexcept { return kept_.load() != device::SafetyState::normal; }
-    /// What the sensor said when it failed; its state then if it recovered before it said anything.
+    /// Text of the sensor when it failed; its state at that time if it recovered without a text.
     std::string text() const;
 
 private:

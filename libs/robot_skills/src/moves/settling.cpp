@@ -10,8 +10,8 @@ namespace {
 constexpr double kArrived = 1e-3;
 // The first cycle may still show an arm that has not begun a short way, as after a late Suspend.
 constexpr int kArrivedCycles = 2;
-// How long it may take for that after the last set-point, and how long rest elsewhere, which may be
-// late news of a motion [s].
+// Longest time for that after the last set-point [s], and longest rest elsewhere, since news of a
+// motion may be late [s].
 constexpr double kLongest = 10.0;
 constexpr double kLongestRest = 2.0;
 

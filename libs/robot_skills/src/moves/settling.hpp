@@ -36,9 +36,9 @@ public:
 
 private:
     double waited_ = 0.0;     ///< [s]
-    double rested_ = 0.0;     ///< at standstill elsewhere, without a break [s]
+    double rested_ = 0.0;     ///< time at standstill elsewhere, without a break [s]
     int arrived_cycles_ = 0;  ///< without a break
-    double distance_ = 0.0;   ///< of the axis farthest off [rad]
+    double distance_ = 0.0;   ///< largest distance of an axis [rad]
 };
 
 }  // namespace metier::robot_skills

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kMostAcceleration = 1.2;  // share of the robot's own
 constexpr double kMostJerk = 2.0;          // as a Halt may use
-constexpr int kBeginnings = 25;            // of the brake, over the motion
-constexpr int kSteps = 20;                 // of one brake
+constexpr int kBeginnings = 25;            // number of begins of the brake, over the motion
+constexpr int kSteps = 20;                 // number of steps of one brake
 constexpr double kLonger = 1.15;
 constexpr double kShortest = 1e-3;  // [s]
 constexpr double kLongest = 4.0;    // [s]

@@ -14,8 +14,9 @@ namespace metier::robot_skills {
 struct StreamedMove {
     motion::Trajectory trajectory;
     PathDeviationMeter::Path path;
-    std::optional<double> start_time{};       ///< [s since 1970-01-01 UTC]; none: at once
-    std::optional<double> stop_time{};        ///< of a Suspend [s]; none: as the limits have it
+    std::optional<double> start_time{};  ///< [s since 1970-01-01 UTC]; none: at once
+    /// Duration of a Suspend [s]; none: as short as the limits allow
+    std::optional<double> stop_time{};
     std::unique_ptr<ContactWatch> contact{};  ///< nullptr: none is watched for
 };
 

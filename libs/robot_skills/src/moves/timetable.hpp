@@ -14,10 +14,10 @@ double toSeconds(UtcTime time) noexcept;
 /// Errors: out_of_range if `start_time` is over, or further ahead than a minute.
 Result<void> checkStartTime(const std::optional<double>& start_time, const Clock& clock);
 
-/// When the set-points of one motion are due, and when they were given.
+/// Planned and actual times of the set-points of one motion.
 ///
-/// Threading: made by the owner's thread; then by one thread, the cycle, or while there is none by
-/// the owner's. Neither allocates, locks nor throws.
+/// Threading: made by the owner's thread; then used by one thread: the cycle thread, or the owner's
+/// while the arm does not have the motion. Nothing allocates, locks or throws.
 class Timetable {
 public:
     /// A start that is missed by more is not made up for [s].

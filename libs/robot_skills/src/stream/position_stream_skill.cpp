@@ -40,12 +40,12 @@ Result<void> checkWithinLimits(const RobotModel& model, const std::vector<double
 /// A stream as an execution of its skill.
 class StreamWork final : public SourceWork {
 public:
-    /// Whom the set-points come from and where they go.
+    /// Source and target of the set-points.
     struct Stream {
         std::shared_ptr<StreamSource> source;  // shared with the arm while it moves
         StreamTimes times;
         std::optional<std::vector<double>> first;
-        std::shared_ptr<StreamReport> report;  // shared with whoever shows it
+        std::shared_ptr<StreamReport> report;  // shared with those who publish it
     };
 
     StreamWork(device::Arm& arm, Stream stream, ToolDistance tool_distance)

@@ -8,7 +8,8 @@ namespace metier::robot_skills {
 
 namespace {
 
-// How much of what an arrival is off its rhythm goes into the set-point's time and the interval.
+// Divisor of the deviation of an arrival from its rhythm, for the correction of the set-point's
+// time and of the interval.
 constexpr int kTimeShare = 32;
 constexpr int kIntervalShare = 1024;
 // A set-point that is farther off begins another rhythm: a pause, another rate.
@@ -58,7 +59,7 @@ motion::Seconds StreamTimes::next(std::optional<UtcTime> meant_for) noexcept {
 std::chrono::nanoseconds StreamTimes::bySender(UtcTime meant_for, std::chrono::nanoseconds arrival,
                                                bool first) noexcept {
     if (!sender_start_) {
-        // What came before without a time is not followed at once: no axis can.
+        // An earlier target without a time is not followed at once: no axis could.
         sender_start_.emplace(meant_for, first ? arrival : std::max(arrival, last_ + cycle_));
     }
     const auto meant = between(sender_start_->first, meant_for) + sender_start_->second;

@@ -49,7 +49,7 @@ public:
         return position;
     }
 
-    /// How many wait. Reader only.
+    /// Number of waiting set-points. Reader only.
     std::size_t size() const noexcept {
         return written_.load(std::memory_order_acquire) - read_.load(std::memory_order_relaxed);
     }
@@ -60,11 +60,12 @@ private:
     std::atomic<std::size_t> read_{0};
 };
 
-/// When streamed set-points are meant for: by the sender's clock where it tells, else by arrival.
+/// Times for which streamed set-points are meant: by the sender's clock if the sender gives times,
+/// else by arrival.
 ///
 /// Set-points without a time that arrive together are spread by half a cycle of the arm, so that a
-/// client that sends one per cycle is followed although the network bunches them. Where nothing
-/// evens them out later, the rhythm of their arrivals is taken instead of each arrival.
+/// client that sends one per cycle is followed although the network bunches them. Where no play-out
+/// delay evens them out later, the mean rhythm of the arrivals is used instead of each arrival.
 /// Threading: the owner's thread.
 class StreamTimes {
 public:
@@ -82,19 +83,20 @@ public:
 
     /// A new stream begins with the next set-point.
     void restart() noexcept;
-    /// The time of the set-point that arrives now, since the first of its stream; any time is
-    /// taken, at most some years from the first. \param meant_for by the sender's clock; the least
-    /// that there is stands for none
+    /// Time of the set-point that arrives now, counted from the first one of its stream. Any time
+    /// is accepted; it is limited to some years from the first.
+    /// \param meant_for by the sender's clock; the smallest time stands for none
     motion::Seconds next(std::optional<UtcTime> meant_for) noexcept;
-    /// How far the sender's clock went ahead of ours from the set-point before to the last one, or
-    /// back by itself; 0 without times.
+    /// Step of the sender's clock against ours between the last two set-points: ahead, or negative:
+    /// back; 0 without times.
     motion::Seconds clockStep() const noexcept { return clock_step_; }
 
 private:
-    /// The time of a set-point that tells one. \param first whether it is the first of its stream
+    /// Time of a set-point that has one.
+    /// \param first whether it is the first of its stream
     std::chrono::nanoseconds bySender(UtcTime meant_for, std::chrono::nanoseconds arrival,
                                       bool first) noexcept;
-    /// When the set-point would be expected, a little corrected by when it came.
+    /// Expected time of the set-point, corrected a little by its arrival.
     std::chrono::nanoseconds inRhythm(std::chrono::nanoseconds arrival) noexcept;
 
     const Clock& clock_;
@@ -103,9 +105,9 @@ private:
     const Arrivals arrivals_;
     std::chrono::nanoseconds interval_;  ///< between two set-points, if in rhythm
     std::chrono::nanoseconds last_{};
-    /// The first time that the sender told, and what it stands for since the first set-point.
+    /// First time that the sender gave, and the stream time that it stands for.
     std::optional<std::pair<UtcTime, std::chrono::nanoseconds>> sender_start_;
-    std::optional<std::chrono::nanoseconds> sender_before_;  ///< of the set-point before
+    std::optional<std::chrono::nanoseconds> sender_before_;  ///< time of the set-point before
     std::chrono::nanoseconds sender_arrival_{};              ///< when that one came
     motion::Seconds clock_step_{};
     std::optional<SteadyTime> arrival_start_;

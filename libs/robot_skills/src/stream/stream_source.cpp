@@ -26,10 +26,10 @@ constexpr int kLostAfterCycles = 6;
 constexpr double kFinishedAfter = 0.5;
 // The arm was sent the last set-point where it was sent a position this near to it [rad].
 constexpr double kAtLast = 1e-5;
-// How long a stream may take to begin [s].
+// Longest time until a stream must begin [s].
 constexpr double kLongestWait = 10.0;
-// What the network may be late: the delay of the play-out unless it is told, and the time that a
-// stream without delay goes on at its last velocity [s]; at least so many cycles.
+// Usual delay by the network [s]: the default of PlayOutDelay, and the time for which a stream
+// without delay goes on at its last velocity; at least so many cycles.
 constexpr double kLate = 0.02;
 constexpr int kLateCycles = 3;
 

@@ -18,12 +18,12 @@ namespace metier::robot_skills {
 class StreamSource final : public MotionRunSource {
 public:
     struct Setup {
-        double cycle = 0.0;         ///< of the arm [s]
-        motion::JointVector start;  ///< where the arm is commanded to stand [rad]
+        double cycle = 0.0;         ///< period of the arm [s]
+        motion::JointVector start;  ///< commanded joint position [rad]
         double longest_silence = PositionStreamOptions{}.longest_silence;  ///< [s]
         std::optional<double> play_out_delay{};  ///< [s], PositionStreamParameters
         double largest_lag = PositionStreamOptions{}.largest_lag;  ///< [s]
-        /// Shared with whoever shows it, and with the stream after this one.
+        /// Shared with those who publish it, and with the next stream.
         std::shared_ptr<StreamReport> report = std::make_shared<StreamReport>();
     };
 
@@ -38,7 +38,7 @@ public:
     /// Whether the stream could begin with this set-point. Before begin().
     Result<void> checkFirst(const motion::JointVector& position) const;
 
-    /// Where the owner's thread leaves the set-points.
+    /// Queue into which the owner's thread writes the set-points.
     StreamQueue& queue() noexcept { return queue_; }
 
     /// Owner's thread: no set-point comes after those in the queue. The stream ends when the arm
@@ -97,9 +97,9 @@ private:
     // Since the stream began, or began anew after a rest.
     std::uint64_t cycles_ = 0;
     std::optional<StreamedPosition> last_;
-    double speed_ = 0.0;      ///< of the stream in its fastest axis [rad/s]
+    double speed_ = 0.0;      ///< speed of the stream's fastest axis [rad/s]
     double silence_ = 0.0;    ///< since the last set-point [s]
-    bool finishing_ = false;  ///< that was the last set-point
+    bool finishing_ = false;  ///< no further set-point will come
     std::uint64_t set_points_ = 0;
     std::uint64_t missed_cycles_ = 0;
     std::uint64_t dropped_ = 0;  ///< since the last set-point that was followed

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kReadyTimeout = 30s;
-// From the end of a program's output to its own.
+// Longest time from the end of a program's output to its own end.
 constexpr auto kLastBreath = 2s;
 constexpr int kSignalBase = 128;
 

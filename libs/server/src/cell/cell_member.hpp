@@ -20,7 +20,7 @@ enum class CellRank { world, controller, device, move, synchronized, composition
 /// One process of a cell: a server or a virtual controller.
 ///
 /// It has a process group of its own, so that a terminal reaches it only through its owner. When
-/// the owner dies it is told to end, and brakes what it moves.
+/// the owner dies it gets a signal to end, and brakes its device.
 /// Threading: one thread, which lives as long as the process.
 class CellMember {
 public:
@@ -37,7 +37,7 @@ public:
     CellRank rank() const noexcept { return plan_.rank; }
     /// As its ready line says; empty before the first.
     const std::string& address() const noexcept { return address_; }
-    /// How it ended the last time, for a person.
+    /// Description of its last end, for a person.
     const std::string& howItEnded() const noexcept { return how_; }
     bool hasProcess() const noexcept { return process_.has_value(); }
 
@@ -53,7 +53,7 @@ public:
     /// Descriptors that become readable when something happened; -1 for none.
     int outputDescriptor() const noexcept;
     int endDescriptor() const noexcept;
-    /// When look() has something to do although no descriptor is readable.
+    /// Time when look() must be called although no descriptor is readable.
     std::optional<SteadyTime> lookAgainAt() const noexcept;
 
     void signal(int number) noexcept;

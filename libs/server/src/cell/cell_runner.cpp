@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 // Longest time for a process to let go of those that it uses before these get their signal, too.
 constexpr auto kLetGo = 500ms;
-// From the begin of the cell's end: servers brake within 2 s.
+// Deadline for the servers, from the begin of the cell's end: they brake within 2 s.
 constexpr auto kServersEnd = 4s;
 constexpr auto kAllEnd = 6s;
 

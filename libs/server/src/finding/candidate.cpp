@@ -143,7 +143,7 @@ private:
     Figure payload_;
 };
 
-/// How a figure is written.
+/// Name and unit of a figure, for messages.
 struct Name {
     std::string_view name;
     std::string_view unit;

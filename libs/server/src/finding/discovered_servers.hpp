@@ -19,7 +19,7 @@ struct DiscoveredServer {
     std::vector<OfferedSkill> offered;
 };
 
-/// Servers that discovery knows now; nobody has asked them yet.
+/// Servers that discovery knows now; none of them was connected to yet.
 /// \param but addresses to leave out
 /// Threads: any; waits, some seconds.
 std::vector<opcua::FoundServer> announcedServers(const cell::Discovery& discovery,
@@ -37,14 +37,14 @@ std::vector<DiscoveredServer> discoverServers(const cell::Discovery& discovery,
 Result<std::map<std::string, OfferedSkill>> chooseAll(const std::vector<composition::Use>& uses,
                                                       const DiscoveredServer& server);
 
-/// How uses are spread over servers: who can serve most of them comes first, as the skills of one
-/// arm belong together; then by the order of the servers.
+/// Assignment of uses to servers. The server that can serve most of them comes first, as the skills
+/// of one arm belong together; then the order of the servers decides.
 struct Assignment {
     const DiscoveredServer* server = nullptr;
     std::vector<composition::Use> uses;
 };
 
-/// Errors: not_found, with a line "uses.ALIAS: why" for each use that nobody serves.
+/// Errors: not_found, with a line "uses.ALIAS: why" for each use that no server can serve.
 Result<std::vector<Assignment>> assign(const std::vector<composition::Use>& uses,
                                        const std::vector<DiscoveredServer>& servers);
 

@@ -13,9 +13,9 @@ namespace metier::server {
 /// A skill that some server offers.
 struct OfferedSkill {
     std::string server;     ///< its name in the cell file, or its address
-    std::size_t index = 0;  ///< of the server
+    std::size_t index = 0;  ///< index of the server
     client::SkillAddress address;
-    ArmFigures arm{};  ///< that it moves
+    ArmFigures arm{};  ///< figures of the arm that it moves
 };
 
 /// Whether a skill is of that type: by the BrowseName of its type, or, for composed skills, which

@@ -78,8 +78,8 @@ private:
 
     opcua::Client& client_;
     const client::ReferenceReader& references_;
-    std::map<opcua::NodeId, TypeTerms> type_terms_;  // by type
-    std::map<opcua::NodeId, ArmFigures> arms_;       // by controller
+    std::map<opcua::NodeId, TypeTerms> type_terms_;  // key: type
+    std::map<opcua::NodeId, ArmFigures> arms_;   // key: controller
 };
 
 opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client) {
@@ -131,7 +131,7 @@ public:
             client = client_.get();
         }
         if (client != nullptr) {
-            static_cast<void>(client->close());  // what waits for an answer ends
+            static_cast<void>(client->close());  // waiting calls end
         }
     }
 

@@ -18,9 +18,9 @@ std::string applicationUriOf(const cell::ServerConfig& config);
 /// As others reach a server. \param url where it listens: "opc.tcp://127.0.0.1:48411"
 std::string announcedUrl(const cell::Discovery& discovery, const std::string& url);
 
-/// Tells others of a server, for as long as it lives, as its cell file says.
+/// Announces a server for as long as it lives, as its cell file says.
 ///
-/// Nothing that is asked to tell of it can hold up the server.
+/// A discovery server or Avahi that does not answer never holds up the server.
 /// Threading: one thread; the destructor waits a few seconds at most.
 class Announcement {
 public:

@@ -29,7 +29,7 @@ constexpr std::chrono::seconds kFirstAnswer{10};
 constexpr std::chrono::seconds kSettling{2};
 constexpr int kLastPort = 65535;
 
-/// Whichever face a device has tells of its safety.
+/// Registers for the safety state at any interface that the device has.
 template <typename Callback>
 device::Registration onSafetyChange(const device::OpenDevice& device, Callback callback) {
     if (device.arm != nullptr) {
@@ -81,7 +81,7 @@ Result<std::optional<link::NameLock>> lockDevice(const device::Driver& driver,
     }
     const auto port = static_cast<int>(
         choice.settings.numberOr(driver.port.setting, driver.port.preset, 0, kLastPort));
-    if (port == 0) {  // a free one, which nobody else has
+    if (port == 0) {  // a free port is used by no other process
         return std::optional<link::NameLock>();
     }
     const auto device =

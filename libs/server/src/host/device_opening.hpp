@@ -12,9 +12,9 @@ namespace metier::server {
 
 /// Server for which a device is opened.
 struct DeviceUser {
-    const std::string& name;                    ///< of the server, for messages
-    std::span<const device::Driver> drivers;    ///< that there are
-    const motion::RobotModel* model = nullptr;  ///< of an arm; must outlive the device
+    const std::string& name;                    ///< name of the server, for messages
+    std::span<const device::Driver> drivers;    ///< known drivers
+    const motion::RobotModel* model = nullptr;  ///< model of an arm; must outlive the device
 };
 
 /// Opens the device that a cell file names.

@@ -10,12 +10,12 @@
 
 namespace metier::server {
 
-/// The name of a server's port, so that a second server is told at once which process has it. The
-/// kernel lets one process have the port anyway.
+/// Takes the name of a server's port, so that a second server can report at once which process has
+/// the port. (The kernel gives the port to one process only, in any case.)
 ///
-/// Another user who took the name without the port keeps nobody from serving there: that is logged,
-/// and the result empty, as for any free port.
-/// \param own user of this process
+/// If another user took the name but not the port, the server may serve all the same: that is
+/// logged, and the result is empty, as for any free port.
+/// \param own user id of this process
 /// Errors: as link::NameLock::take(), while the port is taken.
 Result<std::optional<link::NameLock>> lockPort(const cell::ServerConfig& config,
                                                uid_t own = geteuid());

@@ -21,12 +21,12 @@
 
 namespace metier::server {
 
-/// Decides whom a closed server lets in, by the security folder.
+/// Decides which clients a closed server accepts, by the security folder.
 ///
 /// Users log in by name and password; an application without a user gets the role it has in the
-/// folder, if any. What changes there holds within seconds: sessions of applications that are
-/// trusted no more, and of users who are gone or have another role, are closed; the server goes on
-/// with a renewed certificate, and warns before its own ends.
+/// folder, if any. Changes in the folder take effect within seconds: sessions are closed if their
+/// application is not trusted any more, or if their user was removed or has another role; the
+/// server uses a renewed certificate, and warns before its own expires.
 /// Threading: between open() and the end of the server, the server's thread, which does not wait
 /// for a disk; threads of its own read and write files.
 class ServerAccess {
@@ -61,8 +61,8 @@ private:
     /// Contents of the security folder besides users and trusted certificates.
     struct Folder {
         Result<security::Identity> identity;
-        std::map<std::string, security::Role> roles;      ///< by thumbprint
-        std::filesystem::file_time_type latest_change{};  ///< of what decides on rights
+        std::map<std::string, security::Role> roles;      ///< key: thumbprint
+        std::filesystem::file_time_type latest_change{};  ///< of the files that decide on rights
     };
     std::shared_ptr<const Folder> read() const;
     std::optional<security::Role> roleOf(const std::string& thumbprint);
@@ -78,7 +78,7 @@ private:
     SteadyTime warned_{};
     opcua::TimerHandle timer_;
 
-    std::mutex mutex_;  // of what follows
+    std::mutex mutex_;  // guards all that follows
     std::condition_variable_any wake_;
     std::deque<security::Certificate> refused_;
     std::jthread keeper_;

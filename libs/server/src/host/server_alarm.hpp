@@ -13,8 +13,8 @@
 
 namespace metier::server {
 
-/// Says that something does not work any more, and that it works again: in the program's log, and
-/// by an event of the Server object once that serves.
+/// Reports that something does not work any more, and that it works again: in the program's log,
+/// and by an event of the Server object once the server serves.
 ///
 /// Threading: made, followed and ended as its server, and ends before it; tell() from any thread.
 class ServerAlarm {
@@ -42,7 +42,8 @@ private:
     const std::string source_;
     std::optional<opcua::EventEmitter> emitter_;
     std::mutex mutex_;
-    std::shared_ptr<skill::Executor> executor_;  // of the server, shared with its Programs
+    // Runs on the server's thread; shared with its Programs.
+    std::shared_ptr<skill::Executor> executor_;
 };
 
 }  // namespace metier::server

@@ -19,8 +19,9 @@ namespace metier::server {
 /// Threading: made, followed and ended as its server; ends before it, and after its last client.
 class ServerAudit {
 public:
-    /// Has what a server of these options does and refuses written; before the server is made.
-    /// \return null without a state folder, which the program's log tells
+    /// Makes the audit log of a server, and sets it in the server's options; before the server is
+    /// made.
+    /// \return null without a state folder; the program's log says so
     /// Errors: resource_unavailable (the file); invalid_argument (it is no audit log).
     static Result<std::unique_ptr<ServerAudit>> open(const cell::ServerConfig& config,
                                                      opcua::ServerOptions& options);

@@ -17,14 +17,14 @@ struct ShownArm {
     const device::Arm& arm;
     const motion::RobotModel& model;
     double payload = 0;                                 ///< [kg]; 0: unknown
-    const device::ForceTorqueSensor* sensor = nullptr;  ///< at its flange
+    const device::ForceTorqueSensor* sensor = nullptr;  ///< sensor at its flange
     /// Shared with the arm's stream skill; null: it has none.
     std::shared_ptr<const robot_skills::StreamReport> stream{};
     /// Shared with its moves; null: it has none of metier's.
     std::shared_ptr<const robot_skills::StoppingReport> stopping{};
 };
 
-/// Where the arm is now, and whether it may move. Threads: any; does not wait.
+/// Present position of the arm, and whether it may move. Threads: any; does not wait.
 opcua_skill::KinematicsState stateOf(const ShownArm& shown);
 
 /// Functions that read its live figures, each for any thread; none waits.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::chrono::seconds kLongestBraking{2};
 
-/// Skill objects of the NodeSet that nobody wants would stay without a skill.
+/// Checks that every skill object of the NodeSet gets a skill.
 Result<void> checkAllWanted(const std::vector<opcua::Reference>& nodes,
                             const std::vector<std::string>& wanted) {
     for (const auto& node : nodes) {
@@ -105,8 +105,8 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
     return {};
 }
 
-/// Whatever watches the Programs lets go of them between the server's thread and their end. A disk
-/// that hangs is waited for once they have stopped their device.
+/// All watchers of the Programs are removed between the end of the server's thread and the end of
+/// the Programs. A hanging disk is waited for only after the Programs have stopped their device.
 SkillHost::~SkillHost() {
     if (announcement_ && !skills_->comeToRest("the server is ended", kLongestBraking)) {
         spdlog::error("{}: something still moves {} s after it was to brake: its device stops it",

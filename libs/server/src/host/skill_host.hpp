@@ -59,7 +59,7 @@ public:
     opcua_skill::SkillServer& skills() { return *skills_; }
     std::string url() const { return server_->endpointUrl(); }
     std::uint16_t port() const { return server_->port(); }
-    /// As others are told.
+    /// Endpoint URL as announced to others.
     std::string announcedUrl() const { return server::announcedUrl(config_.discovery, url()); }
 
     /// Shows what is known of the arm, and its live state.
@@ -71,7 +71,7 @@ public:
     Result<void> offerControl(const opcua::NodeId& controller);
     /// For the Programs of the controller's skills.
     const std::shared_ptr<skill::Control>& control() const noexcept { return control_; }
-    /// Of this server, as others are told.
+    /// ApplicationUri as announced to others.
     const std::string& applicationUri() const noexcept { return application_uri_; }
     /// For the Programs of the server.
     const std::shared_ptr<skill::ExecutionNames>& names() const noexcept { return names_; }
@@ -94,7 +94,7 @@ public:
     void stopOnStall(Device& device) {
         stops_.emplace_back([&device] { device.stop(); });
     }
-    /// Serves, and tells others of it.
+    /// Starts to serve, and announces the server.
     Result<void> start();
 
 private:
@@ -104,7 +104,7 @@ private:
     Result<void> watchPrograms();
     void watchStalls();
 
-    std::optional<link::NameLock> port_lock_;  // until the server is gone
+    std::optional<link::NameLock> port_lock_;  // held until the server has ended
     const cell::ServerConfig config_;
     const Identity& identity_;
     std::string application_uri_;
@@ -119,7 +119,7 @@ private:
     std::unique_ptr<opcua_skill::SkillServer> skills_;
     std::shared_ptr<skill::Control> control_;       // shared with the Programs
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs
-    std::unique_ptr<ServerMetrics> metrics_;        // none unless told where
+    std::unique_ptr<ServerMetrics> metrics_;        // null unless an address is configured
     std::optional<robot_skills::DeviceWatch> device_watch_;
     std::vector<std::function<void()>> stops_;
     std::optional<robot_skills::StallWatch> stall_watch_;

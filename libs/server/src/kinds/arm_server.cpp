@@ -123,7 +123,7 @@ Result<void> ArmServer::offer(const cell::ServerConfig& config, const cell::ArmS
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
                                     const cell::ArmServer& config) {
-    // What a controller that plans cannot stop by itself, its own measurement can.
+    // The controller's own force measurement ends those force moves that its planner cannot run.
     auto* const own_sensor = device_.planner != nullptr ? device_.force_torque_sensor : nullptr;
     METIER_ASSIGN(auto arm,
                   robot_skills::makeArmSkills(

@@ -184,7 +184,7 @@ private:
     std::map<std::string, std::unique_ptr<composition::UsedSkill>> used_skills_;
     std::vector<opcua_skill::RemoteSkill> remote_;
     std::vector<std::string> local_;        // names of used skills of this server
-    std::vector<composition::Use> sought_;  // that no server of the list offers
+    std::vector<composition::Use> sought_;  // uses that no server of the list has
     std::vector<SkillBinding> bindings_;
 };
 

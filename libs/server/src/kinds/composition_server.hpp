@@ -21,12 +21,12 @@ namespace metier::server {
 /// Threading: one thread starts and ends it.
 class CompositionServer final : public Server {
 public:
+    /// Starts the server. With `servers = "discover"` it waits up to 20 s until all used skills are
+    /// found.
     /// \param composition of `config`
-    /// With `servers = "discover"` it waits up to 20 s until all used skills are found.
-    /// Errors: what is wrong with the files; a used skill server that cannot be reached; a used
-    /// skill
-    ///         that nobody or, unless discovered, more than one server offers; the port; cancelled
-    ///         (a stop was asked for while it waited).
+    /// Errors: mistakes in the files; a used skill server that cannot be reached; a used skill that no
+    /// server has or, unless discovered, more than one; the port; cancelled (a stop was asked for
+    /// while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
         const cell::ServerConfig& config, const cell::CompositionServer& composition,
         const Context& context);
@@ -54,7 +54,7 @@ private:
     const Identity& identity_;
     std::string life_;  // part of the ids of executions
     std::vector<std::unique_ptr<client::RemoteServer>> servers_;
-    std::vector<OfferedSkill> offered_;  // of all of them
+    std::vector<OfferedSkill> offered_;  // of all compositions
     // Those that were found, shared by the skills that use them.
     std::vector<std::shared_ptr<client::RemoteServer>> found_;
     std::vector<SkillBinding> bindings_;

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kLongestSearch = 20s;
 constexpr auto kLookEvery = 500ms;
-constexpr auto kPause = 2s;  // after an attempt that changed nothing
+constexpr auto kPause = 2s;  // pause after an attempt without a change
 constexpr const char* kStream = "PositionStreamSkillType";
 
 bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {

@@ -24,10 +24,10 @@ namespace metier::server {
 /// Threading: one thread starts and ends it; it waits some seconds for a thread that exchanges.
 class MoveServer final : public Server {
 public:
-    /// Waits until a robot is found, 20 s at most, if one is to be found.
-    /// Errors: the robot's server cannot be reached or does not tell enough, or the port is taken;
-    ///         cancelled (a stop was asked for).
+    /// Starts the server. If a robot is to be found, it waits for one, 20 s at most.
     /// \param move of `config`
+    /// Errors: the robot's server cannot be reached or does not publish enough; the port is taken;
+    /// cancelled (a stop was asked for).
     static Result<std::unique_ptr<MoveServer>> start(const cell::ServerConfig& config,
                                                      const cell::MoveComponent& move,
                                                      const Context& context);
@@ -37,7 +37,7 @@ public:
     std::string url() const override { return url_; }
 
 private:
-    /// Where robots are found that a move component may move.
+    /// Source of robots that a move component may move.
     struct RobotSearch {
         cell::Discovery discovery;
         cell::MoveComponent move;
@@ -56,16 +56,16 @@ private:
 
     void run(const std::stop_token& stop);
     bool awaitNext(const std::stop_token& stop);
-    /// Where another robot may be; nowhere while the present one stays.
+    /// Addresses at which another robot may be; empty while the present one stays.
     std::vector<std::string> candidates() const;
     Result<void> exchange(const std::string& robot_url);
     void tell(const Error& error);
 
-    cell::ServerConfig config_;  // with the port that the server has
+    cell::ServerConfig config_;  // with the server's real port
     const RobotSearch search_;
     const std::string url_;
     const std::string announced_url_;
-    // Of the thread, once it runs.
+    // Used by the thread only, once it runs.
     std::unique_ptr<RobotMoves> moves_;             // null after an exchange that failed
     std::shared_ptr<skill::ExecutionNames> names_;  // shared with the Programs of each robot
     std::string robot_url_;                         // of the present robot, or the last one

@@ -17,8 +17,8 @@ using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>
 using namespace std::chrono_literals;
 
 constexpr auto kLookEvery = 500ms;
-constexpr auto kPause = 2s;        // after an attempt that changed nothing
-constexpr auto kLongestTurn = 5s;  // until the executor gets to something
+constexpr auto kPause = 2s;        // pause after an attempt without a change
+constexpr auto kLongestTurn = 5s;  // longest time until the executor gets to something
 
 }  // namespace
 
@@ -80,7 +80,7 @@ void Rebinder::renew(SkillBinding& binding) {
         return binding.skill->underWay() ? fail(Errc::invalid_state, "it runs") : Result<void>{};
     });
     if (!idle) {
-        return;  // in the middle of an execution nothing changes
+        return;  // nothing changes during an execution
     }
     const auto servers =
         discoverServers(setup_.discovery, setup_.identity, {setup_.own_url, binding.server->url()});
@@ -172,8 +172,8 @@ void Rebinder::forget() {
     });
 }
 
-/// Work that has not begun at the deadline never will; work that has goes on to its end, which is
-/// soon.
+/// Runs work on the executor's thread. If it has not begun at the deadline it never will; work that
+/// has begun goes on to its end, which is soon.
 Result<void> Rebinder::onExecutor(std::function<Result<void>()> work) {
     // Both are shared: the promise because posted work is copied, the mark with this function.
     auto promise = std::make_shared<std::promise<Result<void>>>();

@@ -23,8 +23,8 @@ namespace metier::server {
 /// Uses of one composed skill that one server serves, which was found.
 struct SkillBinding {
     std::string skill_name;
-    composition::SequenceSkill* skill = nullptr;  ///< for the executor's thread
-    opcua::NodeId node;                           ///< of the composed skill
+    composition::SequenceSkill* skill = nullptr;  ///< used on the executor's thread
+    opcua::NodeId node;                           ///< node of the composed skill
     std::string origin;                           ///< as RemoteServer::use() takes it
     std::vector<composition::Use> uses;           ///< they move together
     /// Shared by the bindings to one server.
@@ -41,13 +41,13 @@ class Rebinder {
 public:
     struct Setup {
         cell::Discovery discovery;
-        const Identity& identity;      ///< of the component
-        std::string own_url;           ///< of the component, which does not serve itself
+        const Identity& identity;      ///< identity of the component
+        std::string own_url;           ///< address of the component, which it leaves out itself
         std::string application_name;  ///< as others see it
-        std::string own_server;  ///< ApplicationUri that executions are told as their parent's
+        std::string own_server;        ///< ApplicationUri that executions get as their parent's
         std::chrono::duration<double> rebind_after;  ///< absence of a server [s]
         std::shared_ptr<skill::Executor> executor;   ///< shared by what its thread owns
-        opcua::AddressSpace& nodes;                  ///< of the component
+        opcua::AddressSpace& nodes;                  ///< nodes of the component
     };
 
     Rebinder(Setup setup, std::vector<SkillBinding> bindings);

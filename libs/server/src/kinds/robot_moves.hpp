@@ -20,7 +20,7 @@ struct ConnectedRobot {
     motion::RobotModel model;
 };
 
-/// Errors: it cannot be reached, or does not tell enough.
+/// Errors: the server cannot be reached, or does not publish enough.
 Result<ConnectedRobot> connectRobot(const std::string& url, const Identity& identity);
 
 /// An OPC UA server with the move skills of one robot, over its position stream.
@@ -38,7 +38,7 @@ public:
     const ConnectedRobot& robot() const noexcept { return robot_; }
     std::string url() const { return host_->url(); }
     std::uint16_t port() const { return host_->port(); }
-    /// As others are told.
+    /// Endpoint URL as announced to others.
     std::string announcedUrl() const { return host_->announcedUrl(); }
     const std::shared_ptr<skill::ExecutionNames>& names() const noexcept { return host_->names(); }
 

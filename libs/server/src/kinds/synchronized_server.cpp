@@ -14,7 +14,7 @@ using composition::Arm;
 
 namespace {
 
-// Arms whose component is gone run on no longer than that, and what it takes to see it.
+// Arms whose component has died run on no longer than this, and the time to detect it.
 constexpr std::chrono::milliseconds kSessionTimeout{2'000};
 constexpr const char* kSkill = "SynchronizedMoveSkill";
 

@@ -5,7 +5,7 @@
 
 namespace metier::server {
 
-/// A number that only grows. Threads: any; nobody waits.
+/// A number that only grows. Threads: any; nothing waits.
 class Counter {
 public:
     void add(std::uint64_t count = 1) noexcept {

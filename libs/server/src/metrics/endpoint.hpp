@@ -17,13 +17,13 @@ struct ServerHealth {
 
 /// An HTTP server of its own threads with `/metrics` and `/healthz`.
 ///
-/// It has no log-in and no encryption: whoever reaches the address reads the figures. A client has
-/// two seconds to ask; eight are connected at the same time.
-/// Threading: one thread makes and ends it, and waits for nobody's request.
+/// It has no log-in and no encryption: everybody who reaches the address can read the figures. A
+/// client has two seconds for its request; eight may be connected at the same time.
+/// Threading: one thread makes and ends it; that does not wait for any client's request.
 class MetricsEndpoint {
 public:
     struct Options {
-        std::string address = "127.0.0.1";  ///< to listen on, IPv4 or IPv6
+        std::string address = "127.0.0.1";  ///< IPv4 or IPv6 address to listen on
         std::uint16_t port = 0;             ///< 0: a free one
         /// The page for Prometheus. On threads of the endpoint, several at the same time; must not
         /// wait.

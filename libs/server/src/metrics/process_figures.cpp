@@ -11,7 +11,7 @@
 namespace metier::server {
 namespace {
 
-// Of this library, which is loaded with the program.
+// Time when this library was loaded, with the program.
 const auto kStart = std::chrono::system_clock::now();
 
 double secondsOf(const timeval& time) {

@@ -13,14 +13,14 @@
 
 namespace metier::server {
 
-/// Counts what one Program does.
+/// Counts the executions and calls of one Program.
 ///
-/// Threading: made and ended by the Program's owner; its figures are read by any thread, and nobody
+/// Threading: made and ended by the Program's owner; any thread may read its figures; nothing
 /// waits.
 class ProgramMeter final : private skill::ProgramObserver {
 public:
-    static constexpr std::size_t kReasons = 8;  ///< of skill::Reason
-    static constexpr std::size_t kMethods = 6;  ///< of skill::Method
+    static constexpr std::size_t kReasons = 8;  ///< number of values of skill::Reason
+    static constexpr std::size_t kMethods = 6;  ///< number of values of skill::Method
 
     /// \param program must outlive this
     explicit ProgramMeter(skill::Program& program);
@@ -42,7 +42,7 @@ public:
     std::uint64_t refusals(skill::Method method) const noexcept {
         return refusals_.at(static_cast<std::size_t>(method)).value();
     }
-    /// From Running to the end, however it was [s].
+    /// Times from Running to the end, for any outcome [s].
     const TimeHistogram& durations() const noexcept { return durations_; }
 
 private:

@@ -31,7 +31,7 @@ public:
 
     /// Callbacks for events of the skill; each may be empty. Called on the client's thread.
     struct Watch {
-        OnTransition on_transition{};
+        OnTransition on_transition{};  ///< each transition of the skill, of any client's execution
         /// The skill begins to come to rest. Not called for servers that do not publish it.
         std::function<void(const skill::StoppingEvent&)> on_stopping{};
         /// Transitions may have been missed: ask for the present state.
@@ -67,10 +67,13 @@ public:
     /// Reads the present state; waits for the server.
     opcua::Answer<Now> now() const;
 
+    /// Sends StartWith; `done` gets the execution's id.
     opcua::Answer<> startWith(const skill::StartRequest& request, Done<std::string> done) const;
     /// Calls any method but StartWith.
     opcua::Answer<> call(skill::Method method, Done<> done) const;
+    /// Sends Check; `done` gets its report.
     opcua::Answer<> check(const skill::ValueMap& parameters, Done<skill::CheckReport> done) const;
+    /// Sends GetExecution; `done` gets the record.
     opcua::Answer<> execution(const std::string& id, Done<skill::ExecutionRecord> done) const;
 
 private:

@@ -10,6 +10,7 @@
 
 namespace metier::client {
 
+/// Settings of a control.
 struct ControlOptions {
     /// Time without a heartbeat after which the server ends the control; heartbeats are sent every
     /// quarter of it.

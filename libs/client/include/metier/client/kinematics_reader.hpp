@@ -14,8 +14,8 @@ namespace metier::client {
 /// Nodes of the Kinematics object of the arm that a skill moves.
 struct KinematicsNodes {
     std::string device_name;  ///< BrowseName of the motion device
-    opcua::NodeId device;
-    opcua::NodeId object;
+    opcua::NodeId device;     ///< the motion device
+    opcua::NodeId object;     ///< its object Kinematics
     opcua::NodeId actual_joint_position;
     opcua::NodeId safety_state;
     opcua::NodeId missed_cycles;

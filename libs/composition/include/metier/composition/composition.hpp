@@ -14,7 +14,7 @@ using Descriptions = std::map<std::string, skill::SkillDescription, std::less<>>
 
 /// A definition whose bindings fit the skills that it uses.
 struct Composition {
-    Definition definition;
+    Definition definition;                ///< its Literals have the types of their targets
     skill::SkillDescription description;  ///< of the composed skill
 };
 

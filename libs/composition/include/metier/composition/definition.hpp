@@ -30,7 +30,7 @@ struct Reference {
 
 /// One number of a list.
 struct Term {
-    double constant = 0.0;
+    double constant = 0.0;            ///< the number, if there is no reference
     std::optional<Reference> from{};  ///< used instead of the constant
     double factor = 1.0;              ///< multiplies the referenced value
 };
@@ -50,6 +50,7 @@ struct Binding {
     skill::Value constant{};
 };
 
+/// A condition of a choice or a loop.
 struct Condition {
     enum class Kind { is, less, greater, all, any, negation };
     Kind kind = Kind::is;
@@ -68,10 +69,11 @@ struct Argument {
 
 /// Further attempts after a failed one.
 struct Retry {
-    std::uint32_t times = 1;
+    std::uint32_t times = 1;            ///< number of further attempts
     std::chrono::nanoseconds pause{0};  ///< before each further attempt
 };
 
+/// Kind of a step, by the key that it has in the file.
 enum class StepKind {
     call,
     sequence,
@@ -82,11 +84,13 @@ enum class StepKind {
     failure,  ///< fails with the text that the file gives
 };
 
+/// Number of parallel steps that must succeed.
 enum class WaitFor {
     all,  ///< one failure fails the whole and halts the others
     any,  ///< one success ends the whole with success and halts the others
 };
 
+/// A step of a composition, with the steps below it.
 struct Step {
     std::uint32_t line = 0;
     std::string key{};  ///< its place in the file: "step[1].parallel[0]"
@@ -114,7 +118,7 @@ struct Step {
 /// A skill that the steps use, and the conditions for finding it.
 struct Use {
     std::uint32_t line = 0;
-    std::string alias{};
+    std::string alias{};              ///< name that the steps use
     std::string type{};               ///< BrowseName of its type, as "GraspGripperSkillType"
     std::string server{};             ///< name of its server; empty: any
     std::string controller{};         ///< name of its controller; empty: any
@@ -131,6 +135,7 @@ struct Declaration {
     Binding from{};  ///< only of a result
 };
 
+/// Content of a composition file: the composed skill, the used skills, the steps.
 struct Definition {
     std::string file{};  ///< name under which it was opened
     std::string name{};

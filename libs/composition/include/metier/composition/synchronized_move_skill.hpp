@@ -14,7 +14,7 @@ namespace metier::composition {
 
 /// An arm that can move together with others.
 struct Arm {
-    std::string name{};
+    std::string name{};  ///< name of the arm in the parameter Arms
     /// CartesianPtpMoveSkill: computes the joint position for a pose; never started.
     std::unique_ptr<composition::UsedSkill> pose_move{};
     /// JointPtpMoveSkill: moves the arm.
@@ -25,6 +25,7 @@ struct Arm {
     bool mayReset() const { return halted_by_us || joint_move->leftOver(); }
 };
 
+/// Parameters of the SynchronizedMoveSkill.
 struct Parameters {
     std::vector<std::string> arms{};           ///< names, at least two, none twice
     std::vector<skill::Frame> target_poses{};  ///< one per arm, base_from_tool
@@ -43,6 +44,7 @@ struct Results {
     double duration = 0.0;           ///< from the first set-point to the last
 };
 
+/// Settings of the SynchronizedMoveSkill.
 struct Options {
     std::shared_ptr<skill::Executor> executor;  ///< shared by the objects of its thread
     const Clock& clock;                         ///< must outlive the skill

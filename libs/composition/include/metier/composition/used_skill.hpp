@@ -53,7 +53,9 @@ public:
     virtual void onStopping(const UsedSkillStop& /*stop*/) {}
     /// The execution came to rest, at the request of any client.
     virtual void onSuspended() {}
+    /// A suspended execution goes on.
     virtual void onResumed() {}
+    /// The execution published an intermediate result.
     virtual void onProgress(const skill::Value& /*intermediate*/) {}
     /// A suspend(), resume() or halt() was refused; the execution goes on as before.
     virtual void onRefused(skill::Method /*method*/, const Error& /*error*/) {}

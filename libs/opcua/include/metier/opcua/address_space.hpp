@@ -51,6 +51,7 @@ struct VariableShape {
 /// Whether clients may subscribe to the events of an Object.
 enum class EventNotifier { none, subscribable };
 
+/// A new Object.
 struct ObjectSpec {
     NodeSpec node;
     NodeId type = ids::kBaseObjectType;
@@ -61,6 +62,7 @@ struct ObjectSpec {
 /// Access of clients to the value of a Variable.
 enum class Access { read, read_write };
 
+/// A new Variable.
 struct VariableSpec {
     NodeSpec node;
     NodeId type = ids::kBaseDataVariableType;
@@ -74,8 +76,8 @@ struct VariableSpec {
 
 /// Caller and target of a Method call.
 struct CallContext {
-    const Session& session;
-    NodeId object;
+    const Session& session;  ///< caller's session
+    NodeId object;           ///< Object on which the Method is called
     NodeId method;
 };
 
@@ -91,6 +93,7 @@ enum class MethodEffect {
     tells,     ///< reports only: all roles; not audited
 };
 
+/// A new Method.
 struct MethodSpec {
     NodeSpec node;
     std::vector<Argument> inputs;
@@ -101,14 +104,14 @@ struct MethodSpec {
 /// Writer of a value, and the time at which the value was true, by the writer's clock; none if not
 /// sent.
 struct WriteContext {
-    const Session& session;
+    const Session& session;  ///< writer's session
     std::optional<UtcTime> source_time;
 };
 
 /// Source of a Variable's value that is kept elsewhere. Called on the server's thread; both
 /// functions must return at once.
 struct DataSource {
-    std::function<DataValue(const Session&)> read;
+    std::function<DataValue(const Session&)> read;  ///< present value, for a reader's session
     /// Takes a client's value or refuses it. Type and rank were checked before, except for Null,
     /// which is passed on. Empty: the value is not writable.
     std::function<Result<>(const WriteContext&, const Value&)> write;
@@ -119,14 +122,16 @@ struct DataSource {
 class VariableHandler {
 public:
     virtual ~VariableHandler() = default;
+    /// Present value of the Variable with that tag.
     virtual DataValue read(const Session& session, std::uint32_t tag) const = 0;
+    /// Takes a client's value for the Variable with that tag, or refuses it.
     virtual Result<> write(const WriteContext& writer, std::uint32_t tag, const Value& value) = 0;
 };
 
 /// Link from a Variable to its handler.
 struct VariableSlot {
     VariableHandler* handler = nullptr;
-    std::uint32_t tag = 0;
+    std::uint32_t tag = 0;  ///< chosen by the handler; distinguishes its Variables
 };
 
 /// A reference of a node and its target.
@@ -135,8 +140,8 @@ struct Reference {
     NodeId target;
     QualifiedName browse_name;
     LocalizedText display_name{};
-    NodeClass node_class = NodeClass::unspecified;
-    NodeId type_definition;  ///< for Objects and Variables only
+    NodeClass node_class = NodeClass::unspecified;  ///< class of the target
+    NodeId type_definition;                         ///< for Objects and Variables only
 };
 
 /// Selection of references: those of `type` and its subtypes, away from the node or to it.
@@ -179,6 +184,7 @@ public:
     Result<NodeId> find(const NodeId& start, std::span<const QualifiedName> path) const;
     Result<NodeId> find(const NodeId& start, const QualifiedName& child) const;
     Result<std::vector<Reference>> browse(const NodeId& id, const BrowseFilter& filter = {}) const;
+    /// Whether the server has a node of that id.
     bool exists(const NodeId& id) const;
     /// Errors: not_found; invalid_argument (no Variable).
     Result<VariableShape> shapeOf(const NodeId& variable) const;
@@ -187,6 +193,7 @@ public:
     /// Errors: not_found.
     Result<LocalizedText> descriptionOf(const NodeId& id) const;
 
+    /// Value with status and times; from the DataSource if the Variable has one.
     Result<DataValue> read(const NodeId& variable) const;
     /// Sets a value with status Good and the present time; Subscriptions are notified. A Variable
     /// with a DataSource gets the value through its `write`, with a Session of the null id.

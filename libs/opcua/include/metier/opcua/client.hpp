@@ -29,6 +29,7 @@ struct UserName {
     std::string password;
 };
 
+/// Settings of a Client.
 struct ClientOptions {
     std::string application_name = "metier client";
     std::string application_uri = "urn:metier:client";
@@ -70,11 +71,13 @@ enum class AttributeId : std::uint32_t {
     user_executable = 22,
 };
 
+/// An attribute to read.
 struct ReadItem {
     NodeId node;
     AttributeId attribute = AttributeId::value;
 };
 
+/// A value to write.
 struct WriteItem {
     NodeId node;
     Value value;
@@ -83,6 +86,7 @@ struct WriteItem {
     std::uint64_t boot = 0;  ///< as MethodCall::boot
 };
 
+/// A Method to call, with its arguments.
 struct MethodCall {
     NodeId object;
     NodeId method;
@@ -94,8 +98,8 @@ struct MethodCall {
 
 /// Answer to a Method call that was not refused.
 struct CallResult {
-    StatusCode status;  ///< Good or Uncertain
-    std::vector<StatusCode> input_results;
+    StatusCode status;                      ///< Good or Uncertain
+    std::vector<StatusCode> input_results;  ///< code for each argument; may be empty
     std::vector<Value> outputs;
 };
 
@@ -140,6 +144,7 @@ struct EventFilter {
 
 /// Notification to a subscriber of events.
 struct EventNotice {
+    /// Kind of a notification to a subscriber of events.
     enum class Kind {
         event,     ///< `fields` has a value per requested field, Null where the event has none
         overflow,  ///< events were lost in the server's queue or on the way

@@ -30,7 +30,7 @@ struct ConnectionChange {
 
     Kind kind = Kind::lost;
     UtcTime time{};  ///< by this machine's clock
-    Failure why{};
+    Failure why{};   ///< reason, for lost and given_up
     /// With `back`: the server has forgotten all; NodeIds may differ
     bool server_restarted = false;
     /// With `back`: the session is the former one, with all that it owned. If not, the server

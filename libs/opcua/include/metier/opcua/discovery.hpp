@@ -23,8 +23,8 @@ struct EndpointDescription {
 
     std::string url;
     SecurityMode security_mode = SecurityMode::invalid;
-    std::string security_policy_uri;
-    std::vector<TokenType> tokens;  ///< ways in which a user may log in
+    std::string security_policy_uri;  ///< URI of the SecurityPolicy (OPC 10000-7)
+    std::vector<TokenType> tokens;    ///< ways in which a user may log in
     std::uint8_t security_level = 0;
 };
 

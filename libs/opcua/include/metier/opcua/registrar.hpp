@@ -14,6 +14,7 @@
 
 namespace metier::opcua {
 
+/// Settings of a Registrar.
 struct RegistrarOptions {
     /// Address of the discovery server: "opc.tcp://host:4840"
     std::string discovery_url;

@@ -31,6 +31,7 @@ void merge(std::vector<FoundServer>& servers, std::vector<FoundServer> more);
 Sighting askDiscoveryServers(const std::vector<std::string>& urls,
                              std::chrono::milliseconds timeout = std::chrono::seconds(2));
 
+/// Whether a search asks mDNS, too.
 enum class Mdns { left_out, asked };
 
 /// Asks discovery servers and, if wanted, mDNS at the same time. A missing Avahi daemon is not

@@ -40,11 +40,11 @@ struct ServerLimits {
     std::uint16_t secure_channels = 150;
     /// Longest time that a connection may be without a Session.
     std::chrono::milliseconds handshake_timeout{10'000};
-    std::uint16_t sessions = 100;
+    std::uint16_t sessions = 100;  ///< at the same time, of all clients
     /// Sessions of one application, known by its certificate; only for a closed server.
     std::uint16_t sessions_per_application = 10;
-    std::chrono::milliseconds session_timeout{60'000};
-    std::uint32_t message_size = 1U << 20U;  ///< [byte]
+    std::chrono::milliseconds session_timeout{60'000};  ///< longest that a client gets
+    std::uint32_t message_size = 1U << 20U;             ///< [byte]
     std::uint32_t chunks_per_message = 32;
     std::uint32_t subscriptions = 1000;
     std::uint32_t subscriptions_per_session = 10;
@@ -65,6 +65,7 @@ struct ServerLimits {
     std::uint32_t references_per_node = 1'000;  ///< of one Browse answer
 };
 
+/// User name and password of a server without certificates.
 struct UserPassword {
     std::string user;
     std::string password;
@@ -77,6 +78,7 @@ struct DiscoveryService {
     std::chrono::seconds forget_after{75};
 };
 
+/// Settings of a Server.
 struct ServerOptions {
     std::string application_name = "metier";
     std::string application_uri = "urn:metier:server";
@@ -124,6 +126,7 @@ public:
     ~TimerHandle() { cancel(); }
     TimerHandle(TimerHandle&& other) noexcept : cancel_(std::exchange(other.cancel_, nullptr)) {}
     TimerHandle& operator=(TimerHandle&& other) noexcept;
+    /// Cancels the timer. Does nothing if it has run or was cancelled before.
     void cancel() noexcept;
 
 private:

@@ -54,9 +54,9 @@ struct ThreeDCartesianCoordinates {
 
 /// The orientation in a ThreeDFrame [rad].
 struct ThreeDOrientation {
-    double a = 0.0;
-    double b = 0.0;
-    double c = 0.0;
+    double a = 0.0;  ///< rotation about x
+    double b = 0.0;  ///< rotation about y
+    double c = 0.0;  ///< rotation about z; R = Rz(c) Ry(b) Rx(a)
 
     friend bool operator==(const ThreeDOrientation&, const ThreeDOrientation&) = default;
 };

@@ -62,14 +62,14 @@ Result<void> publishArmFigures(opcua::AddressSpace& nodes, const opcua::NodeId& 
 
 /// Live values of a gripper.
 struct GripperFigures {
-    double width = 0.0;  ///< between the jaws [m]
-    double force = 0.0;  ///< on the part [N]
-    bool part_held = false;
+    double width = 0.0;      ///< between the jaws [m]
+    double force = 0.0;      ///< on the part [N]
+    bool part_held = false;  ///< whether the jaws hold a part
 };
 
 struct GripperKind {
-    double stroke = 0.0;  ///< largest width [m]
-    bool measures_force = false;
+    double stroke = 0.0;          ///< largest width [m]
+    bool measures_force = false;  ///< false: no Variable GripperForce is added
 };
 
 /// Adds GripperStroke, GripperWidth, PartHeld and, if the gripper measures it, GripperForce.

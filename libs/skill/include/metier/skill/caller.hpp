@@ -9,10 +9,10 @@ namespace metier::skill {
 struct Caller {
     /// Id of its OPC UA session, as text; unique while the session lasts.
     std::string session_id{};
-    std::string client_name{};
-    std::string user_name{};
-    std::string thumbprint{};  ///< SHA-1 of its application's certificate, hexadecimal; empty: no
-                               ///< certificate
+    std::string client_name{};  ///< application name that the client gave
+    std::string user_name{};    ///< empty: anonymous
+    std::string thumbprint{};   ///< SHA-1 of its application's certificate, hexadecimal; empty: no
+                                ///< certificate
     /// A skill of this server that runs others. Its rights were checked at its own Start, so they
     /// are not checked again.
     bool of_this_server = false;

@@ -75,8 +75,10 @@ public:
     Result<void> lock(const Caller& caller);
     /// Errors: invalid_state, if the caller does not hold the lock.
     Result<void> renewLock(const Caller& caller);
+    /// Gives the lock back.
+    /// Errors: invalid_state, if the caller does not hold the lock.
     Result<void> unlock(const Caller& caller);
-    /// Takes the lock from whoever holds it; a lease stays.
+    /// Takes the lock from its holder; a lease stays.
     /// Errors: invalid_state, if nobody holds it.
     Result<void> breakLock();
 
@@ -90,7 +92,7 @@ public:
     /// The session has ended, and its lock and lease with it.
     void sessionClosed(std::string_view session_id);
 
-    /// Holder of the lease, or else of the lock; empty session id: nobody.
+    /// Holder of the lease, or else of the lock; empty session id: there is none.
     const Caller& holder() const noexcept;
     /// Epoch of the present lease, or else of the last one; 0 before the first.
     std::uint64_t epoch() const noexcept { return epoch_; }

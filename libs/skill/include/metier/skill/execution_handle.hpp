@@ -46,6 +46,7 @@ struct ExecutionCore;
 class ExecutionHandle {
 public:
     ExecutionHandle() = default;
+    /// For a Program: makes the first handle of an execution.
     explicit ExecutionHandle(std::shared_ptr<ExecutionCore> core);
 
     /// Id of this execution, unique over all executions, also across restarts; empty for an empty

@@ -29,7 +29,7 @@ public:
     static constexpr std::size_t kLeast = 100'000;
 
     struct Options {
-        std::size_t least = kLeast;
+        std::size_t least = kLeast;  ///< number of the latest names that stay known
         /// Longest time that the disk may take for one name; while it takes longer, new names are
         /// refused.
         std::chrono::milliseconds longest_write{250};

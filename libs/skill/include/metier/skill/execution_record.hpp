@@ -16,14 +16,14 @@ namespace metier::skill {
 
 /// Facts that a server keeps of one execution.
 struct ExecutionRecord {
-    std::string id{};
+    std::string id{};          ///< ExecutionId, given by the client or the Program
     Caller client{};           ///< client that started it
     ParentExecution parent{};  ///< execution on whose behalf it was started
     /// Parameters at Start. Shared with the recorder; does not change.
     std::shared_ptr<const ValueMap> parameters{};
     State state = State::running;  ///< present state, or the state in which it ended
-    Reason reason = Reason::none;
-    std::string reason_text{};
+    Reason reason = Reason::none;  ///< reason of the latest transition
+    std::string reason_text{};     ///< for a person, with value, limit and unit; may be empty
     UtcTime start_time{};
     UtcTime end_time{};  ///< UtcTime{} while it is not over
     ValueMap result{};   ///< empty unless it finished
@@ -39,6 +39,7 @@ public:
     /// The record of that id, or nullptr. Valid until the next add().
     const ExecutionRecord* find(std::string_view id) const noexcept;
     ExecutionRecord* find(std::string_view id) noexcept;
+    /// Adds the latest execution; the oldest is forgotten if there are more than kMost.
     void add(ExecutionRecord record);
     /// The latest execution; there must be one.
     const ExecutionRecord& last() const noexcept { return records_.back(); }

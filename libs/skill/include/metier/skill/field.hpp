@@ -25,7 +25,7 @@ struct Unit {
     bool operator==(const Unit&) const = default;
 };
 
-inline constexpr Unit kOne{"", "one", "C62"};
+inline constexpr Unit kOne{"", "one", "C62"};  ///< a number without unit
 inline constexpr Unit kMetre{"m", "metre", "MTR"};
 inline constexpr Unit kRadian{"rad", "radian", "C81"};
 inline constexpr Unit kSecond{"s", "second", "SEC"};
@@ -52,16 +52,16 @@ enum class Input : std::uint8_t {
 
 /// Number of elements that a list, or of characters that a text, may have.
 struct LengthLimit {
-    std::size_t least = 0;
-    std::size_t most = std::numeric_limits<std::size_t>::max();
+    std::size_t least = 0;                                       ///< smallest number, included
+    std::size_t most = std::numeric_limits<std::size_t>::max();  ///< largest number, included
 };
 
 /// Description of one parameter or result of a skill: its name and the values that it may hold.
 struct Field {
-    std::string name{};                ///< BrowseName, unique within the skill
-    std::string description{};         ///< one line for a person
-    ValueType type = ValueType::null;  ///< FieldList::add() fills it from the member
-    Unit unit = kOne;
+    std::string name{};                   ///< BrowseName, unique within the skill
+    std::string description{};            ///< one line for a person
+    ValueType type = ValueType::null;     ///< FieldList::add() fills it from the member
+    Unit unit = kOne;                     ///< unit of every number of the value
     std::optional<Range> range{};         ///< bounds every number of the value; not for frames
     std::optional<LengthLimit> length{};  ///< for lists and texts
     Value default_value{};                ///< used where the value is Null; Null: there is none

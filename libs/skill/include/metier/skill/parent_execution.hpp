@@ -12,7 +12,7 @@ struct ParentExecution {
 
 /// An execution that another one has started.
 struct StartedExecution {
-    std::string id{};
+    std::string id{};          ///< ExecutionId
     std::string skill{};       ///< BrowseName
     std::string server_url{};  ///< address of its server; empty: the same server
 };

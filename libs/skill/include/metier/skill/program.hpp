@@ -24,6 +24,7 @@
 
 namespace metier::skill {
 
+/// Settings of a Program; the defaults suit a skill without device and owner.
 struct ProgramOptions {
     /// The device that the skill needs for itself; empty: none. Shared by the Programs of a device.
     std::shared_ptr<Resource> resource{};
@@ -47,6 +48,7 @@ struct StartRequest {
     /// Name of the execution, at most 128 characters; empty: the Program makes one.
     std::string execution_id{};
     ValueMap parameters{};  ///< by name; the others take their defaults
+    /// Action when the owner is lost.
     OwnerLossAction on_owner_loss = OwnerLossAction::skill_default;
     std::uint64_t epoch = 0;            ///< epoch of the caller's lease; 0: none is needed
     std::optional<UtcTime> deadline{};  ///< refused after that time; none: no deadline

@@ -26,15 +26,15 @@ struct TransitionEvent {
     Reason reason = Reason::none;
     std::string reason_text{};    ///< for a person; empty if the reason says it all
     Value intermediate_result{};  ///< latest one of the execution; Null: none
-    std::string message{};
-    std::uint16_t severity = 0;  ///< 1 to 1000, as OPC 10000-5 grades it
+    std::string message{};        ///< text of the event, for a person
+    std::uint16_t severity = 0;   ///< 1 to 1000, as OPC 10000-5 grades it
 };
 
 /// The work begins to come to rest; the transition to `to` follows at standstill.
 struct StoppingEvent {
     UtcTime time{};
-    std::string execution_id{};
-    State to = State::halted;  ///< Halted or Suspended
+    std::string execution_id{};  ///< execution that comes to rest
+    State to = State::halted;    ///< Halted or Suspended
     Reason reason = Reason::by_client;
     std::string reason_text{};  ///< client that asked for it, or the error; for a person
 };
@@ -73,7 +73,9 @@ public:
     virtual void onParameter(std::string_view /*name*/, const Value& /*value*/) {}
     /// Result of an execution that finished: a value for every declared field.
     virtual void onResult(const ValueMap& /*result*/) {}
+    /// The latest intermediate result of the execution under way.
     virtual void onProgress(const Value& /*intermediate*/) {}
+    /// A method was called, or a state changed: the new content of ProgramDiagnostic.
     virtual void onDiagnostic(const Diagnostic& /*diagnostic*/) {}
     /// The work begins to come to rest. Called again if a Halt follows a Suspend before standstill.
     virtual void onStopping(const StoppingEvent& /*event*/) {}

@@ -31,7 +31,7 @@ struct SkillDescription {
 
 /// Answer of Check: whether Start would succeed, and the motion that it would make.
 struct CheckReport {
-    bool possible = true;
+    bool possible = true;                 ///< whether Start would succeed now
     std::string reason{};                 ///< if not possible: why, with value, limit and unit
     double first_failing_fraction = 1.0;  ///< fraction of the path, 0 to 1; 1 if nothing fails
     double planned_duration = 0.0;        ///< [s]; 0 if the skill does not know it

@@ -21,6 +21,7 @@ enum class TransitionNumber : std::uint32_t {
     ready_to_halted = 9,
 };
 
+/// Methods of a Program (OPC 10000-10), and StartWith of metier.
 enum class Method : std::uint8_t { start, suspend, resume, halt, reset, start_with };
 
 /// Action of an execution when the client that owns it is gone.
@@ -66,7 +67,9 @@ std::string_view toString(Reason reason) noexcept;
 std::string_view toString(SubState sub_state) noexcept;
 std::string_view toString(OwnerLossAction action) noexcept;
 
+/// State from which the transition leads.
 State fromState(TransitionNumber transition) noexcept;
+/// State to which the transition leads.
 State toState(TransitionNumber transition) noexcept;
 
 /// Sub-state of Halted that shows `reason`.

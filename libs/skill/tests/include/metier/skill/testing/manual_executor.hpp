@@ -30,7 +30,7 @@ public:
         }
         changed_.notify_one();
     }
-    /// How often something was posted so far.
+    /// Number of posts so far.
     std::size_t posts() {
         const std::lock_guard lock(mutex_);
         return post_count_;
@@ -87,7 +87,7 @@ public:
         clock_.advance(end - clock_.now());
     }
 
-    /// How many timers are still to come.
+    /// Number of pending timers.
     std::size_t timerCount() const noexcept { return timers_->size(); }
 
 private:

@@ -12,7 +12,7 @@
 
 namespace metier::skill::testing {
 
-/// Keeps all that a Program tells, in its order.
+/// Keeps all notifications of a Program, in their order.
 class RecordingObserver final : public ProgramObserver {
 public:
     void onTransition(const TransitionEvent& event) override {
