@@ -50,8 +50,8 @@ std::string lossText(const Dropped& d) {
 
 }  // namespace
 
-/// Queue of a recorder, the thread that writes, and the thread that reports its write_state, even while
-/// the first one hangs in a call to the disk.
+/// Queue of a recorder, the thread that writes, and the thread that reports its write_state, even
+/// while the first one hangs in a call to the disk.
 class Recorder::Impl {
 public:
     explicit Impl(Options options);

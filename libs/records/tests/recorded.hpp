@@ -80,7 +80,8 @@ inline std::unique_ptr<Recorder> recorderOf(const std::string& url,
     Recorder::Options options;
     options.url = url;
     options.server = server;
-    options.patience = std::chrono::milliseconds(100);  // for tests that wait for WriteState::failing
+    options.patience =
+        std::chrono::milliseconds(100);  // for tests that wait for WriteState::failing
     return Recorder::create(std::move(options)).value();
 }
 

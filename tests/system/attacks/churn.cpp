@@ -32,7 +32,8 @@ void trustIn(const std::filesystem::path& folder, const security::Identity& peer
 
 /// A server that trusts the operator's certificate, is trusted by it, and accepts everybody who
 /// knows the password.
-BenchOptions closed(const std::filesystem::path& folder, const security::Identity& operator_identity) {
+BenchOptions closed(const std::filesystem::path& folder,
+                    const security::Identity& operator_identity) {
     std::filesystem::remove_all(folder);
     const auto server = identityOf("server");
     trustIn(folder / "server", operator_identity);

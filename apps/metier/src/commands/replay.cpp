@@ -24,7 +24,8 @@ struct ReplayOptions {
 };
 
 /// Present address of the execution's server.
-Result<std::string> addressOf(const records::ExecutionRow& execution, const ReplayOptions& options) {
+Result<std::string> addressOf(const records::ExecutionRow& execution,
+                              const ReplayOptions& options) {
     if (!options.url.empty()) {
         return options.url;
     }

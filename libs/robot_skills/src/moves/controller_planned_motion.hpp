@@ -26,6 +26,7 @@ struct ControllerPlannedRequest {
 /// Duration, a StartTime, a StopTime, a lower MaxAcceleration, a line that only turns, a line on
 /// which the tool frame would leave it or the elbow turns, and a motion too slow to be
 /// distinguished from standstill.
-Result<device::ControllerPlannedMotion> controllerPlannedMotion(const ControllerPlannedRequest& request);
+Result<device::ControllerPlannedMotion> controllerPlannedMotion(
+    const ControllerPlannedRequest& request);
 
 }  // namespace metier::robot_skills

@@ -33,8 +33,8 @@ struct PlanningArm {
 /// motion is the one asked for, else metier with set-points. metier runs a move with Duration,
 /// StartTime or a MaxAcceleration below the robot's own, a line that only turns, a line on which
 /// the elbow turns or the tool frame would leave it, and a motion of less than 0.002 rad/s
-/// (controller_planned_motion.hpp). The controller may not be faster than the plan; a move to joints must end
-/// at them, else it fails.
+/// (controller_planned_motion.hpp). The controller may not be faster than the plan; a move to
+/// joints must end at them, else it fails.
 ///
 /// Suspend and Halt brake and are answered at standstill, with either planner. Resume goes on to
 /// the same target, from the present position; it is refused if an axis was moved by over 2 mrad.

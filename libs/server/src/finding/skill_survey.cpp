@@ -79,7 +79,7 @@ private:
     opcua::Client& client_;
     const client::ReferenceReader& references_;
     std::map<opcua::NodeId, TypeTerms> type_terms_;  // key: type
-    std::map<opcua::NodeId, ArmFigures> arms_;   // key: controller
+    std::map<opcua::NodeId, ArmFigures> arms_;       // key: controller
 };
 
 opcua::Answer<std::vector<SurveyedSkill>> askSkills(opcua::Client& client) {

@@ -24,9 +24,9 @@ public:
     /// Starts the server. With `servers = "discover"` it waits up to 20 s until all used skills are
     /// found.
     /// \param composition of `config`
-    /// Errors: mistakes in the files; a used skill server that cannot be reached; a used skill that no
-    /// server has or, unless discovered, more than one; the port; cancelled (a stop was asked for
-    /// while it waited).
+    /// Errors: mistakes in the files; a used skill server that cannot be reached; a used skill that
+    /// no server has or, unless discovered, more than one; the port; cancelled (a stop was asked
+    /// for while it waited).
     static Result<std::unique_ptr<CompositionServer>> start(
         const cell::ServerConfig& config, const cell::CompositionServer& composition,
         const Context& context);

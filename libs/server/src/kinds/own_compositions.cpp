@@ -95,10 +95,10 @@ Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition d
     for (const auto& [alias, program] : chosen) {
         descriptions.emplace(alias, program->description());
         used_skills.emplace(alias, std::make_unique<composition::LocalUsedSkill>(
-                                    *program, executor,
-                                    skill::Caller{.session_id = "composition " + name,
-                                                  .client_name = name,
-                                                  .of_this_server = true}));
+                                       *program, executor,
+                                       skill::Caller{.session_id = "composition " + name,
+                                                     .client_name = name,
+                                                     .of_this_server = true}));
     }
     METIER_ASSIGN(auto composed, composition::compose(definition, descriptions));
     const skill::ProgramOptions options{.control = host.control(),

@@ -62,7 +62,8 @@ public:
         std::string url{};     ///< as Store::open() takes it
         std::string server{};  ///< ApplicationUri; no other recorder uses it
         Retention keep{};
-        /// Called on a thread of the recorder, at each change between writing and failing. May be empty.
+        /// Called on a thread of the recorder, at each change between writing and failing. May be
+        /// empty.
         std::function<void(const WriteReport&)> on_write_state{};
         std::size_t most_waiting = 50'000'000;      ///< executions and events [byte]
         std::size_t most_waiting_samples = 16'384;  ///< about 230 byte each

@@ -49,7 +49,8 @@ class AuditLog {
 public:
     struct Options {
         std::filesystem::path file;
-        /// Called on the log's thread at each change between writing and failing, with the reason. May be empty.
+        /// Called on the log's thread at each change between writing and failing, with the reason.
+        /// May be empty.
         std::function<void(WriteState, const std::string& why)> on_write_state;
         std::uintmax_t part_size = std::uintmax_t{64} << 20U;  ///< [byte] about
     };
