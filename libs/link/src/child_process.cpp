@@ -9,11 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+
+#include "poll_until.hpp"
 
 namespace metier::link {
 namespace {
@@ -26,19 +27,7 @@ constexpr int kSignalBase = 128;
 /// Waits until the descriptor is readable; false at the deadline. A deadline in the past looks
 /// once.
 bool waitReadable(int descriptor, SteadyTime deadline) {
-    for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-            deadline - std::chrono::steady_clock::now());
-        pollfd request{descriptor, POLLIN, 0};
-        const int ready =
-            poll(&request, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
-        if (ready > 0) {
-            return true;
-        }
-        if (ready == 0 || errno != EINTR) {
-            return false;
-        }
-    }
+    return pollUntil(descriptor, POLLIN, deadline, "a child process").has_value();
 }
 
 /// Runs in the child between fork and exec: only async-signal-safe calls.

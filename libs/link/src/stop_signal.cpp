@@ -4,12 +4,12 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
+
+#include "poll_until.hpp"
 
 namespace metier::link {
 
@@ -39,23 +39,7 @@ void StopSignal::outliveOutput() noexcept {
 }
 
 bool StopSignal::waitUntil(SteadyTime deadline) const {
-    for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-            deadline - std::chrono::steady_clock::now());
-        constexpr std::int64_t kLongest = std::numeric_limits<int>::max();
-        pollfd request{descriptor_, POLLIN, 0};
-        const int ready = poll(
-            &request, 1, static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, kLongest)));
-        if (ready > 0) {
-            return true;
-        }
-        if (ready == 0 && left.count() < kLongest) {
-            return false;
-        }
-        if (ready < 0 && errno != EINTR) {
-            return false;
-        }
-    }
+    return pollUntil(descriptor_, POLLIN, deadline, "a signal").has_value();
 }
 
 }  // namespace metier::link

@@ -4,13 +4,12 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
-#include <cstdint>
 #include <cstring>
 #include <stdexcept>
+
+#include "poll_until.hpp"
 
 namespace metier::link {
 
@@ -36,16 +35,8 @@ bool WakeEvent::wait(const StopSignal& signal) {
 }
 
 bool WakeEvent::waitUntil(SteadyTime deadline) {
-    for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(
-            deadline - std::chrono::steady_clock::now());
-        pollfd request{descriptor_, POLLIN, 0};
-        const int ready =
-            poll(&request, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
-        if (ready >= 0 || errno != EINTR) {
-            return take();
-        }
-    }
+    static_cast<void>(pollUntil(descriptor_, POLLIN, deadline, "a wake-up"));
+    return take();
 }
 
 bool WakeEvent::take() noexcept {
