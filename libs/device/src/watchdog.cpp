@@ -47,10 +47,10 @@ nanoseconds Watchdog::look() {
     }
     actions_.stop();
     if (noticed_after_.exchange(last) != last) {
+        actions_.noticed(silent);
         actions_.post([tell = actions_.tell, last, &clock = clock_] {
             tell(nanoseconds(clock.now().time_since_epoch().count() - last));
         });
-        actions_.noticed(silent);
     }
     return tickPeriod(limit_);
 }

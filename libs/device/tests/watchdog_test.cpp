@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -61,6 +62,28 @@ TEST_F(WatchedThread, IsNotWatchedBeforeItsFirstTick) {
     watchdog_.tick();
     EXPECT_EQ(stops_, 0);
     EXPECT_EQ(noticed_, 0);
+}
+
+// It may wake up in the middle of look() and run what was posted at once.
+TEST(Stall, IsReportedAsNoticedBeforeTheWatchedThreadReportsItsEnd) {
+    ManualClock clock;
+    clock.advance(1s);
+    std::vector<std::string> order;  // of the watchdog's thread or of this one, until `over`
+    std::promise<void> over;
+    Watchdog watchdog({.stop = [] {},
+                       .post = [](const std::function<void()>& work) { work(); },
+                       .tell =
+                           [&](std::chrono::nanoseconds) {
+                               order.emplace_back("over");
+                               over.set_value();
+                           },
+                       .noticed = [&](std::chrono::nanoseconds) { order.emplace_back("noticed"); }},
+                      1h, clock);
+    watchdog.tick();
+    clock.advance(2h);
+    watchdog.look();
+    ASSERT_EQ(over.get_future().wait_for(1min), std::future_status::ready);
+    EXPECT_EQ(order, (std::vector<std::string>{"noticed", "over"}));
 }
 
 TEST_F(WatchedThread, IsLeftAloneWhileItTicksInTime) {
