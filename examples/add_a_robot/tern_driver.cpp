@@ -264,7 +264,7 @@ private:
     const std::chrono::nanoseconds longest_silence_;
     ArmState state_{JointArray(kAxes), JointArray(kAxes), JointArray(kAxes)};  // of the thread
     std::optional<SteadyTime> reset_deadline_;  // of the reset that was sent
-    device::ResetDesk resets_;
+    device::ResetSlot resets_;
     device::Notifier notifier_;
     std::jthread thread_;
 };

@@ -12,16 +12,16 @@
 namespace metier::client {
 namespace {
 
-using composition::ChildEnd;
+using composition::UsedSkillEnd;
 using skill::State;
 
 const skill::Caller kPanel{"session", "panel", "user"};
 
-class Listener final : public composition::ChildListener {
+class Listener final : public composition::UsedSkillListener {
 public:
-    void onEnd(ChildEnd told) override { end = std::move(told); }
+    void onEnd(UsedSkillEnd how) override { end = std::move(how); }
 
-    std::optional<ChildEnd> end;
+    std::optional<UsedSkillEnd> end;
 };
 
 class LostEvents : public ::testing::Test {
@@ -36,17 +36,17 @@ protected:
         bench_.serve();
         connection_.emplace(RemoteServerOptions{.url = bench_.url(), .name = "other"},
                             std::shared_ptr(system_tests::connectAs(bench_.url(), "component")));
-        link_ = std::make_shared<ChildLink>(executor_);
-        child_.emplace(*connection_, link_, "MoveSkill of other", "here.Test");
+        link_ = std::make_shared<UsedSkillLink>(executor_);
+        used_.emplace(*connection_, link_, "MoveSkill of other", "here.Test");
         const auto address = client::findSkill(connection_->client(), "MoveSkill").value();
         const auto opened = connection_->open(address, link_).value();
-        child_->adopt(opened, opened->skill.now().value());
-        child_->begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
-                      listener_);
-        EXPECT_TRUE(until([this] { return child_->state() == State::running; }));
+        used_->adopt(opened, opened->skill.now().value());
+        used_->begin({"here.Test/1/move/1", {{"TargetJointPosition", std::vector{0.1, 0.2}}}},
+                     listener_);
+        EXPECT_TRUE(until([this] { return used_->state() == State::running; }));
     }
     ~LostEvents() override {
-        child_.reset();
+        used_.reset();
         connection_.reset();
     }
     static opcua::ServerLimits shortQueues() {
@@ -61,9 +61,9 @@ protected:
     skill::Program* program_ = nullptr;
     std::shared_ptr<skill::testing::ManualExecutor> executor_ =
         std::make_shared<skill::testing::ManualExecutor>();
-    std::shared_ptr<ChildLink> link_;
+    std::shared_ptr<UsedSkillLink> link_;
     std::optional<Connection> connection_;
-    std::optional<RemoteChild> child_;
+    std::optional<RemoteUsedSkill> used_;
     Listener listener_;
 };
 
@@ -78,7 +78,7 @@ TEST_F(LostEvents, OfAnEndThatTheServersQueueHasDroppedDoNotHideIt) {
         });
     });
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::halted);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::halted);
     EXPECT_EQ(listener_.end->text, "axis 2 is hot");
 }
 
@@ -86,9 +86,9 @@ TEST_F(LostEvents, ThatHaveEndedAreTheLossOfTheSkillUntilTheComponentHasConnecte
     // No loss of a connection: nothing else reports that it is away
     connection_->client().close();
     ASSERT_TRUE(until([this] { return listener_.end.has_value(); }));
-    EXPECT_EQ(listener_.end->kind, ChildEnd::Kind::lost);
+    EXPECT_EQ(listener_.end->kind, UsedSkillEnd::Kind::lost);
     EXPECT_THAT(listener_.end->text, ::testing::HasSubstr("its events have ended"));
-    EXPECT_TRUE(until([this] { return child_->available().has_value(); }));
+    EXPECT_TRUE(until([this] { return used_->available().has_value(); }));
 }
 
 }  // namespace

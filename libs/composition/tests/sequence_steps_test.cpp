@@ -605,10 +605,10 @@ TEST(Sequence, TakesNoProgressThatIsNone) {
 TEST(Sequence, IsShownWhatItStartsWithNameAndSkill) {
     Bench bench(parallel(""));
     ASSERT_TRUE(bench.start());
-    ASSERT_EQ(bench.observer.used_skills.size(), 2U);
-    EXPECT_EQ(bench.observer.used_skills[0].id, "here.TestSkill/run/left/1");
-    EXPECT_EQ(bench.observer.used_skills[0].skill, "MoveSkill");
-    EXPECT_EQ(bench.observer.used_skills[1].id, "here.TestSkill/run/right/2");
+    ASSERT_EQ(bench.observer.children.size(), 2U);
+    EXPECT_EQ(bench.observer.children[0].id, "here.TestSkill/run/left/1");
+    EXPECT_EQ(bench.observer.children[0].skill, "MoveSkill");
+    EXPECT_EQ(bench.observer.children[1].id, "here.TestSkill/run/right/2");
     EXPECT_EQ(bench["a"].request.parent.id, "run");
 }
 
