@@ -12,7 +12,7 @@ const std::string kNoId;
 
 }  // namespace
 
-ExecutionHandle::Execution(std::shared_ptr<ExecutionCore> core) : core_(std::move(core)) {}
+ExecutionHandle::ExecutionHandle(std::shared_ptr<ExecutionCore> core) : core_(std::move(core)) {}
 
 const std::string& ExecutionHandle::id() const noexcept {
     return core_ ? core_->id : kNoId;
