@@ -16,10 +16,9 @@ protected:
     void SetUp() override {
         EitherDatabase::SetUp();
         fs::create_directories(folder_);
-        fs::remove(copy_);
     }
 
-    const fs::path folder_ = fs::path(::testing::TempDir()) / "records_copies";
+    const fs::path folder_ = testFolder("records_copies");
     const std::string copy_ = (folder_ / (std::string("copy_") + GetParam() + ".db")).string();
 };
 INSTANTIATE_EITHER(ExportedStore);

@@ -24,11 +24,12 @@ inline UtcTime at(std::int64_t milliseconds) {
 }
 
 /// A folder of the running test, empty at first.
-inline std::filesystem::path testFolder() {
+/// \param use of the folder; a test may have several
+inline std::filesystem::path testFolder(const std::string& use = "records") {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     std::string name = std::string(test->test_suite_name()) + "." + test->name();
     std::replace(name.begin(), name.end(), '/', '_');
-    auto folder = std::filesystem::path(::testing::TempDir()) / "records" / name;
+    auto folder = std::filesystem::path(::testing::TempDir()) / use / name;
     std::filesystem::remove_all(folder);
     return folder;
 }
