@@ -243,13 +243,14 @@ void addFiles(CLI::App& command, AuditOptions& options) {
 }  // namespace
 
 void addAudit(CLI::App& app, CommandContext& context) {
-    auto* command = app.add_subcommand("audit", "What was done at servers, and what was refused");
+    auto* command = app.add_subcommand(
+        "audit", "Check audit logs: what was done at servers, and what was refused");
     command->require_subcommand(1);
     // Shared by CLI11, which fills it, and the callbacks, which read it.
     auto options = std::make_shared<AuditOptions>();
     auto* verify = command->add_subcommand(
         "verify",
-        "Tell whether audit logs are as they were written; fails naming the first line "
+        "Check whether audit logs are as they were written; fails naming the first line "
         "that is not");
     addFiles(*verify, *options);
     verify->add_option("--anchor", options->anchors,

@@ -167,7 +167,7 @@ void addCheck(CLI::App& app, Exit& exit) {
     // Shared by CLI11, which fills it, and the callback, which reads it.
     auto options = std::make_shared<CheckOptions>();
     auto* command = app.add_subcommand(
-        "check", "Tell whether a move is possible and how it would run; needs no server");
+        "check", "Report whether a move is possible and how it would run; needs no server");
     command->footer(
         "Plans as Start of the move skill does, with the same checks: what is possible here is\n"
         "started there, from the same joint positions. Refused: exit status 1.");

@@ -25,10 +25,10 @@ struct Command {
 };
 
 constexpr std::array kCommands{
-    Command{"suspend", "Let a running skill come to rest on its path; resume goes on",
+    Command{"suspend", "Pause a running skill at standstill on its path; resume goes on",
             Method::suspend, State::suspended},
     Command{"resume",
-            "Let a suspended skill go on where it stopped, and stay until it ends: it may have "
+            "Continue a suspended skill where it stopped, and stay until it ends: it may have "
             "no other owner",
             Method::resume, State::running},
     Command{"reset", "Make a halted skill ready again, or give a suspended one up", Method::reset,

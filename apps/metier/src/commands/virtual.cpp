@@ -188,7 +188,7 @@ void addVirtual(CLI::App& app, Exit& exit) {
 
     auto control = std::make_shared<ControlOptions>();
     auto* inject_command = command->add_subcommand(
-        "inject", "Let a virtual controller suffer a fault; without one: tells which there are");
+        "inject", "Inject a fault into a virtual controller; without a fault: list them");
     addTarget(*inject_command, *control);
     inject_command->add_option("fault", control->fault, "What happens, as emergency-stop");
     inject_command->add_option("value", control->value, "Its argument, if it has one");
