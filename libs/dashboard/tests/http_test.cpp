@@ -15,13 +15,14 @@
 
 #include "metier/dashboard/dashboard.hpp"
 #include "metier/http/httplib.hpp"
+#include "metier/http/testing/raw_browser.hpp"
 #include "metier/opcua/server.hpp"
-#include "raw_browser.hpp"
 
 namespace metier::dashboard {
 namespace {
 
 namespace fs = std::filesystem;
+using http::testing::RawBrowser;
 using nlohmann::json;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
@@ -224,6 +225,23 @@ TEST_F(Page, TakesNothingFromAnotherPage) {
     EXPECT_EQ(post("/api/halt", "{}", {{"X-Metier", "1"}, {"Origin", "http://127.0.0.1:" + port}})
                   ->status,
               200);
+}
+
+TEST_F(Page, TakesNothingFromTheBodyOfARequestOfAnotherPage) {
+    const std::string hidden =
+        "POST /api/halt HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Metier: 1\r\n"
+        "Content-Type: application/json\r\nContent-Length: 2\r\n\r\n{}";
+    for (const std::string path : {"/api/halt", "/api/me", "/nothing"}) {
+        const auto answer =
+            answerTo("POST " + path +
+                     " HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://evil\r\n"
+                     "Content-Type: text/plain\r\nContent-Length: " +
+                     std::to_string(hidden.size()) + "\r\n\r\n" + hidden +
+                     "GET /api/me HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
+        EXPECT_THAT(answer, StartsWith("HTTP/1.1 403")) << path;
+        EXPECT_THAT(answer, Not(HasSubstr("halted"))) << path;
+        EXPECT_THAT(answer, HasSubstr("login_required")) << "the next request is answered";
+    }
 }
 
 TEST_F(Page, TakesCommandsWithTheHeaderAlone) {

@@ -13,12 +13,13 @@
 
 #include "metier/base/clock.hpp"
 #include "metier/http/http_server.hpp"
-#include "raw_browser.hpp"
+#include "metier/http/testing/raw_browser.hpp"
 
 namespace metier::dashboard {
 namespace {
 
 using namespace std::chrono_literals;
+using http::testing::RawBrowser;
 using ::testing::HasSubstr;
 using ::testing::Not;
 

@@ -59,11 +59,21 @@ bool Connection::awaitRequest() {
 
 void Connection::beginRequest() {
     budget_ = limits_.head_bytes;
+    rest_.reset();
     deadline_ = std::chrono::steady_clock::now() + limits_.request_time;
 }
 
-void Connection::beginBody() {
+void Connection::beginBody(std::optional<std::size_t> length) {
     budget_ = limits_.body_bytes;
+    rest_ = length;
+}
+
+bool Connection::endRequest() {
+    std::array<char, 1024> skipped{};
+    while (rest_.value_or(0) > 0) {
+        read(skipped.data(), std::min(skipped.size(), *rest_));
+    }
+    return rest_.has_value();
 }
 
 bool Connection::is_readable() const {
@@ -88,13 +98,16 @@ bool Connection::fill() {
 
 ssize_t Connection::read(char* bytes, size_t size) {
     if (budget_ == 0 || (begin_ == end_ && !fill())) {
-        spent_ = true;
+        rest_.reset();  // what comes next is no beginning of a request
         return -1;
     }
     const auto count = std::min({size, end_ - begin_, budget_});
     std::memcpy(bytes, buffer_.data() + begin_, count);
     begin_ += count;
     budget_ -= count;
+    if (rest_) {
+        *rest_ -= std::min(*rest_, count);
+    }
     return static_cast<ssize_t>(count);
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "metier/base/clock.hpp"
@@ -26,9 +27,11 @@ public:
     /// Starts a request: its time and size count against the limits from now on.
     void beginRequest();
     /// Its head is complete; now its body counts.
-    void beginBody();
-    /// Whether a read failed: what comes next is no beginning of a request.
-    bool isSpent() const noexcept { return spent_; }
+    /// \param length of the body [byte]; none: the head does not say for certain where it ends
+    void beginBody(std::optional<std::size_t> length);
+    /// Skips what nobody has read of the body. \return false: there is no telling where another
+    /// request begins, or the rest does not come, so this was the last one
+    bool endRequest();
 
     // Interface of httplib. A read beyond a limit fails, as if the peer had closed the connection.
     bool is_readable() const override;
@@ -52,7 +55,8 @@ private:
     std::size_t end_ = 0;
     std::size_t budget_ = 0;  // [bytes] that may still be read
     SteadyTime deadline_{};   // of the request
-    bool spent_ = false;
+    // [bytes] that come before the next request; none: nobody knows
+    std::optional<std::size_t> rest_;
 };
 
 }  // namespace metier::http

@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "connection.hpp"
+#include "metier/base/text.hpp"
 #include "workers.hpp"
 
 namespace metier::http {
@@ -21,11 +23,24 @@ constexpr std::string_view kFull =
     R"({"error":{"code":"resource_unavailable","message":"too many connections; try later"}})";
 
 /// httplib would unpack a body to a thousand times its size, and answer many ranges of a file with
-/// as many copies of it.
+/// as many copies of it. Without a length it would wait for a body until the peer has gone.
 void forgetExtras(httplib::Request& request) {
+    if (!request.has_header("Content-Length") && !request.has_header("Transfer-Encoding")) {
+        request.headers.emplace("Content-Length", "0");
+    }
     request.headers.erase("Content-Encoding");
     request.headers.erase("Range");
     request.ranges.clear();
+}
+
+/// How long the body is that follows a head [byte]; none: it does not say for certain, and what is
+/// read as the next request might be a part of it, which somebody else wrote.
+std::optional<std::size_t> bodyLength(const httplib::Request& request) {
+    const auto lengths = request.get_header_value_count("Content-Length");
+    if (request.has_header("Transfer-Encoding") || lengths > 1) {
+        return std::nullopt;
+    }
+    return lengths == 0 ? 0 : numberIn<std::size_t>(request.get_header_value("Content-Length"));
 }
 
 /// A port that is taken is refused; what is sent waits here, not in the system.
@@ -88,7 +103,7 @@ template <typename Self>
 bool HttpServer::serveOne(Self& self, Connection& connection, bool& closed) {
     const std::function<void(httplib::Request&)> on_head =
         [&connection](httplib::Request& request) {
-            connection.beginBody();
+            connection.beginBody(bodyLength(request));
             forgetExtras(request);
         };
     if constexpr (requires { self.process_request(connection, false, closed, on_head); }) {
@@ -107,9 +122,9 @@ bool HttpServer::serveOne(Self& self, Connection& connection, bool& closed) {
 
 void HttpServer::converse(Connection& connection) {
     bool closed = false;
-    while (!ending_ && !closed && connection.awaitRequest()) {
+    while (!ending_ && connection.awaitRequest()) {
         connection.beginRequest();
-        if (!serveOne(*this, connection, closed) || connection.isSpent()) {
+        if (!serveOne(*this, connection, closed) || closed || !connection.endRequest()) {
             return;
         }
     }

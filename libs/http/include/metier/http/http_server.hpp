@@ -16,7 +16,8 @@ namespace metier::http {
 class Connection;
 
 /// httplib's server with limits: number of connections, size and time of a request, and time for
-/// which a client may not read. One thread for each open connection.
+/// which a client may not read. One thread for each open connection. A body that no handler has
+/// read is skipped: it is never taken for another request.
 ///
 /// Set all routes before serve(). Threading: handlers run on the connections' threads.
 class HttpServer final : public httplib::Server {
@@ -27,7 +28,7 @@ public:
 
     /// Opens the port and serves from then on.
     /// \return the port
-    /// Errors: invalid_argument, already_exists.
+    /// Errors: already_exists (the port is taken, or the address is not one of this machine).
     Result<std::uint16_t> serve(const std::string& address, std::uint16_t port);
     /// Ends all connections at once and waits for their threads. Call it once.
     void end();
