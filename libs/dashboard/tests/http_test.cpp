@@ -7,16 +7,13 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "metier/dashboard/dashboard.hpp"
 #include "metier/http/httplib.hpp"
 #include "metier/http/testing/raw_browser.hpp"
-#include "metier/opcua/server.hpp"
 
 namespace metier::dashboard {
 namespace {
@@ -373,51 +370,6 @@ TEST_F(Page, IsNotReachedWithoutLogInWhereServersWantIt) {
             .Post("/api/login", kIntent, R"({"user":"anna","password":"x"})", "application/json")
             ->status,
         502);
-}
-
-/// A page that logs people in, of one server.
-class ClosedPage : public Page {
-protected:
-    std::unique_ptr<Dashboard> pageOf(const std::string& url) {
-        Options options;
-        options.cell.servers = {{.name = "arm", .url = url}};
-        options.connector = {[](const std::string&) -> Result<opcua::ClientOptions> {
-                                 return opcua::ClientOptions();
-                             },
-                             [](const opcua::Failure&) { return std::string(); },
-                             [this](const opcua::ClientOptions&, const std::string&) {
-                                 std::call_once(once_, [this] { connected_.set_value(); });
-                             }};
-        options.web = folder_ / "web";
-        return Dashboard::start(std::move(options), clock_).value();
-    }
-
-    std::once_flag once_;
-    std::promise<void> connected_;
-};
-
-TEST_F(ClosedPage, WantsALogInAlsoIfAServerIsOpen) {
-    opcua::ServerOptions options;
-    options.port = 0;
-    options.nodesets = {"device", "robotics", "metier"};
-    const auto server = opcua::Server::create(std::move(options)).value();
-    ASSERT_TRUE(server->start());
-    const auto page = pageOf(server->endpointUrl());
-    ASSERT_EQ(connected_.get_future().wait_for(std::chrono::seconds(60)),
-              std::future_status::ready);
-    httplib::Client stranger("127.0.0.1", page->port());
-    for (const std::string path : {"/api/cell", "/api/records", "/api/stream"}) {
-        EXPECT_EQ(stranger.Get(path)->status, 401) << path;
-    }
-    for (const std::string path : {"/api/halt", "/api/control", "/api/skills/start"}) {
-        EXPECT_EQ(stranger.Post(path, kIntent, "{}", "application/json")->status, 401) << path;
-    }
-    const auto me = json::parse(stranger.Get("/api/me")->body);
-    EXPECT_EQ(me.at("login_required"), true);
-    EXPECT_EQ(me.at("role"), "");
-    const auto login = stranger.Post("/api/login", kIntent, R"({"user":"anna","password":"x"})",
-                                     "application/json");
-    EXPECT_EQ(login->status, 502) << "an open server lets everybody in";
 }
 
 }  // namespace
