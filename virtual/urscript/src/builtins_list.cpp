@@ -35,6 +35,12 @@ Value makeList(Call& call) {
     if (call.value(1).get<List>() != nullptr) {
         return call.failed(Errc::type_mismatch, "a list of lists is not possible");
     }
+    const auto* text = call.value(1).get<std::string>();
+    const std::size_t most_text = call.context().limits().text_length;
+    if (text != nullptr && text->size() * static_cast<std::size_t>(count) > most_text) {
+        return call.failed(Errc::out_of_range,
+                           "a list with more than " + std::to_string(most_text) + " characters");
+    }
     return std::vector<Value>(static_cast<std::size_t>(count), call.value(1));
 }
 

@@ -11,7 +11,8 @@ constexpr double kDegreesPerHalfTurn = 180.0;
 
 /// A whole number as an int, if it fits.
 Value whole(Call& call, double value) {
-    if (std::abs(value) > std::numeric_limits<std::int32_t>::max() || std::isnan(value)) {
+    using Limits = std::numeric_limits<std::int32_t>;
+    if (!(value >= Limits::min() && value <= Limits::max())) {  // also what is not a number
         return call.failed(Errc::out_of_range, "the result is not an integer of 32 bits");
     }
     return static_cast<std::int32_t>(value);

@@ -113,7 +113,7 @@ void CodeBuilder::load(std::string_view name, Position at) {
 void CodeBuilder::store(std::string_view name, Position at) {
     if (open_.size() == 1) {
         declareGlobal(name);
-    } else if (local(name) < 0 && globals_.find(name) == globals_.end()) {
+    } else if (local(name) < 0 && !isGlobal(name)) {
         declareLocal(name);
     }
     if (const std::int32_t own = local(name); own >= 0) {
@@ -141,6 +141,11 @@ void CodeBuilder::declareLocal(std::string_view name) {
     } else if (local(name) < 0) {
         addLocal(name);
     }
+}
+
+bool CodeBuilder::isGlobal(std::string_view name) const {
+    const auto found = globals_.find(name);
+    return found != globals_.end() && found->second.declared;
 }
 
 bool CodeBuilder::isVariable(std::string_view name) const {

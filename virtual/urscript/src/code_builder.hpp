@@ -75,6 +75,8 @@ private:
     };
 
     Global& global(std::string_view name, Position at);
+    /// Whether it is declared by now; what was only read may become global further down.
+    bool isGlobal(std::string_view name) const;
     /// Its number, or -1 if the function has none of that name.
     std::int32_t local(std::string_view name) const;
     void addLocal(std::string_view name);

@@ -97,12 +97,14 @@ Result<Value> poseOf(std::span<const Value> elements) {
 }
 
 std::size_t costOf(const Value& value) {
-    constexpr std::size_t kPerInstruction = 4;
+    constexpr std::size_t kValuesPerInstruction = 4;
+    constexpr std::size_t kCharactersPerInstruction = 16;
     if (const List* list = value.get<List>()) {
-        return list->weight() / kPerInstruction;
+        return list->weight() / kValuesPerInstruction +
+               list->characters() / kCharactersPerInstruction;
     }
     const auto* text = value.get<std::string>();
-    return text != nullptr ? text->size() / (kPerInstruction * kPerInstruction) : 0;
+    return text != nullptr ? text->size() / kCharactersPerInstruction : 0;
 }
 
 }  // namespace metier::urscript

@@ -217,7 +217,7 @@ Result<void> Parser::argument(std::vector<WrittenArgument>& arguments) {
     }
     arguments.push_back(written);
     if (arguments.size() > kMostArguments) {
-        return unexpected("')'");
+        return failAt(written.at, fmt::format("more than {} arguments", kMostArguments));
     }
     return nested(&Parser::expression);
 }

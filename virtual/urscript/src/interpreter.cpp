@@ -1,6 +1,8 @@
 #include "metier/urscript/interpreter.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
@@ -12,6 +14,10 @@ namespace metier::urscript {
 namespace {
 
 constexpr std::int32_t kMainThread = -1;  // a handle that no script gets
+
+bool isReady(const std::unique_ptr<Thread>& thread) {
+    return thread->state() == Thread::State::ready;
+}
 
 }  // namespace
 
@@ -150,7 +156,8 @@ bool Interpreter::Run::spend(std::size_t instructions) {
 }
 
 Result<std::int32_t> Interpreter::Run::startThread(std::size_t function) {
-    if (threads_.size() >= limits_.threads) {
+    const auto alive = std::count_if(threads_.begin(), threads_.end(), isReady);
+    if (static_cast<std::size_t>(alive) >= limits_.threads) {
         return fail(Errc::out_of_range,
                     "more than " + std::to_string(limits_.threads) + " threads");
     }
@@ -177,16 +184,14 @@ void Interpreter::Run::releaseMotion() {
 
 Thread* Interpreter::Run::find(std::int32_t handle) const {
     const auto found = std::find_if(threads_.begin(), threads_.end(), [&](const auto& thread) {
-        return thread->handle() == handle && thread->state() == Thread::State::ready;
+        return thread->handle() == handle && isReady(thread);
     });
     return found == threads_.end() || handle == kMainThread ? nullptr : found->get();
 }
 
 void Interpreter::Run::dropEnded() {
-    threads_.erase(
-        std::remove_if(threads_.begin(), threads_.end(),
-                       [](const auto& thread) { return thread->state() != Thread::State::ready; }),
-        threads_.end());
+    threads_.erase(std::remove_if(threads_.begin(), threads_.end(), std::not_fn(isReady)),
+                   threads_.end());
 }
 
 std::optional<Value> Interpreter::Run::variable(std::string_view name) const {

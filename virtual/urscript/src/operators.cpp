@@ -10,6 +10,8 @@
 namespace metier::urscript {
 namespace {
 
+constexpr std::size_t kMostCharacters = 100'000;  // that one operation adds to a list
+
 bool isComparison(Op op) {
     return op >= Op::equal && op <= Op::greater_equal;
 }
@@ -211,6 +213,12 @@ Result<Value> matrixProduct(const List& left, const List& right) {
     return Value(List(std::move(rows)));
 }
 
+/// Whether a string that is added to every element of a list makes too many characters.
+bool isTooLong(const Value& text, const List& list) {
+    const auto* added = text.get<std::string>();
+    return added != nullptr && added->size() * list.weight() > kMostCharacters;
+}
+
 /// Element by element; a scalar stands for every element.
 Result<Value> ofLists(Op op, const Value& left, const Value& right) {
     const List* left_list = left.get<List>();
@@ -220,6 +228,11 @@ Result<Value> ofLists(Op op, const Value& left, const Value& right) {
         return fail(Errc::invalid_argument,
                     fmt::format("list of {} {} list of {}: the lengths differ", left_list->size(),
                                 symbolOf(op), right_list->size()));
+    }
+    if (left_list == nullptr ? isTooLong(left, *right_list)
+                             : right_list == nullptr && isTooLong(right, *left_list)) {
+        return fail(Errc::out_of_range,
+                    fmt::format("a list with more than {} characters", kMostCharacters));
     }
     std::vector<Value> result;
     result.reserve(size);

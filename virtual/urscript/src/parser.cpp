@@ -167,8 +167,11 @@ Result<void> Parser::parameter() {
     const Token& name = peek();
     Function& function = builder_.function();
     const std::size_t index = function.parameters.size();
-    if (function.is_thread || index == kMostParameters) {
-        return unexpected("')'");
+    if (function.is_thread) {
+        return failAt(name.at, "a thread has no parameters");
+    }
+    if (index == kMostParameters) {
+        return failAt(name.at, fmt::format("more than {} parameters", kMostParameters));
     }
     auto done = expect(Kind::name, "a parameter's name");
     if (done) {
@@ -272,8 +275,11 @@ Result<void> Parser::elementAssignment(const Token& name) {
     while (takeIf(Kind::left_bracket)) {
         METIER_ASSIGN(const auto more, expressions(Kind::right_bracket, kMostIndices));
         indices += more;
-        if (more == 0 || indices > kMostIndices) {
+        if (more == 0) {
             return unexpected("an index");
+        }
+        if (indices > kMostIndices) {
+            return failAt(peek().at, fmt::format("more than {} indices", kMostIndices));
         }
     }
     auto done = expect(Kind::assign, "'='");

@@ -10,18 +10,23 @@
 namespace metier::urscript {
 
 Result<void> ScriptSplitter::push(std::string_view bytes, std::vector<std::string>& programs) {
+    Result<void> result;
     for (const char c : bytes) {
+        if (drops_line_) {
+            drops_line_ = c != '\n';
+            continue;
+        }
         line_ += c;
         if (line_.size() + program_.size() > Program::kMaxText) {
             *this = ScriptSplitter();
-            return fail(Errc::out_of_range,
-                        fmt::format("script is longer than {} bytes", Program::kMaxText));
-        }
-        if (c == '\n') {
+            drops_line_ = c != '\n';
+            result = fail(Errc::out_of_range,
+                          fmt::format("script is longer than {} bytes", Program::kMaxText));
+        } else if (c == '\n') {
             takeLine(programs);
         }
     }
-    return {};
+    return result;
 }
 
 void ScriptSplitter::takeLine(std::vector<std::string>& programs) {

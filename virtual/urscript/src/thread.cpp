@@ -27,6 +27,10 @@ Result<void> checkSize(const Value& value, ThreadContext& context) {
         return fail(Errc::out_of_range,
                     fmt::format("a list of more than {} values", limits.list_length));
     }
+    if (list != nullptr && list->characters() > limits.text_length) {
+        return fail(Errc::out_of_range,
+                    fmt::format("a list with more than {} characters", limits.text_length));
+    }
     const auto* text = value.get<std::string>();
     if (text != nullptr && text->size() > limits.text_length) {
         return fail(Errc::out_of_range,
@@ -182,6 +186,7 @@ Result<void> Thread::load(const Value& value, std::string_view name, ThreadConte
 Result<void> Thread::binary(Op op, ThreadContext& context) {
     const Value right = pop();
     const Value left = pop();
+    METIER_TRY(spend(context, costOf(left) + costOf(right)));
     return push(applyBinary(op, left, right), context);
 }
 

@@ -12,6 +12,12 @@ std::size_t weightOf(const Value& value) {
     return list == nullptr ? 1 : 1 + list->weight();
 }
 
+std::size_t charactersOf(const Value& value) {
+    const auto* text = value.get<std::string>();
+    const List* list = value.get<List>();
+    return text != nullptr ? text->size() : list != nullptr ? list->characters() : 0;
+}
+
 int depthOf(const Value& value) {
     const List* list = value.get<List>();
     return list == nullptr ? 0 : list->depth();
@@ -43,6 +49,7 @@ List::List(std::vector<Value> elements)
     : elements_(std::make_shared<std::vector<Value>>(std::move(elements))) {
     for (const Value& element : *elements_) {
         weight_ += weightOf(element);
+        characters_ += charactersOf(element);
         depth_ = std::max(depth_, 1 + depthOf(element));
     }
 }
@@ -58,6 +65,7 @@ void List::set(std::size_t index, Value value) {
     }
     Value& element = (*elements_)[index];
     weight_ += weightOf(value) - weightOf(element);
+    characters_ += charactersOf(value) - charactersOf(element);
     depth_ = std::max(depth_, 1 + depthOf(value));
     element = std::move(value);
 }

@@ -145,6 +145,78 @@ TEST(UrscriptSocket, CloseForgetsASocket) {
     EXPECT_EQ(withReceived("socket_close(\"s\")\nresult = socket_send_int(1, \"s\")", ""), "False");
 }
 
+TEST(UrscriptSocket, AReadTakesOnlyItsOwnBytes) {
+    EXPECT_EQ(withReceived("a = socket_read_line(\"s\")\nb = socket_read_byte_list(1, \"s\")\n"
+                           "result = [a, b[1], socket_read_string(\"s\")]",
+                           "one\nAtwo"),
+              "[one, 65, two]");
+}
+
+TEST(UrscriptSocket, WhatCameBeforeThePeerClosedIsStillRead) {
+    FakeRobot robot;
+    robot.socket.all["s"] = {SocketState::closed, "", 1, "", "late\n"};
+    EXPECT_EQ(resultOf("a = socket_read_line(\"s\")\nresult = [a, socket_read_line(\"s\")]", robot),
+              "[late, ]");
+}
+
+TEST(UrscriptSocket, ALineMayComeInPieces) {
+    FakeRobot robot;
+    robot.socket.all["s"] = {SocketState::open, "", 1, "", ""};
+    Interpreter interpreter(parsed(within("result = socket_read_line(\"s\", 1)")), robot);
+    for (const char c : std::string_view("pieces\r")) {
+        robot.socket.all["s"].received += c;
+        ASSERT_EQ(interpreter.step(), RunState::running);
+    }
+    robot.socket.all["s"].received += '\n';
+    EXPECT_EQ(interpreter.step(), RunState::finished);
+    EXPECT_EQ(interpreter.variable("result")->text(), "pieces");
+}
+
+TEST(UrscriptSocket, WithoutANameItIsTheFirstSocket) {
+    FakeRobot robot;
+    robot.socket.first_received = "x\n";
+    EXPECT_EQ(resultOf("socket_open(\"h\", 1)\nresult = socket_read_line()", robot), "x");
+    EXPECT_EQ(robot.socket.state("socket_0"), SocketState::open);
+    resultOf("socket_close()", robot);
+    EXPECT_TRUE(robot.socket.all.empty());
+}
+
+TEST(UrscriptSocket, ThreadsMayWaitForDifferentSockets) {
+    FakeRobot robot;
+    robot.socket.all["a"] = {SocketState::open, "", 1, "", ""};
+    robot.socket.all["b"] = {SocketState::open, "", 1, "", ""};
+    Interpreter interpreter(
+        parsed(within(
+            "result = \"\"\nthread t():\nline = socket_read_line(\"a\", 0)\nresult = result + "
+            "line\n"
+            "end\nrun t()\nmine = socket_read_line(\"b\", 0)\nresult = result + mine\nsleep(1)")),
+        robot);
+    interpreter.step();
+    robot.socket.all["a"].received = "first\n";
+    interpreter.step();
+    robot.socket.all["b"].received = "second\n";
+    interpreter.step();
+    EXPECT_EQ(interpreter.variable("result")->text(), "firstsecond");
+}
+
+TEST(UrscriptSocketReading, NumbersThatAreNotWhatWasAskedForAreAFailure) {
+    for (const std::string_view bytes :
+         {"()", "(1)", "(1,)", "(,1)", "(1,2,)", "(1 2)", "(1,1e999)", "(1,2"}) {
+        const auto floats = extractFloats(bytes, 2);
+        EXPECT_TRUE(!floats || floats->value.text() == "[0, nan, nan]") << bytes;
+    }
+    EXPECT_EQ(extractFloats("(1,-2e3)", 2)->value.text(), "[2, 1, -2000]");
+    EXPECT_EQ(extractVariable("POS 1 2\n", "POS")->value.text(), "0");
+    EXPECT_EQ(extractVariable("POS 3000000000\n", "POS")->value.text(), "0");
+    EXPECT_FALSE(extractVariable("POS 1", "POS"));
+}
+
+TEST(UrscriptSocketReading, ALongTextIsCutAndItsRestDropped) {
+    const auto text = extractText(">" + std::string(2000, 'x') + "<next", ">", "<");
+    EXPECT_EQ(text->value.get<std::string>()->size(), 1024U);
+    EXPECT_EQ(text->used, 2002U);
+}
+
 TEST(UrscriptSocketReading, NeedsAllBytesBeforeItTakesAny) {
     EXPECT_FALSE(extractIntegers("abc", 1, 4));
     EXPECT_FALSE(extractFloats("1, 2)", 2));

@@ -25,6 +25,7 @@ private:
     std::string line_;     // bytes since the last line feed
     std::string program_;  // lines of the block that is not closed yet
     int open_blocks_ = 0;
+    bool drops_line_ = false;  // until its end: the text was too long
 };
 
 }  // namespace metier::urscript

@@ -34,6 +34,8 @@ public:
     std::size_t size() const;
     /// Number of values in this list and in the lists inside it.
     std::size_t weight() const { return weight_; }
+    /// Number of characters of the strings in this list and in the lists inside it.
+    std::size_t characters() const { return characters_; }
     /// Depth of nested lists, at least 1: 1 for a list of numbers.
     int depth() const { return depth_; }
     /// \param index less than size()
@@ -42,6 +44,7 @@ public:
 private:
     std::shared_ptr<std::vector<Value>> elements_;  // shared by copies until one is changed
     std::size_t weight_ = 0;
+    std::size_t characters_ = 0;
     int depth_ = 1;
 };
 
