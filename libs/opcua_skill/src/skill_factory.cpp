@@ -22,13 +22,17 @@ constexpr std::uint32_t kFirstCompactId = 0x8000'0000;  // below: ids that peopl
 
 /// Two descriptions with the same key have the same nodes.
 std::string keyOf(const skill::SkillDescription& description) {
-    std::string key = description.type;
+    const bool declares = !description.steps.empty();
+    std::string key = description.type + (declares ? "\nsequence" : "");
     for (const auto* fields : {&description.parameters, &description.results}) {
         for (const auto& field : *fields) {
             key +=
                 fmt::format("\n{} {} {}", field.name, skill::toString(field.type), field.unit.code);
             if (field.range) {
                 key += fmt::format(" {} {}", field.range->low, field.range->high);
+            }
+            if (declares) {
+                key += " " + field.description;
             }
         }
     }
@@ -121,7 +125,12 @@ Result<SkillInstance> SkillFactory::make(const NodeId& skills,
                                ? NodeId(skills.namespaceIndex(), prefix)
                                : compactId(skills.namespaceIndex(), prefix),
                            {}};
+    // A compact id never meets its twin, so the path is looked at as well.
+    if (made_.contains(prefix)) {
+        return fail(Errc::already_exists, prefix + " is there already");
+    }
     METIER_TRY(addObject(skills, instance.id, description, plan->type));
+    made_.insert(prefix);
     std::vector<NodeId> made;
     made.reserve(plan->steps.size());
     for (const auto& step : plan->steps) {

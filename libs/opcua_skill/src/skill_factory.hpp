@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -76,6 +77,7 @@ private:
 
     opcua::AddressSpace& nodes_;
     const ModelIds& ids_;
+    std::set<std::string> made_;         ///< paths of the instances
     std::map<std::string, Plan> plans_;  ///< key: type and fields
 };
 
