@@ -79,6 +79,12 @@ std::string axisClass(std::size_t axis) {
     return fmt::format("axis{}", axis + 1);
 }
 
+bool isFinite(const MotionSample& sample) {
+    return std::isfinite(sample.time) && sample.position.allFinite() &&
+           sample.velocity.allFinite() && sample.acceleration.allFinite() &&
+           sample.jerk.allFinite();
+}
+
 /// The picture while it is drawn.
 class Drawing {
 public:
@@ -322,11 +328,16 @@ Result<std::string> drawMotion(const RobotModel& model, const MotionPicture& pic
             fmt::format("{} samples and {} tool positions: at least 2 of each, equally many",
                         picture.samples.size(), picture.tool_positions.size()));
     }
-    for (const auto& sample : picture.samples) {
+    for (std::size_t i = 0; i < picture.samples.size(); ++i) {
+        const auto& sample = picture.samples[i];
         if (sample.position.size() != model.axisCount()) {
             return fail(Errc::invalid_argument,
                         fmt::format("{} joint positions, {} has {} axes", sample.position.size(),
                                     model.name(), model.axisCount()));
+        }
+        if (!isFinite(sample) || !picture.tool_positions[i].allFinite()) {
+            return fail(Errc::invalid_argument,
+                        fmt::format("the motion is not finite at {} s", sample.time));
         }
     }
     return Drawing(model, picture).draw();

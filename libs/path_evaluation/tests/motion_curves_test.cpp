@@ -86,5 +86,65 @@ TEST(MotionCurves, APositionsShareIsOneAtItsLimits) {
     EXPECT_EQ(shareOfLimit(limits, Quantity::velocity, -0.5), -0.5);
 }
 
+/// An arm at home whose axis has these velocities, one each 0.1 s.
+std::vector<MotionSample> moving(const motion::RobotModel& model, std::size_t axis,
+                                 const std::vector<double>& velocities) {
+    std::vector<MotionSample> samples;
+    for (const double velocity : velocities) {
+        const JointVector zero(model.axisCount());
+        MotionSample sample{0.1 * static_cast<double>(samples.size()), model.home(), zero, zero,
+                            zero};
+        sample.velocity[axis] = velocity;
+        samples.push_back(sample);
+    }
+    return samples;
+}
+
+TEST(MotionPeaks, AreOfEitherSignAndTellWhereAndWhen) {
+    const auto model = modelOf("ur5");
+    const double limit = model.limits(3).velocity;
+    const auto samples = moving(model, 3, {0, 0.5 * limit, -1.25 * limit, 1.25 * limit, 0});
+    const auto peak = peakOf(samples, model, Quantity::velocity);
+    EXPECT_EQ(peak.axis, 3U);
+    EXPECT_NEAR(peak.share, 1.25, 1e-12) << "beyond the limit, too";
+    EXPECT_NEAR(peak.value, -1.25 * limit, 1e-12) << "the first of two";
+    EXPECT_NEAR(peak.time, 0.2, 1e-12);
+    EXPECT_EQ(peakOfAxis(samples, model, Quantity::velocity, 2).share, 0.0);
+    EXPECT_EQ(peakOfAxis(samples, model, Quantity::velocity, 2).axis, 2U);
+}
+
+TEST(MotionPeaks, OfNoSamplesAreZero) {
+    const auto model = modelOf("ur5");
+    const auto peak = peakOf({}, model, Quantity::position);
+    EXPECT_EQ(peak.share, 0.0);
+    EXPECT_EQ(peak.time, 0.0);
+}
+
+TEST(MotionCurves, OfTheFewestPositionsAreThoseOfOneCubic) {
+    MotionRecord record;
+    for (int i = 0; i < static_cast<int>(kFewestRecorded); ++i) {
+        const double t = 1e-3 * i;  // at 1 kHz
+        record.push_back({1e6 + t, {0.5 - t * t * t}});
+    }
+    const auto samples = sampleMotion(record);
+    ASSERT_EQ(samples.size(), kFewestRecorded);
+    EXPECT_EQ(samples.front().time, 0.0) << "counted from the first";
+    EXPECT_NEAR(samples.back().time, 0.004, 1e-9);
+    for (const auto& sample : samples) {
+        EXPECT_NEAR(sample.jerk[0], -6, 0.2);
+    }
+}
+
+TEST(MotionCurves, OfAPlanBeginAndEndAtItsEndsWithEqualSteps) {
+    const auto model = modelOf("ur5");
+    const auto trajectory = turnOfAxis(model, 1, 0.3);
+    const auto samples = sampleMotion(trajectory, 11);
+    ASSERT_EQ(samples.size(), 11U);
+    EXPECT_EQ(samples.front().time, 0.0);
+    EXPECT_EQ(samples.back().time, trajectory.duration().count());
+    EXPECT_NEAR(samples[3].time, 0.3 * trajectory.duration().count(), 1e-12);
+    EXPECT_EQ(samples.front().position, model.home());
+}
+
 }  // namespace
 }  // namespace metier::path_evaluation

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <pugixml.hpp>
 
 #include "metier/motion/planner.hpp"
@@ -100,6 +102,47 @@ TEST(DrawMotion, RefusesSamplesOfAnotherArm) {
     const auto svg = drawMotion(six.model, {"", "", seven.samples, seven.positions, {}});
     ASSERT_FALSE(svg);
     EXPECT_THAT(svg.error().message, HasSubstr("7 joint positions, ur5 has 6 axes"));
+}
+
+TEST(DrawMotion, TheAskedSpeedIsALineOnlyIfThereIsOne) {
+    const DrawnMotion motion("ur5");
+    const auto without =
+        drawMotion(motion.model, {"", "", motion.samples, motion.positions, {}}).value();
+    EXPECT_EQ(parsed(without).select_nodes("//line[@class='limit']").size(), 8U);
+    EXPECT_THAT(without, ::testing::Not(HasSubstr(">asked<")));
+    EXPECT_THAT(motion.draw().value(), HasSubstr(">asked<"));
+}
+
+TEST(DrawMotion, ACurveFarBeyondItsLimitIsCutAndItsPeakStillReported) {
+    DrawnMotion motion("ur5");
+    motion.samples[50].velocity[2] = 10 * motion.model.limits(2).velocity;
+    const auto svg = motion.draw().value();
+    EXPECT_THAT(svg, HasSubstr("peak 1000.0 %: "));
+    EXPECT_THAT(svg, HasSubstr(", peak 1000.0 %"));
+    EXPECT_EQ(parsed(svg).select_nodes("//svg/svg").size(), 4U) << "each quantity is clipped";
+}
+
+TEST(DrawMotion, RefusesTooFewSamplesAndPositionsOfOtherSizes) {
+    DrawnMotion motion("ur5");
+    motion.positions.pop_back();
+    EXPECT_THAT(motion.draw().error().message,
+                HasSubstr("200 samples and 199 tool positions: at least 2 of each"));
+    motion.samples.resize(1);
+    motion.positions.resize(1);
+    EXPECT_EQ(motion.draw().error().code, Errc::invalid_argument);
+}
+
+TEST(DrawMotion, RefusesWhatIsNotFiniteWithItsTime) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    DrawnMotion jerky("ur5");
+    jerky.samples[7].jerk[1] = infinity;
+    const auto refused = jerky.draw();
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+    EXPECT_THAT(refused.error().message, HasSubstr("not finite at "));
+    DrawnMotion lost("ur5");
+    lost.positions[3].y() = std::nan("");
+    EXPECT_FALSE(lost.draw());
 }
 
 }  // namespace

@@ -90,5 +90,43 @@ TEST(MotionRecord, AFileThatIsNotThereIsNotFound) {
     EXPECT_THAT(record.error().message, HasSubstr("/nonexistent/record.csv"));
 }
 
+TEST(MotionRecord, AnEmptyOneHasAHeadingOnly) {
+    EXPECT_EQ(toCsv({}), "time\n");
+}
+
+TEST(MotionRecord, OnlyTheFirstLineMayBeAHeadingAlsoBehindComments) {
+    const std::string lines = "0,1\n1,1\n2,1\n3,1\n4,1\n";
+    EXPECT_THAT(parseRecord("# a\n\nt [s],q1 [rad]\n" + lines, "a").value(), SizeIs(5));
+    const auto refused = parseRecord(lines + "# b\nt,q1\n", "a");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("a:7: 't' is not a number"));
+}
+
+TEST(MotionRecord, OtherSeparatorsAreReportedWithTheLine) {
+    const auto semicolons = parseRecord("time;q1\n0;0.1\n1;0.2\n", "a.csv");
+    ASSERT_FALSE(semicolons);
+    EXPECT_THAT(semicolons.error().message, HasSubstr("a.csv:2: '0;0.1' is not a number"));
+    EXPECT_FALSE(parseRecord("0,1,\n", "a.csv")) << "a comma too many";
+    EXPECT_FALSE(parseRecord("0,1 2\n", "a.csv"));
+}
+
+TEST(MotionRecord, JsonOfAnotherShapeIsRefusedWithoutACrash) {
+    for (const char* text :
+         {R"({"preview":"text"})", R"({"preview":null})", R"([1,2])", R"([[0,1]])", "[null]",
+          R"([{"time":"0","joint_position":[1]}])", R"([{"time":0,"joint_position":1}])",
+          R"([{"time":0,"joint_position":["1"]}])", R"([{"time":1e999,"joint_position":[1]}])",
+          R"([{"time":0,"joint_position":[]}])", "[", "{\"preview\":[}", "[] []"}) {
+        const auto record = parseRecord(text, "file");
+        ASSERT_FALSE(record) << text;
+        EXPECT_EQ(record.error().code, Errc::invalid_argument) << text;
+        EXPECT_THAT(record.error().message, ::testing::StartsWith("file: ")) << text;
+    }
+    EXPECT_FALSE(parseRecord(std::string(100'000, '['), "file"));
+}
+
+TEST(MotionRecord, AFolderIsNoRecord) {
+    EXPECT_EQ(loadRecord("/").error().code, Errc::not_found);
+}
+
 }  // namespace
 }  // namespace metier::path_evaluation

@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <numbers>
 
 #include "metier/motion/kinematics.hpp"
 #include "metier/motion/robot_model.hpp"
@@ -58,6 +61,38 @@ TEST(PlaceSquareTooLarge, IsRefusedWithTheReach) {
 TEST(PlaceSquareTooLarge, RefusesASideOfNothing) {
     const auto chain = chainOf("edo");
     EXPECT_EQ(placeSquare(chain, chain.home, 0.0).error().code, Errc::invalid_argument);
+}
+
+TEST(PlaceSquareTooLarge, RefusesWhatIsNoLengthOrNoPositionOfTheArm) {
+    const auto chain = chainOf("edo");
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(placeSquare(chain, chain.home, -0.1).error().code, Errc::invalid_argument);
+    EXPECT_EQ(placeSquare(chain, chain.home, std::nan("")).error().code, Errc::invalid_argument);
+    EXPECT_EQ(placeSquare(chain, chain.home, infinity).error().code, Errc::unreachable);
+    auto position = chain.home;
+    position[2] = infinity;
+    EXPECT_EQ(placeSquare(chain, position, 0.1).error().code, Errc::invalid_argument);
+    const auto shorter = placeSquare(chain, motion::JointVector(5), 0.1);
+    ASSERT_FALSE(shorter);
+    EXPECT_EQ(shorter.error().message,
+              "a square of 0.1 m for an arm of 6 axes at 5 joint positions");
+}
+
+TEST(PlaceSquareSide, IsWhereTheArmPointsTo) {
+    const auto chain = chainOf("ur5");
+    const motion::Kinematics arm(chain);
+    for (const double turn : {-2.0, 0.0, 1.5}) {
+        auto position = chain.home;
+        position[0] += turn;
+        const auto square = placeSquare(chain, position, 0.1).value();
+        const auto tool = arm.forward(position).translation;
+        const Eigen::Vector3d middle =
+            0.5 * (square.corner(0).translation + square.corner(2).translation);
+        const double between =
+            std::remainder(std::atan2(middle.y(), middle.x()) - std::atan2(tool.y(), tool.x()),
+                           2 * std::numbers::pi);
+        EXPECT_LE(std::abs(between), 0.5 + 1e-9) << turn;
+    }
 }
 
 }  // namespace

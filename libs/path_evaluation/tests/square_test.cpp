@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace metier::path_evaluation {
 namespace {
 
@@ -52,6 +54,57 @@ TEST(Measure, SeesACornerThatWasCut) {
 
 TEST(Measure, OfNothingIsZero) {
     EXPECT_DOUBLE_EQ(measure(unitSquare(), {}).largest_deviation, 0.0);
+}
+
+/// A square on the side of the arm that points by `azimuth` from x.
+Square squareAt(double azimuth) {
+    auto square = unitSquare();
+    square.right = {-std::sin(azimuth), std::cos(azimuth), 0};
+    square.side = 0.2;
+    return square;
+}
+
+TEST(DistanceFromOutline, IsZeroOnEverySideWhateverTheSquaresDirection) {
+    for (const double azimuth : {0.0, 0.7, -2.5, 3.1}) {
+        const auto square = squareAt(azimuth);
+        for (std::size_t i = 0; i < kCorners; ++i) {
+            const Eigen::Vector3d from = square.corner(i).translation;
+            const Eigen::Vector3d to = square.corner(i + 1).translation;
+            EXPECT_NEAR((to - from).norm(), square.side, 1e-12);
+            EXPECT_NEAR(distanceFromOutline(square, from + 0.3 * (to - from)), 0.0, 1e-12);
+        }
+    }
+}
+
+TEST(DistanceFromOutline, IsLargestInTheMiddleAndCountsOffThePlane) {
+    const auto square = squareAt(0.7);
+    const Eigen::Vector3d middle =
+        0.5 * (square.corner(0).translation + square.corner(2).translation);
+    const Eigen::Vector3d normal = square.right.cross(square.up);
+    EXPECT_NEAR(distanceFromOutline(square, middle), 0.1, 1e-12);
+    EXPECT_NEAR(distanceFromOutline(square, middle + 0.1 * normal), std::hypot(0.1, 0.1), 1e-12);
+    EXPECT_NEAR(distanceFromOutline(
+                    square, square.corner(1).translation + 0.03 * square.right + 0.04 * normal),
+                0.05, 1e-12);
+}
+
+TEST(Measure, APathThatIsShiftedHasItsShiftAsDeviationAndStillCloses) {
+    const auto square = squareAt(-2.5);
+    const Eigen::Vector3d shift = 0.003 * square.right.cross(square.up);
+    std::vector<Eigen::Vector3d> positions;
+    for (std::size_t i = 0; i <= kCorners; ++i) {
+        positions.push_back(square.corner(i).translation + shift);
+    }
+    const auto measured = measure(square, positions);
+    EXPECT_NEAR(measured.largest_deviation, 0.003, 1e-12);
+    EXPECT_NEAR(measured.closure_error, 0.0, 1e-12);
+}
+
+TEST(Measure, APositionThatIsNoNumberIsNotOverlooked) {
+    const auto square = unitSquare();
+    const std::vector<Eigen::Vector3d> positions{
+        {0.5, 0.1, 0.3}, {std::nan(""), 0.15, 0.3}, {0.5, 0.1, 0.3}};
+    EXPECT_FALSE(measure(square, positions).largest_deviation < 1.0);
 }
 
 }  // namespace

@@ -59,5 +59,34 @@ TEST(Svg, EscapesTextsAndClosesWhatItOpens) {
     EXPECT_STREQ(document.select_node("//text").node().text().get(), "a < b & \"c\" > d");
 }
 
+TEST(Svg, RoundedUpIsTheNextOfOneTwoAndFive) {
+    EXPECT_NEAR(roundedUp(0.3), 0.5, 1e-12);
+    EXPECT_NEAR(roundedUp(0.5), 0.5, 1e-12);
+    EXPECT_NEAR(roundedUp(0.51), 1.0, 1e-12);
+    EXPECT_NEAR(roundedUp(17), 20, 1e-9);
+    EXPECT_NEAR(roundedUp(1000), 1000, 1e-9);
+    EXPECT_NEAR(roundedUp(0), 1e-6, 1e-18);
+    EXPECT_NEAR(roundedUp(-3), 1e-6, 1e-18);
+}
+
+TEST(Svg, TicksFarFromZeroAreFewAndInside) {
+    const auto ticks = ticksBetween(1234.5, 1234.9, 4);
+    EXPECT_THAT(ticks, SizeIs(::testing::AllOf(::testing::Ge(2), ::testing::Le(5))));
+    for (const double tick : ticks) {
+        EXPECT_GE(tick, 1234.5 - 1e-6);
+        EXPECT_LE(tick, 1234.9 + 1e-6);
+    }
+    EXPECT_THAT(ticksBetween(-2, -1, 2),
+                ElementsAre(DoubleNear(-2, 1e-12), DoubleNear(-1.5, 1e-12), DoubleNear(-1, 1e-12)));
+}
+
+TEST(Svg, KeepsOneOrTwoSpotsAndSpotsThatAreTheSame) {
+    EXPECT_THAT(simplified({}, 0.1), SizeIs(0));
+    const std::vector<Spot> one{{1, 2}};
+    EXPECT_THAT(simplified(one, 0.1), SizeIs(1));
+    const std::vector<Spot> same(50, Spot{3, 3});
+    EXPECT_THAT(simplified(same, 0.1), SizeIs(2));
+}
+
 }  // namespace
 }  // namespace metier::path_evaluation
