@@ -226,7 +226,8 @@ Result<void> Rosbridge::takeFragment(Client& client, const Json& request) {
     const auto total = optionalCount(request, "total");
     const std::string id = requestId(request);
     if (!data || !number || !total || id.empty() || *total < 1 || *number >= *total ||
-        static_cast<std::size_t>(*total) > kMost || client.fragments.size() >= kMost) {
+        static_cast<std::size_t>(*total) > kMost ||
+        (client.fragments.size() >= kMost && !client.fragments.contains(id))) {
         return fail(Errc::invalid_argument,
                     "needs id, data, num and total, num below total, total "
                     "at most 256");

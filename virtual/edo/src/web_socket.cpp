@@ -138,7 +138,8 @@ bool WebSocket::takeFrame(Received& received) {
         return false;
     }
     const Header header = headerOf(incoming_);
-    if (header.length > kLongestMessage - message_.size()) {
+    const bool is_control = (first & 0x8U) != 0;
+    if (!is_control && header.length > kLongestMessage - message_.size()) {
         fail(kTooLong, received);
         return false;
     }

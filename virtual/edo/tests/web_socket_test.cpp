@@ -177,6 +177,51 @@ TEST(WebSocket, AnswersACloseWithTheSameStatus) {
     EXPECT_THAT(socket.receive(bytesOf(frame(0x81, "late"))).messages, IsEmpty());
 }
 
+TEST(WebSocket, APingHasRoomBetweenTheFragmentsOfTheLongestMessage) {
+    auto socket = openSocket();
+    const std::string message(kLongestMessage, 'a');
+    socket.receive(bytesOf(frame(0x01, message)));
+    const auto ping = socket.receive(bytesOf(frame(0x89, "hello")));
+    EXPECT_EQ(ping.answer, "\x8A\x05hello");
+    EXPECT_FALSE(ping.close);
+    const auto whole = socket.receive(bytesOf(frame(0x80, ""))).messages;
+    ASSERT_EQ(whole.size(), 1U);
+    EXPECT_TRUE(whole.front() == message) << "a million letters";
+}
+
+TEST(WebSocket, TakesTheSameFromEveryDivisionIntoReads) {
+    const std::string stream = frame(0x81, "one") + frame(0x01, "tw") + frame(0x89, "p") +
+                               frame(0x80, "o") + frame(0x82, std::string(300, 'x')) +
+                               frame(0x8A, "") + frame(0x88, "\x03\xE8"s);
+    for (std::size_t first = 0; first <= stream.size(); ++first) {
+        auto socket = openSocket();
+        auto received = socket.receive(bytesOf(stream.substr(0, first)));
+        const auto rest = socket.receive(bytesOf(stream.substr(first)));
+        received.messages.insert(received.messages.end(), rest.messages.begin(),
+                                 rest.messages.end());
+        EXPECT_THAT(received.messages, ElementsAre("one", "two", std::string(300, 'x'))) << first;
+        EXPECT_EQ(received.answer + rest.answer, "\x8A\x01p" + closing(1000)) << first;
+        EXPECT_TRUE(received.close || rest.close) << first;
+    }
+}
+
+TEST(WebSocket, KeepsTheMessagesBeforeAFrameThatBreaksTheProtocol) {
+    auto socket = openSocket();
+    const auto received = socket.receive(bytesOf(frame(0x81, "good") + frame(0x83, "bad")));
+    EXPECT_THAT(received.messages, ElementsAre("good"));
+    EXPECT_EQ(received.answer, closing(1002));
+    EXPECT_FALSE(socket.isOpen());
+}
+
+TEST(WebSocket, TakesNothingAfterARefusedHandshake) {
+    WebSocket socket;
+    EXPECT_TRUE(socket.receive(bytesOf("POST / HTTP/1.1\r\n\r\n")).close);
+    const auto late = socket.receive(bytesOf(request() + frame(0x81, "late")));
+    EXPECT_THAT(late.messages, IsEmpty());
+    EXPECT_EQ(late.answer, "");
+    EXPECT_FALSE(socket.isOpen());
+}
+
 struct Broken {
     const char* name;
     std::string bytes;
