@@ -91,8 +91,11 @@ private:
         double x = 0.0;
         double y = 0.0;
         double z = 0.0;
+        int end = 0;
         if (comma == std::string::npos ||
-            std::sscanf(text.c_str() + comma, ",%lf,%lf,%lf", &x, &y, &z) != 3) {
+            std::sscanf(text.c_str() + comma, ",%lf,%lf,%lf%n", &x, &y, &z, &end) != 3 ||
+            comma + static_cast<std::size_t>(end) != text.size() ||
+            !Eigen::Vector3d(x, y, z).allFinite()) {
             return fail(Errc::invalid_argument,
                         fmt::format("place needs NAME,X,Y,Z; not \"{}\"", text));
         }

@@ -87,5 +87,30 @@ TEST(WorldServer, PlacesPartsOnDemand) {
                 HasSubstr("NAME,X,Y,Z"));
 }
 
+TEST(WorldServer, RefusesPlacesThatAreNone) {
+    const auto host = Host::start(worldOptions(), {worldController()}).value();
+    for (const char* value : {"cube,nan,0,0", "cube,0,inf,0", "cube,1,2,3 m", "cube,1,2,3,4",
+                              "cube,1,2", ",1,2,3", ""}) {
+        const nlohmann::json request{{"inject", "place"}, {"value", value}};
+        EXPECT_THAT(host->controlAnswer(request.dump()).dump(), HasSubstr("\"error\":")) << value;
+    }
+    EXPECT_THAT(host->controlAnswer(R"({"state":true})").dump(), HasSubstr("[0.0,0.0,0.015"));
+}
+
+TEST(WorldServer, ReportsEverySettingThatIsWrongAtOnce) {
+    auto options = worldOptions();
+    options.settings.set("part.heavy", std::vector<double>{0, 0, 0, 0.1, 0.1, 0.1, -1});
+    options.settings.set("wall.soft", std::vector<double>{0, 0, 0, 0, 0, 1, 0, 50});
+    options.settings.set("wall.nowhere", std::vector<double>{0, 0, 0, 0, 0, 0, 100, 50});
+    options.settings.set("part_tolerance", 1.0);
+    options.settings.set("gravity", 9.81);
+    const auto host = Host::start(options, {worldController()});
+    ASSERT_FALSE(host);
+    for (const char* name :
+         {"part.heavy: ", "wall.soft: ", "wall.nowhere: ", "part_tolerance: ", "gravity"}) {
+        EXPECT_THAT(host.error().message, HasSubstr(name));
+    }
+}
+
 }  // namespace
 }  // namespace metier::virtual_controller

@@ -126,5 +126,62 @@ TEST_F(Cell, PutsPartsElsewhereOrAway) {
     EXPECT_FALSE(world.remove("cube"));
 }
 
+TEST_F(Cell, APartThatIsHeldOffTheFlangePullsWithItsLever) {
+    moveArm(flangeOver(0.5, 0.0, 0.115));
+    jaws(0.03, true);
+    // The arm on its side: the part hangs 0.1 m beside the flange.
+    const motion::Pose aside{
+        {0.5, 0.0, 0.5},
+        Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitY()))};
+    const auto wrench = moveArm(aside).wrench;
+    EXPECT_NEAR(wrench.force.norm(), 0.981, 1e-9);
+    EXPECT_NEAR(wrench.torque.norm(), 0.981 * 0.1, 1e-9);
+    EXPECT_NEAR(wrench.torque.dot(wrench.force), 0.0, 1e-12);
+}
+
+TEST_F(Cell, APartThatIsTurnedIsWiderBetweenTheJaws) {
+    auto turned = options();
+    turned.parts["cube"].world_from_part.rotation =
+        Eigen::AngleAxisd(M_PI / 4.0, Eigen::Vector3d::UnitZ());
+    World other(turned);
+    other.report("arm", {.base_from_flange = flangeOver(0.5, 0.0, 0.115)});
+    EXPECT_NEAR(other.report("gripper", {.jaw_width = 0.08}).part_width.value_or(0),
+                0.03 * std::sqrt(2.0), 1e-12);
+}
+
+TEST_F(Cell, HasItsBasesWhereTheyAreMounted) {
+    auto mounted = options();
+    mounted.mounts["arm"].world_from_base = at(0.0, 0.0, 0.2);
+    World other(mounted);
+    EXPECT_FALSE(other.flangeOf("arm"));
+    other.report("arm", {.base_from_flange = at(0.1, 0.0, 0.3)});
+    EXPECT_EQ(other.flangeOf("arm")->translation, Eigen::Vector3d(0.1, 0.0, 0.5));
+}
+
+TEST_F(Cell, OneGripperLosesItsPartAndTheOtherKeepsIts) {
+    auto two = options();
+    two.parts["rod"] = two.parts["cube"];
+    two.parts["rod"].world_from_part = at(-0.5, 0.0, 0.015);
+    two.mounts["other gripper"] = two.mounts["gripper"];
+    two.mounts["other gripper"].on = "other arm";
+    World other(two);
+    other.report("arm", {.base_from_flange = flangeOver(0.5, 0.0, 0.115)});
+    other.report("other arm", {.base_from_flange = flangeOver(-0.5, 0.0, 0.115)});
+    other.report("gripper", {.jaw_width = 0.03, .gripping = true});
+    other.report("other gripper", {.jaw_width = 0.03, .gripping = true});
+    EXPECT_EQ(other.parts().at("rod").held_by, "other gripper");
+    other.drop("gripper");
+    EXPECT_EQ(other.parts().at("cube").held_by, "");
+    EXPECT_EQ(other.parts().at("rod").held_by, "other gripper");
+    other.drop("");
+    EXPECT_EQ(other.parts().at("rod").held_by, "");
+}
+
+TEST_F(Cell, AnArmOrSensorThatNeverReportedFeelsNothing) {
+    EXPECT_EQ(world.report("sensor", {}).wrench.force.norm(), 0.0);
+    EXPECT_FALSE(jaws(0.05, true).part_width);
+    EXPECT_EQ(cube().held_by, "");
+}
+
 }  // namespace
 }  // namespace metier::virtual_world
