@@ -38,6 +38,11 @@ std::vector<opcua::KeyValue> listOf(const skill::ValueMap& values) {
 
 }  // namespace
 
+skill::Reason reasonFrom(std::int32_t number) {
+    constexpr std::int32_t kNone = 255;
+    return static_cast<skill::Reason>(number >= 0 && number < kNone ? number : kNone);
+}
+
 opcua::Value pairsOf(const skill::ValueMap& values) {
     return opcua::Value::of(listOf(values));
 }
@@ -86,7 +91,7 @@ opcua::Answer<skill::ExecutionRecord> executionFrom(const std::vector<opcua::Val
     skill::ExecutionRecord record;
     record.id = id;
     record.state = static_cast<skill::State>(outputs[0].as<std::uint32_t>().value_or(0));
-    record.reason = static_cast<skill::Reason>(outputs[1].as<std::int32_t>().value_or(0));
+    record.reason = reasonFrom(outputs[1].as<std::int32_t>().value_or(0));
     record.reason_text = opcua::sanitise(outputs[2].as<std::string>().value_or(""));
     record.start_time = outputs[3].as<UtcTime>().value_or(UtcTime{});
     record.end_time = outputs[4].as<UtcTime>().value_or(UtcTime{});

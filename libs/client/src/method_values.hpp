@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,9 @@ namespace metier::client {
 
 // Arguments of the methods of namespace urn:metier:skills. Errors: BadUnexpectedError, with the
 // skill's name, for outputs of another shape.
+
+/// A reason by its number; a number that is none becomes a reason whose name is "unknown".
+skill::Reason reasonFrom(std::int32_t number);
 
 opcua::Value pairsOf(const skill::ValueMap& values);
 std::vector<opcua::Value> startWithInputs(const skill::StartRequest& request,

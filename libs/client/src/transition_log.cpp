@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "method_values.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/namespaces.hpp"
 #include "metier/opcua_skill/values.hpp"
@@ -47,7 +48,7 @@ std::optional<TransitionEvent> eventFrom(const std::vector<opcua::Value>& fields
     event.message = opcua::sanitise(fieldOr(fields, kMessage, opcua::LocalizedText{}).text);
     event.severity = fieldOr<std::uint16_t>(fields, kSeverity, 0);
     event.execution_id = opcua::sanitise(fieldOr(fields, kExecutionId, std::string{}));
-    event.reason = static_cast<skill::Reason>(fieldOr<std::int32_t>(fields, kReason, 0));
+    event.reason = reasonFrom(fieldOr<std::int32_t>(fields, kReason, 0));
     event.reason_text = opcua::sanitise(fieldOr(fields, kReasonText, std::string{}));
     const auto& intermediate = fields[kIntermediate];
     event.intermediate_result =
@@ -69,7 +70,7 @@ std::optional<skill::StoppingEvent> stoppingFrom(const opcua::EventNotice& notic
         .time = fields[0].as<UtcTime>().value_or(UtcTime{}),
         .execution_id = opcua::sanitise(fields[1].as<std::string>().value_or("")),
         .to = suspends ? skill::State::suspended : skill::State::halted,
-        .reason = static_cast<skill::Reason>(fields[3].as<std::int32_t>().value_or(0)),
+        .reason = reasonFrom(fields[3].as<std::int32_t>().value_or(0)),
         .reason_text = opcua::sanitise(fields[4].as<std::string>().value_or(""))};
 }
 

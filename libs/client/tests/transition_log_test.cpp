@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <future>
 
 namespace metier::client {
 namespace {
@@ -55,6 +56,87 @@ TEST(TransitionLog, NeedsNobodyToListen) {
     const auto found = log.await(log.mark(), std::chrono::steady_clock::now(),
                                  [](const auto& /*event*/) { return true; });
     EXPECT_FALSE(found);
+}
+
+/// A notice of a transition with that number, as a server sends it.
+opcua::EventNotice transition(std::uint32_t number, std::int32_t reason = 1) {
+    return {Kind::event,
+            {opcua::Value::of(number), opcua::Value::of(UtcTime(std::chrono::seconds(7))),
+             opcua::Value::of(opcua::LocalizedText{"en", "a\x1b[2Jb"}),
+             opcua::Value::of(std::uint16_t{500}), opcua::Value::of(0.75),
+             opcua::Value::of("id\n1"), opcua::Value::of(reason), opcua::Value::of("why")},
+            {}};
+}
+
+bool any(const skill::TransitionEvent& /*event*/) {
+    return true;
+}
+
+/// What the log gives that has arrived since the mark.
+std::optional<TransitionLog::Found> next(TransitionLog& log, TransitionLog::Mark from) {
+    return log.await(from, std::chrono::steady_clock::now(), any).value();
+}
+
+TEST(TransitionLog, MakesTextFromTheServerPrintable) {
+    TransitionLog log;
+    log.add(transition(3));
+    const auto event = next(log, {}).value().event;
+    EXPECT_EQ(event.from, skill::State::running);
+    EXPECT_EQ(event.to, skill::State::halted);
+    EXPECT_EQ(event.time, UtcTime(std::chrono::seconds(7)));
+    EXPECT_EQ(event.intermediate_result, skill::Value(0.75));
+    EXPECT_EQ(event.severity, 500);
+    EXPECT_EQ(event.message.find('\x1b'), std::string::npos);
+    EXPECT_EQ(event.execution_id.find('\n'), std::string::npos);
+}
+
+TEST(TransitionLog, ANumberThatIsNoReasonIsNotTakenForAnother) {
+    for (const std::int32_t number : {257, -255, 2'147'483'647, 8}) {
+        TransitionLog log;
+        log.add(transition(4, number));
+        EXPECT_EQ(toString(next(log, {}).value().event.reason), "unknown") << number;
+    }
+}
+
+TEST(TransitionLog, AnEventOfNoTransitionIsADoubt) {
+    for (const std::uint32_t number : {0U, 10U, 4'294'967'295U}) {
+        TransitionLog log;
+        const auto before = log.mark();
+        log.add(transition(number));
+        EXPECT_EQ(log.mark().doubts, before.doubts + 1) << number;
+        EXPECT_EQ(log.mark().number, before.number) << number;
+        EXPECT_FALSE(next(log, before)) << "who waits looks for itself";
+    }
+}
+
+TEST(TransitionLog, KeepsTheNewestThousandUnderTheirNumbers) {
+    TransitionLog log;
+    for (int i = 0; i < 1200; ++i) {
+        log.add(transition(i % 2 == 0 ? 2 : 4));
+    }
+    EXPECT_EQ(log.mark().number, 1200U);
+    EXPECT_EQ(next(log, {}).value().number, 200U);
+    EXPECT_EQ(next(log, {.number = 1100}).value().number, 1100U);
+    const auto halted = log.await({}, std::chrono::steady_clock::now(), [](const auto& event) {
+        return event.to == skill::State::halted;
+    });
+    ASSERT_FALSE(halted);
+    EXPECT_EQ(halted.error().status, opcua::status::kBadTimeout);
+}
+
+TEST(TransitionLog, WakesWhoWaitsByWhatComesAndByTheEnd) {
+    TransitionLog log;
+    const auto far = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    auto waits = std::async(std::launch::async, [&] { return log.await({}, far, any); });
+    log.add(transition(2));
+    EXPECT_EQ(waits.get().value()->number, 0U);
+    log.add(transition(4));
+    auto ends = std::async(std::launch::async, [&] { return log.await({.number = 2}, far, any); });
+    log.add({Kind::ended, {}, opcua::status::kBadSessionClosed});
+    const auto ended = ends.get();
+    ASSERT_FALSE(ended);
+    EXPECT_EQ(ended.error().status, opcua::status::kBadSessionClosed);
+    EXPECT_TRUE(next(log, {})) << "what came before the end is still there";
 }
 
 }  // namespace
