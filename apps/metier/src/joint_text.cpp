@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 
+#include "metier/base/text.hpp"
 #include "metier/motion/frame.hpp"
 
 namespace metier::app {
@@ -25,17 +26,15 @@ double shown(double value) {
 }
 
 Result<double> parseNumber(std::string_view word, std::string_view what, std::size_t number) {
-    const auto first = word.find_first_not_of(" +");
-    const auto digits = first == std::string_view::npos ? std::string_view() : word.substr(first);
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value)) {
-        return fail(
-            Errc::invalid_argument,
-            fmt::format("{} {}: '{}' is not a finite number, as -1.57 or 2e-3 is", what, number,
-                        word.substr(std::min(word.find_first_not_of(' '), word.size()))));
+    word.remove_prefix(std::min(word.find_first_not_of(' '), word.size()));
+    const bool plus = word.starts_with('+') && !word.starts_with("+-");
+    const auto value = numberIn<double>(word.substr(plus ? 1 : 0));
+    if (!value || !std::isfinite(*value)) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{} {}: '{}' is not a finite number, as -1.57 or 2e-3 is", what,
+                                number, word));
     }
-    return value;
+    return *value;
 }
 
 /// The one of two equal quaternions whose first component that is not 0 is positive.

@@ -31,6 +31,11 @@ std::optional<int> takeNumber(std::string_view& text, std::size_t digits, char e
     return number;
 }
 
+constexpr double kLongestAgo = 36'500 * 86'400.0;  // [s]
+// Years whose times a UtcTime holds.
+constexpr int kFirstYear = 1970;
+constexpr int kLastYear = 2261;
+
 /// "30m" and the like.
 std::optional<double> ago(std::string_view text) {
     constexpr std::array kUnits{std::pair{'s', 1.0}, std::pair{'m', 60.0}, std::pair{'h', 3600.0},
@@ -38,11 +43,11 @@ std::optional<double> ago(std::string_view text) {
     double number = 0;
     const auto* end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, number);
-    if (read.ec != std::errc() || read.ptr + 1 != end || !(number >= 0 && number <= 1e6)) {
+    if (read.ec != std::errc() || read.ptr + 1 != end || !(number >= 0)) {
         return std::nullopt;
     }
     for (const auto& [unit, seconds] : kUnits) {
-        if (*read.ptr == unit) {
+        if (*read.ptr == unit && number * seconds <= kLongestAgo) {
             return number * seconds;
         }
     }
@@ -50,7 +55,7 @@ std::optional<double> ago(std::string_view text) {
 }
 
 /// "2026-11-22"; takes it off the text.
-std::optional<UtcTime> takeDay(std::string_view& text) {
+std::optional<std::chrono::year_month_day> takeDay(std::string_view& text) {
     const auto year = takeNumber(text, 4, '-');
     const auto month = year ? takeNumber(text, 2, '-') : std::nullopt;
     const auto day = month ? takeNumber(text, 2, 'T') : std::nullopt;
@@ -60,7 +65,7 @@ std::optional<UtcTime> takeDay(std::string_view& text) {
     const std::chrono::year_month_day date{std::chrono::year(*year),
                                            std::chrono::month(static_cast<unsigned>(*month)),
                                            std::chrono::day(static_cast<unsigned>(*day))};
-    return date.ok() ? std::optional<UtcTime>(std::chrono::sys_days(date)) : std::nullopt;
+    return date.ok() ? std::optional(date) : std::nullopt;
 }
 
 /// [s] of "09:30" or "09:30:05.5".
@@ -94,7 +99,11 @@ Result<UtcTime> parseTime(std::string_view text, UtcTime now) {
         return fail(Errc::invalid_argument,
                     fmt::format("'{}' is no time as 2026-11-22T09:30 (UTC), 30m, 8h or 7d", text));
     }
-    return *day + toDuration(*seconds);
+    if (day->year() < std::chrono::year(kFirstYear) || day->year() > std::chrono::year(kLastYear)) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("'{}' is not in the years {} to {}", text, kFirstYear, kLastYear));
+    }
+    return UtcTime(std::chrono::sys_days(*day)) + toDuration(*seconds);
 }
 
 }  // namespace metier::app

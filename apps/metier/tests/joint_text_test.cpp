@@ -58,5 +58,38 @@ TEST(JointText, JsonKeepsEveryBit) {
     EXPECT_EQ(back["quaternion"]["z"].get<double>(), pose.rotation.z());
 }
 
+TEST(JointText, TakesOneSignOnly) {
+    EXPECT_THAT(parseNumbers({{"+1", " +2", "-3"}}, "x").value(), ElementsAre(1, 2, -3));
+    for (const char* word : {"++1", "+-1", "-+1", "--1", "+ 1", "+ +1"}) {
+        EXPECT_FALSE(parseNumbers({{word}}, "x")) << word;
+    }
+}
+
+TEST(JointText, AWordThatEndsWithACommaLacksANumber) {
+    const auto refused = parseNumbers({{"1,2,"}}, "axis bound");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("axis bound 3: '' is not a finite number"));
+    EXPECT_TRUE(parseNumbers({}, "x").value().empty());
+}
+
+TEST(JointText, APoseHasMetresAndRadiansInItsRefusal) {
+    const auto refused = parsePose({{"1,2,3,4,5,6,7"}}, "target");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().message,
+              "target: 7 values given, a pose has 6: x y z in m, a b c in rad");
+    const auto joints = parseJoints(ur5(), {{"1"}}, "start");
+    EXPECT_EQ(joints.error().message,
+              "start: 1 values given, ur5 has 6 axes: one value for each, rad");
+}
+
+TEST(JointText, APoseIsReadAsItIsWritten) {
+    const auto pose = parsePose({{"0.1,-0.2,0.3,0.4,-0.5,0.6"}}, "target").value();
+    const auto json = toJson(pose);
+    EXPECT_NEAR(json["position"]["y"].get<double>(), -0.2, 1e-15);
+    EXPECT_NEAR(json["rotation"]["a"].get<double>(), 0.4, 1e-12);
+    EXPECT_NEAR(json["rotation"]["c"].get<double>(), 0.6, 1e-12);
+    EXPECT_GT(json["quaternion"]["w"].get<double>(), 0.0);
+}
+
 }  // namespace
 }  // namespace metier::app

@@ -43,5 +43,63 @@ TEST(ParseValue, RefusesWithWhatWasGivenAndWhatIsExpected) {
     EXPECT_FALSE(parseValue(ValueType::boolean, "yes"));
 }
 
+/// One text that each type takes.
+constexpr std::pair<ValueType, const char*> kExamples[] = {
+    {ValueType::boolean, "false"},     {ValueType::int32, "-2147483648"},
+    {ValueType::uint32, "4294967295"}, {ValueType::uint64, "18446744073709551615"},
+    {ValueType::number, "1e-3"},       {ValueType::text, "any text"},
+    {ValueType::frame, "1,2,3,4,5,6"}, {ValueType::vector3, "1,2,3"},
+    {ValueType::numbers, "1,2"},       {ValueType::texts, "a,b"},
+    {ValueType::ranges, "-1:1"},       {ValueType::frames, "1,2,3,4,5,6"}};
+
+TEST(ParseValue, GivesAValueOfTheTypeThatIsAskedFor) {
+    for (const auto& [type, text] : kExamples) {
+        const auto value = parseValue(type, text);
+        ASSERT_TRUE(value) << value.error().message;
+        EXPECT_EQ(skill::typeOf(*value), type) << text;
+    }
+}
+
+TEST(ParseValue, RefusesNumbersBeyondTheirType) {
+    EXPECT_FALSE(parseValue(ValueType::int32, "2147483648"));
+    EXPECT_FALSE(parseValue(ValueType::uint32, "4294967296"));
+    EXPECT_FALSE(parseValue(ValueType::uint64, "18446744073709551616"));
+    EXPECT_FALSE(parseValue(ValueType::uint64, "-1"));
+    EXPECT_FALSE(parseValue(ValueType::int32, "1.0"));
+    EXPECT_FALSE(parseValue(ValueType::number, "1e999"));
+}
+
+TEST(ParseValue, SaysForEachTypeHowItIsWritten) {
+    for (const auto& [type, text] : kExamples) {
+        if (type == ValueType::text || type == ValueType::texts) {
+            continue;  // which take every text
+        }
+        for (const char* wrong : {"x", "1;", "1:2:3", "1,2,", "true,", "--1", "0x1"}) {
+            const auto refused = parseValue(type, wrong);
+            ASSERT_FALSE(refused) << wrong << " as " << skill::toString(type);
+            EXPECT_EQ(refused.error().message, "'" + std::string(wrong) + "' is not written as " +
+                                                   std::string(notation(type)));
+        }
+    }
+}
+
+TEST(ParseValue, AnEmptyTextIsAnEmptyListAndNoNumber) {
+    EXPECT_EQ(parseValue(ValueType::numbers, "").value(), Value(std::vector<double>{}));
+    EXPECT_EQ(parseValue(ValueType::texts, "").value(), Value(std::vector<std::string>{}));
+    EXPECT_EQ(parseValue(ValueType::text, "").value(), Value(std::string()));
+    for (const auto type : {ValueType::number, ValueType::int32, ValueType::boolean,
+                            ValueType::frame, ValueType::vector3, ValueType::null}) {
+        EXPECT_FALSE(parseValue(type, "")) << skill::toString(type);
+    }
+}
+
+TEST(ParseValue, FramesInAListAreCountedEach) {
+    EXPECT_FALSE(parseValue(ValueType::frames, "1,2,3,4,5,6;"));
+    EXPECT_FALSE(parseValue(ValueType::frames, "1,2,3,4,5,6;1,2,3"));
+    EXPECT_FALSE(parseValue(ValueType::frame, "1,2,3,4,5,6,7"));
+    EXPECT_FALSE(parseValue(ValueType::vector3, "1,2"));
+    EXPECT_FALSE(parseValue(ValueType::ranges, "1:2,3"));
+}
+
 }  // namespace
 }  // namespace metier::app
