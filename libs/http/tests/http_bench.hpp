@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -66,8 +67,16 @@ protected:
         }
         return found;
     }
-    /// Whether a new connection is served.
-    bool answers() { return answerTo(closing(get("/echo/still"))).ends_with("<still>"); }
+    /// Whether a new connection is served within half a minute. It is refused as long as the thread
+    /// of a former one has not ended, which its peer does not see.
+    bool answers() {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        bool answered = false;
+        while (!answered && std::chrono::steady_clock::now() < deadline) {
+            answered = answerTo(closing(get("/echo/still"))).ends_with("<still>");
+        }
+        return answered;
+    }
 
     HttpServer server_;
     std::uint16_t port_ = 0;
