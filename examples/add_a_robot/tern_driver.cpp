@@ -271,7 +271,8 @@ private:
 
 Result<device::OpenDevice> open(const device::OpenRequest& request) {
     const auto port = static_cast<std::uint16_t>(request.settings.numberOr("port", 7300, 1, 65535));
-    // Of the controller, until it counts as gone: three cycles, more for a virtual one [s].
+    // Silence of the controller after which it counts as gone [s]: three cycles, more for a
+    // virtual one.
     const auto silence = request.settings.numberOr("longest_silence", 0.03, 0.03, 2.0);
     if (auto checked = request.settings.finish(); !checked) {
         return fail(checked.error());

@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// What a log with that formatter writes for a message.
+/// Line that a log with that formatter writes for a message.
 std::string logged(const std::string& message) {
     std::ostringstream out;
     const auto sink = std::make_shared<spdlog::sinks::ostream_sink_st>(out);

@@ -5,6 +5,7 @@
 
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
+#include "metier/skill/units.hpp"
 #include "questions.hpp"
 
 namespace metier::client {
@@ -104,20 +105,10 @@ private:
     }
 
     static skill::Unit unitOf(const opcua::EuInformation& unit) {
-        constexpr std::array kKnown{skill::kMetre,
-                                    skill::kRadian,
-                                    skill::kSecond,
-                                    skill::kNewton,
-                                    skill::kNewtonMetre,
-                                    skill::kMetrePerSecond,
-                                    skill::kRadianPerSecond,
-                                    skill::kMetrePerSecondSquared,
-                                    skill::kRadianPerSecondSquared,
-                                    skill::kKilogram};
         const auto symbol = opcua_skill::symbolOf(unit);
-        const auto found = std::find_if(kKnown.begin(), kKnown.end(),
+        const auto found = std::find_if(skill::kUnits.begin(), skill::kUnits.end(),
                                         [&](const auto& known) { return known.symbol == symbol; });
-        return found == kKnown.end() ? skill::kOne : *found;
+        return found == skill::kUnits.end() ? skill::kOne : *found;
     }
 
     Questions& questions_;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <future>
 
-#include "metier/motion/frame.hpp"
+#include "metier/client/testing/arm_data.hpp"
 #include "metier/opcua_skill/live_figures.hpp"
 #include "metier/opcua_skill/motion_device_system.hpp"
 #include "metier/robot_skills/arm_skills.hpp"
@@ -33,31 +33,11 @@ joint_simulator::JointSimulatorOptions simulatorOptions(const motion::RobotModel
     return options;
 }
 
-opcua::ThreeDFrame frameOf(const motion::Pose& pose) {
-    const auto frame = motion::toFrame(pose);
-    return {frame.x, frame.y, frame.z, frame.a, frame.b, frame.c};
-}
-
 opcua_skill::KinematicsData dataOf(const motion::RobotModel& model, double fastest) {
-    const auto& chain = model.chain();
-    opcua_skill::KinematicsData data;
-    data.base_from_first_joint = frameOf(chain.joints.front().parent_from_joint);
-    data.last_joint_from_flange = frameOf(chain.last_from_flange);
-    for (const auto& joint : chain.joints) {
-        data.joint_frames.push_back(data.joint_frames.empty() ? opcua::ThreeDFrame{}
-                                                              : frameOf(joint.parent_from_joint));
-        data.joint_axes.push_back({joint.axis.x(), joint.axis.y(), joint.axis.z()});
-        data.min_joint_position.push_back(joint.limits.lower);
-        data.max_joint_position.push_back(joint.limits.upper);
-        data.max_joint_velocity.push_back(joint.limits.velocity * fastest);
-        data.max_joint_acceleration.push_back(joint.limits.acceleration);
-        data.max_joint_jerk.push_back(joint.limits.jerk);
+    auto data = testing::dataOf(model);
+    for (auto& velocity : data.max_joint_velocity) {
+        velocity *= fastest;
     }
-    data.max_cartesian_velocity = {1, 2};
-    data.max_cartesian_acceleration = {2, 5};
-    data.max_cartesian_jerk = {50, 100};
-    data.cycle_time = model.cycleTime();
-    data.tool_frames = {"flange"};
     return data;
 }
 

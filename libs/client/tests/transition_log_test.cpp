@@ -72,7 +72,7 @@ bool any(const skill::TransitionEvent& /*event*/) {
     return true;
 }
 
-/// What the log gives that has arrived since the mark.
+/// Entries of the log that have arrived since the mark.
 std::optional<TransitionLog::Found> next(TransitionLog& log, TransitionLog::Mark from) {
     return log.await(from, std::chrono::steady_clock::now(), any).value();
 }

@@ -10,6 +10,7 @@
 
 #include "literal.hpp"
 #include "metier/composition/definition_file.hpp"
+#include "metier/skill/units.hpp"
 #include "static_check.hpp"
 
 namespace metier::composition {
@@ -30,18 +31,6 @@ constexpr std::array kTypes{ValueType::boolean, ValueType::int32,   ValueType::u
                             ValueType::uint64,  ValueType::number,  ValueType::text,
                             ValueType::frame,   ValueType::vector3, ValueType::numbers,
                             ValueType::texts,   ValueType::ranges,  ValueType::frames};
-
-constexpr std::array kUnits{skill::kOne,
-                            skill::kMetre,
-                            skill::kRadian,
-                            skill::kSecond,
-                            skill::kNewton,
-                            skill::kNewtonMetre,
-                            skill::kMetrePerSecond,
-                            skill::kRadianPerSecond,
-                            skill::kMetrePerSecondSquared,
-                            skill::kRadianPerSecondSquared,
-                            skill::kKilogram};
 
 /// The element of `known` that is called `name`; notes it if there is none.
 template <typename List, typename NameOf>
@@ -118,7 +107,7 @@ Field readField(const TomlTable& table, const std::string& name) {
     Field field{.name = name, .description = table.textOr("description", "")};
     field.type = choose(table, "type", table.text("type"), kTypes,
                         [](ValueType type) { return skill::toString(type); });
-    field.unit = choose(table, "unit", table.textOr("unit", ""), kUnits,
+    field.unit = choose(table, "unit", table.textOr("unit", ""), skill::kUnits,
                         [](const Unit& unit) { return unit.symbol; });
     readRange(table, field);
     readLength(table, field);

@@ -1,4 +1,4 @@
-// What tabs are shown, and when.
+// Contents and times of the messages that tabs get.
 #include "board.hpp"
 
 #include <gmock/gmock.h>

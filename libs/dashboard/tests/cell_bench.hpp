@@ -45,7 +45,7 @@ private:
     int resets_ = 0;
 };
 
-/// What an arm measures, and maybe its gripper.
+/// Measurements of an arm, and of its gripper if it has one.
 struct Measured {
     opcua_skill::KinematicsState kinematics{
         {0.0, 0.0}, {}, opcua_skill::SafetyStateKind::normal, 0};

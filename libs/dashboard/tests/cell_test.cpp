@@ -1,4 +1,4 @@
-// What is shown of a cell file, and of the addresses that its servers really have.
+// A cell file as the page shows it, with the addresses that its servers really have.
 #include "metier/dashboard/cell.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What changes all the time, from a server to the tabs that look.
+// Live values on their way from a server to the tabs that show them.
 #include <gmock/gmock.h>
 
 #include <functional>

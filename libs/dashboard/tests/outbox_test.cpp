@@ -1,4 +1,4 @@
-// What waits for a tab, and for a turn to log in.
+// Messages that wait for a tab, and log-ins that wait for their turn.
 #include "outbox.hpp"
 
 #include <gmock/gmock.h>

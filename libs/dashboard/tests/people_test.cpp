@@ -1,4 +1,4 @@
-// Who is let in, for how long, and how soon after wrong passwords.
+// Log-ins: accepted users, the time they last, and the delay after wrong passwords.
 #include "people.hpp"
 
 #include <gmock/gmock.h>

@@ -2,19 +2,32 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "arm_data.hpp"
 #include "arm_json.hpp"
 #include "live_values.hpp"
+#include "metier/client/testing/arm_data.hpp"
 #include "skill_shown.hpp"
 
 namespace metier::dashboard {
 namespace {
 
 using namespace std::chrono_literals;
+
+/// A model of the folder models/. Throws if there is none of that name.
+motion::RobotModel modelNamed(const std::string& name) {
+    return motion::RobotModel::load(std::filesystem::path(METIER_MODELS_DIR) / (name + ".toml"))
+        .value();
+}
+
+opcua_skill::KinematicsData dataOf(const motion::RobotModel& model) {
+    auto data = client::testing::dataOf(model);
+    data.tool_frames = {"flange", "gripper"};
+    return data;
+}
 using nlohmann::json;
 
 const UtcTime kNoon{std::chrono::seconds(1'800'000'000)};

@@ -1,21 +1,12 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "metier/motion/frame.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "metier/opcua_skill/kinematics_data.hpp"
 
-namespace metier::dashboard {
+namespace metier::client::testing {
 
-/// A model of the folder models/. Throws if there is none of that name.
-inline motion::RobotModel modelNamed(const std::string& name) {
-    return motion::RobotModel::load(std::filesystem::path(METIER_MODELS_DIR) / (name + ".toml"))
-        .value();
-}
-
-/// What the server of such an arm publishes.
+/// Kinematics and limits that the server of an arm publishes.
 inline opcua_skill::KinematicsData dataOf(const motion::RobotModel& model) {
     const auto frameOf = [](const motion::Pose& pose) {
         const auto frame = motion::toFrame(pose);
@@ -39,8 +30,8 @@ inline opcua_skill::KinematicsData dataOf(const motion::RobotModel& model) {
     data.max_cartesian_acceleration = {2, 5};
     data.max_cartesian_jerk = {50, 100};
     data.cycle_time = model.cycleTime();
-    data.tool_frames = {"flange", "gripper"};
+    data.tool_frames = {"flange"};
     return data;
 }
 
-}  // namespace metier::dashboard
+}  // namespace metier::client::testing
