@@ -22,8 +22,9 @@ struct DrawnMotion {
 
 /// Name of the robot, for a picture's title.
 std::string titleOf(const motion::RobotModel& model);
-/// \param name of the record, for messages and the note. \param tool of the model; empty: the
-/// flange Errors: invalid_argument (other number of axes, no such tool).
+/// \param name of the record, for messages and the note
+/// \param tool of the model; empty: the flange
+/// Errors: invalid_argument (other number of axes, no such tool).
 Result<DrawnMotion> recordedMotion(const motion::RobotModel& model,
                                    const path_evaluation::MotionRecord& record,
                                    const std::string& name, const std::string& tool);

@@ -13,7 +13,8 @@ namespace metier::app {
 std::string printable(std::string_view text);
 
 /// A log in which every text is printable. Further lines of one message are indented: no text from
-/// outside looks like a line of the log. \param pattern as spdlog takes it
+/// outside looks like a line of the log.
+/// \param pattern as spdlog takes it
 std::unique_ptr<spdlog::formatter> printableLog(const std::string& pattern);
 
 }  // namespace metier::app

@@ -8,8 +8,8 @@
 
 namespace metier::app {
 
-/// Reports the progress of a row: the finished fraction, 0 to 1, and the present action. Threads:
-/// that of the row.
+/// Reports the progress of a row: the finished fraction, 0 to 1, and the present action.
+/// Threads: that of the row.
 using TellRow = std::function<void(double fraction, std::string text)>;
 
 /// Works on all rows at the same time, one thread each, and shows how they go on. Returns when the

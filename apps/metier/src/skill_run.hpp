@@ -16,7 +16,8 @@ struct SkillRun {
 };
 
 /// Starts the skill, shows its transitions on standard error, waits for its end and prints its
-/// result. Ctrl-C halts it. \param signal made before all threads
+/// result. Ctrl-C halts it.
+/// \param signal made before all threads
 Exit runSkill(const link::StopSignal& signal, OpenSkill& open, const skill::ValueMap& values,
               const SkillRun& run);
 

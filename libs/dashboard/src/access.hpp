@@ -10,10 +10,11 @@ namespace metier::dashboard {
 
 // Checks of a request before it is handled. Threads: any; pure.
 
-/// Whether a browser may have been made to send it by another page: the Host must be an address or
+/// Refuses a request that another page may have made a browser send: the Host must be an address or
 /// `localhost`, so that no foreign name was pointed at this machine, and the Origin, if there is
-/// one, this page. \param host_name by which people reach this page besides; empty: none Errors:
-/// access_denied, saying what is wrong.
+/// one, must be this page.
+/// \param host_name another name of this page; empty: none
+/// Errors: access_denied, saying what is wrong.
 Result<void> checkOrigin(const httplib::Request& request, const std::string& host_name);
 
 /// Whether it is an address of this machine that no other machine reaches: 127.0.0.0/8, ::1,

@@ -133,7 +133,7 @@ std::optional<NodeRole> partRole(NodeKind kind, std::string_view below) {
     return NodeRole{kind, detailOf(found->part), 0};
 }
 
-/// Folder of the fields of one place, and the node_role of their nodes.
+/// Folder of the fields of one place, and the role of their nodes.
 struct FieldGroup {
     std::string_view folder;
     skill::Place place;

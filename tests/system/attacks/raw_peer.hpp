@@ -65,7 +65,7 @@ public:
     RawPeer& operator=(const RawPeer&) = delete;
 
     bool connected() const { return socket_ >= 0; }
-    /// Each \return whether the server went along.
+    /// Returns whether the server went along, as the next ones do.
     bool hello();
     bool openChannel();
     /// An anonymous session. \param activate or only created

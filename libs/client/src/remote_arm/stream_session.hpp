@@ -20,7 +20,7 @@ namespace metier::client {
 
 /// One connection to the server of an arm, for as long as it holds.
 ///
-/// Threading: one owner; what comes in is noted by the client's thread, which rings the wake_up.
+/// Threading: one owner; what comes in is noted by the client's thread, which wakes the owner.
 class StreamSession {
 public:
     /// Values that the server published last.

@@ -21,7 +21,7 @@ struct ArmFailure {
 class ArmMoveOwner {
 public:
     virtual ~ArmMoveOwner() = default;
-    /// Something has changed: look at all arm_moves.
+    /// Something has changed: look at all arms.
     virtual void changed() = 0;
     /// The arm's part cannot go on.
     virtual void failed(ArmFailure failure) = 0;

@@ -12,7 +12,8 @@ using JointPath = std::vector<std::vector<double>>;
 inline constexpr double kOffPath = 2e-3;
 
 /// Time that an arm needs to brake from its largest speed on the path to rest at the path's end
-/// [s]. \param duration of the path from rest to rest [s]; its places are passed at equal intervals
+/// [s].
+/// \param duration of the path from rest to rest [s]; its places are passed at equal intervals
 double brakingTime(const JointPath& path, double duration);
 
 /// Describes how far the joint position `now` is from the straight lines between the places of

@@ -52,7 +52,7 @@ private:
     void suspendedByOther(const std::string& why) override;
 
     void dropOld();
-    /// Asks all arm_moves that have not arrived; `then` once all have answered well.
+    /// Asks all arms that have not arrived; `then` once all have answered well.
     void askAll(Ask ask, void (SynchronizedWork::*then)());
     void askArms() { askAll(&ArmMove::ask, &SynchronizedWork::askClocks); }
     void askClocks() { askAll(&ArmMove::compareClocks, &SynchronizedWork::begin); }

@@ -27,7 +27,7 @@ public:
     bool running() const noexcept { return step_ != Step::idle; }
     void cancel() noexcept { step_ = Step::idle; }
 
-    /// Continues the start_up.
+    /// Continues the start-up.
     /// \return its outcome, once; device_fault with the reason that remains
     std::optional<Result<void>> tick(const MachineState& machine, SteadyTime now, Wire& wire);
 

@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A start_up whose robot and whose time are moved by hand.
+/// A start-up whose robot and whose time are moved by hand.
 class StartUpTest : public ::testing::Test, private Wire {
 protected:
     StartUpTest() { start_up_.start(now_); }

@@ -92,7 +92,8 @@ public:
     virtual Result<void> reset(UsedSkillListener& listener) = 0;
     /// Asks whether begin() with these parameters would succeed now; nothing moves.
     /// \param done called once, in a later turn of the owner's thread, unless this is destroyed
-    ///             before. Errors: connection_lost, timeout, the server's
+    ///             before
+    /// Errors, given to `done`: connection_lost, timeout, the server's.
     virtual void check(const skill::ValueMap& parameters,
                        std::function<void(Result<skill::CheckReport>)> done) = 0;
     /// Compares the clocks of the used skill's server and of this machine.

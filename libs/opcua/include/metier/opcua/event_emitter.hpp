@@ -39,9 +39,8 @@ enum class EventAudience {
 class EventEmitter {
 public:
     /// \param type    a subtype of BaseEventType
-    /// \param fields  paths of the type's own mandatory fields, e.g. {{0, "ToState"}, {0,
-    /// "Number"}} Errors: not_found (type, or a field, named), invalid_argument (not an event
-    /// type).
+    /// \param fields  paths of the type's own mandatory fields: {{0, "ToState"}, {0, "Number"}}
+    /// Errors: not_found (type, or a field, named), invalid_argument (not an event type).
     static Result<EventEmitter> create(Server& server, const NodeId& type,
                                        const std::vector<BrowsePath>& fields);
     static Result<EventEmitter> create(ServerCore& core, const NodeId& type,

@@ -37,8 +37,8 @@ public:
 
 struct ExecutionCore;
 
-/// Work's handle to the Program that runs it: the work reports the outcome and the progress of
-/// the work through it.
+/// Handle by which the work of an execution reports its outcome and its progress to the Program
+/// that runs it.
 ///
 /// All copies report to the same Program. Calls that come late, twice, or after the Program is gone
 /// change nothing. An empty handle ignores every call.
@@ -67,8 +67,8 @@ public:
     /// Publishes the step that a sequence is in, as a sub-state of Executing.
     void step(std::string name) const;
     /// Asks the Program to suspend the work, as a client's Suspend does; ExecutionWork::suspend()
-    /// follows. Nothing changes if the work is already coming to rest or does not run. \param why
-    /// for a person: who brought a part of the work to rest
+    /// follows. Nothing changes if the work is already coming to rest or does not run.
+    /// \param why for a person: who brought a part of the work to rest
     void suspend(std::string why) const;
     /// Reports that the work has started another skill, here or on another server.
     void started(StartedExecution child) const;
