@@ -146,6 +146,13 @@ TEST_F(Tare, JudgesTheMeanOfTenRecordsSinceTheRequest) {
     EXPECT_TRUE(give(0.0, 1));
 }
 
+TEST_F(Tare, ForgetsTheRecordsBeforeARepeatedRequest) {
+    EXPECT_FALSE(give(12.0, 145));
+    now += TareTask::kAttemptTime;
+    EXPECT_TRUE(give(0.0, 10)) << "the mean of five loaded and five others is 6 N";
+    EXPECT_EQ(sent, 2);
+}
+
 TEST_F(Tare, FailsWithTheTorqueThatIsLeft) {
     const auto outcome = giveTorque(-0.2, 1000);
     ASSERT_TRUE(outcome);

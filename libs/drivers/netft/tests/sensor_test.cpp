@@ -113,6 +113,20 @@ TEST_F(Sensor, ThatFallsSilentIsLostAndFoundAgain) {
     EXPECT_TRUE(reaches(SafetyState::normal));
 }
 
+TEST_F(Sensor, IsSoughtAtOnceAfterEachOfSeveralLosses) {
+    open();
+    ASSERT_TRUE(reaches(SafetyState::normal));
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 4; ++i) {
+        fake.silence(true);
+        ASSERT_TRUE(reaches(SafetyState::disconnected));
+        fake.silence(false);
+        ASSERT_TRUE(reaches(SafetyState::normal));
+    }
+    // Pauses that grew would be 0.2, 0.4, 0.8 and 1.6 s.
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 4 * *options.silence + 3s);
+}
+
 TEST_F(Sensor, CountsTheRecordsThatAreLost) {
     open();
     ASSERT_TRUE(reaches(SafetyState::normal));
