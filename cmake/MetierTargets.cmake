@@ -7,6 +7,13 @@ target_compile_options(metier_warnings INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor
     -Woverloaded-virtual -Werror>)
 
+# In a unity build each file is a part of another one, where g++ warns of members whose types are in
+# an anonymous namespace.
+if(CMAKE_UNITY_BUILD)
+    target_compile_options(metier_warnings INTERFACE
+        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+endif()
+
 # mold links the test programs in a quarter of the time that GNU ld needs.
 find_program(METIER_MOLD mold)
 if(METIER_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

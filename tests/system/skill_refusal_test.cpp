@@ -4,6 +4,7 @@
 #include <limits>
 #include <ostream>
 
+#include "metier/base/numbers.hpp"
 #include "served_contract.hpp"
 
 namespace metier::system_tests {
@@ -13,7 +14,6 @@ using skill::State;
 using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 constexpr double kLargest = std::numeric_limits<double>::max();
 const skill::Value kGood = std::vector{0.5, -1.0};

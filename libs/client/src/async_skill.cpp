@@ -45,9 +45,7 @@ struct AsyncSkill::Impl {
 
 namespace {
 
-constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
-
-skill::Fields fieldsOf(const std::vector<FieldNode>& nodes) {
+skill::Fields optionalFieldsOf(const std::vector<FieldNode>& nodes) {
     std::vector<skill::Field> fields;
     for (const auto& node : nodes) {
         fields.push_back(node.field);
@@ -63,8 +61,8 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
     auto impl = std::make_unique<Impl>(Impl{client, std::move(address), std::move(nodes)});
     impl->description = {.name = impl->address.name,
                          .type = impl->address.type_name,
-                         .parameters = fieldsOf(impl->nodes.parameters),
-                         .results = fieldsOf(impl->nodes.results),
+                         .parameters = optionalFieldsOf(impl->nodes.parameters),
+                         .results = optionalFieldsOf(impl->nodes.results),
                          .suspendable = impl->nodes.suspendable};
     if (auto stopping = watchStopping(client, impl->address.node, std::move(watch.on_stopping))) {
         impl->stopping = std::move(*stopping);

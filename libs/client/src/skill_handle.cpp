@@ -24,7 +24,6 @@ using skill::TransitionEvent;
 // between.
 constexpr auto kResetTime = std::chrono::seconds(1);
 constexpr auto kResetPause = std::chrono::milliseconds(10);
-constexpr const char* kDeviceNamespace = "https://fortiss.org/UA/Device/";
 
 std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes) {
     std::vector<skill::Field> fields;

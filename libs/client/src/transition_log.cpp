@@ -15,7 +15,7 @@ using skill::TransitionEvent;
 constexpr std::size_t kKept = 1000;
 
 /// The fields of transitionFilter(), in its order.
-enum Field : std::size_t {
+enum EventField : std::size_t {
     kNumber,
     kTime,
     kMessage,
@@ -28,7 +28,7 @@ enum Field : std::size_t {
 };
 
 template <typename T>
-T fieldOr(const std::vector<opcua::Value>& fields, Field field, T fallback) {
+T fieldOr(const std::vector<opcua::Value>& fields, EventField field, T fallback) {
     return fields[field].as<T>().value_or(std::move(fallback));
 }
 

@@ -5,6 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "scope.hpp"
+
 namespace metier::composition {
 
 namespace {
@@ -18,11 +20,6 @@ std::string inQuotes(std::string_view text) {
         result += c == '\n' ? ' ' : c;
     }
     return result + "\"";
-}
-
-std::string nameOf(const Reference& reference) {
-    auto name = reference.step.empty() ? reference.name : reference.step + "." + reference.name;
-    return reference.element ? fmt::format("{}[{}]", name, *reference.element) : name;
 }
 
 struct Printer {

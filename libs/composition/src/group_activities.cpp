@@ -14,7 +14,7 @@ namespace {
 
 using skill::Reason;
 
-constexpr double kMostRounds = 1e6;
+constexpr double kMostRepeats = 1e6;
 
 }  // namespace
 
@@ -182,12 +182,12 @@ void FailureActivity::start() {
 void LoopActivity::start() {
     if (step_.times) {
         const auto times = run_.scope().number(*step_.times);
-        if (!times || !(*times >= 0.0 && *times <= kMostRounds) || *times != std::floor(*times)) {
+        if (!times || !(*times >= 0.0 && *times <= kMostRepeats) || *times != std::floor(*times)) {
             end(StepFailure{Reason::error,
                             fmt::format("step {}: {}", path_,
                                         times ? fmt::format("times is {}; it needs a whole number "
                                                             "from 0 to {}",
-                                                            *times, kMostRounds)
+                                                            *times, kMostRepeats)
                                               : times.error().message)});
             return;
         }

@@ -18,12 +18,6 @@ using skill::Value;
 using skill::ValueType;
 using skill::Vector3;
 
-std::string nameOf(const Reference& reference) {
-    auto name = reference.step.empty() ? reference.name
-                                       : fmt::format("{}.{}", reference.step, reference.name);
-    return reference.element ? fmt::format("{}[{}]", name, *reference.element) : name;
-}
-
 std::optional<double> asNumber(const Value& value) {
     return std::visit(
         [](const auto& held) -> std::optional<double> {
@@ -112,6 +106,12 @@ Result<T> at(const Binding& binding, Result<T> result) {
 }
 
 }  // namespace
+
+std::string nameOf(const Reference& reference) {
+    auto name = reference.step.empty() ? reference.name
+                                       : fmt::format("{}.{}", reference.step, reference.name);
+    return reference.element ? fmt::format("{}[{}]", name, *reference.element) : name;
+}
 
 Result<Value> Scope::read(const Reference& reference) const {
     const auto* values = &parameters_;

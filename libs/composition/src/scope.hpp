@@ -8,6 +8,9 @@
 
 namespace metier::composition {
 
+/// "step.name[2]", as the file spells it.
+std::string nameOf(const Reference& reference);
+
 /// The values of one execution: its parameters, and the results of the steps so far.
 class Scope {
 public:

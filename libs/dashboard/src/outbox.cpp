@@ -7,8 +7,8 @@
 
 namespace metier::dashboard {
 
-std::string dump(const nlohmann::json& json) {
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+std::string dump(const nlohmann::json& value) {
+    return value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Message makeMessage(std::string_view event, const nlohmann::json& data) {

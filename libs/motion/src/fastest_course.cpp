@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "metier/base/numbers.hpp"
 
 namespace metier::motion {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A sum of an unknown and both its neighbours.
 struct Stencil {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "metier/base/numbers.hpp"
 
 namespace metier::motion {
 
@@ -19,8 +20,7 @@ constexpr std::array kBendShares{0.35, 0.6, 0.85};
 // Shares of a limit that a planned motion leaves beside what its bends take.
 constexpr double kLeftAcceleration = 0.3;
 constexpr double kLeftJerk = 0.3;
-constexpr double kRounding = 1e-9;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSpeedRounding = 1e-9;
 
 void raise(double& value, double candidate) noexcept {
     value = std::max(value, candidate);
@@ -42,7 +42,7 @@ bool isDrivenOn(const std::vector<SpeedBounds>& bounds, std::size_t knot, std::s
 ScalarLimits hardEnough(const ScalarState& state, double end, ScalarLimits limits) noexcept {
     constexpr int most = 500;
     constexpr double harder = 1.01;
-    const double there = end + kRounding * std::abs(end);
+    const double there = end + kSpeedRounding * std::abs(end);
     for (int i = 0; i < most && Profile::brake(state, limits).end() > there; ++i) {
         limits.acceleration *= harder;
         limits.jerk *= harder;
@@ -51,8 +51,8 @@ ScalarLimits hardEnough(const ScalarState& state, double end, ScalarLimits limit
 }
 
 bool covers(const ScalarLimits& limits, const ScalarLimits& used) noexcept {
-    return used.acceleration <= limits.acceleration * (1 + kRounding) &&
-           used.jerk <= limits.jerk * (1 + kRounding);
+    return used.acceleration <= limits.acceleration * (1 + kSpeedRounding) &&
+           used.jerk <= limits.jerk * (1 + kSpeedRounding);
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "line_tracker.hpp"
+#include "metier/base/numbers.hpp"
 #include "path_layout.hpp"
 #include "plan.hpp"
 #include "request_check.hpp"
@@ -17,8 +17,6 @@ namespace metier::motion {
 namespace {
 
 using motion::Pose;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double perAxis(const JointVector& values, std::size_t axis) {
     return values.empty() ? 0.0 : values[axis];

@@ -7,7 +7,7 @@ namespace metier::motion {
 
 namespace {
 
-constexpr int kBisections = 100;
+constexpr int kMostBisections = 100;
 
 ScalarState advance(const ScalarState& state, double jerk, double time) noexcept {
     const double a = state.acceleration;
@@ -75,7 +75,7 @@ double endWithPeak(const ScalarState& start, double peak, const ScalarLimits& li
 double findPeak(const ScalarState& start, double target, const ScalarLimits& limits) noexcept {
     double low = -limits.velocity;
     double high = limits.velocity;
-    for (int i = 0; i < kBisections && high - low > 1e-16 * limits.velocity; ++i) {
+    for (int i = 0; i < kMostBisections && high - low > 1e-16 * limits.velocity; ++i) {
         const double middle = low + (high - low) / 2;
         (endWithPeak(start, middle, limits) < target ? low : high) = middle;
     }

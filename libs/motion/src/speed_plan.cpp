@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "fastest_course.hpp"
+#include "metier/base/numbers.hpp"
 
 namespace metier::motion {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Shares of acceleration and jerk limits that the bends of the path may use up: stops need the
 /// rest.
 constexpr double kBendAcceleration = 0.65;

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "metier/base/numbers.hpp"
 
 namespace metier::motion {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Cartesian jerk limit as a multiple of a lowered acceleration limit [1/s].
 constexpr double kJerkPerAcceleration = 20.0;
 

@@ -16,12 +16,12 @@ using motion::Pose;
 /// Length that a rotation counts for where it is more than the translation [m/rad].
 constexpr double kLengthPerAngle = 0.25;
 
-constexpr double kLongestStep = 0.005;      // [m]
+constexpr double kLongestPathStep = 0.005;  // [m]
 constexpr double kLongestTurn = 0.03;       // [rad]
 constexpr double kFewestStepsOfAPath = 16;  // without corners
 constexpr double kFewestStepsOfACorner = 16;
-constexpr double kFewestStepsOfALine = 4;  // between corners
-constexpr double kShortestStep = 1e-12;    // shortest step along the path
+constexpr double kFewestStepsOfALine = 4;    // between corners
+constexpr double kShortestPathStep = 1e-12;  // shortest step along the path
 /// Growth of the steps beside a corner, per distance to it.
 constexpr double kGrowth = 0.4;
 
@@ -138,7 +138,7 @@ void ToolPath::append(const Pose& target, double blend_radius) {
 double ToolPath::longestStep(const Piece& piece) noexcept {
     const double speed = std::max(piece.in.velocity.norm(), piece.out.velocity.norm());
     const double spin = std::max(piece.in.spin.norm(), piece.out.spin.norm());
-    return 1 / std::max({speed / kLongestStep, spin / kLongestTurn, 1e-9});
+    return 1 / std::max({speed / kLongestPathStep, spin / kLongestTurn, 1e-9});
 }
 
 double ToolPath::cornerStep(const Piece& piece) noexcept {
@@ -165,7 +165,7 @@ void ToolPath::addPlaces(std::size_t piece, double density, std::vector<double>&
     for (double at = 0; !here.corner && at < here.length;) {
         const double step = std::min(
             {longest, first + kGrowth * at, last + kGrowth / (1 + kGrowth) * (here.length - at)});
-        at += std::max(step / density, kShortestStep * length_);
+        at += std::max(step / density, kShortestPathStep * length_);
         along.push_back(at);
     }
     for (const double at : along) {
@@ -178,7 +178,7 @@ std::vector<double> ToolPath::places(double density) const {
     constexpr double least = 0.05;
     std::vector<double> places{0.0};
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        double shortest = kShortestStep * length_;
+        double shortest = kShortestPathStep * length_;
         for (const std::size_t beside : {i - 1, i + 1}) {
             const bool corner = beside < pieces_.size() && pieces_[beside].corner;
             shortest = corner ? std::max(shortest, least * cornerStep(pieces_[beside])) : shortest;

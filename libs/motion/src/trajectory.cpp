@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "metier/base/numbers.hpp"
 #include "metier/motion/rotation.hpp"
 #include "plan.hpp"
 
 namespace metier::motion {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PathDeviation deviationAt(const motion::Pose& planned, const motion::Pose& pose, double s) {
     return {motion::distanceBetween(planned, pose),

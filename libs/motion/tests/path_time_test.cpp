@@ -4,13 +4,13 @@
 #include <limits>
 #include <numbers>
 
+#include "metier/base/numbers.hpp"
 #include "metier/motion/planner.hpp"
 #include "test_robots.hpp"
 
 namespace metier::motion {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Largest duration of a path, as a multiple of the optimum.
 constexpr double kBar = 1.5;
 

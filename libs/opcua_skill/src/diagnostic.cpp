@@ -13,12 +13,12 @@ opcua::NodeId sessionOf(const std::string& text) {
     return id ? std::move(*id) : opcua::NodeId();
 }
 
-opcua::StatusCode statusOf(const Result<void>& outcome) {
+opcua::StatusCode statusCodeOf(const Result<void>& outcome) {
     return outcome ? opcua::status::kGood : opcua::statusFrom(outcome.error().code);
 }
 
 /// Null for what has not happened yet.
-UtcTime timeOf(UtcTime time) {
+UtcTime timeOrNull(UtcTime time) {
     return time == UtcTime{} ? UtcTime::min() : time;
 }
 
@@ -28,8 +28,8 @@ opcua::ProgramDiagnostic toOpcua(const skill::Diagnostic& diagnostic) {
     opcua::ProgramDiagnostic result;
     result.create_session_id = sessionOf(diagnostic.create_session_id);
     result.create_client_name = diagnostic.create_client_name;
-    result.invocation_creation_time = timeOf(diagnostic.invocation_creation_time);
-    result.last_transition_time = timeOf(diagnostic.last_transition_time);
+    result.invocation_creation_time = timeOrNull(diagnostic.invocation_creation_time);
+    result.last_transition_time = timeOrNull(diagnostic.last_transition_time);
     result.last_method_call = diagnostic.last_method_call;
     result.last_method_session_id = sessionOf(diagnostic.last_method_session_id);
     for (const auto& [name, value] : diagnostic.last_method_inputs) {
@@ -38,8 +38,8 @@ opcua::ProgramDiagnostic toOpcua(const skill::Diagnostic& diagnostic) {
             {name, std::move(shape.data_type), shape.value_rank, {}, {}});
         result.last_method_input_values.push_back(toOpcua(value));
     }
-    result.last_method_call_time = timeOf(diagnostic.last_method_call_time);
-    result.last_method_return_status = statusOf(diagnostic.last_method_status);
+    result.last_method_call_time = timeOrNull(diagnostic.last_method_call_time);
+    result.last_method_return_status = statusCodeOf(diagnostic.last_method_status);
     return result;
 }
 
@@ -53,9 +53,9 @@ opcua::Value readDiagnostic(const skill::Diagnostic& diagnostic, DiagnosticItem 
         case DiagnosticItem::create_client_name:
             return Value::of(diagnostic.create_client_name);
         case DiagnosticItem::invocation_creation_time:
-            return Value::of(timeOf(diagnostic.invocation_creation_time));
+            return Value::of(timeOrNull(diagnostic.invocation_creation_time));
         case DiagnosticItem::last_transition_time:
-            return Value::of(timeOf(diagnostic.last_transition_time));
+            return Value::of(timeOrNull(diagnostic.last_transition_time));
         case DiagnosticItem::last_method_call:
             return Value::of(diagnostic.last_method_call);
         case DiagnosticItem::last_method_session_id:
@@ -69,9 +69,9 @@ opcua::Value readDiagnostic(const skill::Diagnostic& diagnostic, DiagnosticItem 
         case DiagnosticItem::last_method_output_values:
             return Value::ofMixed({});
         case DiagnosticItem::last_method_call_time:
-            return Value::of(timeOf(diagnostic.last_method_call_time));
+            return Value::of(timeOrNull(diagnostic.last_method_call_time));
         case DiagnosticItem::last_method_return_status:
-            return Value::of(statusOf(diagnostic.last_method_status));
+            return Value::of(statusCodeOf(diagnostic.last_method_status));
     }
     return {};
 }

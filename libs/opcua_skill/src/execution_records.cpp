@@ -18,7 +18,7 @@ using opcua::NodeId;
 using opcua::Value;
 using skill::ExecutionRecord;
 
-constexpr const char* kFolder = "ExecutionRecords";
+constexpr const char* kExecutionRecords = "ExecutionRecords";
 
 /// A property of a record.
 struct Item {
@@ -26,7 +26,7 @@ struct Item {
     Value (*read)(const ExecutionRecord& record, const skill::Program& program);
 };
 
-Value timeOf(UtcTime time) {
+Value timeValue(UtcTime time) {
     return Value::of(time == UtcTime{} ? UtcTime::min() : time);
 }
 
@@ -40,8 +40,8 @@ const std::array<Item, 13>& items() {
          {"User", [](Record r, Program) { return Value::of(r.client.user_name); }},
          {"ParentExecution", [](Record r, Program) { return Value::of(r.parent.id); }},
          {"ParentServer", [](Record r, Program) { return Value::of(r.parent.server); }},
-         {"StartTime", [](Record r, Program) { return timeOf(r.start_time); }},
-         {"EndTime", [](Record r, Program) { return timeOf(r.end_time); }},
+         {"StartTime", [](Record r, Program) { return timeValue(r.start_time); }},
+         {"EndTime", [](Record r, Program) { return timeValue(r.end_time); }},
          {"EndState",
           [](Record r, Program) { return Value::of(static_cast<std::uint32_t>(r.state)); }},
          {"Reason",
@@ -60,7 +60,7 @@ const std::array<Item, 13>& items() {
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& skill, std::uint16_t metier) {
     opcua::ObjectSpec spec;
     spec.node.parent = skill;
-    spec.node.browse_name = {metier, kFolder};
+    spec.node.browse_name = {metier, kExecutionRecords};
     spec.node.description = {"en", "The last executions, the latest first."};
     spec.type = opcua::ids::kFolderType;
     return foundOrAdded(nodes, spec);

@@ -14,12 +14,12 @@ using opcua::AddressSpace;
 using opcua::NodeId;
 
 const NodeId kNonHierarchicalReferences{0, 32U};
-constexpr const char* kFolder = "UsedSkills";
+constexpr const char* kUsedSkills = "UsedSkills";
 
 Result<NodeId> folderOf(AddressSpace& nodes, const NodeId& user, std::uint16_t metier) {
     opcua::ObjectSpec spec;
     spec.node.parent = user;
-    spec.node.browse_name = {metier, kFolder};
+    spec.node.browse_name = {metier, kUsedSkills};
     spec.node.description = {"en", "The skills of other servers that it runs."};
     return foundOrAdded(nodes, spec);
 }
@@ -66,7 +66,7 @@ Result<void> publishUse(AddressSpace& nodes, const NodeId& user, const RemoteSki
 
 Result<void> updateUse(AddressSpace& nodes, const NodeId& user, const RemoteSkill& used) {
     METIER_ASSIGN(const auto metier, nodes.namespaceIndex(kMetierUri));
-    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kFolder}));
+    METIER_ASSIGN(const auto folder, nodes.find(user, {metier, kUsedSkills}));
     const auto object = nodes.find(folder, {folder.namespaceIndex(), used.alias});
     return object ? setProperties(nodes, *object, metier, used) : fail(object.error());
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "metier/base/numbers.hpp"
 #include "svg.hpp"
 
 namespace metier::path_evaluation {
@@ -19,7 +20,6 @@ constexpr double kPathTop = 70;
 constexpr double kDeviationTop = 365;
 constexpr double kDeviationHeight = 60;
 constexpr double kMargin = 0.15;  // free space around the square, as a part of its side
-constexpr double kMillimetre = 1000;
 
 /// Maps positions of one square to the picture.
 class Panel {
@@ -70,7 +70,7 @@ void drawSideLength(SvgPicture& picture, const Panel& panel) {
         (panel.spot(square.corner(0).translation).x + panel.spot(square.corner(1).translation).x) /
         2;
     picture.text({middle, panel.spot(square.corner(3).translation).y - 8}, "note centred",
-                 fmt::format("{:.0f} mm", square.side * kMillimetre));
+                 fmt::format("{:.0f} mm", square.side * kMillimetresPerMetre));
 }
 
 std::vector<Spot> deviationCurve(const Panel& panel, double top_mm) {
@@ -78,7 +78,8 @@ std::vector<Spot> deviationCurve(const Panel& panel, double top_mm) {
     const auto count = static_cast<double>(std::max<std::size_t>(path.positions.size(), 2) - 1);
     std::vector<Spot> spots;
     for (std::size_t i = 0; i < path.positions.size(); ++i) {
-        const double mm = distanceFromOutline(path.square, path.positions[i]) * kMillimetre;
+        const double mm =
+            distanceFromOutline(path.square, path.positions[i]) * kMillimetresPerMetre;
         spots.push_back({panel.plotLeft() + kPlotSize * static_cast<double>(i) / count,
                          kDeviationTop + kDeviationHeight * (1 - std::min(mm / top_mm, 1.0))});
     }
@@ -86,7 +87,8 @@ std::vector<Spot> deviationCurve(const Panel& panel, double top_mm) {
 }
 
 void drawDeviation(SvgPicture& picture, const Panel& panel) {
-    const double top_mm = roundedUp(panel.path().measurement.largest_deviation * kMillimetre);
+    const double top_mm =
+        roundedUp(panel.path().measurement.largest_deviation * kMillimetresPerMetre);
     const Box box{panel.plotLeft(), kDeviationTop, kPlotSize, kDeviationHeight};
     picture.rectangle(box, "frame");
     picture.text({box.left - 6, box.top + 10}, "note right", fmt::format("{:g} mm", top_mm));
@@ -101,8 +103,8 @@ void drawPanel(SvgPicture& picture, const Panel& panel) {
     picture.text({panel.plotLeft(), 28}, "title", path.name);
     picture.text({panel.plotLeft(), 48}, "note",
                  fmt::format("deviation {:.4f} mm, closure {:.4f} mm",
-                             path.measurement.largest_deviation * kMillimetre,
-                             path.measurement.closure_error * kMillimetre));
+                             path.measurement.largest_deviation * kMillimetresPerMetre,
+                             path.measurement.closure_error * kMillimetresPerMetre));
     picture.rectangle({panel.plotLeft(), kPathTop, kPlotSize, kPlotSize}, "frame");
     drawOutline(picture, panel);
     drawMeasured(picture, panel);

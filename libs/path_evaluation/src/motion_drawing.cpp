@@ -16,9 +16,9 @@ namespace {
 using motion::RobotModel;
 
 constexpr double kWidth = 1000;
-constexpr double kLeft = 70;         // left edge of the panels over time [px]
-constexpr double kPanelWidth = 560;  // the same
-constexpr double kPanelHeight = 104;
+constexpr double kLeft = 70;        // left edge of the panels over time [px]
+constexpr double kPlotWidth = 560;  // the same
+constexpr double kPlotHeight = 104;
 constexpr double kPanelPitch = 150;
 constexpr double kFirstPanel = 128;
 constexpr double kViewLeft = 752;
@@ -31,7 +31,7 @@ constexpr double kTolerance = 0.1;     // largest error of a simplified curve [p
 constexpr double kHighestShare = 2.5;  // curves farther beyond a limit are cut off
 constexpr double kRoom = 1.1;          // range of an axis, as a multiple of the largest value
 
-constexpr std::string_view kStyle =
+constexpr std::string_view kPlotStyle =
     R"(text{font-family:system-ui,sans-serif;font-size:12px;fill:#52606d}
 .title{font-size:18px;font-weight:600;fill:#1f2933}
 .head{font-size:13px;font-weight:600;fill:#1f2933}
@@ -91,7 +91,7 @@ public:
     Drawing(const RobotModel& model, const MotionPicture& content)
         : model_(model),
           content_(content),
-          svg_(kWidth, kTableTop + kRow * static_cast<double>(model.axisCount() + 2), kStyle),
+          svg_(kWidth, kTableTop + kRow * static_cast<double>(model.axisCount() + 2), kPlotStyle),
           duration_(std::max(content.samples.back().time, 1e-9)) {}
 
     std::string draw() && {
@@ -100,10 +100,10 @@ public:
         drawKey();
         double top = kFirstPanel;
         for (const auto& panel : kPanels) {
-            drawQuantity(panel, {kLeft, top, kPanelWidth, kPanelHeight});
+            drawQuantity(panel, {kLeft, top, kPlotWidth, kPlotHeight});
             top += kPanelPitch;
         }
-        drawSpeed({kLeft, top, kPanelWidth, kPanelHeight});
+        drawSpeed({kLeft, top, kPlotWidth, kPlotHeight});
         drawViews();
         drawTable();
         return std::move(svg_).finish();
@@ -111,7 +111,7 @@ public:
 
 private:
     void drawKey() {
-        const double pitch = kPanelWidth / static_cast<double>(model_.axisCount());
+        const double pitch = kPlotWidth / static_cast<double>(model_.axisCount());
         for (std::size_t axis = 0; axis < model_.axisCount(); ++axis) {
             const double left = kLeft + pitch * static_cast<double>(axis);
             svg_.line({left, 84}, {left + 16, 84}, "key " + axisClass(axis));

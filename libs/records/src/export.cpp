@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Rows that are read at once.
-constexpr std::int64_t kAtOnce = 500;
+constexpr std::int64_t kRowsAtOnce = 500;
 
 /// A table and the number that its rows are read by.
 struct Copied {
@@ -46,7 +46,7 @@ Result<void> copy(Database& from, Database& into, const Copied& copied) {
                                  copied.table, copied.key);
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
     while (true) {
-        const auto rows = from.query(sql, {last, kAtOnce});
+        const auto rows = from.query(sql, {last, kRowsAtOnce});
         if (!rows || rows->empty()) {
             return rows.map([](const Rows& /*none*/) {});
         }

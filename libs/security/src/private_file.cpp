@@ -13,7 +13,7 @@
 namespace metier::security {
 namespace {
 
-constexpr mode_t kOwnerOnly = 0600;
+constexpr mode_t kOwner = 0600;
 constexpr mode_t kEverybody = 0644;
 constexpr mode_t kOthers = 077;
 
@@ -23,16 +23,16 @@ tl::unexpected<Error> failed(const std::filesystem::path& file, int error) {
 }
 
 /// Closes a descriptor at its end.
-class Descriptor {
+class FileDescriptor {
 public:
-    explicit Descriptor(int number) noexcept : number_(number) {}
-    ~Descriptor() {
+    explicit FileDescriptor(int number) noexcept : number_(number) {}
+    ~FileDescriptor() {
         if (number_ >= 0) {
             ::close(number_);
         }
     }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
+    FileDescriptor(const FileDescriptor&) = delete;
+    FileDescriptor& operator=(const FileDescriptor&) = delete;
     int number() const noexcept { return number_; }
 
 private:
@@ -53,7 +53,7 @@ bool writeAll(int descriptor, std::string_view content) {
     return ::fsync(descriptor) == 0;
 }
 
-Result<void> makeFolder(const std::filesystem::path& folder) {
+Result<void> makeOwnFolder(const std::filesystem::path& folder) {
     std::error_code error;
     const bool made = std::filesystem::create_directories(folder, error);
     if (!error && made) {
@@ -79,14 +79,14 @@ Result<void> checkReaders(const std::filesystem::path& file) {
 
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
                         Readers readers) {
-    METIER_TRY(makeFolder(file.parent_path()));
+    METIER_TRY(makeOwnFolder(file.parent_path()));
     auto pattern = file.string() + ".XXXXXX";
-    const Descriptor descriptor(::mkstemp(pattern.data()));  // accessible to its owner only
+    const FileDescriptor descriptor(::mkstemp(pattern.data()));  // accessible to its owner only
     if (descriptor.number() < 0) {
         return failed(file, errno);
     }
     const bool written =
-        ::fchmod(descriptor.number(), readers == Readers::owner ? kOwnerOnly : kEverybody) == 0 &&
+        ::fchmod(descriptor.number(), readers == Readers::owner ? kOwner : kEverybody) == 0 &&
         writeAll(descriptor.number(), content) && ::rename(pattern.c_str(), file.c_str()) == 0;
     if (!written) {
         const int error = errno;

@@ -14,19 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestName = 100;
+constexpr std::size_t kLongestFileName = 100;
 constexpr std::size_t kThumbprintDigits = 40;
 
-Result<void> checkName(std::string_view name) {
+Result<void> checkFileName(std::string_view name) {
     constexpr std::string_view kAllowed =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_";
-    const bool right = !name.empty() && name.size() <= kLongestName && name.front() != '.' &&
+    const bool right = !name.empty() && name.size() <= kLongestFileName && name.front() != '.' &&
                        name.find_first_not_of(kAllowed) == std::string_view::npos;
     return right ? Result<void>()
                  : fail(Errc::invalid_argument,
                         fmt::format("\"{}\" is no name of an application: letters, digits, '.', "
                                     "'-', '_', at most {}",
-                                    name, kLongestName));
+                                    name, kLongestFileName));
 }
 
 bool isThumbprint(std::string_view text) {
@@ -68,7 +68,7 @@ Result<Identity> SecurityFolder::makeKnown(Identity identity) {
 /// The identity is made known before it is saved, so that a saved identity is always known.
 Result<Identity> SecurityFolder::identity(const std::string& name, const IdentityOptions& options,
                                           UtcTime now) {
-    METIER_TRY(checkName(name));
+    METIER_TRY(checkFileName(name));
     auto identity = loadIdentity(identityFolder(name));
     if (identity || identity.error().code != Errc::not_found) {
         return identity;
@@ -83,7 +83,7 @@ Result<Identity> SecurityFolder::identity(const std::string& name, const Identit
 }
 
 Result<Identity> SecurityFolder::renew(const std::string& name, UtcTime now) {
-    METIER_TRY(checkName(name));
+    METIER_TRY(checkFileName(name));
     METIER_ASSIGN(const auto former, loadIdentity(identityFolder(name)));
     auto identity = makeSuccessor(former, IdentityOptions().lifetime, now);
     identity = identity ? makeKnown(std::move(*identity)) : std::move(identity);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kMethod = "$y$";  // yescrypt
 constexpr unsigned long kCost = 4;      // some 16 ms
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kLongestUserName = 64;
 constexpr std::size_t kShortestPassword = 8;
 constexpr std::size_t kLongestPassword = 256;
 constexpr std::array kRoles{Role::observer, Role::operator_, Role::engineer, Role::security_admin};
@@ -28,13 +28,13 @@ bool isNameCharacter(char c) noexcept {
            std::string_view(".-_@").find(c) != std::string_view::npos;
 }
 
-Result<void> checkName(const std::string& name) {
-    const bool right = !name.empty() && name.size() <= kLongestName &&
+Result<void> checkUserName(const std::string& name) {
+    const bool right = !name.empty() && name.size() <= kLongestUserName &&
                        std::all_of(name.begin(), name.end(), isNameCharacter);
     return right ? Result<void>()
                  : fail(Errc::invalid_argument,
                         fmt::format("a user's name has 1 to {} letters, digits, . - _ or @",
-                                    kLongestName));
+                                    kLongestUserName));
 }
 
 Result<void> checkPassword(const std::string& password) {
@@ -59,14 +59,14 @@ std::string crypted(const std::string& password, const std::string& setting) {
     return result;
 }
 
-Result<User> readLine(const std::string& line) {
+Result<User> readUser(const std::string& line) {
     std::istringstream parts(line);
     std::string role;
     std::string more;
     User user;
     parts >> user.name >> role >> user.password_hash;
     const auto known = roleNamed(role);
-    if (!known || user.password_hash.empty() || parts >> more || !checkName(user.name)) {
+    if (!known || user.password_hash.empty() || parts >> more || !checkUserName(user.name)) {
         return fail(Errc::invalid_argument, "is not a name, a role and a password hash");
     }
     user.role = *known;
@@ -108,7 +108,7 @@ Result<UserTable> UserTable::load(const std::filesystem::path& file) {
         if (line.empty() || line.front() == '#') {
             continue;
         }
-        auto user = readLine(line);
+        auto user = readUser(line);
         if (!user || table.find(user->name) != nullptr) {
             return fail(Errc::invalid_argument,
                         fmt::format("{}:{}: {}", file.string(), number,
@@ -134,7 +134,7 @@ const User* UserTable::find(std::string_view name) const noexcept {
 }
 
 Result<void> UserTable::add(std::string name, Role role, const std::string& password) {
-    METIER_TRY(checkName(name));
+    METIER_TRY(checkUserName(name));
     if (find(name) != nullptr) {
         return fail(Errc::already_exists, fmt::format("there is a user \"{}\"", name));
     }

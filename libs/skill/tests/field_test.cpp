@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::skill {
 namespace {
 
@@ -12,7 +14,6 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Field forceField() {
     return {.name = "Force",

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
+#include "metier/base/numbers.hpp"
 #include "metier/motion/robot_model.hpp"
 
 namespace metier::virtual_edo {
@@ -18,8 +18,6 @@ inline constexpr std::size_t kMostAxes = 7;
 /// The robot's cycle.
 inline constexpr std::chrono::milliseconds kCycle{10};
 inline constexpr double kCycleSeconds = 0.01;
-
-inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< [rad]
 
 /// One value per axis: [deg], the gripper's [mm].
 using AxisValues = std::array<double, kMostAxes>;

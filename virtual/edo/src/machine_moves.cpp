@@ -3,7 +3,7 @@
 namespace metier::virtual_edo {
 namespace {
 
-constexpr std::size_t kLongestQueue = 5;
+constexpr std::size_t kMostQueuedMoves = 5;
 
 bool isValid(const Movement& movement) {
     using namespace move_command;
@@ -67,7 +67,7 @@ void Machine::startMove(const Movement& movement) {
 
 void Machine::queueMove(const Movement& movement) {
     say(FeedbackType::received);
-    if (moves_.size() < kLongestQueue) {
+    if (moves_.size() < kMostQueuedMoves) {
         moves_.push_back(movement);
         return;
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "impedance.hpp"
+#include "metier/base/numbers.hpp"
 
 namespace metier::virtual_iiwa {
 
@@ -13,8 +14,6 @@ namespace {
 using motion::JointVector;
 using motion::Pose;
 using Arguments = std::array<double, 7>;
-
-constexpr double kMillimetre = 1e-3;
 
 constexpr int kPtp = 21;
 constexpr int kLin = 22;

@@ -2,13 +2,12 @@
 
 #include <bit>
 
+#include "metier/base/numbers.hpp"
 #include "metier/motion/frame.hpp"
 
 namespace metier::virtual_iiwa {
 
 namespace {
-
-constexpr double kMillimetre = 1e-3;
 
 std::size_t numberSize(Precision precision) noexcept {
     return precision == Precision::single_precision ? 4 : 8;

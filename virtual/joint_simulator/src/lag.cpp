@@ -8,7 +8,7 @@ namespace metier::joint_simulator {
 namespace {
 
 // Closer than this the measured arm has arrived: an exponential alone never would.
-constexpr double kArrived = 1e-9;
+constexpr double kCaughtUp = 1e-9;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void Lag::advance(const device::JointArray& commanded) noexcept {
     const auto& target = past_[(newest_ + past_.size() - delay_cycles_) % past_.size()];
     for (std::size_t axis = 0; axis < position_.size(); ++axis) {
         const double way = target[axis] - position_[axis];
-        const double step = std::abs(way) < kArrived ? way : share_ * way;
+        const double step = std::abs(way) < kCaughtUp ? way : share_ * way;
         position_[axis] += step;
         velocity_[axis] = step / cycle_;
     }

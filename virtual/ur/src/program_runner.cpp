@@ -20,10 +20,10 @@ using urscript::RunState;
 // A program comes to a pause, and out of it, in this time [s].
 constexpr double kPauseTime = 0.25;
 // Sums of shares are not exact.
-constexpr double kRounding = 1e-9;
+constexpr double kTimeRounding = 1e-9;
 constexpr std::size_t kMostSecondary = 64;
 // Largest part of a script's line in a message [bytes].
-constexpr std::size_t kMostEchoed = 200;
+constexpr std::size_t kLongestShownLine = 200;
 
 struct Place {
     int line = 1;
@@ -73,7 +73,7 @@ std::string inMakersWords(const Error& error, const Place& place, std::string_vi
         return fmt::format("compile_error_name_not_found:{}:", quoted(place.text));
     }
     return fmt::format("syntax_error_on_line:{}:{}:", place.line,
-                       lineOf(script, place.line).substr(0, kMostEchoed));
+                       lineOf(script, place.line).substr(0, kLongestShownLine));
 }
 
 }  // namespace
@@ -216,7 +216,7 @@ void ProgramRunner::stepPrograms() {
     }
     if (primary_ && share_ > 0.0 && runtime_ != RuntimeState::paused) {
         due_ += share_ * robot_state_.speed_slider;
-        if (due_ >= 1.0 - kRounding) {
+        if (due_ >= 1.0 - kTimeRounding) {
             due_ = std::max(0.0, due_ - 1.0);
             stepPrimary();
         }

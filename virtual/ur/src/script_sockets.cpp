@@ -12,7 +12,7 @@ using urscript::SocketState;
 using virtual_controller::TcpDialer;
 using virtual_controller::TcpPeer;
 
-constexpr std::size_t kMostUnread = 1'000'000;
+constexpr std::size_t kMostUnreadOfSocket = 1'000'000;
 constexpr std::size_t kMostUnsent = 500'000;
 constexpr std::size_t kMostSockets = 64;
 
@@ -27,7 +27,7 @@ struct ScriptSockets::Socket {
 
     void take(std::span<const std::byte> bytes) {
         unread.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());  // NOLINT: text
-        if (unread.size() > kMostUnread) {
+        if (unread.size() > kMostUnreadOfSocket) {
             peer->reset();
         }
     }

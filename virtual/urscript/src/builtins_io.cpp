@@ -42,7 +42,7 @@ AnalogPin pinOf(int n) {
 
 /// Returns the result of the robot's `function` for the pin whose number is the first argument.
 template <auto pin_of, auto function>
-Value get(Call& call) {
+Value getInput(Call& call) {
     const auto pin = pin_of(call.integer(0));
     return call.ok() ? call.checked((call.robot().*function)(pin.port, pin.index)) : Value();
 }
@@ -76,19 +76,19 @@ std::span<const Builtin> inputOutputBuiltins() {
     static constexpr auto kAnalogIn = &Robot::analogInput;
     static constexpr auto kAnalogOut = &Robot::analogOutput;
     static constexpr Builtin kAll[] = {
-        {"get_analog_in", "n", 1, get<analogPin, kAnalogIn>},
-        {"get_analog_out", "n", 1, get<analogPin, kAnalogOut>},
-        {"get_configurable_digital_in", "n", 1, get<kConfigurable, kIn>},
-        {"get_configurable_digital_out", "n", 1, get<kConfigurable, kOut>},
-        {"get_digital_in", "n", 1, get<digitalPin, kIn>},
-        {"get_digital_out", "n", 1, get<digitalPin, kOut>},
-        {"get_standard_analog_in", "n", 1, get<kAnalog, kAnalogIn>},
-        {"get_standard_analog_out", "n", 1, get<kAnalog, kAnalogOut>},
-        {"get_standard_digital_in", "n", 1, get<kStandard, kIn>},
-        {"get_standard_digital_out", "n", 1, get<kStandard, kOut>},
-        {"get_tool_analog_in", "n", 1, get<kToolAnalog, kAnalogIn>},
-        {"get_tool_digital_in", "n", 1, get<kTool, kIn>},
-        {"get_tool_digital_out", "n", 1, get<kTool, kOut>},
+        {"get_analog_in", "n", 1, getInput<analogPin, kAnalogIn>},
+        {"get_analog_out", "n", 1, getInput<analogPin, kAnalogOut>},
+        {"get_configurable_digital_in", "n", 1, getInput<kConfigurable, kIn>},
+        {"get_configurable_digital_out", "n", 1, getInput<kConfigurable, kOut>},
+        {"get_digital_in", "n", 1, getInput<digitalPin, kIn>},
+        {"get_digital_out", "n", 1, getInput<digitalPin, kOut>},
+        {"get_standard_analog_in", "n", 1, getInput<kAnalog, kAnalogIn>},
+        {"get_standard_analog_out", "n", 1, getInput<kAnalog, kAnalogOut>},
+        {"get_standard_digital_in", "n", 1, getInput<kStandard, kIn>},
+        {"get_standard_digital_out", "n", 1, getInput<kStandard, kOut>},
+        {"get_tool_analog_in", "n", 1, getInput<kToolAnalog, kAnalogIn>},
+        {"get_tool_digital_in", "n", 1, getInput<kTool, kIn>},
+        {"get_tool_digital_out", "n", 1, getInput<kTool, kOut>},
         {"set_analog_out", "n f", 2, setAnalog<analogPin>},
         {"set_configurable_digital_out", "n b", 2, setDigital<kConfigurable>},
         {"set_digital_out", "n b", 2, setDigital<digitalPin>},

@@ -11,7 +11,7 @@ namespace {
 constexpr const char* kDefaultName = "socket_0";
 constexpr double kOpenTimeout = 2.0;  // [s]
 constexpr double kReadTimeout = 2.0;  // [s]
-constexpr int kMostValues = 30;
+constexpr int kMostReadValues = 30;
 
 using Extract = std::function<std::optional<Extracted>(std::string_view bytes)>;
 
@@ -96,7 +96,7 @@ Value close(Call& call) {
 Value readNumbers(Call& call, const Value& failed,
                   std::optional<Extracted> (*extract)(std::string_view, std::size_t)) {
     const int count = call.integer(0);
-    if (count < 1 || count > kMostValues) {
+    if (count < 1 || count > kMostReadValues) {
         return call.failed(Errc::out_of_range,
                            "number " + std::to_string(count) + " is not from 1 to 30");
     }

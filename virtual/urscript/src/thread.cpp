@@ -9,7 +9,7 @@
 namespace metier::urscript {
 namespace {
 
-constexpr std::size_t kMostValues = 20'000;  // largest number of values on the stack of a thread
+constexpr std::size_t kLargestStack = 20'000;  // largest number of values on the stack of a thread
 
 Result<void> spend(ThreadContext& context, std::size_t instructions) {
     if (context.spend(instructions)) {
@@ -230,7 +230,7 @@ Result<void> Thread::call(const FunctionCall& call, ThreadContext& context) {
     const Function& function = code_.functions[call.function];
     const std::size_t base = stack_.size() - call.parameter.size();
     if (frames_.size() >= context.limits().call_depth ||
-        base + function.locals.size() > kMostValues) {
+        base + function.locals.size() > kLargestStack) {
         return fail(Errc::out_of_range,
                     fmt::format("more than {} calls within each other", frames_.size()));
     }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
 #include "metier/base/text.hpp"
 
 namespace metier::virtual_wsg50 {
@@ -19,7 +20,6 @@ using virtual_controller::TcpPeer;
 
 constexpr std::chrono::milliseconds kCycle{2};
 constexpr double kCycleSeconds = 0.002;
-constexpr double kMillimetre = 1e-3;
 
 constexpr std::array<std::string_view, 8> kGraspingStates{
     "idle", "grasping", "no part", "part lost", "holding", "releasing", "positioning", "error"};

@@ -4,13 +4,13 @@
 #include <string_view>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
 #include "payload.hpp"
 
 namespace metier::virtual_wsg50 {
 
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr std::size_t kAnyLength = 0xFFFF;
 constexpr std::size_t kTagLength = 64;
 constexpr std::string_view kAcknowledgement = "ack";

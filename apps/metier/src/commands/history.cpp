@@ -25,7 +25,7 @@ namespace {
 using records::ExecutionRow;
 using records::Store;
 
-constexpr auto kLook = std::chrono::milliseconds(250);
+constexpr auto kFollowEvery = std::chrono::milliseconds(250);
 constexpr auto kRetry = std::chrono::seconds(1);
 
 struct HistoryOptions {
@@ -191,8 +191,8 @@ Exit runFollow(const HistoryOptions& options) {
         if (problem != std::exchange(told, problem) && !problem.empty()) {
             fmt::print(stderr, "metier: {}; waiting\n", printable(problem));
         }
-    } while (!isOutputClosed() &&
-             !signal.waitUntil(std::chrono::steady_clock::now() + (told.empty() ? kLook : kRetry)));
+    } while (!isOutputClosed() && !signal.waitUntil(std::chrono::steady_clock::now() +
+                                                    (told.empty() ? kFollowEvery : kRetry)));
     return Exit::success;
 }
 

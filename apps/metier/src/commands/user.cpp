@@ -17,7 +17,7 @@ struct UserOptions {
     std::string role = "Operator";
 };
 
-Result<void> list(UserTable& users, const UserOptions& /*options*/) {
+Result<void> listUsers(UserTable& users, const UserOptions& /*options*/) {
     for (const auto& user : users.users()) {
         fmt::print("{:<24} {}\n", user.name, security::toString(user.role));
     }
@@ -42,13 +42,13 @@ Result<void> remove(UserTable& users, const UserOptions& options) {
     return users.remove(options.name);
 }
 
-using Action = Result<void> (*)(UserTable&, const UserOptions&);
+using UserAction = Result<void> (*)(UserTable&, const UserOptions&);
 
-Result<void> act(Action action, const UserOptions& options, const server::Security& security) {
+Result<void> act(UserAction action, const UserOptions& options, const server::Security& security) {
     METIER_ASSIGN(const auto folder, security.openFolder());
     METIER_ASSIGN(auto users, UserTable::load(folder.usersFile()));
     METIER_TRY(action(users, options));
-    return action == &list ? Result<void>() : users.save(folder.usersFile());
+    return action == &listUsers ? Result<void>() : users.save(folder.usersFile());
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void addUser(CLI::App& app, CommandContext& context) {
     auto options = std::make_shared<UserOptions>();
     auto* command = app.add_subcommand("user", "Decide who may log in, and as what");
     command->require_subcommand(1);
-    const auto addAction = [&](const char* name, const char* about, Action action) {
+    const auto addAction = [&](const char* name, const char* about, UserAction action) {
         auto* one = command->add_subcommand(name, about);
         one->callback([options, action, &context] {
             const auto done = act(action, *options, context.security);
@@ -66,7 +66,7 @@ void addUser(CLI::App& app, CommandContext& context) {
         });
         return one;
     };
-    addAction("list", "Everybody who may log in", &list);
+    addAction("list", "Everybody who may log in", &listUsers);
     auto* adding = addAction("add", "Let somebody log in; asks for a password", &add);
     adding->add_option("name", options->name, "Who it is")->required();
     adding

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBeginTime = 500ms;  // longest time from a motion's command to its begin
+constexpr auto kGripperBeginTime = 500ms;  // longest time from a motion's command to its begin
 constexpr auto kCancelTime = 2s;
 constexpr auto kRestTime = 100ms;    // standstill of the jaws that ends a motion
 constexpr auto kStallTime = 500ms;   // standstill of the jaws while the robot takes them for moving
@@ -66,7 +66,7 @@ void GripperDrive::start(const GripperTask& task, const JointSetPoint& holding, 
     step_ = Step::sent;
     task_ = task;
     start_width_ = width_;
-    begin_by_ = now + kBeginTime;
+    begin_by_ = now + kGripperBeginTime;
     deadline_ = now + options_.gripper.timeout;
     executed_ = false;
     rejection_.clear();

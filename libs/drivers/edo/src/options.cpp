@@ -1,13 +1,12 @@
 #include "options.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "metier/base/numbers.hpp"
 
 namespace metier::edo_driver {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMillimetre = 1e-3;
 // A Halt brakes twice as hard as a motion is planned, and so does the driver.
 constexpr double kBrakeReserve = 2.0;
 // Degrees to either side.

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "decoder.hpp"
+#include "metier/base/numbers.hpp"
 #include "metier/base/testing/allocation_count.hpp"
 #include "metier/edo_driver/encoder.hpp"
 
@@ -14,7 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 const JointLayout kWithGripper{6, true};
 const JointLayout kSixAxes{6, false};
 

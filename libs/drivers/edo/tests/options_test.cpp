@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::edo_driver {
 namespace {
 
@@ -58,7 +60,6 @@ TEST(Options, TakeAGenerationInsteadOfTheSoftwareVersion) {
 
 TEST(Options, HaveTheLimitsOfTheRobotsOwnConfiguration) {
     const auto options = readOptions(request()).value();
-    constexpr double kDegree = std::numbers::pi / 180.0;
     for (std::size_t axis = 0; axis < 6; ++axis) {
         const bool wrist = axis >= 3;
         EXPECT_EQ(options.axis_names[axis], "J" + std::to_string(axis + 1));

@@ -6,11 +6,12 @@
 #include <limits>
 #include <string_view>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::iiwa_driver {
 
 namespace {
 
-constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kNotWatched = std::numeric_limits<double>::quiet_NaN();
 // Arguments of the codes 304 and 305.
 constexpr double kPositionControl = 41;

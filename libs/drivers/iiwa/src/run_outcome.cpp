@@ -15,27 +15,26 @@ std::string errorNote(int code) {
 
 Result<device::MotionOutcome> outcomeOf(const RunEnd& end, const std::string& name,
                                         const std::string& lost) {
-    using Cause = RunEnd::Cause;
     switch (end.cause) {
-        case Cause::at_target:
-        case Cause::stopped:
-        case Cause::force:
+        case RunEnd::Cause::at_target:
+        case RunEnd::Cause::stopped:
+        case RunEnd::Cause::force:
             return end.outcome;
-        case Cause::refused:
+        case RunEnd::Cause::refused:
             return fail(Errc::device_fault,
                         fmt::format("{}: the cabinet refused: {}{}", name, describe(end.command),
                                     errorNote(end.error)));
-        case Cause::not_ready:
+        case RunEnd::Cause::not_ready:
             return fail(Errc::device_fault, fmt::format("{}: not ready to move: {}{}", name,
                                                         toString(end.miss), errorNote(end.error)));
-        case Cause::off_target:
+        case RunEnd::Cause::off_target:
             return fail(Errc::device_fault, fmt::format("{}: the motion ended with {}{}", name,
                                                         toString(end.miss), errorNote(end.error)));
-        case Cause::stalled:
+        case RunEnd::Cause::stalled:
             return fail(Errc::device_fault,
                         fmt::format("{}: the motion neither went on nor ended: {}{}", name,
                                     toString(end.miss), errorNote(end.error)));
-        case Cause::disconnected:
+        case RunEnd::Cause::disconnected:
             return fail(Errc::connection_lost, lost);
     }
     return fail(Errc::internal, name + ": a motion ended in no known way");

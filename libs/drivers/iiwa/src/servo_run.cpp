@@ -14,7 +14,7 @@ using Kind = ServoFault::Kind;
 namespace {
 
 // Rounding of set-points at the end of an axis' range [rad].
-constexpr double kRounding = 1e-6;
+constexpr double kJointRounding = 1e-6;
 // Largest step to a set-point, as a multiple of the way that the axis can go in one cycle.
 constexpr double kStepFactor = 1.5;
 constexpr double kSmallStep = 1e-3;  // [rad]
@@ -106,10 +106,10 @@ bool ServoRun::accept(const device::JointArray& set_point) noexcept {
         if (!std::isfinite(value)) {
             return refuse({Kind::not_finite, axis, value, 0.0, {}});
         }
-        if (value < limits.lower - kRounding) {
+        if (value < limits.lower - kJointRounding) {
             return refuse({Kind::position, axis, value, limits.lower, {}});
         }
-        if (value > limits.upper + kRounding) {
+        if (value > limits.upper + kJointRounding) {
             return refuse({Kind::position, axis, value, limits.upper, {}});
         }
         const double longest = kStepFactor * limits.velocity * cycle_ + kSmallStep;

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <optional>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::iiwa_driver {
 
 namespace {
 
 constexpr std::size_t kStateNumbers = 38;
-constexpr double kMillimetresPerMetre = 1000.0;
 // No axis of such an arm turns further, nor faster, nor does its flange get further away.
 constexpr double kLargestPosition = 6.3;  // [rad]
 constexpr double kLargestVelocity = 50;   // [rad/s]

@@ -66,6 +66,10 @@ std::string toText(SafetyMode mode);
 /// "playing"; "state 42" for an unknown one.
 std::string toText(RuntimeState state);
 
+/// Factor of the trajectory limiter, and fraction of the slider, from which an arm moves as
+/// commanded.
+inline constexpr double kFullSpeed = 0.99;
+
 /// One data package of RTDE. Trivially copyable.
 struct ControllerState {
     double timestamp = 0.0;  ///< time since the controller started [s]

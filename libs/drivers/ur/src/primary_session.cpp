@@ -9,11 +9,11 @@ namespace metier::ur_driver {
 
 namespace {
 
-constexpr std::chrono::seconds kConnectTimeout{1};
+constexpr std::chrono::seconds kPrimaryConnectTimeout{1};
 // The stream has ten packages per second: a connection that is silent for so long is dead.
 constexpr std::chrono::seconds kSilence{2};
 // Time after which a waiting monitor notices that it must end.
-constexpr std::chrono::milliseconds kSlice{100};
+constexpr std::chrono::milliseconds kReceiveSlice{100};
 
 }  // namespace
 
@@ -83,8 +83,8 @@ PrimaryMonitor::PrimaryMonitor(std::string host, std::uint16_t port, Handler han
 void PrimaryMonitor::run(const std::stop_token& stop) {
     link::BackOff back_off;
     while (!stop.stop_requested()) {
-        auto session = PrimarySession::connect(host_, port_,
-                                               std::chrono::steady_clock::now() + kConnectTimeout);
+        auto session = PrimarySession::connect(
+            host_, port_, std::chrono::steady_clock::now() + kPrimaryConnectTimeout);
         if (session) {
             back_off.reset();
             listen(*session, stop);
@@ -96,7 +96,7 @@ void PrimaryMonitor::run(const std::stop_token& stop) {
 void PrimaryMonitor::listen(PrimarySession& session, const std::stop_token& stop) {
     auto last = std::chrono::steady_clock::now();
     while (!stop.stop_requested()) {
-        const auto package = session.next(std::chrono::steady_clock::now() + kSlice);
+        const auto package = session.next(std::chrono::steady_clock::now() + kReceiveSlice);
         const auto now = std::chrono::steady_clock::now();
         if (package) {
             last = now;

@@ -18,7 +18,6 @@ constexpr auto kUnlockTimeout = 3s;
 constexpr auto kStopTimeout = 2s;
 constexpr auto kPowerTimeout = 60s;  // an arm takes 10 to 20 s
 constexpr auto kPoll = 5ms;
-constexpr double kFullSpeed = 0.99;
 
 SteadyTime commandDeadline() {
     return std::chrono::steady_clock::now() + kDashboardTimeout;

@@ -17,7 +17,6 @@ constexpr std::uint32_t kPrimingCycles = 3;  // cycles until registers are surel
 constexpr std::uint32_t kStandCycles = 3;    // one quiet measurement is no standstill
 constexpr std::uint32_t kSlowCycles = 5;     // the scaling may dip while a program starts
 constexpr std::uint32_t kAstrayCycles = 5;
-constexpr double kFullSpeed = 0.99;
 constexpr double kSlowStart = 0.5;     // longest time with a reduced scaling at the start [s]
 constexpr double kStopPatience = 1.0;  // longest time until the script obeys [s]
 constexpr double kFollowMargin = 0.2;  // added to three times the lookahead [s]

@@ -21,7 +21,6 @@ constexpr auto kConnectTimeout = 2s;
 constexpr auto kFirstPackage = 1s;  // longest time from the start of RTDE to its first data
 constexpr std::size_t kMaxJobs = 16;
 constexpr std::int32_t kLinkCycles = 3;
-constexpr double kFullSpeed = 0.99;
 
 std::chrono::nanoseconds cycleOf(const UrSettings& settings) {
     return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / settings.frequency));

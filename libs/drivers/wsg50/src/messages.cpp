@@ -7,10 +7,11 @@
 #include <cmath>
 #include <string_view>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::wsg50_driver {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr std::size_t kStatusSize = 2;
 constexpr std::size_t kFloatSize = 4;
 // No gripper of the series is near it; larger values are no measurements.

@@ -6,10 +6,11 @@
 #include <string_view>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
+
 namespace metier::wsg50_driver {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 // Largest distance of the jaws from their commanded width.
 constexpr double kWidthTolerance = 1.0 * kMillimetre;
 

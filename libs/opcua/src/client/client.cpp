@@ -16,7 +16,6 @@ namespace {
 constexpr std::chrono::seconds kLongestCallback{5};
 // The client's thread ends a call at its deadline, and knows whether it was sent.
 constexpr std::chrono::milliseconds kLongestTurn{100};
-const NodeId kNamespaceArray{0, 2255U};
 
 tl::unexpected<Failure> timedOut(Deadline deadline) {
     auto failure = failed(status::kBadTimeout, "the call");

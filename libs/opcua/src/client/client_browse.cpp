@@ -51,8 +51,7 @@ UA_BrowseDirection nativeOf(BrowseQuery::Direction direction) {
     return UA_BROWSEDIRECTION_BOTH;
 }
 
-ReferenceDescription fromNative(const UA_ReferenceDescription& native) {
-    using opcua::fromNative;
+ReferenceDescription descriptionFrom(const UA_ReferenceDescription& native) {
     return {fromNative(native.referenceTypeId),      native.isForward,
             fromNative(native.nodeId.nodeId),        fromNative(native.browseName),
             fromNative(native.displayName),          static_cast<NodeClass>(native.nodeClass),
@@ -105,7 +104,7 @@ void Browsing::take(UA_BrowseResult& result) {
     }
     for (std::size_t i = 0; i < result.referencesSize; ++i) {
         if (result.references[i].nodeId.serverIndex == 0) {
-            references_.push_back(fromNative(result.references[i]));
+            references_.push_back(descriptionFrom(result.references[i]));
         }
     }
     if (result.continuationPoint.length == 0) {

@@ -21,6 +21,8 @@
 
 namespace metier::opcua {
 
+inline const NodeId kNamespaceArray{0, 2255U};
+
 /// Effect of a request on the server.
 enum class Effect { asks, commands };
 

@@ -13,7 +13,6 @@ namespace {
 using std::chrono::steady_clock;
 
 const NodeId kStartTime{0, 2257U};
-const NodeId kNamespaceArray{0, 2255U};
 
 /// Refusals of ActivateSession that mean: the server does not have this session any more.
 bool refusesSession(StatusCode status) {

@@ -12,7 +12,7 @@ namespace metier::opcua {
 
 namespace {
 
-EndpointDescription fromNative(const UA_EndpointDescription& native) {
+EndpointDescription described(const UA_EndpointDescription& native) {
     EndpointDescription endpoint;
     endpoint.url = textFrom(native.endpointUrl);
     endpoint.security_mode = static_cast<EndpointDescription::SecurityMode>(native.securityMode);
@@ -25,8 +25,7 @@ EndpointDescription fromNative(const UA_EndpointDescription& native) {
     return endpoint;
 }
 
-ServerDescription fromNative(const UA_ApplicationDescription& native) {
-    using opcua::fromNative;
+ServerDescription described(const UA_ApplicationDescription& native) {
     ServerDescription server{textFrom(native.applicationUri),
                              textFrom(native.productUri),
                              fromNative(native.applicationName),
@@ -97,7 +96,7 @@ template <typename T, typename Native>
 std::vector<T> listFrom(const Native* first, std::size_t count) {
     std::vector<T> list;
     for (std::size_t i = 0; i < count; ++i) {
-        list.push_back(fromNative(first[i]));
+        list.push_back(described(first[i]));
     }
     return list;
 }

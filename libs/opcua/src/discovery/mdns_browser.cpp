@@ -14,7 +14,7 @@
 namespace metier::opcua {
 namespace {
 
-constexpr int kTurnMs = 50;
+constexpr int kBrowseTurnMs = 50;
 constexpr std::size_t kMostServers = 1'000;
 
 /// The value of a TXT record, if it is one that an address can end in.
@@ -49,7 +49,7 @@ public:
     Result<std::vector<FoundServer>> take(std::chrono::steady_clock::time_point deadline) {
         while (browser_ != nullptr && session_.problem().empty() && (!reported_all_ || open_ > 0) &&
                std::chrono::steady_clock::now() < deadline) {
-            session_.iterate(kTurnMs);
+            session_.iterate(kBrowseTurnMs);
         }
         if (browser_ == nullptr || !session_.problem().empty()) {
             return fail(Errc::not_found, "no Avahi daemon: " + session_.problem());

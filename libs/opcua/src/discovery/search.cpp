@@ -17,7 +17,7 @@
 namespace metier::opcua {
 namespace {
 
-constexpr std::size_t kMostServers = 1'000;
+constexpr std::size_t kMostFound = 1'000;
 constexpr std::size_t kLongestUrl = 1'024;
 
 /// The first address that a client of ours can use.
@@ -37,7 +37,7 @@ std::vector<FoundServer> fromAnswer(const std::string& reported_by,
     for (const auto& server : answer) {
         auto url = usableUrl(server);
         if (url && server.type != opcua::ApplicationType::discovery_server &&
-            server.type != opcua::ApplicationType::client && servers.size() < kMostServers) {
+            server.type != opcua::ApplicationType::client && servers.size() < kMostFound) {
             servers.push_back(
                 {std::move(*url), opcua::sanitise(server.application_name.text), reported_by});
         }

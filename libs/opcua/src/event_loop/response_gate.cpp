@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kHeader = 8;      // type, final or not, size
 constexpr std::size_t kSymmetric = 24;  // header with channel, token, sequence number, request
 constexpr std::size_t kPolicyLength = 12;
-constexpr std::string_view kNone = "http://opcfoundation.org/UA/SecurityPolicy#None";
+constexpr std::string_view kPolicyNone = "http://opcfoundation.org/UA/SecurityPolicy#None";
 
 }  // namespace
 
@@ -64,9 +64,9 @@ void ResponseGate::noteSecurity() {
         return;
     }
     constexpr auto policy = kPolicyLength + sizeof(std::uint32_t);
-    open_ = size_ < policy + kNone.size() ||
-            (number(kPolicyLength) == kNone.size() &&
-             std::equal(kNone.begin(), kNone.end(), seen_.begin() + policy));
+    open_ = size_ < policy + kPolicyNone.size() ||
+            (number(kPolicyLength) == kPolicyNone.size() &&
+             std::equal(kPolicyNone.begin(), kPolicyNone.end(), seen_.begin() + policy));
 }
 
 bool ResponseGate::judge() const {

@@ -16,7 +16,7 @@ namespace metier::opcua {
 
 namespace {
 
-constexpr std::uint8_t kLoopbackNet = 127;
+constexpr std::uint8_t kLoopbackByte = 127;
 
 bool isLoopback(const std::string& address) {
     in6_addr six{};
@@ -25,7 +25,7 @@ bool isLoopback(const std::string& address) {
     }
     in_addr four{};
     return address == "localhost" || (inet_pton(AF_INET, address.c_str(), &four) == 1 &&
-                                      ntohl(four.s_addr) >> 24U == kLoopbackNet);
+                                      ntohl(four.s_addr) >> 24U == kLoopbackByte);
 }
 
 void replace(UA_String& target, std::string_view text) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "grip/gripper_work.hpp"
+#include "metier/base/numbers.hpp"
 #include "metier/skill/typed_skill.hpp"
 
 namespace metier::robot_skills {
@@ -17,8 +18,6 @@ using skill::Field;
 using skill::Range;
 
 namespace {
-
-constexpr double kMillimetre = 1e-3;
 
 using Parameters = skill::FieldList<GripperParameters>;
 using Ask = Result<void> (Gripper::*)(const device::GripperRequest&, Gripper::Done);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "metier/base/numbers.hpp"
 #include "metier/robot_skills/gripper_skills.hpp"
 
 namespace metier::robot_skills {
@@ -18,7 +19,6 @@ using namespace std::chrono_literals;
 
 // Grippers send their state 20 to 100 times a second.
 constexpr auto kInterval = 20ms;
-constexpr double kMillimetre = 1e-3;
 
 /// Errors: the gripper does not hold a part, or its state is unknown.
 Result<void> checkHeld(const Gripper& gripper) {

@@ -17,7 +17,7 @@ using skill::Reason;
 namespace {
 
 // The controller's end of a motion to joints is this near to them [rad].
-constexpr double kSameJoints = 5e-3;
+constexpr double kArrivedJoints = 5e-3;
 
 }  // namespace
 
@@ -74,11 +74,11 @@ void ControllerPlannedMove::tellStopped() {
 void ControllerPlannedMove::tellArrived(const MotionOutcome& outcome) {
     const bool joints = setup_.end == MoveEnd::joints;
     const double off = device::largestDifference(rest_, toArray(setup_.trajectory.end()));
-    if (joints && outcome.end == MotionOutcome::End::at_target && off > kSameJoints) {
+    if (joints && outcome.end == MotionOutcome::End::at_target && off > kArrivedJoints) {
         tell_.fail(Reason::error,
                    fmt::format("{}: the motion ended in another configuration: an axis is {:.4f} "
                                "rad from its target, limit {} rad",
-                               setup_.arm.info().name, off, kSameJoints));
+                               setup_.arm.info().name, off, kArrivedJoints));
         return;
     }
     setup_.tell(tell_, results(rest_), outcome);

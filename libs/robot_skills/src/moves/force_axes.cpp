@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "metier/base/numbers.hpp"
 
 namespace metier::robot_skills {
 
 namespace {
 
-constexpr int kSamples = 20;
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kForceSamples = 20;
 constexpr double kSameAxis = 1.0 * kDegree;
 
 Eigen::Matrix3d baseFromFlange(const motion::RobotModel& model, const motion::JointVector& joints) {
@@ -44,8 +44,8 @@ Result<device::ForceCondition> flangeCondition(const motion::RobotModel& model,
             continue;
         }
         const int flange = nearestFlangeAxis(at_start, base);
-        for (int i = 0; i <= kSamples; ++i) {
-            const double fraction = static_cast<double>(i) / kSamples;
+        for (int i = 0; i <= kForceSamples; ++i) {
+            const double fraction = static_cast<double>(i) / kForceSamples;
             const auto there = baseFromFlange(model, trajectory.positionAt(fraction));
             if (const double angle = angleBetween(there, base, flange); angle > kSameAxis) {
                 return fail(

@@ -12,7 +12,7 @@ constexpr double kArrived = 1e-3;
 constexpr int kArrivedCycles = 2;
 // Longest time for that after the last set-point [s], and longest rest elsewhere, since news of a
 // motion may be late [s].
-constexpr double kLongest = 10.0;
+constexpr double kLongestSettling = 10.0;
 constexpr double kLongestRest = 2.0;
 
 }  // namespace
@@ -26,7 +26,8 @@ Settling::Status Settling::take(const device::ArmState& state, const device::Joi
     }
     waited_ += cycle;
     rested_ = state.standstill ? rested_ + cycle : 0.0;
-    return waited_ > kLongest || rested_ > kLongestRest ? Status::off_target : Status::waiting;
+    return waited_ > kLongestSettling || rested_ > kLongestRest ? Status::off_target
+                                                                : Status::waiting;
 }
 
 void Settling::tellOffTarget(const skill::ExecutionHandle& execution) const {

@@ -19,8 +19,8 @@ constexpr double kMostJerk = 2.0;          // as a Halt may use
 constexpr int kBeginnings = 25;            // number of begins of the brake, over the motion
 constexpr int kSteps = 20;                 // number of steps of one brake
 constexpr double kLonger = 1.15;
-constexpr double kShortest = 1e-3;  // [s]
-constexpr double kLongest = 4.0;    // [s]
+constexpr double kShortest = 1e-3;       // [s]
+constexpr double kLongestBraking = 4.0;  // [s]
 
 /// Whether all axes can follow from one set-point to the next.
 bool canFollow(const RobotModel& model, const motion::SetPoint& from, const motion::SetPoint& to,
@@ -69,7 +69,7 @@ double stopTimeFor(const Trajectory& trajectory, const RobotModel& model,
     if (length <= 0.0) {
         return 0.0;
     }
-    for (length = std::max(length, kShortest); length <= kLongest; length *= kLonger) {
+    for (length = std::max(length, kShortest); length <= kLongestBraking; length *= kLonger) {
         if (canAlwaysStop(trajectory, model, length)) {
             return length;
         }

@@ -9,7 +9,7 @@
 namespace metier::server {
 namespace {
 
-std::string nameOf(const OfferedSkill& skill) {
+std::string describe(const OfferedSkill& skill) {
     const auto controller = skill.address.controllerName();
     const auto& [reach, payload] = skill.arm;
     return fmt::format("{} ({}{}{}{}{})", skill.address.name, skill.server,
@@ -26,7 +26,7 @@ std::string wishesOf(const composition::Use& use) {
 
 std::string namesOf(const std::vector<OfferedSkill>& skills) {
     std::vector<std::string> names;
-    std::transform(skills.begin(), skills.end(), std::back_inserter(names), nameOf);
+    std::transform(skills.begin(), skills.end(), std::back_inserter(names), describe);
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 

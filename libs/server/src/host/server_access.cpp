@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-constexpr auto kLookEvery = 2s;
+constexpr auto kReadUsersEvery = 2s;
 constexpr auto kWarnEvery = 24h;
 constexpr std::size_t kMostWaiting = 16;
 constexpr std::size_t kMostRemembered = 1'000;
@@ -142,7 +142,7 @@ void ServerAccess::look(opcua::Server& server) {
         seen_ = folder->latest_change;
         closeStrangers(server);
     }
-    timer_ = server.after(kLookEvery, [this, &server] { look(server); });
+    timer_ = server.after(kReadUsersEvery, [this, &server] { look(server); });
 }
 
 void ServerAccess::takeRenewed(opcua::Server& server, const Result<security::Identity>& present) {

@@ -10,6 +10,7 @@
 #include "finding/arm_figures.hpp"
 #include "finding/skill_matching.hpp"
 #include "kinds/composition_files.hpp"
+#include "kinds/look_times.hpp"
 #include "metier/composition/composition.hpp"
 #include "metier/composition/local_used_skill.hpp"
 #include "metier/composition/sequence_skill.hpp"
@@ -21,7 +22,6 @@ using composition::Definition;
 
 namespace {
 
-constexpr std::chrono::seconds kLongestSearch{20};
 constexpr std::chrono::milliseconds kSearchPause{200};
 
 /// "ptp, line"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "finding/discovered_servers.hpp"
+#include "kinds/look_times.hpp"
 #include "metier/server/skill_survey.hpp"
 
 namespace metier::server {
@@ -15,9 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLongestSearch = 20s;
-constexpr auto kLookEvery = 500ms;
-constexpr auto kPause = 2s;  // pause after an attempt without a change
 constexpr const char* kStream = "PositionStreamSkillType";
 
 bool hasStreamFor(const SurveyedServer& server, const ArmFigures& least) {

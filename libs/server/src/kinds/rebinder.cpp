@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "kinds/look_times.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
@@ -16,8 +17,6 @@ namespace {
 using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>>;
 using namespace std::chrono_literals;
 
-constexpr auto kLookEvery = 500ms;
-constexpr auto kPause = 2s;        // pause after an attempt without a change
 constexpr auto kLongestTurn = 5s;  // longest time until the executor gets to something
 
 }  // namespace

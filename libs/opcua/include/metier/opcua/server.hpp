@@ -240,12 +240,12 @@ ResultOf<Work> Server::call(Work work, std::chrono::milliseconds deadline) {
     if (onServerThread()) {
         return runAsResult(work);
     }
-    struct Task {
+    struct Posted {
         Work work;
         std::promise<ResultOf<Work>> outcome;
     };
     // Both are shared: the task because a posted function is copied, the mark with this function.
-    auto task = std::make_shared<Task>(std::move(work), std::promise<ResultOf<Work>>());
+    auto task = std::make_shared<Posted>(std::move(work), std::promise<ResultOf<Work>>());
     const auto taken = std::make_shared<std::atomic<bool>>(false);
     auto outcome = task->outcome.get_future();
     post([task = std::move(task), taken] {
