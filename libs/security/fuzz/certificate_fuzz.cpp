@@ -1,4 +1,5 @@
 // Fuzzes the certificate of a peer, checked by a store that trusts an authority.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -13,12 +14,9 @@ namespace {
 using namespace metier::security;
 
 bool isPrintable(const std::string& text) {
-    for (const char character : text) {
-        if (static_cast<unsigned char>(character) < ' ' || character == '\x7f') {
-            return false;
-        }
-    }
-    return true;
+    return std::none_of(text.begin(), text.end(), [](char character) {
+        return static_cast<unsigned char>(character) < ' ' || character == '\x7f';
+    });
 }
 
 /// Checks that an accepted certificate can be printed, compared and parsed again.

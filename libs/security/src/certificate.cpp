@@ -5,7 +5,6 @@
 #include <openssl/pem.h>
 
 #include <algorithm>
-#include <array>
 #include <ctime>
 
 #include "openssl.hpp"
@@ -62,14 +61,7 @@ std::string uriOf(const X509* certificate) {
 }  // namespace
 
 std::string thumbprintOf(std::string_view der) {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned int size = 0;
-    EVP_Digest(der.data(), der.size(), digest.data(), &size, EVP_sha1(), nullptr);
-    std::string text;
-    for (unsigned int i = 0; i < size; ++i) {
-        text += fmt::format("{:02x}", digest.at(i));
-    }
-    return text;
+    return digestOf(der, EVP_sha1());
 }
 
 std::string dateText(UtcTime time) {

@@ -2,10 +2,10 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
+
+#include "openssl.hpp"
 
 namespace metier::security {
 namespace {
@@ -15,17 +15,6 @@ constexpr std::string_view kEnd = "\"}";
 // Peers choose their names: with this bound a line stays far shorter than the part of a log's end
 // that is read.
 constexpr std::size_t kLongestValue = 1'000;
-
-std::string sha256(std::string_view text) {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned int size = 0;
-    EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr);
-    std::string hex;
-    for (unsigned int i = 0; i < size; ++i) {
-        hex += fmt::format("{:02x}", digest.at(i));
-    }
-    return hex;
-}
 
 std::string timeText(UtcTime time) {
     using std::chrono::system_clock;
@@ -37,7 +26,7 @@ std::string timeText(UtcTime time) {
 
 /// Chain value of a line without its chain, which begins behind a comma.
 std::string chainOf(std::string_view body, std::string_view chain_before) {
-    return sha256(fmt::format("{}\n{}", chain_before, body));
+    return digestOf(fmt::format("{}\n{}", chain_before, body), EVP_sha256());
 }
 
 /// Nothing, if there is no such key or it holds no text.

@@ -7,8 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <system_error>
 
 #include "parts.hpp"
 
@@ -18,20 +16,8 @@ namespace {
 constexpr mode_t kOwnerOnly = 0600;
 constexpr off_t kLongestLine = 65'536;  // length examined from the end of the file
 
-tl::unexpected<Error> failed(const std::filesystem::path& path) {
-    return fail(Errc::resource_unavailable,
-                fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
-}
-
 Descriptor openPart(const std::filesystem::path& path) {
     return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, kOwnerOnly));
-}
-
-void makeFolder(const std::filesystem::path& folder) {
-    std::error_code ignored;  // a later open of the file reports the error
-    if (std::filesystem::create_directories(folder, ignored)) {
-        std::filesystem::permissions(folder, std::filesystem::perms::owner_all, ignored);
-    }
 }
 
 /// End of a part.
@@ -71,16 +57,10 @@ Result<End> readEnd(const Descriptor& part, const std::filesystem::path& path) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-    if (value_ >= 0) {
-        ::close(value_);
-    }
-}
-
 Result<std::unique_ptr<AuditLog::File>> AuditLog::File::open(const std::filesystem::path& path,
                                                              std::uintmax_t part_size,
                                                              std::size_t& dropped) {
-    makeFolder(path.parent_path());
+    static_cast<void>(makeFolder(path.parent_path()));  // to open the file reports the error
     std::unique_ptr<File> file(new File(path, part_size));
     METIER_TRY(file->lock());
     METIER_ASSIGN(const auto read, file->readEnds());
@@ -165,18 +145,7 @@ Result<void> AuditLog::File::write(const std::vector<Entry>& entries) {
         auto error = failed(path);
         return ::ftruncate(part_.get(), size) == 0 ? error : failed(path);
     };
-    std::string_view rest = batch.text;
-    while (!rest.empty()) {
-        const auto written = ::write(part_.get(), rest.data(), rest.size());
-        if (written < 0 && errno == EINTR) {
-            continue;
-        }
-        if (written <= 0) {
-            return undone();
-        }
-        rest.remove_prefix(static_cast<std::size_t>(written));
-    }
-    if (::fdatasync(part_.get()) != 0) {
+    if (!writeAll(part_, batch.text) || ::fdatasync(part_.get()) != 0) {
         return undone();
     }
     number_ = batch.number;

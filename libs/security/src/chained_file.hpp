@@ -8,25 +8,9 @@
 
 #include "chain.hpp"
 #include "metier/security/audit_log.hpp"
+#include "private_file.hpp"
 
 namespace metier::security {
-
-/// An open file; closed at its end.
-class Descriptor {
-public:
-    explicit Descriptor(int value = -1) noexcept : value_(value) {}
-    ~Descriptor();
-    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(value_, other.value_);
-        return *this;
-    }
-    int get() const noexcept { return value_; }
-    explicit operator bool() const noexcept { return value_ >= 0; }
-
-private:
-    int value_;
-};
 
 /// The last part of a log, open for appending; no other process has the log open.
 ///
@@ -37,7 +21,6 @@ public:
     /// \param dropped how much of a last line that was not whole [byte]
     static Result<std::unique_ptr<File>> open(const std::filesystem::path& path,
                                               std::uintmax_t part_size, std::size_t& dropped);
-    ~File() = default;
     File(const File&) = delete;
     File& operator=(const File&) = delete;
 

@@ -47,7 +47,18 @@ std::vector<fs::path> filesIn(const fs::path& folder) {
     return files;
 }
 
-/// Files that are certificates, recognised by their content.
+void makeRoom(const fs::path& folder, std::size_t most) {
+    std::vector<std::pair<fs::file_time_type, fs::path>> all;
+    std::error_code gone;
+    for (const auto& file : filesIn(folder)) {
+        all.emplace_back(fs::last_write_time(file, gone), file);
+    }
+    std::sort(all.begin(), all.end());
+    for (std::size_t i = 0; i + most <= all.size(); ++i) {
+        fs::remove(all[i].second, gone);
+    }
+}
+
 std::vector<Certificate> certificatesIn(const fs::path& folder) {
     std::vector<Certificate> found;
     for (const auto& file : filesIn(folder)) {

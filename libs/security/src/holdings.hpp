@@ -20,6 +20,8 @@ constexpr const char* kRejected = "rejected";
 
 /// The first thousand, by name.
 std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder);
+/// Removes the oldest files of a folder, so that another one makes at most `most`.
+void makeRoom(const std::filesystem::path& folder, std::size_t most);
 /// Certificates among the files of a folder, recognised by their content.
 std::vector<Certificate> certificatesIn(const std::filesystem::path& folder);
 

@@ -105,12 +105,14 @@ Result<std::string> keyDer(const EVP_PKEY* key) {
     return textOf(out.get());
 }
 
-KeyPtr keyFromDer(const std::string& der) {
-    return KeyPtr(d2i_PrivateKey_bio(reading(der).get(), nullptr));
+Result<Identity> identityOf(std::string_view certificate_der, const EVP_PKEY* key) {
+    METIER_ASSIGN(auto private_key, keyDer(key));
+    METIER_ASSIGN(auto certificate, Certificate::fromDer(certificate_der));
+    return Identity{std::move(certificate), std::move(private_key)};
 }
 
 std::string keyPem(const std::string& der) {
-    const auto key = keyFromDer(der);
+    const KeyPtr key(d2i_PrivateKey_bio(reading(der).get(), nullptr));
     const BioPtr out(BIO_new(BIO_s_mem()));
     PEM_write_bio_PKCS8PrivateKey(out.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr);
     return textOf(out.get());
@@ -134,16 +136,11 @@ Result<Identity> makeFor(const std::function<bool(X509*)>& name, const Strength&
         X509_set_version(certificate.get(), X509_VERSION_3) == 1 && setSerial(certificate.get()) &&
         X509_set_pubkey(certificate.get(), key.get()) == 1 && addExtensions(certificate.get()) &&
         name(certificate.get()) && X509_sign(certificate.get(), key.get(), EVP_sha256()) > 0;
-    const BioPtr out(BIO_new(BIO_s_mem()));
-    if (!made || i2d_X509_bio(out.get(), certificate.get()) != 1) {
+    const auto der = made ? derOf(certificate.get()) : std::string();
+    if (der.empty()) {
         return libraryFailed("make a certificate");
     }
-    auto private_key = keyDer(key.get());
-    auto parsed = Certificate::fromDer(textOf(out.get()));
-    if (!private_key || !parsed) {
-        return fail(private_key ? parsed.error() : private_key.error());
-    }
-    return Identity{std::move(*parsed), std::move(*private_key)};
+    return identityOf(der, key.get());
 }
 
 }  // namespace
@@ -188,32 +185,13 @@ Result<Identity> loadIdentity(const std::filesystem::path& folder) {
         return fail(Errc::invalid_argument,
                     fmt::format("{} does not hold a certificate and its key", file.string()));
     }
-    auto der = keyDer(key.get());
-    auto certificate = Certificate::fromDer(derOf(parsed.get()));
-    if (!der || !certificate) {
-        return fail(der ? certificate.error() : der.error());
-    }
-    return Identity{std::move(*certificate), std::move(*der)};
+    return identityOf(derOf(parsed.get()), key.get());
 }
 
 Result<void> saveIdentity(const std::filesystem::path& folder, const Identity& identity) {
     const auto both = keyPem(identity.private_key) + identity.certificate.pem();
     METIER_TRY(writeWhole(folder / kIdentityFile, both, Readers::owner));
     return writeWhole(folder / kCertificateFile, identity.certificate.der(), Readers::everybody);
-}
-
-Result<Identity> ensureIdentity(const std::filesystem::path& folder, const IdentityOptions& options,
-                                UtcTime now) {
-    auto identity = loadIdentity(folder);
-    if (identity || identity.error().code != Errc::not_found) {
-        return identity;
-    }
-    identity = makeIdentity(options, now);
-    if (!identity) {
-        return identity;
-    }
-    METIER_TRY(saveIdentity(folder, *identity));
-    return identity;
 }
 
 }  // namespace metier::security

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <system_error>
-#include <vector>
 
+#include "holdings.hpp"
 #include "metier/base/stable_hash.hpp"
 #include "metier/base/text.hpp"
 #include "private_file.hpp"
@@ -60,32 +60,15 @@ Result<void> KnownServers::noteClosed(const std::string& url) const {
     if (fs::exists(fileOf(url), error)) {
         return {};
     }
-    forgetOldest();
+    makeRoom(folder_, kMost);
     return writeWhole(fileOf(url), addressIn(url) + "\n", Readers::owner);
 }
 
 Result<bool> KnownServers::forget(const std::string& url) const {
     std::error_code error;
     const bool known = fs::remove(fileOf(url), error);
-    return error && error != std::errc::not_a_directory
-               ? fail(Errc::resource_unavailable,
-                      fmt::format("{}: {}", fileOf(url).string(), error.message()))
-               : Result<bool>(known);
-}
-
-/// Makes room for one more.
-void KnownServers::forgetOldest() const {
-    std::vector<std::pair<fs::file_time_type, fs::path>> all;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
-         entry.increment(error)) {
-        std::error_code gone;
-        all.emplace_back(entry->last_write_time(gone), entry->path());
-    }
-    std::sort(all.begin(), all.end());
-    for (std::size_t i = 0; i + kMost <= all.size(); ++i) {
-        fs::remove(all[i].second, error);
-    }
+    return error && error != std::errc::not_a_directory ? failed(fileOf(url), error.value())
+                                                        : Result<bool>(known);
 }
 
 }  // namespace metier::security

@@ -1,8 +1,11 @@
 #include "openssl.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
 
+#include <array>
 #include <fstream>
 #include <limits>
 
@@ -65,6 +68,13 @@ std::string textOf(BIO* bio) {
     char* data = nullptr;
     const long size = BIO_get_mem_data(bio, &data);
     return size > 0 ? std::string(data, static_cast<std::size_t>(size)) : std::string();
+}
+
+std::string digestOf(std::string_view text, const EVP_MD* kind) {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int size = 0;
+    EVP_Digest(text.data(), text.size(), digest.data(), &size, kind, nullptr);
+    return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + size, ""));
 }
 
 std::string readFile(const std::string& path) {

@@ -36,6 +36,9 @@ BioPtr reading(std::string_view text);
 /// Bytes that were written to a memory BIO.
 std::string textOf(BIO* bio);
 
+/// Digest of the text in hexadecimal digits.
+std::string digestOf(std::string_view text, const EVP_MD* kind);
+
 /// The file, up to 64 kB; empty if there is none.
 std::string readFile(const std::string& path);
 

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <system_error>
 
 #include "openssl.hpp"
@@ -16,51 +15,6 @@ namespace {
 constexpr mode_t kOwner = 0600;
 constexpr mode_t kEverybody = 0644;
 constexpr mode_t kOthers = 077;
-
-tl::unexpected<Error> failed(const std::filesystem::path& file, int error) {
-    return fail(Errc::resource_unavailable,
-                fmt::format("{}: {}", file.string(), std::generic_category().message(error)));
-}
-
-/// Closes a descriptor at its end.
-class FileDescriptor {
-public:
-    explicit FileDescriptor(int number) noexcept : number_(number) {}
-    ~FileDescriptor() {
-        if (number_ >= 0) {
-            ::close(number_);
-        }
-    }
-    FileDescriptor(const FileDescriptor&) = delete;
-    FileDescriptor& operator=(const FileDescriptor&) = delete;
-    int number() const noexcept { return number_; }
-
-private:
-    int number_;
-};
-
-bool writeAll(int descriptor, std::string_view content) {
-    while (!content.empty()) {
-        const auto written = ::write(descriptor, content.data(), content.size());
-        if (written < 0 && errno == EINTR) {
-            continue;
-        }
-        if (written <= 0) {
-            return false;
-        }
-        content.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return ::fsync(descriptor) == 0;
-}
-
-Result<void> makeOwnFolder(const std::filesystem::path& folder) {
-    std::error_code error;
-    const bool made = std::filesystem::create_directories(folder, error);
-    if (!error && made) {
-        std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
-    }
-    return error ? failed(folder, error.value()) : Result<void>();
-}
 
 Result<void> checkReaders(const std::filesystem::path& file) {
     struct stat found {};
@@ -77,17 +31,52 @@ Result<void> checkReaders(const std::filesystem::path& file) {
 
 }  // namespace
 
+Descriptor::~Descriptor() {
+    if (value_ >= 0) {
+        ::close(value_);
+    }
+}
+
+tl::unexpected<Error> failed(const std::filesystem::path& file, int error) {
+    return fail(Errc::resource_unavailable,
+                fmt::format("{}: {}", file.string(), std::generic_category().message(error)));
+}
+
+Result<void> makeFolder(const std::filesystem::path& folder) {
+    std::error_code error;
+    const bool made = std::filesystem::create_directories(folder, error);
+    if (!error && made) {
+        std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+    }
+    return error ? failed(folder, error.value()) : Result<void>();
+}
+
+bool writeAll(const Descriptor& file, std::string_view content) {
+    while (!content.empty()) {
+        const auto written = ::write(file.get(), content.data(), content.size());
+        if (written < 0 && errno == EINTR) {
+            continue;
+        }
+        if (written <= 0) {
+            return false;
+        }
+        content.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
 Result<void> writeWhole(const std::filesystem::path& file, std::string_view content,
                         Readers readers) {
     METIER_TRY(makeOwnFolder(file.parent_path()));
     auto pattern = file.string() + ".XXXXXX";
-    const FileDescriptor descriptor(::mkstemp(pattern.data()));  // accessible to its owner only
-    if (descriptor.number() < 0) {
-        return failed(file, errno);
+    const Descriptor descriptor(::mkstemp(pattern.data()));  // accessible to its owner only
+    if (!descriptor) {
+        return failed(file);
     }
-    const bool written =
-        ::fchmod(descriptor.number(), readers == Readers::owner ? kOwner : kEverybody) == 0 &&
-        writeAll(descriptor.number(), content) && ::rename(pattern.c_str(), file.c_str()) == 0;
+    const auto mode = readers == Readers::owner ? kOwnerOnly : kEverybody;
+    const bool written = ::fchmod(descriptor.get(), mode) == 0 && writeAll(descriptor, content) &&
+                         ::fsync(descriptor.get()) == 0 &&
+                         ::rename(pattern.c_str(), file.c_str()) == 0;
     if (!written) {
         const int error = errno;
         ::unlink(pattern.c_str());

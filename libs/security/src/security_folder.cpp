@@ -37,14 +37,8 @@ bool isThumbprint(std::string_view text) {
 }  // namespace
 
 Result<SecurityFolder> SecurityFolder::open(fs::path folder) {
+    METIER_TRY(makeFolder(folder));
     std::error_code error;
-    if (fs::create_directories(folder, error) && !error) {
-        fs::permissions(folder, fs::perms::owner_all, error);
-    }
-    if (error) {
-        return fail(Errc::resource_unavailable,
-                    fmt::format("{}: {}", folder.string(), error.message()));
-    }
     constexpr auto kOthersWrite = fs::perms::group_write | fs::perms::others_write;
     if ((fs::status(folder, error).permissions() & kOthersWrite) != fs::perms::none) {
         return fail(Errc::access_denied,
@@ -58,14 +52,15 @@ fs::path SecurityFolder::identityFolder(const std::string& name) const {
     return folder_ / "own" / name;
 }
 
-Result<Identity> SecurityFolder::makeKnown(Identity identity) {
+/// The identity is made known before it is saved, so that a saved identity is always known.
+Result<Identity> SecurityFolder::keep(const std::string& name, Identity identity) {
     METIER_ASSIGN(auto store, TrustStore::open(trustFolder()));
     METIER_TRY(store.trust(identity.certificate));
     METIER_TRY(setRole(identity.certificate, Role::operator_));
+    METIER_TRY(saveIdentity(identityFolder(name), identity));
     return identity;
 }
 
-/// The identity is made known before it is saved, so that a saved identity is always known.
 Result<Identity> SecurityFolder::identity(const std::string& name, const IdentityOptions& options,
                                           UtcTime now) {
     METIER_TRY(checkFileName(name));
@@ -73,25 +68,15 @@ Result<Identity> SecurityFolder::identity(const std::string& name, const Identit
     if (identity || identity.error().code != Errc::not_found) {
         return identity;
     }
-    identity = makeIdentity(options, now);
-    identity = identity ? makeKnown(std::move(*identity)) : std::move(identity);
-    if (!identity) {
-        return identity;
-    }
-    METIER_TRY(saveIdentity(identityFolder(name), *identity));
-    return identity;
+    METIER_ASSIGN(auto made, makeIdentity(options, now));
+    return keep(name, std::move(made));
 }
 
 Result<Identity> SecurityFolder::renew(const std::string& name, UtcTime now) {
     METIER_TRY(checkFileName(name));
     METIER_ASSIGN(const auto former, loadIdentity(identityFolder(name)));
-    auto identity = makeSuccessor(former, IdentityOptions().lifetime, now);
-    identity = identity ? makeKnown(std::move(*identity)) : std::move(identity);
-    if (!identity) {
-        return identity;
-    }
-    METIER_TRY(saveIdentity(identityFolder(name), *identity));
-    return identity;
+    METIER_ASSIGN(auto made, makeSuccessor(former, IdentityOptions().lifetime, now));
+    return keep(name, std::move(made));
 }
 
 std::vector<SecurityFolder::Own> SecurityFolder::own() const {
@@ -137,9 +122,7 @@ Result<void> SecurityFolder::setRole(const Certificate& certificate, std::option
     }
     std::error_code error;
     fs::remove(file, error);
-    return error ? fail(Errc::resource_unavailable,
-                        fmt::format("{}: {}", file.string(), error.message()))
-                 : Result<void>();
+    return error ? failed(file, error.value()) : Result<void>();
 }
 
 }  // namespace metier::security

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <openssl/err.h>
 
-#include <algorithm>
-
 #include "certificate_check.hpp"
 #include "holdings.hpp"
 #include "openssl.hpp"
@@ -53,28 +51,6 @@ void removeFrom(const fs::path& folder, const Certificate& certificate) {
 
 }  // namespace
 
-std::string_view toString(RefusalKind kind) noexcept {
-    switch (kind) {
-        case RefusalKind::malformed:
-            return "malformed";
-        case RefusalKind::untrusted:
-            return "untrusted";
-        case RefusalKind::expired:
-            return "expired";
-        case RefusalKind::not_yet_valid:
-            return "not_yet_valid";
-        case RefusalKind::revoked:
-            return "revoked";
-        case RefusalKind::revocation_unknown:
-            return "revocation_unknown";
-        case RefusalKind::weak:
-            return "weak";
-        case RefusalKind::wrong_use:
-            return "wrong_use";
-    }
-    return "malformed";
-}
-
 TrustStore::TrustStore(fs::path folder) : folder_(std::move(folder)) {}
 TrustStore::~TrustStore() = default;
 TrustStore::TrustStore(TrustStore&& other) noexcept = default;
@@ -85,8 +61,7 @@ Result<TrustStore> TrustStore::open(fs::path folder) {
         std::error_code error;
         fs::create_directories(folder / part, error);
         if (error) {
-            return fail(Errc::resource_unavailable,
-                        fmt::format("{}: {}", (folder / part).string(), error.message()));
+            return failed(folder / part, error.value());
         }
     }
     return TrustStore(std::move(folder));
@@ -114,22 +89,12 @@ std::shared_ptr<const TrustStore::Holdings> TrustStore::holdings() {
 }
 
 void TrustStore::keepRejected(const Certificate& certificate) const {
-    const auto folder = folder_ / kRejected;
-    auto files = filesIn(folder);
-    const auto file = fileOf(folder, certificate);
-    if (std::find(files.begin(), files.end(), file) != files.end()) {
+    const auto file = fileOf(folder_ / kRejected, certificate);
+    std::error_code error;
+    if (fs::exists(file, error)) {
         return;
     }
-    const auto age = [](const fs::path& path) {
-        std::error_code error;
-        return fs::last_write_time(path, error);
-    };
-    std::sort(files.begin(), files.end(),
-              [&](const auto& a, const auto& b) { return age(a) < age(b); });
-    for (std::size_t i = 0; i + kMostRejected <= files.size(); ++i) {
-        std::error_code error;
-        fs::remove(files[i], error);
-    }
+    makeRoom(folder_ / kRejected, kMostRejected);
     // The certificate is refused also if the folder cannot be written; the log reports the refusal.
     static_cast<void>(writeWhole(file, certificate.der(), Readers::everybody));
 }
@@ -143,20 +108,16 @@ std::vector<Certificate> TrustStore::rejected() const {
 }
 
 Result<void> TrustStore::trust(const Certificate& certificate) {
-    auto written =
-        writeWhole(fileOf(folder_ / kTrusted, certificate), certificate.der(), Readers::everybody);
-    if (written) {
-        removeFrom(folder_ / kRejected, certificate);
-    }
-    return written;
+    METIER_TRY(
+        writeWhole(fileOf(folder_ / kTrusted, certificate), certificate.der(), Readers::everybody));
+    removeFrom(folder_ / kRejected, certificate);
+    return {};
 }
 
 Result<Certificate> TrustStore::distrust(std::string_view name) {
-    auto certificate = find(name, trusted(), "trusted");
-    if (certificate) {
-        keepRejected(*certificate);
-        removeFrom(folder_ / kTrusted, *certificate);
-    }
+    METIER_ASSIGN(auto certificate, find(name, trusted(), "trusted"));
+    keepRejected(certificate);
+    removeFrom(folder_ / kTrusted, certificate);
     return certificate;
 }
 

@@ -21,16 +21,15 @@ constexpr unsigned long kCost = 4;      // some 16 ms
 constexpr std::size_t kLongestUserName = 64;
 constexpr std::size_t kShortestPassword = 8;
 constexpr std::size_t kLongestPassword = 256;
-constexpr std::array kRoles{Role::observer, Role::operator_, Role::engineer, Role::security_admin};
+constexpr std::string_view kNameCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_@";
+/// In the order of Role.
+constexpr std::array<std::string_view, 4> kRoleNames{"Observer", "Operator", "Engineer",
+                                                     "SecurityAdmin"};
 
-bool isNameCharacter(char c) noexcept {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view(".-_@").find(c) != std::string_view::npos;
-}
-
-Result<void> checkUserName(const std::string& name) {
-    const bool right = !name.empty() && name.size() <= kLongestUserName &&
-                       std::all_of(name.begin(), name.end(), isNameCharacter);
+Result<void> checkName(const std::string& name) {
+    const bool right = !name.empty() && name.size() <= kLongestName &&
+                       name.find_first_not_of(kNameCharacters) == std::string::npos;
     return right ? Result<void>()
                  : fail(Errc::invalid_argument,
                         fmt::format("a user's name has 1 to {} letters, digits, . - _ or @",
@@ -76,23 +75,13 @@ Result<User> readUser(const std::string& line) {
 }  // namespace
 
 std::string_view toString(Role role) noexcept {
-    switch (role) {
-        case Role::observer:
-            return "Observer";
-        case Role::operator_:
-            return "Operator";
-        case Role::engineer:
-            return "Engineer";
-        case Role::security_admin:
-            return "SecurityAdmin";
-    }
-    return "Observer";
+    return kRoleNames[static_cast<std::size_t>(role)];
 }
 
 std::optional<Role> roleNamed(std::string_view name) noexcept {
-    const auto* found = std::find_if(kRoles.begin(), kRoles.end(),
-                                     [&](Role role) { return toString(role) == name; });
-    return found == kRoles.end() ? std::nullopt : std::optional(*found);
+    const auto* found = std::find(kRoleNames.begin(), kRoleNames.end(), name);
+    return found == kRoleNames.end() ? std::nullopt
+                                     : std::optional(static_cast<Role>(found - kRoleNames.begin()));
 }
 
 Result<UserTable> UserTable::load(const std::filesystem::path& file) {

@@ -65,11 +65,7 @@ private:
 
     const std::set<std::string>& anchors_;
     bool at_begin_ = true;
-    Verified verified_{.entries = 0,
-                       .first_number = 1,
-                       .first_time = {},
-                       .last_time = {},
-                       .last_chain = std::string(kNoChain)};
+    Verified verified_{.last_chain = std::string(kNoChain)};
 };
 
 }  // namespace

@@ -26,11 +26,11 @@ protected:
         ::testing::UnitTest::GetInstance()->current_test_info()->name() / "own";
 };
 
-TEST_F(IdentityFolder, IsGivenAnIdentityOnce) {
+TEST_F(IdentityFolder, GivesTheIdentityThatWasSaved) {
     const IdentityOptions options{.application_name = "metier ur5",
                                   .application_uri = "urn:host:metier:ur5:48411",
                                   .hosts = {"host", "127.0.0.1"}};
-    const auto made = ensureIdentity(folder_, options, now_);
+    const auto made = makeIdentity(options, now_);
     ASSERT_TRUE(made) << made.error().message;
     EXPECT_EQ(made->certificate.subject(), "CN=metier ur5");
     EXPECT_EQ(made->certificate.applicationUri(), "urn:host:metier:ur5:48411");
@@ -38,14 +38,15 @@ TEST_F(IdentityFolder, IsGivenAnIdentityOnce) {
     EXPECT_LT(made->certificate.notBefore(), now_);
     EXPECT_GT(made->certificate.notAfter(), now_ + 729 * 24h);
     EXPECT_LT(made->certificate.notAfter(), now_ + 731 * 24h);
-    const auto again = ensureIdentity(folder_, options, now_);
+    ASSERT_TRUE(saveIdentity(folder_, *made));
+    const auto again = loadIdentity(folder_);
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(again->certificate, made->certificate);
     EXPECT_EQ(again->private_key, made->private_key);
 }
 
 TEST_F(IdentityFolder, ShowsItsKeyToItsOwnerAlone) {
-    ASSERT_TRUE(ensureIdentity(folder_, {}, now_));
+    ASSERT_TRUE(saveIdentity(folder_, makeIdentity({}, now_).value()));
     EXPECT_EQ(modeOf(folder_ / "identity.pem"), 0600U);
     EXPECT_EQ(modeOf(folder_ / "certificate.der"), 0644U);
     EXPECT_EQ(modeOf(folder_), 0700U);
@@ -54,7 +55,6 @@ TEST_F(IdentityFolder, ShowsItsKeyToItsOwnerAlone) {
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::access_denied);
     EXPECT_THAT(refused.error().message, HasSubstr("mode 640, must be 600"));
-    EXPECT_FALSE(ensureIdentity(folder_, {}, now_)) << "no new one in its place";
 }
 
 TEST_F(IdentityFolder, IsNotReadIfItsKeyIsOfAnotherCertificate) {
@@ -73,7 +73,7 @@ TEST_F(IdentityFolder, HasNoneAtFirst) {
 TEST_F(IdentityFolder, ThatCannotBeWrittenIsTold) {
     const auto file = std::filesystem::path(::testing::TempDir()) / "a_file";
     std::ofstream(file) << "x";
-    const auto refused = ensureIdentity(file / "own", {}, now_);
+    const auto refused = saveIdentity(file / "own", makeIdentity({}, now_).value());
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr(file.string()));
 }

@@ -52,6 +52,13 @@ TEST_F(SecurityFolderTest, IsForItsOwnerAlone) {
     EXPECT_THAT(refused.error().message, HasSubstr("chmod 700"));
 }
 
+TEST_F(SecurityFolderTest, MakesNoNewIdentityInPlaceOfOneThatOthersMayRead) {
+    ASSERT_TRUE(open().identity("arm", options_, now_));
+    fs::permissions(open().identityFolder("arm") / "identity.pem", fs::perms::group_read,
+                    fs::perm_options::add);
+    EXPECT_EQ(open().identity("arm", options_, now_).error().code, Errc::access_denied);
+}
+
 TEST_F(SecurityFolderTest, RenewsAnIdentityForTheSameNames) {
     auto folder = open();
     const auto former = folder.identity("arm", options_, now_).value();

@@ -100,9 +100,9 @@ private:
 struct Verified {
     std::uint64_t entries = 0;
     std::uint64_t first_number = 1;  ///< above 1: earlier entries are in another part
-    std::string first_time;          ///< empty if there is no entry
-    std::string last_time;
-    std::string last_chain;  ///< 64 hexadecimal digits
+    std::string first_time{};        ///< empty if there is no entry
+    std::string last_time{};
+    std::string last_chain{};  ///< 64 hexadecimal digits
     /// Given anchors that are chain values of this log.
     std::set<std::string> anchors{};
 };

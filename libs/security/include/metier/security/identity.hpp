@@ -46,9 +46,4 @@ Result<Identity> loadIdentity(const std::filesystem::path& folder);
 /// Errors: resource_unavailable (the folder).
 Result<void> saveIdentity(const std::filesystem::path& folder, const Identity& identity);
 
-/// Loads the identity in `folder`; makes and saves a new one if there is none. Errors as
-/// loadIdentity() but not_found, makeIdentity() and saveIdentity().
-Result<Identity> ensureIdentity(const std::filesystem::path& folder, const IdentityOptions& options,
-                                UtcTime now);
-
 }  // namespace metier::security

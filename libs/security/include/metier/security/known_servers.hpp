@@ -32,7 +32,6 @@ public:
 
 private:
     std::filesystem::path fileOf(const std::string& url) const;
-    void forgetOldest() const;
 
     std::filesystem::path folder_;
 };

@@ -69,7 +69,7 @@ public:
 
 private:
     explicit SecurityFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    Result<Identity> makeKnown(Identity identity);
+    Result<Identity> keep(const std::string& name, Identity identity);
 
     std::filesystem::path folder_;
 };

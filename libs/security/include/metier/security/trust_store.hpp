@@ -24,7 +24,6 @@ enum class RefusalKind {
     weak,                ///< a key under 2048 bit, or SHA-1
     wrong_use,           ///< its KeyUsage does not allow what OPC UA does with it
 };
-std::string_view toString(RefusalKind kind) noexcept;
 
 /// Reason of a refusal, for the program and for a person.
 struct CertificateRefusal {
