@@ -5,7 +5,6 @@
 
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
-#include "metier/skill/units.hpp"
 #include "questions.hpp"
 
 namespace metier::client {

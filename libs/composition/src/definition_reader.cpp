@@ -10,7 +10,7 @@
 
 #include "literal.hpp"
 #include "metier/composition/definition_file.hpp"
-#include "metier/skill/units.hpp"
+#include "metier/skill/field.hpp"
 #include "static_check.hpp"
 
 namespace metier::composition {

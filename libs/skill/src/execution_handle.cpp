@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "execution_core.hpp"
+#include "program_call.hpp"
 
 namespace metier::skill {
 
@@ -19,42 +19,41 @@ const std::string& ExecutionHandle::id() const noexcept {
 }
 
 void ExecutionHandle::finish(ValueMap result) const {
-    post(core_, [result = std::move(result)](ExecutionSink& sink) mutable {
-        sink.onFinish(std::move(result));
+    Program::post(core_, [result = std::move(result)](Program& program) mutable {
+        program.finish(std::move(result));
     });
 }
 
 void ExecutionHandle::fail(Reason reason, std::string text) const {
-    post(core_, [reason, text = std::move(text)](ExecutionSink& sink) mutable {
-        sink.onFail(reason, std::move(text));
+    Program::post(core_, [reason, text = std::move(text)](Program& program) mutable {
+        program.fail(reason, std::move(text));
     });
 }
 
 void ExecutionHandle::atRest() const {
     const auto request = core_ ? core_->stop_request.load() : 0;
-    post(core_, [request](ExecutionSink& sink) { sink.onAtRest(request); });
+    Program::post(core_, [request](Program& program) { program.takeRest(request); });
 }
 
 void ExecutionHandle::progress(Value intermediate) const {
-    post(core_, [value = std::move(intermediate)](ExecutionSink& sink) mutable {
-        sink.onProgress(std::move(value));
+    Program::post(core_, [value = std::move(intermediate)](Program& program) mutable {
+        program.takeProgress(std::move(value));
     });
 }
 
 void ExecutionHandle::step(std::string name) const {
-    post(core_,
-         [name = std::move(name)](ExecutionSink& sink) mutable { sink.onStep(std::move(name)); });
-}
-
-void ExecutionHandle::suspend(std::string why) const {
-    post(core_, [why = std::move(why)](ExecutionSink& sink) mutable {
-        sink.onSuspendAsked(std::move(why));
+    Program::post(core_, [name = std::move(name)](Program& program) mutable {
+        program.takeStep(std::move(name));
     });
 }
 
+void ExecutionHandle::suspend(std::string why) const {
+    Program::post(core_, [why = std::move(why)](Program& program) { program.suspendAsked(why); });
+}
+
 void ExecutionHandle::started(StartedExecution child) const {
-    post(core_, [child = std::move(child)](ExecutionSink& sink) mutable {
-        sink.onStarted(std::move(child));
+    Program::post(core_, [child = std::move(child)](Program& program) {
+        program.notify([&](ProgramObserver& observer) { observer.onStarted(child); });
     });
 }
 

@@ -90,15 +90,12 @@ private:
         if (!std::isfinite(value)) {
             return refuse(where, fmt::format("{} is not finite", withUnit(value, field_.unit)));
         }
-        if (range && value > range->high) {
+        if (range && (value > range->high || value < range->low)) {
+            const bool over = value > range->high;
             return refuse(where,
-                          fmt::format("{} is over the limit {}", withUnit(value, field_.unit),
-                                      withUnit(range->high, field_.unit)));
-        }
-        if (range && value < range->low) {
-            return refuse(where,
-                          fmt::format("{} is under the limit {}", withUnit(value, field_.unit),
-                                      withUnit(range->low, field_.unit)));
+                          fmt::format("{} is {} the limit {}", withUnit(value, field_.unit),
+                                      over ? "over" : "under",
+                                      withUnit(over ? range->high : range->low, field_.unit)));
         }
         return {};
     }

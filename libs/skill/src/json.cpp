@@ -84,8 +84,4 @@ std::string jsonOf(const ValueMap& values) {
     return textOf(ToJson<ordered_json>()(values));
 }
 
-std::string jsonText(std::string_view text) {
-    return textOf(text);
-}
-
 }  // namespace metier::skill

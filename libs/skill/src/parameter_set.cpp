@@ -14,16 +14,13 @@ ParameterSet::ParameterSet(Fields fields) : fields_(std::move(fields)) {
 }
 
 Result<const Field*> ParameterSet::field(std::string_view name) const {
-    const auto found = std::find_if(fields_.begin(), fields_.end(),
-                                    [&](const Field& field) { return field.name == name; });
-    if (found == fields_.end()) {
-        return fail(Errc::not_found, fmt::format("no parameter {}", name));
-    }
-    return &*found;
+    const auto* found = findField(fields_, name);
+    return found == nullptr ? fail(Errc::not_found, fmt::format("no parameter {}", name))
+                            : Result<const Field*>(found);
 }
 
 Result<void> ParameterSet::checkAccess(std::string_view session) const {
-    if (!bound_ || session_ == session) {
+    if (!isBound() || isBoundTo(session)) {
         return {};
     }
     return fail(Errc::locked, "another session has configured the skill and not started it yet");
@@ -31,7 +28,6 @@ Result<void> ParameterSet::checkAccess(std::string_view session) const {
 
 void ParameterSet::bind(std::string_view session) {
     session_ = session;
-    bound_ = true;
 }
 
 const std::shared_ptr<const ValueMap>& ParameterSet::snapshot() {
@@ -41,18 +37,12 @@ const std::shared_ptr<const ValueMap>& ParameterSet::snapshot() {
     return snapshot_;
 }
 
-const Value& ParameterSet::write(const Field& field, Value value) {
+void ParameterSet::write(const Field& field, Value value) {
     snapshot_.reset();
-    auto& held = values_.find(field.name)->second;
-    if (isNull(value)) {
-        held = field.default_value;
-    } else {
-        held = std::move(value);
-    }
+    values_.find(field.name)->second = isNull(value) ? field.default_value : std::move(value);
     if (std::find(written_.begin(), written_.end(), &field) == written_.end()) {
         written_.push_back(&field);
     }
-    return held;
 }
 
 Result<void> ParameterSet::checkComplete() const {
@@ -99,22 +89,15 @@ ValueMap ParameterSet::written() const {
     return written;
 }
 
-std::vector<std::string_view> ParameterSet::release() {
-    std::vector<std::string_view> changed;
+void ParameterSet::release() {
     if (!written_.empty()) {
         snapshot_.reset();
     }
     for (const Field* field : written_) {
-        auto& held = values_.find(field->name)->second;
-        if (held != field->default_value) {
-            held = field->default_value;
-            changed.emplace_back(field->name);
-        }
+        values_.find(field->name)->second = field->default_value;
     }
     written_.clear();
-    session_.clear();
-    bound_ = false;
-    return changed;
+    session_.reset();
 }
 
 }  // namespace metier::skill

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "execution_core.hpp"
 #include "metier/base/random.hpp"
 #include "program_call.hpp"
 
@@ -17,10 +16,7 @@ constexpr std::uint16_t kInformation = 100;
 constexpr std::uint16_t kWarning = 400;
 constexpr std::uint16_t kFault = 700;
 
-std::string newBootId() {
-    constexpr std::size_t kDigits = 16;
-    return randomHex(kDigits);
-}
+constexpr std::size_t kBootIdDigits = 16;
 
 std::uint16_t severityOf(State to, Reason reason) noexcept {
     if (to != State::halted) {
@@ -89,7 +85,7 @@ Program::Program(ProgramOptions options, std::unique_ptr<Skill> skill,
       clock_(clock),
       parameters_(description_.parameters),
       final_result_(nullResult(description_.results)),
-      boot_id_(newBootId()) {
+      boot_id_(randomHex(kBootIdDigits)) {
     diagnostic_.create_session_id = options_.creator.session_id;
     diagnostic_.create_client_name = options_.creator.client_name;
     diagnostic_.invocation_creation_time = clock_.utcNow();
@@ -211,24 +207,23 @@ void Program::recordStatus(const Result<void>& status) {
 }
 
 Result<void> Program::start(const Caller& caller) {
-    return command(Method::start, caller, [&] { return startNow(caller); });
+    return command(Method::start, caller, [&]() -> Result<void> {
+        METIER_TRY(checkFree(caller));
+        METIER_TRY(parameters_.checkComplete());
+        return begin(caller, parameters_.snapshot(), {});
+    });
 }
 
 Result<std::string> Program::startWith(const Caller& caller, StartRequest request) {
     if (!request.execution_id.empty() && history_.find(request.execution_id) != nullptr) {
         return request.execution_id;
     }
-    const auto status =
-        command(Method::start_with, caller, [&] { return startWithNow(caller, request); });
-    if (!status) {
-        return metier::fail(status.error());
-    }
+    METIER_TRY(command(Method::start_with, caller, [&] { return startWithNow(caller, request); }));
     return request.execution_id;
 }
 
 Result<ExecutionRecord> Program::execution(std::string_view id) const {
-    const auto* record = history_.find(id);
-    if (record != nullptr) {
+    if (const auto* record = history_.find(id)) {
         return *record;
     }
     const bool forgotten = options_.names->knows(description_.name, id);
@@ -247,11 +242,33 @@ Result<void> Program::resume(const Caller& caller) {
 }
 
 Result<void> Program::halt(const Caller& caller) {
-    return command(Method::halt, caller, [this] { return haltNow(); });
+    return command(Method::halt, caller, [this]() -> Result<void> {
+        if (state_ == State::ready) {
+            end(TransitionNumber::ready_to_halted, {});
+        } else if (state_ == State::suspended) {
+            giveUpSuspended();
+            halted({});
+        } else if (!halting_) {
+            brake({});
+        }
+        return {};
+    });
 }
 
 Result<void> Program::reset(const Caller& caller) {
-    return command(Method::reset, caller, [this] { return resetNow(); });
+    return command(Method::reset, caller, [this]() -> Result<void> {
+        if (state_ == State::suspended) {
+            giveUpSuspended();
+            end(TransitionNumber::suspended_to_ready, {});
+            return {};
+        }
+        if (auto agreed = guarded([this] { return skill_->reset(); }); !agreed) {
+            reason_text_ = agreed.error().message;
+            return agreed;
+        }
+        commit(TransitionNumber::halted_to_ready, {});
+        return {};
+    });
 }
 
 void Program::setSubState(SubState sub_state) {
@@ -262,18 +279,18 @@ void Program::setSubState(SubState sub_state) {
 }
 
 void Program::noteInHistory() {
-    auto* record = execution_ ? history_.find(execution_->id) : nullptr;
-    if (record == nullptr) {
+    if (!execution_) {
         return;
     }
-    record->state = state_;
-    record->reason = reason_;
-    record->reason_text = reason_text_;
+    auto& record = history_.last();
+    record.state = state_;
+    record.reason = reason_;
+    record.reason_text = reason_text_;
     if (!work_) {
-        record->end_time = diagnostic_.last_transition_time;
+        record.end_time = diagnostic_.last_transition_time;
     }
     if (reason_ == Reason::finished) {
-        record->result = final_result_;
+        record.result = final_result_;
     }
 }
 
@@ -304,7 +321,6 @@ void Program::commit(TransitionNumber transition, Cause cause) {
     }
     setSubState(subStateAfter(state_, reason_));
     notify([this](ProgramObserver& observer) {
-        observer.onReason(reason_, reason_text_);
         observer.onDiagnostic(diagnostic_);
         observer.onTransition(*last_);
     });

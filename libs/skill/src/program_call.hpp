@@ -1,12 +1,31 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <exception>
+#include <memory>
+#include <string>
 #include <type_traits>
 #include <utility>
 
 #include "metier/skill/program.hpp"
 
 namespace metier::skill {
+
+/// Data that the handles of one execution share with its Program.
+struct ExecutionCore {
+    ExecutionCore(const std::shared_ptr<Executor>& owner, std::string execution_id, Program& runs)
+        : executor(owner), id(std::move(execution_id)), program(&runs) {}
+
+    // Not shared: what waits in the executor's queue holds this.
+    const std::weak_ptr<Executor> executor;
+    const std::string id;
+    /// Counts the requests to come to rest, so that a late answer to one is not taken for the
+    /// answer to the next. Written by the owner's thread.
+    std::atomic<std::uint32_t> stop_request{0};
+    /// Null once the execution has ended. Owner's thread only.
+    Program* program;
+};
 
 /// Calls into a skill or work; what it throws becomes an error.
 template <typename Call>
@@ -61,6 +80,24 @@ void Program::inCall(Work work) {
     }
     const Call call(*this);
     work();
+}
+
+template <typename Tell>
+void Program::post(const std::shared_ptr<ExecutionCore>& core, Tell tell) {
+    const auto executor = core ? core->executor.lock() : nullptr;
+    if (!executor) {
+        return;
+    }
+    auto tellIfOn = [core, tell = std::move(tell)]() mutable {
+        if (core->program != nullptr) {
+            tell(*core->program);
+        }
+    };
+    executor->post([core, tell = std::move(tellIfOn)]() mutable {
+        if (core->program != nullptr) {
+            core->program->inCall(std::move(tell));
+        }
+    });
 }
 
 }  // namespace metier::skill

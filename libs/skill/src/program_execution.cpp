@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "execution_core.hpp"
 #include "metier/skill/program.hpp"
 #include "program_call.hpp"
 
@@ -24,12 +23,6 @@ Reason faultReason(Reason reason) noexcept {
 Result<void> Program::checkFree(const Caller& caller) const {
     METIER_TRY(parameters_.checkAccess(caller.session_id));
     return options_.resource ? options_.resource->checkFree() : Result<void>{};
-}
-
-Result<void> Program::startNow(const Caller& caller) {
-    METIER_TRY(checkFree(caller));
-    METIER_TRY(parameters_.checkComplete());
-    return begin(caller, parameters_.snapshot(), {});
 }
 
 Result<void> Program::startWithNow(const Caller& caller, StartRequest& request) {
@@ -71,24 +64,21 @@ Result<void> Program::checkEpoch(const Caller& caller, std::uint64_t epoch) cons
 /// Running, with the work that the skill prepares for `snapshot`.
 Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap> snapshot,
                             Order order) {
-    auto work = guarded([&] { return skill_->prepare(*snapshot); });
+    METIER_ASSIGN(auto work, guarded([&] { return skill_->prepare(*snapshot); }));
     if (!work) {
-        return metier::fail(std::move(work.error()));
-    }
-    if (!*work) {
         return metier::fail(Errc::internal, "the skill made no work");
     }
     const bool named = !order.id.empty();
     auto core = std::make_shared<ExecutionCore>(
         executor_, named ? std::move(order.id) : fmt::format("{}-{}", boot_id_, ++execution_count_),
-        static_cast<ExecutionSink&>(*this));
+        *this);
     if (named) {
         METIER_TRY(noteName(core));
     }
     if (options_.resource) {
         options_.resource->acquire(description_.name);
     }
-    work_ = std::move(*work);
+    work_ = std::move(work);
     execution_ = std::move(core);
     execution_id_ = execution_->id;
     owner_session_ = caller.session_id;
@@ -98,7 +88,6 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
                   .parent = std::move(order.parent),
                   .parameters = std::move(snapshot),
                   .start_time = clock_.utcNow()});
-    notify([this](ProgramObserver& observer) { observer.onBegin(history_.last()); });
     commit(TransitionNumber::ready_to_running, {});
     releaseParameters();
     if (name_kept_) {
@@ -113,33 +102,29 @@ Result<void> Program::begin(const Caller& caller, std::shared_ptr<const ValueMap
 /// Has the name written. The work starts once it is on disk: so an execution that is unknown after
 /// the death of the process has moved nothing.
 Result<void> Program::noteName(const std::shared_ptr<ExecutionCore>& core) {
-    const auto noted =
+    METIER_ASSIGN(
+        const auto noted,
         options_.names->note(description_.name, core->id, [core](const Result<void>& kept) {
-            post(core, [kept](ExecutionSink& sink) { sink.onNameKept(kept); });
-        });
-    if (!noted) {
-        return metier::fail(noted.error());
-    }
-    name_kept_ = *noted == ExecutionNames::Keeping::kept;
+            post(core, [kept](Program& program) { program.nameKept(kept); });
+        }));
+    name_kept_ = noted == ExecutionNames::Keeping::kept;
     return {};
 }
 
-void Program::onNameKept(Result<void> kept) {
-    inCall([this, kept = std::move(kept)] {
-        if (!work_ || name_kept_) {
-            return;
-        }
-        name_timer_.cancel();
-        if (!kept) {
-            options_.names->forget(description_.name, execution_->id);
-            halted({Reason::error, kept.error().message + "; nothing has moved"});
-            return;
-        }
-        name_kept_ = true;
-        if (state_ == State::running) {
-            startWork();
-        }
-    });
+void Program::nameKept(const Result<void>& kept) {
+    if (!work_ || name_kept_) {
+        return;
+    }
+    name_timer_.cancel();
+    if (!kept) {
+        options_.names->forget(description_.name, execution_->id);
+        halted({Reason::error, kept.error().message + "; nothing has moved"});
+        return;
+    }
+    name_kept_ = true;
+    if (state_ == State::running) {
+        startWork();
+    }
 }
 
 void Program::nameDeadlinePassed() {
@@ -152,14 +137,10 @@ void Program::nameDeadlinePassed() {
 
 CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
     auto checked = checkNow(caller, parameters);
-    CheckReport report;
-    if (checked) {
-        report = std::move(*checked);
-    } else {
-        report.possible = false;
-        report.reason = checked.error().message;
-        report.first_failing_fraction = 0.0;
-    }
+    const auto report = checked ? std::move(*checked)
+                                : CheckReport{.possible = false,
+                                              .reason = checked.error().message,
+                                              .first_failing_fraction = 0.0};
     if (!busy_) {
         const Call call(*this);
         notify([&](ProgramObserver& observer) { observer.onCheck(caller, parameters, report); });
@@ -168,14 +149,11 @@ CheckReport Program::check(const Caller& caller, const ValueMap& parameters) {
 }
 
 Result<CheckReport> Program::checkNow(const Caller& caller, const ValueMap& parameters) {
-    auto allowed = busy_ ? metier::fail(Errc::invalid_state, "Check from inside a notification")
-                         : checkAllowed(Method::start_with, caller);
-    if (allowed) {
-        allowed = checkFree(caller);
+    if (busy_) {
+        return metier::fail(Errc::invalid_state, "Check from inside a notification");
     }
-    if (!allowed) {
-        return metier::fail(std::move(allowed.error()));
-    }
+    METIER_TRY(checkAllowed(Method::start_with, caller));
+    METIER_TRY(checkFree(caller));
     METIER_ASSIGN(auto snapshot, parameters_.snapshotOf(parameters));
     return guarded([&] { return skill_->check(snapshot); });
 }
@@ -188,11 +166,7 @@ void Program::startWork() {
     }
 }
 
-void Program::onFinish(ValueMap result) {
-    inCall([this, result = std::move(result)]() mutable { finished(std::move(result)); });
-}
-
-void Program::finished(ValueMap result) {
+void Program::finish(ValueMap result) {
     if (state_ == State::suspended) {
         finished_while_suspended_ = std::move(result);
         return;
@@ -208,7 +182,6 @@ void Program::finished(ValueMap result) {
         halted({Reason::error, taken.error().message});
         return;
     }
-    notify([this](ProgramObserver& observer) { observer.onResult(final_result_); });
     end(TransitionNumber::running_to_ready, {Reason::finished});
 }
 
@@ -231,13 +204,8 @@ Result<void> Program::takeResult(ValueMap& result) {
     return {};
 }
 
-void Program::onFail(Reason reason, std::string text) {
-    inCall([this, cause = Cause{faultReason(reason), std::move(text)}]() mutable {
-        if (work_) {
-            cause.text += whyStopping();
-            halted(std::move(cause));
-        }
-    });
+void Program::fail(Reason reason, std::string text) {
+    halted({faultReason(reason), std::move(text) + whyStopping()});
 }
 
 /// The cause of a Halt or Suspend that is under way; that of the Halt if it is both.
@@ -262,7 +230,7 @@ void Program::endExecution() {
     suspending_.reset();
     finished_while_suspended_.reset();
     if (execution_) {
-        execution_->sink = nullptr;
+        execution_->program = nullptr;
     }
     if (work_ && options_.resource) {
         options_.resource->release();
@@ -325,15 +293,13 @@ void Program::announceRest(State to, const Cause& cause) {
     notify([&](ProgramObserver& observer) { observer.onStopping(event); });
 }
 
-void Program::onSuspendAsked(std::string why) {
-    inCall([this, why = std::move(why)]() mutable {
-        if (sub_state_ != SubState::executing) {
-            return;
-        }
-        if (const auto asked = suspendNow({Reason::by_client, why}); !asked) {
-            brake({Reason::error, fmt::format("{}; {}", why, asked.error().message)});
-        }
-    });
+void Program::suspendAsked(const std::string& why) {
+    if (sub_state_ != SubState::executing) {
+        return;
+    }
+    if (const auto asked = suspendNow({Reason::by_client, why}); !asked) {
+        brake({Reason::error, fmt::format("{}; {}", why, asked.error().message)});
+    }
 }
 
 Result<void> Program::resumeNow(const Caller& caller) {
@@ -341,7 +307,7 @@ Result<void> Program::resumeNow(const Caller& caller) {
         auto result = std::move(*finished_while_suspended_);
         finished_while_suspended_.reset();
         commit(TransitionNumber::suspended_to_running, {});
-        finished(std::move(result));
+        finish(std::move(result));
         return {};
     }
     if (work_started_) {
@@ -355,18 +321,6 @@ Result<void> Program::resumeNow(const Caller& caller) {
     commit(TransitionNumber::suspended_to_running, {});
     if (!work_started_ && name_kept_) {
         startWork();
-    }
-    return {};
-}
-
-Result<void> Program::haltNow() {
-    if (state_ == State::ready) {
-        end(TransitionNumber::ready_to_halted, {});
-    } else if (state_ == State::suspended) {
-        giveUpSuspended();
-        halted({});
-    } else if (!halting_) {
-        brake({});
     }
     return {};
 }
@@ -403,20 +357,17 @@ void Program::restDeadlinePassed() {
     forceHalted({reason, std::move(text)});
 }
 
-void Program::onAtRest(std::uint32_t stop_request) {
-    inCall([this, stop_request] {
-        if (!work_ || sub_state_ != SubState::stopping ||
-            stop_request != execution_->stop_request) {
-            return;
-        }
-        rest_timer_.cancel();
-        if (halting_) {
-            halted(*halting_);
-        } else {
-            commit(TransitionNumber::running_to_suspended,
-                   std::exchange(suspending_, std::nullopt).value_or(Cause{}));
-        }
-    });
+void Program::takeRest(std::uint32_t stop_request) {
+    if (sub_state_ != SubState::stopping || stop_request != execution_->stop_request) {
+        return;
+    }
+    rest_timer_.cancel();
+    if (halting_) {
+        halted(*halting_);
+    } else {
+        commit(TransitionNumber::running_to_suspended,
+               std::exchange(suspending_, std::nullopt).value_or(Cause{}));
+    }
 }
 
 void Program::giveUpSuspended() {
@@ -425,25 +376,10 @@ void Program::giveUpSuspended() {
     }
 }
 
-Result<void> Program::resetNow() {
-    if (state_ == State::suspended) {
-        giveUpSuspended();
-        end(TransitionNumber::suspended_to_ready, {});
-        return {};
-    }
-    if (auto agreed = guarded([this] { return skill_->reset(); }); !agreed) {
-        reason_text_ = agreed.error().message;
-        notify([this](ProgramObserver& observer) { observer.onReason(reason_, reason_text_); });
-        return agreed;
-    }
-    commit(TransitionNumber::halted_to_ready, {});
-    return {};
-}
-
 void Program::onControlLost(std::string_view session, OwnerLossAction action,
                             const std::string& text) {
     inCall([this, session = std::string(session), action, text] {
-        if (parameters_.isBound() && parameters_.boundSession() == session) {
+        if (parameters_.isBoundTo(session)) {
             endConfiguration();
         }
         if (work_ && owner_session_ == session) {
@@ -493,7 +429,6 @@ void Program::deviceLost(std::string text) {
             reason_ = cause.reason;
             reason_text_ = std::move(cause.text);
             setSubState(SubState::halted_device_lost);
-            notify([this](ProgramObserver& observer) { observer.onReason(reason_, reason_text_); });
         }
     });
 }
@@ -520,26 +455,16 @@ void Program::deviceReady() {
     inCall([this] { not_ready_.reset(); });
 }
 
-void Program::onProgress(Value intermediate) {
-    inCall([this, value = std::move(intermediate)]() mutable {
-        intermediate_ = std::move(value);
-        notify([this](ProgramObserver& observer) { observer.onProgress(intermediate_); });
-    });
+void Program::takeProgress(Value intermediate) {
+    intermediate_ = std::move(intermediate);
+    notify([this](ProgramObserver& observer) { observer.onProgress(intermediate_); });
 }
 
-void Program::onStarted(StartedExecution child) {
-    inCall([this, child = std::move(child)] {
-        notify([&](ProgramObserver& observer) { observer.onStarted(child); });
-    });
-}
-
-void Program::onStep(std::string name) {
-    inCall([this, name = std::move(name)]() mutable {
-        step_ = std::move(name);
-        if (state_ == State::running) {
-            setSubState(sub_state_);
-        }
-    });
+void Program::takeStep(std::string name) {
+    step_ = std::move(name);
+    if (state_ == State::running) {
+        setSubState(sub_state_);
+    }
 }
 
 }  // namespace metier::skill

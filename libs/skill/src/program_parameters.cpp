@@ -38,8 +38,7 @@ Result<void> Program::writeReady(const Caller& caller, const Field& field, Value
     METIER_TRY(checkControl(caller));
     METIER_TRY(parameters_.checkAccess(caller.session_id));
     METIER_TRY(checkValue(field, value));
-    const Value& held = parameters_.write(field, std::move(value));
-    notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
+    parameters_.write(field, std::move(value));
     last_write_ = clock_.now();
     if (!parameters_.isBound()) {
         parameters_.bind(caller.session_id);
@@ -63,8 +62,7 @@ Result<void> Program::writeLive(const Caller& caller, const Field& field, const 
         static_cast<void>(guarded([&] { work_->inputRefused(field.name, taken.error()); }));
         return metier::fail(std::move(taken.error()));
     }
-    const Value& held = parameters_.write(field, std::move(*taken));
-    notify([&](ProgramObserver& observer) { observer.onParameter(field.name, held); });
+    parameters_.write(field, std::move(*taken));
     return {};
 }
 
@@ -73,9 +71,7 @@ Result<Value> Program::takeLive(const Field& field, const LiveValue& live) {
     METIER_TRY(checkValue(field, live.value));
     METIER_ASSIGN(auto used, valueOrDefault(field, live.value));
     LiveValue given{std::move(used), live.meant_for};
-    if (auto taken = guarded([&] { return work_->input(field.name, given); }); !taken) {
-        return metier::fail(std::move(taken.error()));
-    }
+    METIER_TRY(guarded([&] { return work_->input(field.name, given); }));
     return std::move(given.value);
 }
 
@@ -101,21 +97,12 @@ void Program::endConfiguration() {
 
 void Program::releaseParameters() {
     configuration_timer_.cancel();
-    for (const auto name : parameters_.release()) {
-        const Value& value = parameters_.values().find(name)->second;
-        notify([&](ProgramObserver& observer) { observer.onParameter(name, value); });
-    }
+    parameters_.release();
 }
 
 void Program::sessionClosed(std::string_view session_id) {
-    inCall([this, session = std::string(session_id)] {
-        if (parameters_.isBound() && parameters_.boundSession() == session) {
-            endConfiguration();
-        }
-        if (work_ && owner_session_ == session) {
-            actOnOwnerLoss(OwnerLossAction::skill_default, "the session of its client has ended");
-        }
-    });
+    onControlLost(session_id, OwnerLossAction::skill_default,
+                  "the session of its client has ended");
 }
 
 }  // namespace metier::skill

@@ -1,6 +1,7 @@
 #include "metier/skill/state.hpp"
 
 #include <array>
+#include <initializer_list>
 
 namespace metier::skill {
 
@@ -28,19 +29,17 @@ constexpr const Ends& endsOf(TransitionNumber transition) noexcept {
     return kTransitions[static_cast<std::size_t>(transition) - 1];
 }
 
-template <typename Enum, std::size_t size>
-std::string_view nameOf(Enum value, const std::array<std::string_view, size>& all,
-                        std::size_t first = 0) noexcept {
-    const auto index = static_cast<std::size_t>(value) - first;
-    return index < size ? all[index] : "unknown";
+template <typename Enum>
+std::string_view nameOf(Enum value, std::initializer_list<std::string_view> names,
+                        Enum first = {}) noexcept {
+    const auto index = static_cast<std::size_t>(value) - static_cast<std::size_t>(first);
+    return index < names.size() ? names.begin()[index] : "unknown";
 }
 
 }  // namespace
 
 std::string_view toString(State state) noexcept {
-    static constexpr std::array<std::string_view, 4> names{"Halted", "Ready", "Running",
-                                                           "Suspended"};
-    return nameOf(state, names, static_cast<std::size_t>(State::halted));
+    return nameOf(state, {"Halted", "Ready", "Running", "Suspended"}, State::halted);
 }
 
 std::string_view toString(TransitionNumber transition) noexcept {
@@ -48,37 +47,22 @@ std::string_view toString(TransitionNumber transition) noexcept {
 }
 
 std::string_view toString(Method method) noexcept {
-    static constexpr std::array<std::string_view, 6> names{"Start", "Suspend", "Resume",
-                                                           "Halt",  "Reset",   "StartWith"};
-    return nameOf(method, names);
+    return nameOf(method, {"Start", "Suspend", "Resume", "Halt", "Reset", "StartWith"});
 }
 
 std::string_view toString(OwnerLossAction action) noexcept {
-    static constexpr std::array<std::string_view, 4> names{"SkillDefault", "Halt", "Suspend",
-                                                           "Continue"};
-    return nameOf(action, names);
+    return nameOf(action, {"SkillDefault", "Halt", "Suspend", "Continue"});
 }
 
 std::string_view toString(Reason reason) noexcept {
-    static constexpr std::array<std::string_view, 8> names{
-        "None",          "Finished",  "ByClient",   "Error",
-        "ForceExceeded", "OwnerLost", "DeviceLost", "LimitViolated"};
-    return nameOf(reason, names);
+    return nameOf(reason, {"None", "Finished", "ByClient", "Error", "ForceExceeded", "OwnerLost",
+                           "DeviceLost", "LimitViolated"});
 }
 
 std::string_view toString(SubState sub_state) noexcept {
-    static constexpr std::array<std::string_view, 11> names{"None",
-                                                            "ReadyNotConfigured",
-                                                            "ReadyConfigured",
-                                                            "Executing",
-                                                            "Stopping",
-                                                            "HaltedByClient",
-                                                            "HaltedError",
-                                                            "HaltedForce",
-                                                            "HaltedOwnerLost",
-                                                            "HaltedDeviceLost",
-                                                            "HaltedLimit"};
-    return nameOf(sub_state, names);
+    return nameOf(sub_state, {"None", "ReadyNotConfigured", "ReadyConfigured", "Executing",
+                              "Stopping", "HaltedByClient", "HaltedError", "HaltedForce",
+                              "HaltedOwnerLost", "HaltedDeviceLost", "HaltedLimit"});
 }
 
 State fromState(TransitionNumber transition) noexcept {
@@ -101,12 +85,9 @@ SubState haltedBecause(Reason reason) noexcept {
             return SubState::halted_device_lost;
         case Reason::limit_violated:
             return SubState::halted_limit;
-        case Reason::none:
-        case Reason::finished:
-        case Reason::error:
-            break;
+        default:
+            return SubState::halted_error;
     }
-    return SubState::halted_error;
 }
 
 }  // namespace metier::skill

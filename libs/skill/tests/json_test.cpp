@@ -37,8 +37,8 @@ TEST(Json, HasNoNumberThatIsNotFinite) {
 
 TEST(Json, EscapesTexts) {
     EXPECT_EQ(jsonOf(Value{std::string("a\"b\\c\n\x01")}), R"("a\"b\\c\n\u0001")");
-    EXPECT_EQ(jsonText("\xC3\xBC"), "\"\xC3\xBC\"");
-    EXPECT_EQ(jsonText("a\xFF"), "\"a\xEF\xBF\xBD\"");
+    EXPECT_EQ(jsonOf(Value{std::string("\xC3\xBC")}), "\"\xC3\xBC\"");
+    EXPECT_EQ(jsonOf(Value{std::string("a\xFF")}), "\"a\xEF\xBF\xBD\"");
 }
 
 TEST(Json, TellsValuesByName) {

@@ -15,15 +15,19 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-TEST(Observer, IsShownAnExecutionBeforeItRuns) {
+TEST(Observer, FindsTheRecordOfAnExecutionThatBegins) {
     ProgramBench bench;
     bench.executor->advance(3s);
     const auto now = bench.executor->clock().utcNow();
+    ExecutionRecord begun;
+    bench.observer.on_entry = [&](const std::string& entry) {
+        if (entry == "ReadyToRunning") {
+            begun = *bench.program->recentExecution(0);
+        }
+    };
     ASSERT_TRUE(bench.program->startWith(
         kAlice,
         {.execution_id = "seam 7", .parameters = {{"Speed", 1.0}}, .parent = {.id = "car 12"}}));
-    ASSERT_THAT(bench.observer.begun, SizeIs(1));
-    const auto& begun = bench.observer.begun[0];
     EXPECT_EQ(begun.id, "seam 7");
     EXPECT_EQ(begun.client.client_name, "Alice's client");
     EXPECT_EQ(begun.parent.id, "car 12");

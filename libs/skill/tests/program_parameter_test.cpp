@@ -35,10 +35,10 @@ TEST(ParameterWrite, ThatWasRefusedBindsNobody) {
 TEST(ParameterWrite, OfNullMeansTheDefault) {
     ProgramBench bench;
     ASSERT_TRUE(bench.program->write(kAlice, "Speed", 1.0));
+    EXPECT_EQ(bench.program->read("Speed"), Value(1.0));
     ASSERT_TRUE(bench.program->write(kAlice, "Speed", Value{}));
     EXPECT_EQ(bench.program->read("Speed"), Value(0.5));
-    EXPECT_THAT(bench.observer.log,
-                ElementsAre("Speed = 1", "sub-state ReadyConfigured", "Speed = 0.5"));
+    EXPECT_THAT(bench.observer.log, ElementsAre("sub-state ReadyConfigured"));
 }
 
 TEST(ParameterWrite, IsPossibleOnlyWhileReady) {
@@ -106,8 +106,7 @@ TEST(Binding, EndsWithStartAndTheValuesFallBack) {
     EXPECT_EQ(bench.script->snapshot.at("Speed"), Value(1.0));
     EXPECT_EQ(bench.program->read("Speed"), Value(0.5));
     EXPECT_THAT(bench.observer.log,
-                ElementsAre("sub-state Executing", "reason ByClient", "diagnostic Start",
-                            "ReadyToRunning", "Speed = 0.5"));
+                ElementsAre("sub-state Executing", "diagnostic Start", "ReadyToRunning"));
     bench.script->execution.finish();
     bench.run();
     EXPECT_EQ(bench.program->subState(), SubState::ready_not_configured);
@@ -121,7 +120,8 @@ TEST(Binding, EndsWithTheSession) {
     EXPECT_EQ(bench.program->subState(), SubState::ready_configured);
     bench.forget();
     bench.program->sessionClosed("alice");
-    EXPECT_THAT(bench.observer.log, ElementsAre("Speed = 0.5", "sub-state ReadyNotConfigured"));
+    EXPECT_THAT(bench.observer.log, ElementsAre("sub-state ReadyNotConfigured"));
+    EXPECT_EQ(bench.program->read("Speed"), Value(0.5));
     EXPECT_TRUE(bench.program->write(kBob, "Speed", 1.5));
     EXPECT_EQ(bench.executor->timerCount(), 1U);
 }
@@ -135,8 +135,9 @@ TEST(Binding, EndsTenSecondsAfterTheLastWrite) {
     EXPECT_EQ(bench.program->subState(), SubState::ready_configured);
     bench.forget();
     bench.executor->advance(1ms);
-    EXPECT_THAT(bench.observer.log,
-                ElementsAre("Speed = 0.5", "Seam = \"straight\"", "sub-state ReadyNotConfigured"));
+    EXPECT_THAT(bench.observer.log, ElementsAre("sub-state ReadyNotConfigured"));
+    EXPECT_EQ(bench.program->read("Speed"), Value(0.5));
+    EXPECT_EQ(bench.program->read("Seam"), Value(std::string("straight")));
     EXPECT_EQ(bench.program->start(kAlice).has_value(), true);
     EXPECT_EQ(bench.script->snapshot.at("Speed"), Value(0.5));
 }
@@ -187,7 +188,6 @@ TEST(LiveParameter, GoesToTheRunningWorkAndIsChecked) {
     ASSERT_TRUE(bench.program->write(kAlice, "Offset", 0.05));
     EXPECT_EQ(bench.program->write(kAlice, "Offset", 0.2).error().code, Errc::out_of_range);
     EXPECT_THAT(bench.script->calls, ElementsAre("Offset = 0.05"));
-    EXPECT_THAT(bench.observer.log, ElementsAre("Offset = 0.05"));
     EXPECT_EQ(bench.program->read("Offset"), Value(0.05));
 }
 
@@ -227,7 +227,6 @@ TEST(LiveParameter, FallsBackAtTheEnd) {
     bench.script->execution.finish();
     bench.run();
     EXPECT_EQ(bench.program->read("Offset"), Value(0.0));
-    EXPECT_EQ(bench.observer.log.back(), "Offset = 0");
     EXPECT_EQ(bench.program->subState(), SubState::ready_not_configured);
 }
 
@@ -299,10 +298,10 @@ TEST(Binding, OfAnExecutionThatRunsHasNoTimeoutLeft) {
 TEST(Binding, IsNobodysOnceItIsReleased) {
     ParameterSet set(weldDescription().parameters);
     set.bind("alice");
-    EXPECT_EQ(set.boundSession(), "alice");
-    EXPECT_TRUE(set.release().empty());
+    EXPECT_TRUE(set.isBoundTo("alice"));
+    set.release();
     EXPECT_FALSE(set.isBound());
-    EXPECT_EQ(set.boundSession(), "");
+    EXPECT_FALSE(set.isBoundTo("alice"));
 }
 
 TEST(LiveParameter, IsNotTakenWhileAnotherClientHasControl) {

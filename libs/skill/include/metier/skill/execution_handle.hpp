@@ -12,29 +12,6 @@
 
 namespace metier::skill {
 
-/// Receiver of the reports of an ExecutionHandle; a Program is one. Called on the owner's thread.
-class ExecutionSink {
-public:
-    virtual ~ExecutionSink() = default;
-    /// The work is done and the device stands still.
-    virtual void onFinish(ValueMap result) = 0;
-    /// The work ended in an error and the device stands still.
-    virtual void onFail(Reason reason, std::string text) = 0;
-    /// The device stands still, as asked.
-    /// \param stop_request number of the request to stop that this answers, see ExecutionCore
-    virtual void onAtRest(std::uint32_t stop_request) = 0;
-    /// The work has a new intermediate result.
-    virtual void onProgress(Value intermediate) = 0;
-    /// A sequence has entered a step.
-    virtual void onStep(std::string name) = 0;
-    /// The work has started another skill.
-    virtual void onStarted(StartedExecution child) = 0;
-    /// Outcome of writing the execution's name to disk.
-    virtual void onNameKept(Result<void> kept) = 0;
-    /// The work asks to be suspended, as a client would.
-    virtual void onSuspendAsked(std::string why) = 0;
-};
-
 struct ExecutionCore;
 
 /// Handle by which the work of an execution reports its outcome and its progress to the Program

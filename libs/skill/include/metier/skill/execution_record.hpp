@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "metier/base/clock.hpp"
 #include "metier/skill/caller.hpp"
@@ -37,12 +39,20 @@ public:
     static constexpr std::size_t kMost = 64;
 
     /// The record of that id, or nullptr. Valid until the next add().
-    const ExecutionRecord* find(std::string_view id) const noexcept;
-    ExecutionRecord* find(std::string_view id) noexcept;
+    const ExecutionRecord* find(std::string_view id) const noexcept {
+        const auto found = std::find_if(records_.begin(), records_.end(),
+                                        [&](const auto& record) { return record.id == id; });
+        return found == records_.end() ? nullptr : &*found;
+    }
     /// Adds the latest execution; the oldest is forgotten if there are more than kMost.
-    void add(ExecutionRecord record);
+    void add(ExecutionRecord record) {
+        if (records_.size() == kMost) {
+            records_.pop_front();
+        }
+        records_.push_back(std::move(record));
+    }
     /// The latest execution; there must be one.
-    const ExecutionRecord& last() const noexcept { return records_.back(); }
+    ExecutionRecord& last() noexcept { return records_.back(); }
     /// The execution `back` places before the latest, or nullptr. Valid until the next add().
     const ExecutionRecord* recent(std::size_t back) const noexcept {
         return back < records_.size() ? &records_[records_.size() - 1 - back] : nullptr;

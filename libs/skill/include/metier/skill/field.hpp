@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -36,6 +38,19 @@ inline constexpr Unit kRadianPerSecond{"rad/s", "radian per second", "2A"};
 inline constexpr Unit kMetrePerSecondSquared{"m/s²", "metre per second squared", "MSK"};
 inline constexpr Unit kRadianPerSecondSquared{"rad/s²", "radian per second squared", "2B"};
 inline constexpr Unit kKilogram{"kg", "kilogram", "KGM"};
+
+/// All units that fields have, kOne first.
+inline constexpr std::array kUnits{kOne,
+                                   kMetre,
+                                   kRadian,
+                                   kSecond,
+                                   kNewton,
+                                   kNewtonMetre,
+                                   kMetrePerSecond,
+                                   kRadianPerSecond,
+                                   kMetrePerSecondSquared,
+                                   kRadianPerSecondSquared,
+                                   kKilogram};
 
 /// Place of a field below the skill's node.
 enum class Place : std::uint8_t {
@@ -103,6 +118,14 @@ private:
     std::shared_ptr<const std::vector<Field>> fields_ =
         std::make_shared<const std::vector<Field>>();
 };
+
+/// The field of that name in a list of fields, or nullptr.
+template <typename List>
+const Field* findField(const List& fields, std::string_view name) noexcept {
+    const auto found = std::find_if(fields.begin(), fields.end(),
+                                    [&](const Field& field) { return field.name == name; });
+    return found == fields.end() ? nullptr : &*found;
+}
 
 /// Checks that `value` may be written to `field`. Null always may: it means the default.
 /// Errors:  type_mismatch; out_of_range (not finite, out of range, wrong length), with value, limit

@@ -2,7 +2,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 
 #include "metier/skill/value.hpp"
 
@@ -21,7 +20,5 @@ nlohmann::json toJson(const ValueMap& values);
 /// U+FFFD.
 std::string jsonOf(const Value& value);
 std::string jsonOf(const ValueMap& values);
-/// JSON text of a string, with its quotes.
-std::string jsonText(std::string_view text);
 
 }  // namespace metier::skill

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,9 +28,9 @@ public:
     /// Same values, to be shared: the snapshot never changes; a new one is made after a write.
     const std::shared_ptr<const ValueMap>& snapshot();
 
-    /// Session to which the set is bound; empty if it is not bound.
-    const std::string& boundSession() const noexcept { return session_; }
-    bool isBound() const noexcept { return bound_; }
+    /// Whether the set is bound to any session, or to this one.
+    bool isBound() const noexcept { return session_.has_value(); }
+    bool isBoundTo(std::string_view session) const noexcept { return session_ == session; }
     /// Checks that `session` may write and start.
     /// Errors: locked, if the set is bound to another session.
     Result<void> checkAccess(std::string_view session) const;
@@ -37,8 +38,7 @@ public:
     /// Binds the set to a session.
     void bind(std::string_view session);
     /// Takes a value that checkValue() has accepted; Null means the default.
-    /// \return the value that holds now
-    const Value& write(const Field& field, Value value);
+    void write(const Field& field, Value value);
     /// Returns a value for every parameter: the given one, or its default.
     /// Errors: as checkValue(); invalid_argument, with the names that are unknown or need a value.
     Result<ValueMap> snapshotOf(const ValueMap& given) const;
@@ -49,8 +49,7 @@ public:
     ValueMap written() const;
 
     /// Ends the binding; the values fall back to their defaults.
-    /// \return the names of those that changed
-    std::vector<std::string_view> release();
+    void release();
 
 private:
     Result<void> checkComplete(const ValueMap& values) const;
@@ -59,8 +58,7 @@ private:
     ValueMap values_;
     std::shared_ptr<const ValueMap> snapshot_;  // null: not of these values
     std::vector<const Field*> written_;
-    std::string session_;
-    bool bound_ = false;
+    std::optional<std::string> session_;
 };
 
 }  // namespace metier::skill

@@ -61,7 +61,7 @@ struct StartRequest {
 /// running work return at once, and the transition follows when the work is at rest.
 /// Errors of every method: invalid_state if the current state does not allow it (nothing changes).
 /// Threading: every call on the owner's thread, which is the Executor's. Nothing blocks.
-class Program final : private ExecutionSink, private Control::Listener {
+class Program final : private Control::Listener {
 public:
     /// \param executor shared by the Programs of a thread
     /// \param clock    must outlive the Program
@@ -165,20 +165,21 @@ public:
     const ValueMap& parameters() const noexcept { return parameters_.values(); }
 
 private:
+    friend class ExecutionHandle;
     class Call;
     struct Cause {
         Reason reason = Reason::by_client;
         std::string text{};
     };
 
-    void onFinish(ValueMap result) override;
-    void onFail(Reason reason, std::string text) override;
-    void onAtRest(std::uint32_t stop_request) override;
-    void onProgress(Value intermediate) override;
-    void onStep(std::string name) override;
-    void onStarted(StartedExecution child) override;
-    void onNameKept(Result<void> kept) override;
-    void onSuspendAsked(std::string why) override;
+    // Reports of the execution's handles.
+    void finish(ValueMap result);
+    void fail(Reason reason, std::string text);
+    void takeRest(std::uint32_t stop_request);
+    void takeProgress(Value intermediate);
+    void takeStep(std::string name);
+    void suspendAsked(const std::string& why);
+    void nameKept(const Result<void>& kept);
     void onControlLost(std::string_view session, OwnerLossAction action,
                        const std::string& text) override;
 
@@ -190,6 +191,10 @@ private:
     void inCall(Work work);
     template <typename Tell>
     void notify(Tell tell);
+    /// Posts `tell` to the owner's thread; there it is called with the Program, as inCall() does,
+    /// if the execution still goes on. Any thread.
+    template <typename Tell>
+    static void post(const std::shared_ptr<ExecutionCore>& core, Tell tell);
 
     bool allows(Method method) const noexcept;
     Result<void> checkAllowed(Method method, const Caller& caller) const;
@@ -201,7 +206,6 @@ private:
     Result<void> writeReady(const Caller& caller, const Field& field, Value value);
     Result<void> writeLive(const Caller& caller, const Field& field, const LiveValue& live);
     Result<Value> takeLive(const Field& field, const LiveValue& live);
-    Result<void> startNow(const Caller& caller);
     Result<void> startWithNow(const Caller& caller, StartRequest& request);
     Result<void> checkFree(const Caller& caller) const;
     Result<void> checkEpoch(const Caller& caller, std::uint64_t epoch) const;
@@ -220,10 +224,7 @@ private:
     void actOnOwnerLoss(OwnerLossAction action, std::string text);
     void noteInHistory();
     Result<void> resumeNow(const Caller& caller);
-    Result<void> haltNow();
-    Result<void> resetNow();
 
-    void finished(ValueMap result);
     Result<void> takeResult(ValueMap& result);
     void brake(Cause cause);
     void announceRest(State to, const Cause& cause);

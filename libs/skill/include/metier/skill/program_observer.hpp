@@ -14,7 +14,6 @@
 namespace metier::skill {
 
 struct CheckReport;
-struct ExecutionRecord;
 
 /// Content of a transition's event.
 struct TransitionEvent {
@@ -55,9 +54,8 @@ struct Diagnostic {
 
 /// Observer of a Program; each function does nothing unless it is overridden.
 ///
-/// A transition is reported by several calls in a row, its event last: onResult (if the work
-/// finished), onSubState, onReason, onDiagnostic, onTransition. Parameters that fall back to their
-/// defaults follow.
+/// A transition is reported by several calls in a row, its event last: onSubState, onDiagnostic,
+/// onTransition.
 /// Threading: the owner's thread. From inside a call the Program may be read; a command to it is
 /// refused with invalid_state.
 class ProgramObserver {
@@ -67,20 +65,12 @@ public:
     virtual void onTransition(const TransitionEvent& /*event*/) {}
     /// \param step of a sequence; empty if it has none
     virtual void onSubState(SubState /*sub_state*/, std::string_view /*step*/) {}
-    /// Reason of the present state, or of a refused Reset.
-    virtual void onReason(Reason /*reason*/, std::string_view /*text*/) {}
-    /// A value was written, or fell back to its default.
-    virtual void onParameter(std::string_view /*name*/, const Value& /*value*/) {}
-    /// Result of an execution that finished: a value for every declared field.
-    virtual void onResult(const ValueMap& /*result*/) {}
     /// The latest intermediate result of the execution under way.
     virtual void onProgress(const Value& /*intermediate*/) {}
     /// A method was called, or a state changed: the new content of ProgramDiagnostic.
     virtual void onDiagnostic(const Diagnostic& /*diagnostic*/) {}
     /// The work begins to come to rest. Called again if a Halt follows a Suspend before standstill.
     virtual void onStopping(const StoppingEvent& /*event*/) {}
-    /// An execution begins; its transition to Running follows.
-    virtual void onBegin(const ExecutionRecord& /*execution*/) {}
     /// The execution that is under way has started another one.
     virtual void onStarted(const StartedExecution& /*child*/) {}
     /// A client called Check. Nothing has changed.

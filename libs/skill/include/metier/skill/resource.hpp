@@ -24,9 +24,17 @@ public:
 
     /// Checks that nobody holds it.
     /// Errors: resource_unavailable, with the holder's name.
-    Result<void> checkFree() const;
+    Result<void> checkFree() const {
+        return holder_.empty() ? Result<void>()
+                               : fail(Errc::resource_unavailable,
+                                      fmt::format("{} is in use by {}", name_, holder_));
+    }
     /// Errors: resource_unavailable if it is held, even by `holder` itself.
-    Result<void> acquire(std::string_view holder);
+    Result<void> acquire(std::string_view holder) {
+        METIER_TRY(checkFree());
+        holder_ = holder;
+        return {};
+    }
     void release() noexcept { holder_.clear(); }
 
 private:

@@ -104,8 +104,8 @@ public:
     /// Makes the checks of prepare() for `snapshot`, without any effect.
     /// Errors: reported to the client as: not possible, with the error's text.
     virtual Result<CheckReport> check(const ValueMap& snapshot) {
-        const auto work = prepare(snapshot);
-        return work ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(work.error()));
+        METIER_TRY(prepare(snapshot));
+        return CheckReport{};
     }
     /// Clears a fault, if the device agrees that it is gone. Does not wait for the device.
     /// Errors: timeout: the device has begun and is not done; the next call gives its outcome. Any

@@ -48,8 +48,8 @@ protected:
 
     /// Answers Check, as Skill::check(). The default only reports whether plan() succeeds.
     virtual Result<CheckReport> assess(const Parameters& parameters) {
-        const auto work = plan(parameters);
-        return work ? Result<CheckReport>(CheckReport{}) : Result<CheckReport>(fail(work.error()));
+        METIER_TRY(plan(parameters));
+        return CheckReport{};
     }
 
 private:

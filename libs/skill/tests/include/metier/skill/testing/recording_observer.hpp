@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "metier/skill/execution_record.hpp"
 #include "metier/skill/program_observer.hpp"
 #include "metier/skill/skill.hpp"
 
@@ -23,18 +22,6 @@ public:
         add("sub-state " + std::string(toString(sub_state)) +
             (step.empty() ? "" : " at " + std::string(step)));
     }
-    void onReason(Reason reason, std::string_view text) override {
-        add("reason " + std::string(toString(reason)) +
-            (text.empty() ? "" : ": " + std::string(text)));
-    }
-    void onParameter(std::string_view name, const Value& value) override {
-        add(std::string(name) + " = " + toString(value));
-    }
-    void onResult(const ValueMap& result) override {
-        for (const auto& [name, value] : result) {
-            add("result " + name + " = " + toString(value));
-        }
-    }
     void onProgress(const Value& intermediate) override {
         add("progress " + toString(intermediate));
     }
@@ -43,7 +30,6 @@ public:
     }
 
     void onStopping(const StoppingEvent& event) override { stops.push_back(event); }
-    void onBegin(const ExecutionRecord& execution) override { begun.push_back(execution); }
     void onStarted(const StartedExecution& child) override { children.push_back(child); }
     void onCheck(const Caller& caller, const ValueMap& parameters,
                  const CheckReport& report) override {
@@ -67,7 +53,6 @@ public:
     std::vector<std::string> log;
     std::vector<TransitionEvent> events;
     std::vector<StoppingEvent> stops;
-    std::vector<ExecutionRecord> begun;
     std::vector<StartedExecution> children;
     struct Check {
         Caller caller;
