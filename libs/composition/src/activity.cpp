@@ -12,8 +12,6 @@ namespace metier::composition {
 
 namespace {
 
-using skill::Reason;
-
 std::unique_ptr<Activity> makePlain(Run& run, const Step& step, std::string path, OnEnd on_end) {
     switch (step.kind) {
         case StepKind::call:
@@ -33,7 +31,8 @@ std::unique_ptr<Activity> makePlain(Run& run, const Step& step, std::string path
         case StepKind::loop:
             return std::make_unique<LoopActivity>(run, step, std::move(path), std::move(on_end));
     }
-    return makeSequence(run, step, step.steps, std::move(path), std::move(on_end));
+    return std::make_unique<SequenceActivity>(run, step, step.steps, std::move(path),
+                                              std::move(on_end));
 }
 
 /// The attempts of one step, each with its time limit.
@@ -76,9 +75,8 @@ private:
         limit_.cancel();
         const bool stuck = outcome && outcome->kind == StepFailure::Kind::final;
         if (timed_out_ && !halting_ && !stuck) {
-            outcome = StepFailure{
-                Reason::error, fmt::format("step {}: not done within {} s", path_,
-                                           std::chrono::duration<double>(*step_.timeout).count())};
+            outcome = failed(fmt::format("not done within {} s",
+                                         std::chrono::duration<double>(*step_.timeout).count()));
         }
         const auto further = step_.retry ? step_.retry->times : 0U;
         const bool retries = outcome && outcome->kind == StepFailure::Kind::failed &&
@@ -108,6 +106,10 @@ void Activity::end(Outcome outcome) {
     run_.later([on_end = std::move(on_end_), outcome = std::move(outcome)]() mutable {
         on_end(std::move(outcome));
     });
+}
+
+StepFailure Activity::failed(std::string_view why, skill::Reason reason) const {
+    return {reason, fmt::format("step {}: {}", path_, why)};
 }
 
 std::string pathOf(const std::string& above, const std::string& name) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "metier/composition/definition.hpp"
@@ -55,6 +56,8 @@ public:
 
 protected:
     void end(Outcome outcome);
+    /// Failure of this step, whose path the text names.
+    StepFailure failed(std::string_view why, skill::Reason reason = skill::Reason::error) const;
 
     Run& run_;
     const Step& step_;
@@ -67,9 +70,6 @@ private:
 /// Makes the activity that runs a step, with its attempts and time limit.
 std::unique_ptr<Activity> makeActivity(Run& run, const Step& step, const std::string& above,
                                        OnEnd on_end);
-/// One after the other. \param path of the step that they belong to
-std::unique_ptr<Activity> makeSequence(Run& run, const Step& step, const std::vector<Step>& steps,
-                                       std::string path, OnEnd on_end);
 
 /// "prepare/open"
 std::string pathOf(const std::string& above, const std::string& name);

@@ -121,11 +121,8 @@ void CallActivity::begin() {
     refusal_.clear();
     skill::ValueMap parameters;
     for (const auto& argument : step_.arguments) {
-        const auto& fields = used().description().parameters;
-        const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& candidate) {
-            return candidate.name == argument.name;
-        });
-        if (field == fields.end()) {
+        const auto* field = skill::findField(used().description().parameters, argument.name);
+        if (field == nullptr) {
             over(failure(Reason::error, "has no parameter " + argument.name));
             return;
         }

@@ -6,13 +6,14 @@
 
 #include "literal.hpp"
 #include "metier/composition/composition.hpp"
-#include "problem.hpp"
+#include "static_check.hpp"
 
 namespace metier::composition {
 
 namespace {
 
 using skill::Field;
+using skill::findField;
 using skill::SkillDescription;
 using skill::ValueType;
 
@@ -52,12 +53,6 @@ ValueType elementOf(ValueType type) {
 bool isNumber(ValueType type) {
     return type == ValueType::number || type == ValueType::int32 || type == ValueType::uint32 ||
            type == ValueType::uint64;
-}
-
-const Field* findField(const skill::Fields& fields, std::string_view name) {
-    const auto found = std::find_if(fields.begin(), fields.end(),
-                                    [&](const Field& field) { return field.name == name; });
-    return found == fields.end() ? nullptr : &*found;
 }
 
 std::string namesOf(const skill::Fields& fields) {

@@ -181,6 +181,18 @@ std::chrono::nanoseconds readRestTime(const TomlTable& root) {
         std::chrono::duration<double>(time));
 }
 
+Result<Definition> checkedDefinition(Result<TomlFile> file, std::string name) {
+    if (!file) {
+        return fail(std::move(file.error()));
+    }
+    auto definition = readDefinition(*file, std::move(name));
+    for (const auto& problem : checkDefinition(definition)) {
+        file->note(problem.line, problem.key, problem.why);
+    }
+    METIER_TRY(file->finish());
+    return definition;
+}
+
 }  // namespace
 
 bool checkName(const TomlTable& table, std::string_view key, const std::string& name,
@@ -221,22 +233,6 @@ Definition readDefinition(const TomlFile& file, std::string name) {
     }
     return definition;
 }
-
-namespace {
-
-Result<Definition> checkedDefinition(Result<TomlFile> file, std::string name) {
-    if (!file) {
-        return fail(std::move(file.error()));
-    }
-    auto definition = readDefinition(*file, std::move(name));
-    for (const auto& problem : checkDefinition(definition)) {
-        file->note(problem.line, problem.key, problem.why);
-    }
-    METIER_TRY(file->finish());
-    return definition;
-}
-
-}  // namespace
 
 Result<Definition> parseDefinition(std::string_view text, std::string name) {
     return checkedDefinition(TomlFile::parse(text, name), name);

@@ -35,16 +35,12 @@ struct Printer {
     }
 };
 
-std::string textOf(const Literal& literal) {
-    return std::visit(Printer{}, literal);
-}
-
 std::string textOf(const Binding& binding) {
     std::string text;
     if (const auto* reference = std::get_if<Reference>(&binding.source)) {
         text = nameOf(*reference);
     } else if (const auto* literal = std::get_if<Literal>(&binding.source)) {
-        text = textOf(*literal);
+        text = std::visit(Printer{}, *literal);
     } else {
         text = "[...]";
     }
@@ -141,10 +137,9 @@ private:
                  std::string_view attributes) {
         for (const auto& source : from) {
             for (const auto& target : to) {
-                arrows_ += fmt::format("  {} -> {}{};\n", source, target, attributes);
+                text_ += fmt::format("  {} -> {}{};\n", source, target, attributes);
             }
         }
-        text_ += std::exchange(arrows_, {});
     }
 
     Ends chain(const std::vector<Step>& steps, std::size_t depth) {
@@ -245,7 +240,6 @@ private:
     const Definition& definition_;
     std::map<std::string, std::string> types_;  // of the used skills, by alias
     std::string text_;
-    std::string arrows_;
 };
 
 }  // namespace

@@ -12,24 +12,17 @@ namespace metier::composition {
 
 namespace {
 
-using skill::Reason;
-
-constexpr double kMostRepeats = 1e6;
+constexpr double kMostRounds = 1e6;
 
 }  // namespace
-
-std::unique_ptr<Activity> makeSequence(Run& run, const Step& step, const std::vector<Step>& steps,
-                                       std::string path, OnEnd on_end) {
-    return std::make_unique<SequenceActivity>(run, step, steps, std::move(path), std::move(on_end));
-}
 
 void SequenceActivity::next() {
     if (index_ == steps_.size()) {
         end(std::nullopt);
         return;
     }
-    current_ = makeActivity(run_, steps_[index_], path_, [this](Outcome outcome) {
-        current_.reset();
+    begin(makeActivity(run_, steps_[index_], path_, [this](Outcome outcome) {
+        inner_.reset();
         ++index_;
         if (outcome) {
             end(std::move(outcome));
@@ -38,23 +31,15 @@ void SequenceActivity::next() {
         } else {
             next();
         }
-    });
-    current_->start();
-}
-
-void SequenceActivity::halt() {
-    halting_ = true;
-    if (current_) {
-        current_->halt();
-    }
+    }));
 }
 
 double SequenceActivity::progress() const {
     if (steps_.empty()) {
         return 1.0;
     }
-    const double current = current_ ? current_->progress() : 0.0;
-    return (static_cast<double>(index_) + current) / static_cast<double>(steps_.size());
+    return (static_cast<double>(index_) + NestingActivity::progress()) /
+           static_cast<double>(steps_.size());
 }
 
 void ParallelActivity::start() {
@@ -89,8 +74,7 @@ void ParallelActivity::branchEnded(std::size_t index, Outcome outcome) {
     } else if (outcome) {
         failures_ += (failures_.empty() ? "" : "; ") + outcome->text;
         if (open_ == 0) {
-            decide(StepFailure{outcome->reason,
-                               fmt::format("step {}: no branch succeeded: {}", path_, failures_)});
+            decide(failed("no branch succeeded: " + failures_, outcome->reason));
         }
     }
     if (open_ == 0) {
@@ -129,8 +113,8 @@ double ParallelActivity::progress() const {
 }
 
 void FallbackActivity::next() {
-    current_ = makeActivity(run_, step_.steps[index_], path_, [this](Outcome outcome) {
-        current_.reset();
+    begin(makeActivity(run_, step_.steps[index_], path_, [this](Outcome outcome) {
+        inner_.reset();
         ++index_;
         if (!outcome || outcome->kind != StepFailure::Kind::failed) {
             end(std::move(outcome));
@@ -142,53 +126,31 @@ void FallbackActivity::next() {
         }
         failures_ += (failures_.empty() ? "" : "; ") + outcome->text;
         if (index_ == step_.steps.size()) {
-            end(StepFailure{outcome->reason,
-                            fmt::format("step {}: nothing is left to try: {}", path_, failures_)});
+            end(failed("nothing is left to try: " + failures_, outcome->reason));
         } else {
             next();
         }
-    });
-    current_->start();
-}
-
-void FallbackActivity::halt() {
-    halting_ = true;
-    if (current_) {
-        current_->halt();
-    }
+    }));
 }
 
 void ChoiceActivity::start() {
     const auto held = run_.scope().holds(*step_.condition);
     if (!held) {
-        end(StepFailure{Reason::error, fmt::format("step {}: {}", path_, held.error().message)});
+        end(failed(held.error().message));
         return;
     }
-    chosen_ = makeSequence(run_, step_, *held ? step_.steps : step_.otherwise, path_,
-                           [this](Outcome outcome) { end(std::move(outcome)); });
-    chosen_->start();
-}
-
-void ChoiceActivity::halt() {
-    if (chosen_) {
-        chosen_->halt();
-    }
-}
-
-void FailureActivity::start() {
-    end(StepFailure{Reason::error, fmt::format("step {}: {}", path_, step_.text)});
+    begin(std::make_unique<SequenceActivity>(run_, step_, *held ? step_.steps : step_.otherwise,
+                                             path_,
+                                             [this](Outcome outcome) { end(std::move(outcome)); }));
 }
 
 void LoopActivity::start() {
     if (step_.times) {
         const auto times = run_.scope().number(*step_.times);
-        if (!times || !(*times >= 0.0 && *times <= kMostRepeats) || *times != std::floor(*times)) {
-            end(StepFailure{Reason::error,
-                            fmt::format("step {}: {}", path_,
-                                        times ? fmt::format("times is {}; it needs a whole number "
-                                                            "from 0 to {}",
-                                                            *times, kMostRepeats)
-                                              : times.error().message)});
+        if (!times || !(*times >= 0.0 && *times <= kMostRounds) || *times != std::floor(*times)) {
+            end(failed(times ? fmt::format("times is {}; it needs a whole number from 0 to {}",
+                                           *times, kMostRounds)
+                             : times.error().message));
             return;
         }
         times_ = static_cast<std::uint64_t>(*times);
@@ -221,25 +183,21 @@ Result<bool> LoopActivity::goesOn() const {
 void LoopActivity::nextRound() {
     const auto more = goesOn();
     if (!more) {
-        end(StepFailure{Reason::error, fmt::format("step {}: {}", path_, more.error().message)});
+        end(failed(more.error().message));
         return;
     }
-    if (halting_) {
-        end(cancelled());
-        return;
-    }
-    if (!*more) {
-        end(std::nullopt);
+    if (halting_ || !*more) {
+        end(halting_ ? Outcome(cancelled()) : std::nullopt);
         return;
     }
     ++round_;
-    work_ = makeSequence(run_, step_, step_.steps, fmt::format("{}[{}]", path_, round_),
-                         [this](Outcome outcome) { roundEnded(std::move(outcome)); });
-    work_->start();
+    begin(std::make_unique<SequenceActivity>(
+        run_, step_, step_.steps, fmt::format("{}[{}]", path_, round_),
+        [this](Outcome outcome) { roundEnded(std::move(outcome)); }));
 }
 
 void LoopActivity::roundEnded(Outcome outcome) {
-    work_.reset();
+    inner_.reset();
     if (outcome) {
         end(std::move(outcome));
     } else {
@@ -247,18 +205,12 @@ void LoopActivity::roundEnded(Outcome outcome) {
     }
 }
 
-void LoopActivity::halt() {
-    halting_ = true;
-    if (work_) {
-        work_->halt();
-    }
-}
-
 double LoopActivity::progress() const {
-    const double current = work_ ? work_->progress() : 0.0;
     const auto rounds = times_ ? *times_ : step_.at_most.value_or(1);
-    const auto done = static_cast<double>(round_) - (work_ ? 1.0 : 0.0);
-    return rounds == 0 ? 1.0 : std::min(1.0, (done + current) / static_cast<double>(rounds));
+    const auto done = static_cast<double>(round_) - (inner_ ? 1.0 : 0.0);
+    return rounds == 0
+               ? 1.0
+               : std::min(1.0, (done + NestingActivity::progress()) / static_cast<double>(rounds));
 }
 
 }  // namespace metier::composition

@@ -8,15 +8,37 @@
 
 namespace metier::composition {
 
+/// Runs other activities, one at a time.
+class NestingActivity : public Activity {
+public:
+    using Activity::Activity;
+
+    void halt() override {
+        halting_ = true;
+        if (inner_) {
+            inner_->halt();
+        }
+    }
+    double progress() const override { return inner_ ? inner_->progress() : 0.0; }
+
+protected:
+    void begin(std::unique_ptr<Activity> inner) {
+        inner_ = std::move(inner);
+        inner_->start();
+    }
+
+    std::unique_ptr<Activity> inner_;  // null: none runs
+    bool halting_ = false;
+};
+
 /// Steps one after the other; the first failure is the whole's.
-class SequenceActivity final : public Activity {
+class SequenceActivity final : public NestingActivity {
 public:
     SequenceActivity(Run& run, const Step& step, const std::vector<Step>& steps, std::string path,
                      OnEnd on_end)
-        : Activity(run, step, std::move(path), std::move(on_end)), steps_(steps) {}
+        : NestingActivity(run, step, std::move(path), std::move(on_end)), steps_(steps) {}
 
     void start() override { next(); }
-    void halt() override;
     double progress() const override;
 
 private:
@@ -24,8 +46,6 @@ private:
 
     const std::vector<Step>& steps_;
     std::size_t index_ = 0;
-    bool halting_ = false;
-    std::unique_ptr<Activity> current_;
 };
 
 /// Steps at the same time.
@@ -55,34 +75,25 @@ private:
 };
 
 /// The first step that succeeds.
-class FallbackActivity final : public Activity {
+class FallbackActivity final : public NestingActivity {
 public:
-    using Activity::Activity;
+    using NestingActivity::NestingActivity;
 
     void start() override { next(); }
-    void halt() override;
-    double progress() const override { return current_ ? current_->progress() : 0.0; }
 
 private:
     void next();
 
     std::size_t index_ = 0;
-    bool halting_ = false;
     std::string failures_;
-    std::unique_ptr<Activity> current_;
 };
 
 /// Some steps if a condition holds, else others.
-class ChoiceActivity final : public Activity {
+class ChoiceActivity final : public NestingActivity {
 public:
-    using Activity::Activity;
+    using NestingActivity::NestingActivity;
 
     void start() override;
-    void halt() override;
-    double progress() const override { return chosen_ ? chosen_->progress() : 0.0; }
-
-private:
-    std::unique_ptr<Activity> chosen_;
 };
 
 /// Fails at once.
@@ -90,18 +101,17 @@ class FailureActivity final : public Activity {
 public:
     using Activity::Activity;
 
-    void start() override;
+    void start() override { end(failed(step_.text)); }
     void halt() override {}
     double progress() const override { return 0.0; }
 };
 
 /// Steps again and again.
-class LoopActivity final : public Activity {
+class LoopActivity final : public NestingActivity {
 public:
-    using Activity::Activity;
+    using NestingActivity::NestingActivity;
 
     void start() override;
-    void halt() override;
     double progress() const override;
 
 private:
@@ -113,8 +123,6 @@ private:
 
     std::optional<std::uint64_t> times_;
     std::uint64_t round_ = 0;
-    bool halting_ = false;
-    std::unique_ptr<Activity> work_;
 };
 
 }  // namespace metier::composition

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <array>
 #include <type_traits>
 #include <utility>
 
@@ -93,8 +93,10 @@ std::optional<Value> wholeNumber(std::int64_t number) {
 struct Maker {
     ValueType type;
 
-    std::optional<Value> operator()(bool flag) const {
-        return type == ValueType::boolean ? std::optional<Value>(flag) : std::nullopt;
+    /// Constants that need no conversion.
+    template <typename T>
+    std::optional<Value> operator()(const T& plain) const {
+        return skill::typeOf(Value(plain)) == type ? std::optional<Value>(plain) : std::nullopt;
     }
     std::optional<Value> operator()(std::int64_t number) const {
         switch (type) {
@@ -110,12 +112,6 @@ struct Maker {
                 return std::nullopt;
         }
     }
-    std::optional<Value> operator()(double number) const {
-        return type == ValueType::number ? std::optional<Value>(number) : std::nullopt;
-    }
-    std::optional<Value> operator()(const std::string& text) const {
-        return type == ValueType::text ? std::optional<Value>(text) : std::nullopt;
-    }
     std::optional<Value> operator()(const std::vector<double>& numbers) const {
         switch (type) {
             case ValueType::numbers:
@@ -127,9 +123,6 @@ struct Maker {
             default:
                 return numbers.empty() ? emptyList() : std::nullopt;
         }
-    }
-    std::optional<Value> operator()(const std::vector<std::string>& texts) const {
-        return type == ValueType::texts ? std::optional<Value>(texts) : std::nullopt;
     }
     std::optional<Value> operator()(const std::vector<std::vector<double>>& rows) const {
         if (type == ValueType::frames) {
@@ -172,33 +165,22 @@ std::optional<Literal> literalOf(const TomlValue& value) {
 }
 
 std::string_view howToWrite(ValueType type) noexcept {
-    switch (type) {
-        case ValueType::boolean:
-            return "true or false";
-        case ValueType::int32:
-        case ValueType::uint32:
-        case ValueType::uint64:
-            return "a whole number";
-        case ValueType::number:
-            return "a number";
-        case ValueType::text:
-            return "a text";
-        case ValueType::frame:
-            return "a frame: [x, y, z, a, b, c] in m and rad";
-        case ValueType::vector3:
-            return "a vector: [x, y, z]";
-        case ValueType::numbers:
-            return "a list of numbers";
-        case ValueType::texts:
-            return "a list of texts";
-        case ValueType::ranges:
-            return "a list of ranges: [[low, high], ...]";
-        case ValueType::frames:
-            return "a list of frames: [[x, y, z, a, b, c], ...] in m and rad";
-        case ValueType::null:
-            break;
-    }
-    return "nothing";
+    // In the order of ValueType.
+    static constexpr std::array kForms{"nothing",
+                                       "true or false",
+                                       "a whole number",
+                                       "a whole number",
+                                       "a whole number",
+                                       "a number",
+                                       "a text",
+                                       "a frame: [x, y, z, a, b, c] in m and rad",
+                                       "a vector: [x, y, z]",
+                                       "a list of numbers",
+                                       "a list of texts",
+                                       "a list of ranges: [[low, high], ...]",
+                                       "a list of frames: [[x, y, z, a, b, c], ...] in m and rad"};
+    static_assert(kForms.size() == std::variant_size_v<Value>);
+    return kForms[static_cast<std::size_t>(type)];
 }
 
 Result<Value> valueOf(const Literal& literal, ValueType type) {

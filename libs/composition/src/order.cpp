@@ -49,10 +49,9 @@ private:
         }
         for (const auto& use : definition.uses) {
             for (std::size_t other = 0; other < given_.size(); ++other) {
-                if (given_[other].type != use.type) {
-                    continue;
+                if (given_[other].type == use.type) {
+                    METIER_TRY(take(other));
                 }
-                METIER_TRY(take(other));
             }
         }
         joint_path_.pop_back();

@@ -8,6 +8,7 @@
 
 #include "call_activity.hpp"
 #include "execution_id.hpp"
+#include "group_activities.hpp"
 
 namespace metier::composition {
 
@@ -59,8 +60,8 @@ void Run::start(skill::ExecutionHandle execution) {
     execution_ = std::move(execution);
     enter([this] {
         const auto& root = setup_.composition.definition.root;
-        root_ = makeSequence(*this, root, root.steps, "",
-                             [this](Outcome outcome) { ended(std::move(outcome)); });
+        root_ = std::make_unique<SequenceActivity>(
+            *this, root, root.steps, "", [this](Outcome outcome) { ended(std::move(outcome)); });
         root_->start();
     });
 }
@@ -216,14 +217,11 @@ void Run::ended(Outcome outcome) {
     } else if (outcome) {
         execution_.fail(outcome->reason, std::move(outcome->text));
     } else {
-        tidyUp();
+        // Resets what was halted on the way, such as background steps: the next execution finds it
+        // Ready.
+        tidying_ = true;
+        resets_.start(setup_.used);
     }
-}
-
-/// Resets what was halted on the way, such as background steps: the next execution finds it Ready.
-void Run::tidyUp() {
-    tidying_ = true;
-    resets_.start(setup_.used);
 }
 
 void Run::finish() {

@@ -110,7 +110,6 @@ private:
     void checkRest();
     void restTimePassed();
     void ended(Outcome outcome);
-    void tidyUp();
     void finish();
 
     RunSetup setup_;

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "literal.hpp"
 #include "metier/motion/frame.hpp"
 
 namespace metier::composition {
@@ -51,19 +52,6 @@ std::optional<Value> elementOf(const Value& value, std::size_t index) {
     }
     const auto* frames = std::get_if<std::vector<Frame>>(&value);
     return frames == nullptr ? std::nullopt : from(*frames);
-}
-
-Result<Value> made(const std::vector<double>& n, ValueType type) {
-    if (type == ValueType::frame && n.size() == 6) {
-        return Frame{n[0], n[1], n[2], n[3], n[4], n[5]};
-    }
-    if (type == ValueType::vector3 && n.size() == 3) {
-        return Vector3{n[0], n[1], n[2]};
-    }
-    return type == ValueType::numbers
-               ? Result<Value>(n)
-               : fail(Errc::internal, fmt::format("{} numbers for a value of type {}", n.size(),
-                                                  skill::toString(type)));
 }
 
 void shift(Frame& frame, const std::vector<double>& by, ShiftAxes axes) {
@@ -157,8 +145,11 @@ Result<Value> Scope::unshifted(const Binding& binding, ValueType type) const {
     if (const auto* reference = std::get_if<Reference>(&binding.source)) {
         return read(*reference);
     }
-    const auto numbers = numbersOf(std::get<std::vector<Term>>(binding.source));
-    return numbers ? made(*numbers, type) : Result<Value>(fail(numbers.error()));
+    METIER_ASSIGN(const auto numbers, numbersOf(std::get<std::vector<Term>>(binding.source)));
+    return valueOf(numbers, type).map_error([&](const Error& /*unfit*/) {
+        return Error{Errc::internal, fmt::format("{} numbers for a value of type {}",
+                                                 numbers.size(), skill::toString(type))};
+    });
 }
 
 Result<Value> Scope::evaluate(const Binding& binding, ValueType type) const {

@@ -8,7 +8,7 @@
 
 namespace metier::composition {
 
-/// "step.name[2]", as the file spells it.
+/// A reference as it stands in messages: "grip.Width", "Target[2]".
 std::string nameOf(const Reference& reference);
 
 /// The values of one execution: its parameters, and the results of the steps so far.

@@ -51,19 +51,6 @@ void collectNeeded(const std::vector<Step>& steps, std::vector<std::string>& ali
 
 }  // namespace
 
-/// A Reset of a used skill for which nothing waits: its outcome shows at the next Start.
-class SequenceSkill::Unheard final : public UsedSkillListener {
-public:
-    explicit Unheard(BoundSkill& used) : used_(used) {}
-
-    void onReset(const Result<void>& outcome) override {
-        used_.halted_by_us = used_.halted_by_us && !outcome;
-    }
-
-private:
-    BoundSkill& used_;
-};
-
 SequenceSkill::SequenceSkill(Composition composition,
                              std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                              std::shared_ptr<skill::Executor> executor, const Clock& clock,
@@ -74,13 +61,11 @@ SequenceSkill::SequenceSkill(Composition composition,
       origin_(std::move(origin)) {
     for (const auto& use : composition_.definition.uses) {
         auto& bound = used_[use.alias];
-        bound = BoundSkill{std::move(used_skills.at(use.alias)), use.reset};
-        unheard_.emplace(use.alias, std::make_unique<Unheard>(bound));
+        bound.skill = std::move(used_skills.at(use.alias));
+        bound.may_reset = use.reset;
     }
     collectNeeded(composition_.definition.root.steps, needed_);
 }
-
-SequenceSkill::~SequenceSkill() = default;
 
 Result<void> SequenceSkill::checkUsable(const std::string& alias) const {
     const auto& bound = used_.find(alias)->second;
@@ -148,7 +133,7 @@ Result<void> SequenceSkill::reset() {
         if (!bound.mayReset() || !used.available() || used.state() != State::halted) {
             continue;
         }
-        if (const auto asked = used.reset(*unheard_.at(alias)); !asked) {
+        if (const auto asked = used.reset(bound); !asked) {
             return fail(asked.error().code, fmt::format("{} ({}) refused Reset: {}", used.name(),
                                                         alias, asked.error().message));
         }

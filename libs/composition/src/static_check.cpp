@@ -18,17 +18,6 @@ namespace {
 
 using Names = std::set<std::string, std::less<>>;
 
-/// All conditions of a step, with those within them.
-template <typename Visit>
-void forEachComparison(const Condition& condition, const Visit& visit) {
-    if (condition.parts.empty()) {
-        visit(condition);
-    }
-    for (const auto& part : condition.parts) {
-        forEachComparison(part, visit);
-    }
-}
-
 /// Calls that a step adds to those that have certainly finished.
 struct Added {
     std::vector<std::string_view> names{};
@@ -297,10 +286,13 @@ private:
     }
 
     void checkCondition(const Condition& condition) {
-        forEachComparison(condition, [&](const Condition& comparison) {
-            checkReference(comparison.subject, {comparison.line, comparison.key + ".from", ""});
-            checkBinding(comparison.operand);
-        });
+        for (const auto& part : condition.parts) {
+            checkCondition(part);
+        }
+        if (condition.parts.empty()) {
+            checkReference(condition.subject, {condition.line, condition.key + ".from", ""});
+            checkBinding(condition.operand);
+        }
     }
 
     void checkBinding(const Binding& binding) {

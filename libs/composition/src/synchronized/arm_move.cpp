@@ -35,7 +35,7 @@ ArmFailure ArmMove::failure(const std::string& text, Reason reason) const {
     return {reason, fmt::format("{} {}", name(), text)};
 }
 
-void ArmMove::ask(std::function<void(std::optional<ArmFailure>)> done) {
+void ArmMove::ask(Done done) {
     if (!joint_path_.empty()) {
         askJointMove(std::move(done));
         return;
@@ -90,7 +90,7 @@ std::optional<ArmFailure> ArmMove::checkPossible(const Result<CheckReport>& repo
     return std::nullopt;
 }
 
-void ArmMove::compareClocks(std::function<void(std::optional<ArmFailure>)> done) {
+void ArmMove::compareClocks(Done done) {
     setup_.arm.joint_move->compareClocks([this, done = std::move(done)](
                                              const Result<ClockOffset>& offset) {
         if (!offset) {
@@ -100,12 +100,6 @@ void ArmMove::compareClocks(std::function<void(std::optional<ArmFailure>)> done)
         offset_ = *offset;
         done(std::nullopt);
     });
-}
-
-bool ArmMove::takes(const std::string& parameter) const {
-    const auto& fields = setup_.arm.joint_move->description().parameters;
-    return std::any_of(fields.begin(), fields.end(),
-                       [&](const skill::Field& field) { return field.name == parameter; });
 }
 
 /// If a motion is slowed down by a factor, it brakes from a speed that is less by that factor: the
@@ -133,7 +127,7 @@ void ArmMove::begin(const Start& start) {
     if (hasPath()) {
         request.parameters.emplace("Duration", start.duration);
     }
-    if (takes(kStopTime)) {
+    if (skill::findField(setup_.arm.joint_move->description().parameters, kStopTime) != nullptr) {
         request.parameters.emplace(kStopTime, start.stop_time);
     }
     stage_ = Stage::runs;

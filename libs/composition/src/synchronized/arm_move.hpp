@@ -43,6 +43,7 @@ public:
         arrived,
         over,  ///< ended in any other way
     };
+    using Done = std::function<void(std::optional<ArmFailure>)>;
     struct Setup {
         Arm& arm;
         skill::Frame target;
@@ -64,8 +65,8 @@ public:
 
     /// Asks for the way from where the arm stands: its joints, and how long it takes at least.
     /// \param done in a later turn; nothing, or why not
-    void ask(std::function<void(std::optional<ArmFailure>)> done);
-    void compareClocks(std::function<void(std::optional<ArmFailure>)> done);
+    void ask(Done done);
+    void compareClocks(Done done);
     /// After ask() [s].
     double shortestDuration() const noexcept { return shortest_; }
     const composition::ClockOffset& clockOffset() const noexcept { return offset_; }
@@ -106,8 +107,6 @@ public:
     void onEnd(composition::UsedSkillEnd end) override;
 
 private:
-    using Done = std::function<void(std::optional<ArmFailure>)>;
-
     /// Makes a callback that calls `take` with an answer, as long as this object exists.
     template <typename Answer, typename Take>
     auto whileAlive(Take take) {
@@ -118,7 +117,6 @@ private:
         };
     }
     void askJointMove(Done done);
-    bool takes(const std::string& parameter) const;
     std::optional<ArmFailure> checkPossible(const Result<skill::CheckReport>& report) const;
     ArmFailure failureOf(const composition::UsedSkillEnd& end) const;
     ArmFailure haltedFailure(skill::Reason reason, const std::string& text) const;

@@ -1,6 +1,6 @@
-#include "synchronized/synchronized_fields.hpp"
-
 #include <utility>
+
+#include "synchronized/synchronized_work.hpp"
 
 namespace metier::composition {
 

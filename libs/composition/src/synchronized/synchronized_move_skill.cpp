@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "synchronized/synchronized_fields.hpp"
 #include "synchronized/synchronized_work.hpp"
 
 namespace metier::composition {
@@ -56,18 +55,10 @@ Result<void> checkReachable(const Arm& arm) {
 
 }  // namespace
 
-/// A Reset for which nothing waits: its outcome shows at the next Start.
-class SynchronizedMoveSkill::Unheard final : public composition::UsedSkillListener {
-public:
-};
-
 SynchronizedMoveSkill::SynchronizedMoveSkill(std::vector<Arm> arms, Options options)
     : TypedSkill(describeMove(), parameterFields(namesOf(arms)), resultFields()),
       arms_(std::move(arms)),
-      options_(std::move(options)),
-      unheard_(std::make_unique<Unheard>()) {}
-
-SynchronizedMoveSkill::~SynchronizedMoveSkill() = default;
+      options_(std::move(options)) {}
 
 Result<Arm*> SynchronizedMoveSkill::find(const std::string& name) {
     const auto found =
@@ -104,7 +95,7 @@ Result<void> SynchronizedMoveSkill::reset() {
         if (!arm.mayReset() || !move.available() || move.state() != State::halted) {
             continue;
         }
-        if (const auto asked = move.reset(*unheard_); !asked) {
+        if (const auto asked = move.reset(unheard_); !asked) {
             return fail(asked.error().code,
                         fmt::format("{} refused Reset: {}", arm.name, asked.error().message));
         }
@@ -114,10 +105,7 @@ Result<void> SynchronizedMoveSkill::reset() {
 
 std::string unfitReason(const skill::SkillDescription& joint_move) {
     for (const auto* name : {"TargetJointPosition", "ToolFrame", "Duration", "StartTime"}) {
-        const bool known =
-            std::any_of(joint_move.parameters.begin(), joint_move.parameters.end(),
-                        [&](const skill::Field& field) { return field.name == name; });
-        if (!known) {
+        if (skill::findField(joint_move.parameters, name) == nullptr) {
             return fmt::format("{} has no parameter {}", joint_move.name, name);
         }
     }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "execution_id.hpp"
-#include "synchronized/synchronized_fields.hpp"
 
 namespace metier::composition {
 

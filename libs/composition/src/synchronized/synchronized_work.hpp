@@ -81,6 +81,10 @@ private:
     skill::Timer timer_;
 };
 
+/// \param arms the names of all of them, which are the default
+skill::FieldList<Parameters> parameterFields(std::vector<std::string> arms);
+const skill::FieldList<Results>& resultFields();
+
 /// Combines the results of all arms.
 Results resultsOf(const std::vector<const ArmMove*>& arm_moves);
 

@@ -13,12 +13,14 @@
 namespace metier::composition {
 
 /// A used skill, and the state of its last execution.
-struct BoundSkill {
+struct BoundSkill final : UsedSkillListener {
     std::unique_ptr<UsedSkill> skill;
     bool may_reset = false;  ///< always; else only if the composed skill halted it
     bool halted_by_us = false;
 
     bool mayReset() const noexcept { return may_reset || halted_by_us || skill->leftOver(); }
+    /// Notes the outcome of a Reset for which nothing waits; it shows at the next Start.
+    void onReset(const Result<void>& outcome) override { halted_by_us = halted_by_us && !outcome; }
 };
 
 using BoundSkills = std::map<std::string, BoundSkill, std::less<>>;
@@ -39,7 +41,6 @@ public:
                   std::map<std::string, std::unique_ptr<UsedSkill>> used_skills,
                   std::shared_ptr<skill::Executor> executor, const Clock& clock,
                   std::string origin);
-    ~SequenceSkill() override;
 
     const skill::SkillDescription& description() const override { return composition_.description; }
     const Definition& definition() const noexcept { return composition_.definition; }
@@ -58,7 +59,6 @@ public:
     Result<void> reset() override;
 
 private:
-    class Unheard;
     Result<void> checkUsable(const std::string& alias) const;
     Descriptions descriptionsWith(
         const std::map<std::string, std::unique_ptr<UsedSkill>>& used_skills) const;
@@ -68,8 +68,7 @@ private:
     std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
     const Clock& clock_;
     std::string origin_;
-    std::vector<std::string> needed_;                          // aliases that every execution runs
-    std::map<std::string, std::unique_ptr<Unheard>> unheard_;  // by alias
+    std::vector<std::string> needed_;  // aliases that every execution runs
     // Shared by the work: as many as there are of these, one more than there are work.
     std::shared_ptr<const char> work_count_ = std::make_shared<const char>();
 };

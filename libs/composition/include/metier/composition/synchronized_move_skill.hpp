@@ -76,7 +76,6 @@ class SynchronizedMoveSkill final : public skill::TypedSkill<Parameters, Results
 public:
     /// \param arms at least two, whose joint moves take Duration and StartTime
     SynchronizedMoveSkill(std::vector<Arm> arms, Options options);
-    ~SynchronizedMoveSkill() override;
 
     /// Resets those joint moves of the arms that were halted here.
     /// Errors: those of skills of the same process. An error of a skill of another server is
@@ -89,12 +88,11 @@ protected:
     Result<std::unique_ptr<skill::ExecutionWork>> plan(const Parameters& parameters) override;
 
 private:
-    class Unheard;
     Result<Arm*> find(const std::string& name);
 
     std::vector<Arm> arms_;
     Options options_;
-    std::unique_ptr<Unheard> unheard_;
+    UsedSkillListener unheard_;  // of a Reset for which nothing waits: it shows at the next Start
 };
 
 /// Reason why this joint move does not allow its arm to move together with others; "" if it does.
