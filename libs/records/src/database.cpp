@@ -29,21 +29,24 @@ std::string fileOf(std::string_view url) {
     return std::string(url);
 }
 
+template <typename T>
+T valueIn(const Cell& cell) {
+    const auto* value = std::get_if<T>(&cell);
+    return value == nullptr ? T() : *value;
+}
+
 }  // namespace
 
 std::int64_t Row::integer(std::size_t column) const {
-    const auto* value = std::get_if<std::int64_t>(&cells_.at(column));
-    return value == nullptr ? 0 : *value;
+    return valueIn<std::int64_t>(cells_.at(column));
 }
 
 std::string Row::text(std::size_t column) const {
-    const auto* value = std::get_if<std::string>(&cells_.at(column));
-    return value == nullptr ? std::string() : *value;
+    return valueIn<std::string>(cells_.at(column));
 }
 
 Bytes Row::bytes(std::size_t column) const {
-    const auto* value = std::get_if<Bytes>(&cells_.at(column));
-    return value == nullptr ? Bytes() : *value;
+    return valueIn<Bytes>(cells_.at(column));
 }
 
 Result<Rows> Database::query(std::string_view sql, const std::vector<Cell>& parameters) {

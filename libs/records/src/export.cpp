@@ -46,46 +46,41 @@ Result<void> copy(Database& from, Database& into, const Copied& copied) {
                                  copied.table, copied.key);
     std::int64_t last = std::numeric_limits<std::int64_t>::min();
     while (true) {
-        const auto rows = from.query(sql, {last, kRowsAtOnce});
-        if (!rows || rows->empty()) {
-            return rows.map([](const Rows& /*none*/) {});
+        METIER_ASSIGN(const auto rows, from.query(sql, {last, kAtOnce}));
+        if (rows.empty()) {
+            return {};
         }
-        METIER_TRY(insert(into, copied.table, *rows));
-        last = rows->back().integer(0);
+        METIER_TRY(insert(into, copied.table, rows));
+        last = rows.back().integer(0);
     }
 }
 
 Result<void> copyTables(Database& from, Database& into) {
-    Result<void> done;
     for (const auto& copied : kCopied) {
-        done = done.and_then([&] { return copy(from, into, copied); });
+        METIER_TRY(copy(from, into, copied));
     }
-    return done;
+    return {};
 }
 
 /// The version comes last, with all before it on the disk: a file that was left half written is no
 /// store of records. No file beside it has a part of it.
 Result<void> copyAll(Database& from, Database& into) {
-    return into
-        .script(
-            "DELETE FROM metier_records; DELETE FROM notes; PRAGMA journal_mode = OFF;"
-            "PRAGMA synchronous = OFF; PRAGMA cache_size = -65536")
-        .and_then([&] { return inTransaction(into, [&] { return copyTables(from, into); }); })
-        .and_then(
-            [&] { return into.script("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL"); })
-        .and_then([&] { return from.query("SELECT name, value FROM metier_records"); })
-        .and_then([&](const Rows& rows) {
-            return inTransaction(into, [&] { return insert(into, "metier_records", rows); });
-        });
+    METIER_TRY(
+        into.script("DELETE FROM metier_records; DELETE FROM notes; PRAGMA journal_mode = OFF;"
+                    "PRAGMA synchronous = OFF; PRAGMA cache_size = -65536"));
+    METIER_TRY(inTransaction(into, [&] { return copyTables(from, into); }));
+    METIER_TRY(into.script("PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL"));
+    METIER_ASSIGN(const auto rows, from.query("SELECT name, value FROM metier_records"));
+    return inTransaction(into, [&] { return insert(into, "metier_records", rows); });
 }
 
 Result<std::uint64_t> writeFile(Database& from, const std::string& file) {
     METIER_ASSIGN(const auto opened, SqliteDatabase::open(file, Store::Access::write));
     auto& into = *opened;
-    return prepareSchema(into, Store::Access::write)
-        .and_then([&] { return inSnapshot(from, [&] { return copyAll(from, into); }); })
-        .and_then([&] { return into.number("SELECT count(*) FROM executions"); })
-        .map([](std::int64_t count) { return static_cast<std::uint64_t>(count); });
+    METIER_TRY(prepareSchema(into, Store::Access::write));
+    METIER_TRY(inSnapshot(from, [&] { return copyAll(from, into); }));
+    METIER_ASSIGN(const auto count, into.number("SELECT count(*) FROM executions"));
+    return static_cast<std::uint64_t>(count);
 }
 
 }  // namespace

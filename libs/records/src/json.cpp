@@ -13,15 +13,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json timeOrNull(UtcTime time) {
-    return time == UtcTime{} ? ordered_json() : ordered_json(timeText(time));
-}
-
 ordered_json valueOf(const Member& member, const std::string& text) {
     return member.form == Form::json ? parsed(text) : ordered_json(text);
 }
 ordered_json valueOf(const Member& /*member*/, UtcTime time) {
-    return timeOrNull(time);
+    return time == UtcTime{} ? ordered_json() : ordered_json(timeText(time));
 }
 template <std::integral T>
 ordered_json valueOf(const Member& /*member*/, T number) {
@@ -35,20 +31,12 @@ ordered_json durationOf(const ExecutionRow& execution) {
 
 /// An object with the members.
 template <typename Record>
-ordered_json objectOf(const Record& record) {
+ordered_json jsonOf(const Record& record) {
     auto json = ordered_json::object();
     visitMembers(record, [&json](const Member& member, const auto& value) {
         json[std::string(member.name)] = valueOf(member, value);
     });
     return json;
-}
-
-ordered_json jsonOf(const Transition& transition) {
-    return objectOf(transition);
-}
-
-ordered_json jsonOf(const Intermediate& intermediate) {
-    return objectOf(intermediate);
 }
 
 ordered_json jsonOf(const PathSample& sample) {
@@ -122,18 +110,12 @@ std::string toJson(const Details& details) {
 
 Result<Details> detailsOf(Store& store, std::int64_t number) {
     METIER_ASSIGN(auto execution, store.find(std::to_string(number)));
-    auto children = store.children(number);
-    auto transitions = store.transitions(number);
-    auto intermediates = store.intermediates(number);
-    auto path = store.path(number);
-    if (!children || !transitions || !intermediates || !path) {
-        return fail(!children        ? children.error()
-                    : !transitions   ? transitions.error()
-                    : !intermediates ? intermediates.error()
-                                     : path.error());
-    }
-    return Details{std::move(execution), std::move(*children), std::move(*transitions),
-                   std::move(*intermediates), std::move(*path)};
+    METIER_ASSIGN(auto children, store.children(number));
+    METIER_ASSIGN(auto transitions, store.transitions(number));
+    METIER_ASSIGN(auto intermediates, store.intermediates(number));
+    METIER_ASSIGN(auto path, store.path(number));
+    return Details{std::move(execution), std::move(children), std::move(transitions),
+                   std::move(intermediates), std::move(path)};
 }
 
 }  // namespace metier::records

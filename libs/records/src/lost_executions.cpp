@@ -44,19 +44,15 @@ Result<void> close(Database& database, const std::string& server) {
                   readExecutions(database, "ended = 0 AND server = $1 ORDER BY number", {server}));
     KindCache kinds;
     RowWriter writer(database, kinds);
-    auto done = writer.takeRevisions(static_cast<std::int64_t>(executions.size()));
+    METIER_TRY(writer.takeRevisions(static_cast<std::int64_t>(executions.size())));
     for (auto& execution : executions) {
-        const auto ended = lastSignOf(database, execution);
-        if (!done || !ended) {
-            return ended ? done : Result<void>(fail(ended.error()));
-        }
-        execution.ended = *ended;
+        METIER_ASSIGN(execution.ended, lastSignOf(database, execution));
         execution.state = kLost;
         execution.reason = kServerLost;
         execution.reason_text = kLostText;
-        done = writer.save(execution);
+        METIER_TRY(writer.save(execution));
     }
-    return done;
+    return {};
 }
 
 /// Within a transaction, so that the server does not begin meanwhile.
@@ -83,16 +79,14 @@ Result<Presence> attend(Database& database, const std::string& server, Opening o
 }
 
 Result<void> closeLostOfOthers(Database& database, const std::string& own) {
-    const auto servers =
+    METIER_ASSIGN(
+        const auto servers,
         database.query("SELECT DISTINCT server FROM history WHERE ended = 0 AND server <> $1",
-                       {storable(own, kLongestName)});
-    Result<void> done = servers.map([](const Rows& /*servers*/) {});
-    for (const auto& row : servers.value_or(Rows())) {
-        done = done.and_then([&] {
-            return inTransaction(database, [&] { return closeIfDead(database, row.text(0)); });
-        });
+                       {storable(own, kLongestName)}));
+    for (const auto& row : servers) {
+        METIER_TRY(inTransaction(database, [&] { return closeIfDead(database, row.text(0)); }));
     }
-    return done;
+    return {};
 }
 
 }  // namespace metier::records

@@ -9,7 +9,7 @@ namespace metier::records {
 namespace {
 
 template <typename Record>
-std::size_t textsOf(const Record& record) {
+std::size_t sizeOf(const Record& record) {
     std::size_t bytes = 0;
     visitMembers(record, [&bytes](const Member& /*member*/, const auto& value) {
         if constexpr (std::is_same_v<decltype(value), const std::string&>) {
@@ -20,12 +20,7 @@ std::size_t textsOf(const Record& record) {
 }
 
 std::size_t sizeOf(const std::unique_ptr<ExecutionRow>& execution) {
-    return sizeof *execution + textsOf(*execution);
-}
-
-template <typename Record>
-std::size_t sizeOf(const Record& record) {
-    return textsOf(record);
+    return sizeof *execution + sizeOf(*execution);
 }
 
 }  // namespace

@@ -133,10 +133,15 @@ std::string firstLine(const std::exception& error) {
 
 /// Turns what libpqxx throws into an error.
 template <typename Work>
-auto PostgresDatabase::guarded(Work work) -> decltype(work()) {
+Result<std::invoke_result_t<Work>> PostgresDatabase::guarded(Work work) {
     const auto armed = deadline_.arm(connection_.sock(), longest_call_ + kGrace);
     try {
-        return work();
+        if constexpr (std::is_void_v<decltype(work())>) {
+            work();
+            return {};
+        } else {
+            return work();
+        }
     } catch (const pqxx::broken_connection& error) {
         return fail(Errc::connection_lost, fmt::format("{}: {}", name_, firstLine(error)));
     } catch (const pqxx::sql_error& error) {
@@ -196,7 +201,7 @@ Result<Rows> PostgresDatabase::execute(std::string_view sql, std::span<const Arg
     std::vector<std::string> texts;
     std::transform(parameters.begin(), parameters.end(), std::back_inserter(texts), toParameter);
     const auto values = pqxx::prepare::make_dynamic_params(texts);
-    return guarded([&]() -> Result<Rows> {
+    return guarded([&] {
         const auto& name = prepared(sql);
         if (transaction_ != nullptr) {
             return toRows(transaction_->exec_prepared(name, values));
@@ -207,37 +212,31 @@ Result<Rows> PostgresDatabase::execute(std::string_view sql, std::span<const Arg
 }
 
 Result<void> PostgresDatabase::script(const std::string& sql) {
-    return guarded([&]() -> Result<void> {
+    return guarded([&] {
         if (transaction_ != nullptr) {
             transaction_->exec(sql);
         } else {
             pqxx::nontransaction(connection_).exec(sql);
         }
-        return {};
     });
 }
 
 Result<void> PostgresDatabase::begin() {
-    return guarded([&]() -> Result<void> {
+    return guarded([&] {
         transaction_ = std::make_unique<pqxx::work>(connection_);
         transaction_->exec(std::string(kLock));
-        return {};
     });
 }
 
 Result<void> PostgresDatabase::beginReading() {
     using Snapshot = pqxx::transaction<pqxx::repeatable_read, pqxx::read_only>;
-    return guarded([&]() -> Result<void> {
-        transaction_ = std::make_unique<Snapshot>(connection_);
-        return {};
-    });
+    return guarded([&] { transaction_ = std::make_unique<Snapshot>(connection_); });
 }
 
 Result<void> PostgresDatabase::commit() {
-    return guarded([&]() -> Result<void> {
+    return guarded([&] {
         transaction_->commit();
         transaction_.reset();
-        return {};
     });
 }
 

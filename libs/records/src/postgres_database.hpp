@@ -6,6 +6,7 @@
 #include <pqxx/connection>
 #include <pqxx/transaction>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "database.hpp"
@@ -34,7 +35,7 @@ public:
 private:
     PostgresDatabase(std::string name, const std::string& url);
     template <typename Work>
-    auto guarded(Work work) -> decltype(work());
+    Result<std::invoke_result_t<Work>> guarded(Work work);
     const std::string& prepared(std::string_view sql);
 
     std::string name_;

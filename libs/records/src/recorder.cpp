@@ -31,10 +31,6 @@ SteadyTime now() {
     return std::chrono::steady_clock::now();
 }
 
-std::uint64_t sumOf(const Dropped& dropped) {
-    return dropped.executions + dropped.events + dropped.samples;
-}
-
 /// Makes this thread wait longer for a core, so that robots come first where every core is busy:
 /// the writer keeps its share of the time, but does not interrupt a running thread.
 void yieldToOthers() {
@@ -48,25 +44,28 @@ std::string lossText(const Dropped& d) {
                        d.executions, d.events, d.samples);
 }
 
-}  // namespace
-
 /// Queue of a recorder, the thread that writes, and the thread that reports its write_state, even
 /// while the first one hangs in a call to the disk.
-class Recorder::Impl {
+class QueueRecorder final : public Recorder {
 public:
-    explicit Impl(Options options);
-    ~Impl();
-    Impl(const Impl&) = delete;
-    Impl& operator=(const Impl&) = delete;
+    explicit QueueRecorder(Options options);
+    ~QueueRecorder() override;
+    QueueRecorder(const QueueRecorder&) = delete;
+    QueueRecorder& operator=(const QueueRecorder&) = delete;
 
-    Key begin(ExecutionRow execution);
-    template <typename Event>
-    void put(Key key, Event event);
-    void sample(const KeyedSample& sample);
-    bool flush(SteadyTime deadline);
-    Status status() const;
+    Key begin(ExecutionRow execution) override;
+    void transition(Key key, Transition transition) override { put(key, std::move(transition)); }
+    void intermediate(Key key, Intermediate intermediate) override {
+        put(key, std::move(intermediate));
+    }
+    void sample(Key key, const PathSample& sample) override;
+    void end(Key key, Outcome outcome) override { put(key, std::move(outcome)); }
+    bool flush(SteadyTime deadline) override;
+    Status status() const override;
 
 private:
+    template <typename Event>
+    void put(Key key, Event event);
     bool isFull(std::size_t more) const;
     void append(Message message, std::size_t size);
     void write(const std::stop_token& stop);
@@ -112,19 +111,20 @@ private:
     std::jthread thread_;
 };
 
-Recorder::Impl::Impl(Options options) : options_(std::move(options)), writer_(options_.server) {
+QueueRecorder::QueueRecorder(Options options)
+    : options_(std::move(options)), writer_(options_.server) {
     watcher_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
     thread_ = std::jthread([this](const std::stop_token& stop) { write(stop); });
 }
 
-Recorder::Impl::~Impl() {
+QueueRecorder::~QueueRecorder() {
     thread_.request_stop();
     thread_ = {};
     watcher_.request_stop();
     watcher_ = {};
 }
 
-Recorder::Key Recorder::Impl::begin(ExecutionRow execution) {
+Recorder::Key QueueRecorder::begin(ExecutionRow execution) {
     Message message{.content = std::make_unique<ExecutionRow>(std::move(execution))};
     const auto size = sizeOf(message);
     const std::lock_guard lock(mutex_);
@@ -138,7 +138,7 @@ Recorder::Key Recorder::Impl::begin(ExecutionRow execution) {
 }
 
 template <typename Event>
-void Recorder::Impl::put(Key key, Event event) {
+void QueueRecorder::put(Key key, Event event) {
     if (key == 0) {
         return;
     }
@@ -154,8 +154,8 @@ void Recorder::Impl::put(Key key, Event event) {
     }
 }
 
-void Recorder::Impl::sample(const KeyedSample& sample) {
-    if (sample.key == 0) {
+void QueueRecorder::sample(Key key, const PathSample& sample) {
+    if (key == 0) {
         return;
     }
     const std::lock_guard lock(mutex_);
@@ -166,17 +166,17 @@ void Recorder::Impl::sample(const KeyedSample& sample) {
         waiting_.samples.pop_front();
         ++dropped_.samples;
     }
-    waiting_.samples.push_back(sample);
+    waiting_.samples.push_back({key, sample});
 }
 
 /// With the lock.
-bool Recorder::Impl::isFull(std::size_t more) const {
+bool QueueRecorder::isFull(std::size_t more) const {
     return waiting_.bytes + taken_bytes_ + more > options_.most_waiting;
 }
 
 /// With the lock. Wakes the writer only when it has something to wait for no longer, since waking a
 /// thread costs more than all else here.
-void Recorder::Impl::append(Message message, std::size_t size) {
+void QueueRecorder::append(Message message, std::size_t size) {
     const auto many = options_.most_waiting / 2;
     const bool was_many = waiting_.bytes > many;
     if (waiting_.isEmpty() || (!was_many && waiting_.bytes + size > many)) {
@@ -186,14 +186,14 @@ void Recorder::Impl::append(Message message, std::size_t size) {
     waiting_.messages.push_back(std::move(message));
 }
 
-bool Recorder::Impl::flush(SteadyTime deadline) {
+bool QueueRecorder::flush(SteadyTime deadline) {
     std::unique_lock lock(mutex_);
     const auto ticket = ++asked_;
     changed_.notify_all();
     return changed_.wait_until(lock, deadline, [&] { return answered_ >= ticket; });
 }
 
-Recorder::Status Recorder::Impl::status() const {
+Recorder::Status QueueRecorder::status() const {
     const std::lock_guard lock(mutex_);
     return {.write_state = reported_,
             .waiting = waiting_.messages.size() + taken_,
@@ -202,7 +202,7 @@ Recorder::Status Recorder::Impl::status() const {
             .dropped = dropped_};
 }
 
-void Recorder::Impl::write(const std::stop_token& stop) {
+void QueueRecorder::write(const std::stop_token& stop) {
     yieldToOthers();
     while (true) {
         const bool go_on = waitForWork(stop);
@@ -219,7 +219,7 @@ void Recorder::Impl::write(const std::stop_token& stop) {
 }
 
 /// False if nothing will come any more: all is written.
-bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
+bool QueueRecorder::waitForWork(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     const auto asked = [this] { return asked_ > answered_; };
     if (database_ != nullptr && !trimming_ && !writer_.hasChanges()) {
@@ -233,7 +233,7 @@ bool Recorder::Impl::waitForWork(const std::stop_token& stop) {
     return !stop.stop_requested();
 }
 
-Result<void> Recorder::Impl::writeRound() {
+Result<void> QueueRecorder::writeRound() {
     auto done = database_ == nullptr ? openStore() : Result<void>();
     // While a batch could not be written no more is taken: the queue is bounded.
     if (done && !writer_.hasChanges()) {
@@ -253,7 +253,7 @@ Result<void> Recorder::Impl::writeRound() {
     return done;
 }
 
-void Recorder::Impl::takeWaiting() {
+void QueueRecorder::takeWaiting() {
     Batch batch;
     {
         const std::lock_guard lock(mutex_);
@@ -267,7 +267,7 @@ void Recorder::Impl::takeWaiting() {
     dropped_ += lost;
 }
 
-Result<void> Recorder::Impl::openStore() {
+Result<void> QueueRecorder::openStore() {
     METIER_ASSIGN(auto opened, openDatabase(options_.url, Store::Access::write));
     METIER_ASSIGN(auto attended,
                   attend(*opened, options_.server, opened_ ? Opening::again : Opening::first));
@@ -279,13 +279,13 @@ Result<void> Recorder::Impl::openStore() {
 }
 
 /// Trims the store. If others hold the lock nothing is lost: it goes on in the next round.
-Result<void> Recorder::Impl::trim() {
+Result<void> QueueRecorder::trim() {
     auto done = trimPart();
     return !done && done.error().code == Errc::timeout ? Result<void>() : done;
 }
 
 /// Messages that come meanwhile are written between two parts.
-Result<void> Recorder::Impl::trimPart() {
+Result<void> QueueRecorder::trimPart() {
     if (!trimming_ && now() >= next_trim_) {
         METIER_TRY(closeLostOfOthers(*database_, options_.server));
         next_trim_ = now() + kTrimEvery;
@@ -301,7 +301,7 @@ Result<void> Recorder::Impl::trimPart() {
     return {};
 }
 
-void Recorder::Impl::finishRound(const Result<void>& done) {
+void QueueRecorder::finishRound(const Result<void>& done) {
     {
         const std::lock_guard lock(mutex_);
         const bool in_the_way = !done && done.error().code == Errc::timeout;
@@ -319,12 +319,12 @@ void Recorder::Impl::finishRound(const Result<void>& done) {
     changed_.notify_all();
 }
 
-bool Recorder::Impl::isIdle() const {
+bool QueueRecorder::isIdle() const {
     const std::lock_guard lock(mutex_);
     return waiting_.isEmpty() && !writer_.hasChanges();
 }
 
-void Recorder::Impl::watch(const std::stop_token& stop) {
+void QueueRecorder::watch(const std::stop_token& stop) {
     bool last = false;
     while (!last) {
         std::optional<WriteReport> report;
@@ -341,13 +341,13 @@ void Recorder::Impl::watch(const std::stop_token& stop) {
 }
 
 /// With the lock.
-bool Recorder::Impl::hangs() const {
+bool QueueRecorder::hangs() const {
     return unwritten_since_ && now() - *unwritten_since_ > options_.patience;
 }
 
 /// With the lock. Nothing if all is as it was reported.
-std::optional<WriteReport> Recorder::Impl::news() {
-    const auto lost = sumOf(dropped_);
+std::optional<WriteReport> QueueRecorder::news() {
+    const auto lost = dropped_.sum();
     const bool new_loss = lost > std::exchange(reported_loss_, lost);
     const bool fails = !error_.empty() || hangs() || new_loss;
     const auto write_state = fails ? WriteState::failing : WriteState::writing;
@@ -364,43 +364,14 @@ std::optional<WriteReport> Recorder::Impl::news() {
     return WriteReport{write_state, "executions are not recorded: " + why, dropped_};
 }
 
+}  // namespace
+
 Result<std::unique_ptr<Recorder>> Recorder::create(Options options) {
     METIER_TRY(checkUrl(options.url));
     if (options.server.empty()) {
         return fail(Errc::invalid_argument, "records need the name of their server");
     }
-    return std::unique_ptr<Recorder>(new Recorder(std::make_unique<Impl>(std::move(options))));
-}
-
-Recorder::Recorder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Recorder::~Recorder() = default;
-
-Recorder::Key Recorder::begin(ExecutionRow execution) {
-    return impl_->begin(std::move(execution));
-}
-
-void Recorder::transition(Key key, Transition transition) {
-    impl_->put(key, std::move(transition));
-}
-
-void Recorder::intermediate(Key key, Intermediate intermediate) {
-    impl_->put(key, std::move(intermediate));
-}
-
-void Recorder::sample(Key key, const PathSample& sample) {
-    impl_->sample({key, sample});
-}
-
-void Recorder::end(Key key, Outcome outcome) {
-    impl_->put(key, std::move(outcome));
-}
-
-bool Recorder::flush(SteadyTime deadline) {
-    return impl_->flush(deadline);
-}
-
-Recorder::Status Recorder::status() const {
-    return impl_->status();
+    return std::make_unique<QueueRecorder>(std::move(options));
 }
 
 }  // namespace metier::records

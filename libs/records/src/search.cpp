@@ -66,13 +66,12 @@ Result<bool> Search::findBounds() {
     if (before_ == 0) {
         return true;
     }
-    return database_.numbers("SELECT started FROM executions WHERE number = $1", {before_})
-        .map([this](const Numbers& started) {
-            if (!started.empty()) {
-                upper_ = std::min(upper_, Found{started.front(), before_});
-            }
-            return !started.empty();
-        });
+    METIER_ASSIGN(const auto started,
+                  database_.numbers("SELECT started FROM executions WHERE number = $1", {before_}));
+    if (!started.empty()) {
+        upper_ = std::min(upper_, Found{started.front(), before_});
+    }
+    return !started.empty();
 }
 
 Result<void> Search::take(const std::string& sql, const Values& values) {
@@ -96,9 +95,8 @@ Result<Search::Numbers> Search::kinds(const std::string& condition, const Values
 Result<void> Search::takeKinds() {
     Values values;
     const auto condition = namesFit(filter_, values);
-    return kinds(condition, values).and_then([this](const Numbers& fitting) {
-        return takeOfEach("kind", fitting, "TRUE");
-    });
+    METIER_ASSIGN(const auto fitting, kinds(condition, values));
+    return takeOfEach("kind", fitting, "TRUE");
 }
 
 /// The newest of each value of an indexed column.
@@ -120,20 +118,20 @@ Result<void> Search::takeOfEach(const std::string& column, const Numbers& number
 Result<void> Search::takeText() {
     Values values;
     const auto condition = namesFit(filter_, values);
-    const auto fitting = kinds(condition, values);
-    if (!fitting || fitting->empty()) {
-        return fitting.map([](const Numbers& /*none*/) {});
+    METIER_ASSIGN(const auto fitting, kinds(condition, values));
+    if (fitting.empty()) {
+        return {};
     }
     // The plus keeps a database from starting with the kinds.
     const auto of_kinds =
-        condition == "TRUE" ? condition : fmt::format("+kind IN ({})", fmt::join(*fitting, ", "));
+        condition == "TRUE" ? condition : fmt::format("+kind IN ({})", fmt::join(fitting, ", "));
     const auto with_text = condition + " AND " + namesContain(filter_.text, values);
     auto bounded = bounds();
     const auto of_id = fmt::format("id = {} AND {}", bounded.add(storable(filter_.text)), of_kinds);
-    return kinds(with_text, values)
-        .and_then([&](const Numbers& named) { return takeOfEach("kind", named, "TRUE"); })
-        .and_then([&] { return takeNotes(of_kinds); })
-        .and_then([&] { return take(newest(of_id), bounded); });
+    METIER_ASSIGN(const auto named, kinds(with_text, values));
+    METIER_TRY(takeOfEach("kind", named, "TRUE"));
+    METIER_TRY(takeNotes(of_kinds));
+    return take(newest(of_id), bounded);
 }
 
 Result<void> Search::takeNotes(const std::string& of_kinds) {

@@ -3,26 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
-
 #include "database.hpp"
 #include "export.hpp"
 #include "filter_sql.hpp"
+#include "metier/base/text.hpp"
 #include "parts.hpp"
-#include "retention.hpp"
 #include "rows.hpp"
 #include "search.hpp"
 #include "text.hpp"
 
 namespace metier::records {
 namespace {
-
-std::optional<std::int64_t> toNumber(std::string_view text) {
-    std::int64_t number = 0;
-    const auto* end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, number);
-    return read.ec == std::errc() && read.ptr == end ? std::optional(number) : std::nullopt;
-}
 
 /// The column of every part of an execution, in the order in which they were written.
 Result<Rows> partsOf(Database& database, std::int64_t number, std::string_view column) {
@@ -60,7 +51,7 @@ Result<std::unique_ptr<Store>> Store::open(const std::string& url, Access access
 }
 
 Result<ExecutionRow> Store::find(std::string_view number_or_id) {
-    if (const auto number = toNumber(number_or_id)) {
+    if (const auto number = numberIn<std::int64_t>(number_or_id)) {
         auto found = readExecutions(*database_, "number = $1", {*number});
         if (!found || !found->empty()) {
             return found ? Result<ExecutionRow>(std::move(found->front())) : fail(found.error());
@@ -147,16 +138,6 @@ Result<Changes> Store::changes(std::int64_t revision, const Filter& filter, std:
 
 Result<std::int64_t> Store::latestRevision() {
     return database_->number("SELECT value FROM metier_records WHERE name = 'revision'");
-}
-
-Result<std::uint64_t> Store::retain(const Retention& keep, UtcTime now) {
-    RetentionRun run(keep, now);
-    while (true) {
-        METIER_ASSIGN(const auto more, run.step(*database_));
-        if (!more) {
-            return run.removed();
-        }
-    }
 }
 
 Result<std::uint64_t> Store::bytes() {

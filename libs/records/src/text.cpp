@@ -14,15 +14,7 @@ bool isContinuation(char c) {
 }
 
 std::size_t longestOf(Form form) {
-    switch (form) {
-        case Form::name:
-            return kLongestName;
-        case Form::key:
-            return kLongestKey;
-        case Form::json:
-            break;
-    }
-    return kLongestText;
+    return form == Form::name ? kLongestName : form == Form::key ? kLongestKey : kLongestText;
 }
 
 /// Cuts between characters.

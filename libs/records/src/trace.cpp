@@ -60,18 +60,15 @@ Result<void> Trace::add(const ExecutionRow& execution, const ExecutionRow* paren
         return {};
     }
     auto end = toMicroseconds(execution.isOver() ? execution.ended : execution.started);
-    const auto transitions = addEvents(execution, end);
-    const auto children = store_.children(execution.number);
-    if (!transitions || !children) {
-        return fail(!transitions ? transitions.error() : children.error());
-    }
+    METIER_ASSIGN(const auto transitions, addEvents(execution, end));
+    METIER_ASSIGN(const auto children, store_.children(execution.number));
     addSlice({execution.skill, "execution", toMicroseconds(execution.started), end},
              laneOf(execution), jsonOf(execution));
-    addStates(*transitions, execution, end);
+    addStates(transitions, execution, end);
     if (parent != nullptr) {
         addArrow(*parent, execution);
     }
-    for (const auto& child : *children) {
+    for (const auto& child : children) {
         METIER_TRY(add(child, &execution));
     }
     return {};
@@ -79,13 +76,10 @@ Result<void> Trace::add(const ExecutionRow& execution, const ExecutionRow* paren
 
 /// Intermediate results. \param end moved to the last event of an execution under way
 Result<std::vector<Transition>> Trace::addEvents(const ExecutionRow& execution, std::int64_t& end) {
-    auto transitions = store_.transitions(execution.number);
-    const auto intermediates = store_.intermediates(execution.number);
-    if (!transitions || !intermediates) {
-        return transitions ? fail(intermediates.error()) : transitions;
-    }
+    METIER_ASSIGN(auto transitions, store_.transitions(execution.number));
+    METIER_ASSIGN(const auto intermediates, store_.intermediates(execution.number));
     const auto row = laneOf(execution);
-    for (const auto& one : *intermediates) {
+    for (const auto& one : intermediates) {
         const auto time = toMicroseconds(one.time);
         end = execution.isOver() ? end : std::max(end, time);
         events_.push_back({{"ph", "i"},
@@ -97,7 +91,7 @@ Result<std::vector<Transition>> Trace::addEvents(const ExecutionRow& execution, 
                            {"tid", row.thread},
                            {"args", {{"value", parsed(one.value)}}}});
     }
-    for (const auto& one : *transitions) {
+    for (const auto& one : transitions) {
         end = execution.isOver() ? end : std::max(end, toMicroseconds(one.time));
     }
     return transitions;

@@ -20,7 +20,7 @@ struct Dropped {
     std::uint64_t events = 0;  ///< transitions and intermediate results
     std::uint64_t samples = 0;
 
-    bool any() const noexcept { return executions + events + samples > 0; }
+    std::uint64_t sum() const noexcept { return executions + events + samples; }
     Dropped& operator+=(const Dropped& more) noexcept {
         executions += more.executions;
         events += more.events;
@@ -86,31 +86,28 @@ public:
     /// Errors: invalid_argument (not a URL of a store, or no server name).
     static Result<std::unique_ptr<Recorder>> create(Options options);
     /// Tries once to write the waiting records.
-    ~Recorder();
+    virtual ~Recorder() = default;
     Recorder(const Recorder&) = delete;
     Recorder& operator=(const Recorder&) = delete;
 
     /// Begins an execution; its server is always Options::server. Its state follows from its
     /// transitions.
-    Key begin(ExecutionRow execution);
+    virtual Key begin(ExecutionRow execution) = 0;
     /// Adds a transition, in the order of their times; the first 100,000 of an execution are kept.
-    void transition(Key key, Transition transition);
-    void intermediate(Key key, Intermediate intermediate);
-    void sample(Key key, const PathSample& sample);
+    virtual void transition(Key key, Transition transition) = 0;
+    virtual void intermediate(Key key, Intermediate intermediate) = 0;
+    virtual void sample(Key key, const PathSample& sample) = 0;
     /// Ends an execution; nothing of it may follow.
-    void end(Key key, Outcome outcome);
+    virtual void end(Key key, Outcome outcome) = 0;
 
     /// Waits until readers see all that was recorded before. For tests and tools, not for servers.
     /// \return false at the deadline
-    bool flush(SteadyTime deadline);
+    virtual bool flush(SteadyTime deadline) = 0;
     /// Threads: any.
-    Status status() const;
+    virtual Status status() const = 0;
 
-private:
-    class Impl;
-    explicit Recorder(std::unique_ptr<Impl> impl);
-
-    std::unique_ptr<Impl> impl_;
+protected:
+    Recorder() = default;
 };
 
 }  // namespace metier::records

@@ -104,9 +104,6 @@ public:
                             std::uint32_t count = 1'000);
     Result<std::int64_t> latestRevision();
 
-    /// Removes the oldest executions that are over, a part at a time. Needs Access::write.
-    /// \return number of removed executions
-    Result<std::uint64_t> retain(const Retention& keep, UtcTime now);
     /// Approximate size of executions and their paths [byte].
     Result<std::uint64_t> bytes();
     /// Writes a copy of all records, as they are at one moment, into a new SQLite file.
