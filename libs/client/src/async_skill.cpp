@@ -45,11 +45,9 @@ struct AsyncSkill::Impl {
 
 namespace {
 
-skill::Fields optionalFieldsOf(const std::vector<FieldNode>& nodes) {
-    std::vector<skill::Field> fields;
-    for (const auto& node : nodes) {
-        fields.push_back(node.field);
-        fields.back().optional = true;
+skill::Fields allOptional(std::vector<skill::Field> fields) {
+    for (auto& field : fields) {
+        field.optional = true;
     }
     return fields;
 }
@@ -61,8 +59,8 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
     auto impl = std::make_unique<Impl>(Impl{client, std::move(address), std::move(nodes)});
     impl->description = {.name = impl->address.name,
                          .type = impl->address.type_name,
-                         .parameters = optionalFieldsOf(impl->nodes.parameters),
-                         .results = optionalFieldsOf(impl->nodes.results),
+                         .parameters = allOptional(fieldsOf(impl->nodes.parameters)),
+                         .results = allOptional(fieldsOf(impl->nodes.results)),
                          .suspendable = impl->nodes.suspendable};
     if (auto stopping = watchStopping(client, impl->address.node, std::move(watch.on_stopping))) {
         impl->stopping = std::move(*stopping);
@@ -71,13 +69,7 @@ Answer<AsyncSkill> AsyncSkill::open(opcua::Client& client, SkillAddress address,
     }
     impl->log->watch(
         {std::move(watch.on_transition), std::move(watch.on_missed), std::move(watch.on_ended)});
-    auto subscription = client.subscribeEvents(
-        impl->address.node, transitionFilter(client.namespaceIndex(kDeviceNamespace).value_or(1)),
-        [log = impl->log](const opcua::EventNotice& notice) { log->add(notice); });
-    if (!subscription) {
-        return tl::unexpected(subscription.error());
-    }
-    impl->subscription = std::move(*subscription);
+    METIER_ASSIGN(impl->subscription, watchTransitions(client, impl->address.node, impl->log));
     return AsyncSkill(std::move(impl));
 }
 
@@ -95,9 +87,7 @@ const skill::SkillDescription& AsyncSkill::description() const noexcept {
 }
 
 bool AsyncSkill::knowsExecutions() const noexcept {
-    const auto start_with = static_cast<std::size_t>(skill::Method::start_with);
-    return impl_->nodes.methods.at(start_with) != opcua::NodeId{} &&
-           impl_->nodes.get_execution != opcua::NodeId{};
+    return !impl_->nodes.start_with.isNull() && !impl_->nodes.get_execution.isNull();
 }
 
 Answer<AsyncSkill::Now> AsyncSkill::now() const {
@@ -115,9 +105,8 @@ Answer<AsyncSkill::Now> AsyncSkill::now() const {
 }
 
 Answer<> AsyncSkill::startWith(const skill::StartRequest& request, Done<std::string> done) const {
-    const auto method = static_cast<std::size_t>(skill::Method::start_with);
     return impl_->send<std::string>(
-        impl_->nodes.methods.at(method), "StartWith", startWithInputs(request, impl_->nodes),
+        impl_->nodes.start_with, "StartWith", startWithInputs(request, impl_->nodes),
         std::move(done), [](const std::vector<opcua::Value>& outputs) -> Answer<std::string> {
             return outputs.empty() ? std::string() : outputs.front().as<std::string>().value_or("");
         });

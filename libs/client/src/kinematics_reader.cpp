@@ -15,7 +15,6 @@ namespace {
 
 using opcua::Answer;
 using opcua::Client;
-using opcua::Failure;
 using opcua::NodeId;
 using opcua_skill::KinematicsData;
 
@@ -30,8 +29,15 @@ Answer<Children> childrenByName(Questions& questions, const NodeId& node) {
     return children;
 }
 
-tl::unexpected<Failure> failure(Errc code, std::string text) {
-    return tl::unexpected(Failure{{code, std::move(text)}, opcua::statusFrom(code), {}});
+/// The value in that type. Errors: type_mismatch, with the name.
+template <typename T>
+Answer<T> typed(const opcua::Value& value, std::string_view name) {
+    auto held = value.as<T>();
+    if (!held) {
+        return tl::unexpected(
+            failureOf(held.error().code, fmt::format("{}: {}", name, held.error().message)));
+    }
+    return std::move(*held);
 }
 
 /// Reads values by name below one object; the first problem is kept.
@@ -42,38 +48,30 @@ public:
 
     template <typename T>
     void read(std::string_view name, T& target) {
-        const auto found = children_.find(name);
-        if (problem_) {
-            return;
+        if (done_) {
+            done_ = tryRead(name, target);
         }
-        if (found == children_.end()) {
-            problem_ = {{Errc::not_found, fmt::format("Kinematics has no {}", name)},
-                        opcua::status::kBadNoMatch,
-                        {}};
-            return;
-        }
-        auto value = questions_.read(found->second);
-        if (!value) {
-            problem_ = value.error();
-            return;
-        }
-        auto typed = value->template as<T>();
-        if (!typed) {
-            problem_ = {{Errc::type_mismatch,
-                         fmt::format("Kinematics/{}: {}", name, typed.error().message)},
-                        opcua::status::kBadTypeMismatch,
-                        {}};
-            return;
-        }
-        target = std::move(*typed);
     }
 
-    const std::optional<Failure>& problem() const { return problem_; }
+    const Answer<>& done() const { return done_; }
 
 private:
+    template <typename T>
+    Answer<> tryRead(std::string_view name, T& target) {
+        const auto found = children_.find(name);
+        if (found == children_.end()) {
+            return tl::unexpected(failureOf(Errc::not_found,
+                                            fmt::format("Kinematics has no {}", name),
+                                            opcua::status::kBadNoMatch));
+        }
+        METIER_ASSIGN(const auto value, questions_.read(found->second));
+        METIER_ASSIGN(target, typed<T>(value, fmt::format("Kinematics/{}", name)));
+        return {};
+    }
+
     Questions& questions_;
     Children children_;
-    std::optional<Failure> problem_;
+    Answer<> done_;
 };
 
 Answer<> checkLengths(const KinematicsData& data) {
@@ -87,8 +85,9 @@ Answer<> checkLengths(const KinematicsData& data) {
     if (!same || axes == 0 || data.max_cartesian_velocity.size() != kAlongAndAbout ||
         data.max_cartesian_acceleration.size() != kAlongAndAbout ||
         data.max_cartesian_jerk.size() != kAlongAndAbout) {
-        return failure(Errc::invalid_argument,
-                       fmt::format("Kinematics: lists do not fit an arm of {} axes", axes));
+        return tl::unexpected(
+            failureOf(Errc::invalid_argument,
+                      fmt::format("Kinematics: lists do not fit an arm of {} axes", axes)));
     }
     return {};
 }
@@ -100,26 +99,25 @@ Answer<KinematicsNodes> nodesOf(Questions& questions, const Children::value_type
     nodes.device_name = device.first;
     nodes.device = device.second;
     nodes.object = object;
-    const std::array<std::pair<std::string_view, NodeId*>, 3> wanted{
+    for (const auto* name : {"ActualJointPosition", "SafetyState", "MissedCycles"}) {
+        if (!children.contains(name)) {
+            return tl::unexpected(
+                failureOf(Errc::not_found, fmt::format("Kinematics has no {}", name)));
+        }
+    }
+    const std::array<std::pair<std::string_view, NodeId*>, 8> known{
         {{"ActualJointPosition", &nodes.actual_joint_position},
          {"SafetyState", &nodes.safety_state},
-         {"MissedCycles", &nodes.missed_cycles}}};
-    for (const auto& [name, node] : wanted) {
-        const auto found = children.find(name);
-        if (found == children.end()) {
-            return failure(Errc::not_found, fmt::format("Kinematics has no {}", name));
-        }
-        *node = found->second;
-    }
-    const std::array<std::pair<std::string_view, NodeId*>, 5> optional{
-        {{"CommandedJointPosition", &nodes.commanded_joint_position},
+         {"MissedCycles", &nodes.missed_cycles},
+         {"CommandedJointPosition", &nodes.commanded_joint_position},
          {"Standstill", &nodes.standstill},
          {"CycleJitter", &nodes.cycle_jitter},
          {"FlangeForce", &nodes.flange_force},
          {"FlangeTorque", &nodes.flange_torque}}};
-    for (const auto& [name, node] : optional) {
-        const auto found = children.find(name);
-        *node = found == children.end() ? NodeId() : found->second;
+    for (const auto& [name, node] : known) {
+        if (const auto found = children.find(name); found != children.end()) {
+            *node = found->second;
+        }
     }
     return nodes;
 }
@@ -168,7 +166,8 @@ Answer<KinematicsNodes> findKinematics(Client& client, const SkillAddress& skill
             return std::move(*found);
         }
     }
-    return failure(Errc::not_found, skill.name + " belongs to no arm that publishes Kinematics");
+    return tl::unexpected(
+        failureOf(Errc::not_found, skill.name + " belongs to no arm that publishes Kinematics"));
 }
 
 Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nodes) {
@@ -190,31 +189,20 @@ Answer<KinematicsData> readKinematics(Client& client, const KinematicsNodes& nod
     reader.read("MaxCartesianJerk", data.max_cartesian_jerk);
     reader.read("CycleTime", data.cycle_time);
     reader.read("ToolFrames", data.tool_frames);
-    if (reader.problem()) {
-        return tl::unexpected(*reader.problem());
-    }
+    METIER_TRY(reader.done());
     METIER_TRY(checkLengths(data));
-    METIER_ASSIGN(const auto payload, readPayload(questions, nodes.device));
-    data.payload = payload;
+    METIER_ASSIGN(data.payload, readPayload(questions, nodes.device));
     return data;
 }
 
 Answer<std::vector<double>> readJointPosition(Client& client, const KinematicsNodes& nodes) {
     METIER_ASSIGN(const auto value, client.read(nodes.actual_joint_position));
-    auto joints = value.as<std::vector<double>>();
-    if (!joints) {
-        return failure(joints.error().code, "ActualJointPosition: " + joints.error().message);
-    }
-    return std::move(*joints);
+    return typed<std::vector<double>>(value, "ActualJointPosition");
 }
 
 Answer<std::uint64_t> readMissedCycles(Client& client, const KinematicsNodes& nodes) {
     METIER_ASSIGN(const auto value, client.read(nodes.missed_cycles));
-    const auto missed = value.as<std::uint64_t>();
-    if (!missed) {
-        return failure(missed.error().code, "MissedCycles: " + missed.error().message);
-    }
-    return *missed;
+    return typed<std::uint64_t>(value, "MissedCycles");
 }
 
 Answer<opcua::Subscription> subscribeJointPosition(

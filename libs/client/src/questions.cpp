@@ -10,10 +10,8 @@ Answer<> Questions::next() {
     if (left_-- > 0 && std::chrono::steady_clock::now() < end_) {
         return {};
     }
-    return tl::unexpected(opcua::Failure{
-        {Errc::timeout, "the server goes on telling of more than anybody would look at"},
-        opcua::status::kBadTimeout,
-        {}});
+    return tl::unexpected(
+        failureOf(Errc::timeout, "the server goes on telling of more than anybody would look at"));
 }
 
 Answer<std::vector<opcua::ReferenceDescription>> Questions::browse(opcua::BrowseQuery query) {

@@ -1,12 +1,22 @@
 #pragma once
 
 #include <chrono>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "metier/base/clock.hpp"
 #include "metier/opcua/client.hpp"
 
 namespace metier::client {
+
+/// A failure that is found on this side.
+inline opcua::Failure failureOf(Errc code, std::string text, opcua::StatusCode status) {
+    return {{code, std::move(text)}, status, {}};
+}
+inline opcua::Failure failureOf(Errc code, std::string text) {
+    return failureOf(code, std::move(text), opcua::statusFrom(code));
+}
 
 /// Requests to a server in which the answers decide about the next requests. A hostile server could
 /// give more to ask for without end, or answer slowly: after 30 s, or 50,000 requests, everything

@@ -120,10 +120,6 @@ std::vector<std::string> namesOf(const std::vector<SkillAddress>& skills) {
     return names;
 }
 
-tl::unexpected<opcua::Failure> refusal(Errc code, std::string text) {
-    return tl::unexpected(opcua::Failure{{code, std::move(text)}, opcua::status::kBadNoMatch, {}});
-}
-
 }  // namespace
 
 const SkillAddress::Above* SkillAddress::controller() const {
@@ -167,13 +163,17 @@ Answer<SkillAddress> findSkill(Client& client, std::string_view name) {
     std::copy_if(skills.begin(), skills.end(), std::back_inserter(matching),
                  [&](const auto& skill) { return matches(skill, name); });
     if (matching.empty()) {
-        return refusal(Errc::not_found, fmt::format("no skill '{}'; there are: {}", name,
-                                                    fmt::join(namesOf(skills), ", ")));
+        return tl::unexpected(failureOf(
+            Errc::not_found,
+            fmt::format("no skill '{}'; there are: {}", name, fmt::join(namesOf(skills), ", ")),
+            opcua::status::kBadNoMatch));
     }
     if (matching.size() > 1) {
-        return refusal(Errc::invalid_argument,
-                       fmt::format("{} controllers have a skill '{}'; say Controller/{}",
-                                   matching.size(), name, name));
+        return tl::unexpected(
+            failureOf(Errc::invalid_argument,
+                      fmt::format("{} controllers have a skill '{}'; say Controller/{}",
+                                  matching.size(), name, name),
+                      opcua::status::kBadNoMatch));
     }
     return std::move(matching.front());
 }

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <array>
 #include <utility>
+#include <variant>
 
 #include "method_values.hpp"
 #include "metier/opcua/text.hpp"
 #include "metier/opcua_skill/values.hpp"
+#include "questions.hpp"
 #include "skill_handle_impl.hpp"
 
 namespace metier::client {
@@ -25,56 +27,14 @@ using skill::TransitionEvent;
 constexpr auto kResetTime = std::chrono::seconds(1);
 constexpr auto kResetPause = std::chrono::milliseconds(10);
 
-std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes) {
-    std::vector<skill::Field> fields;
-    for (const auto& node : nodes) {
-        fields.push_back(node.field);
-    }
-    return fields;
-}
-
 /// As OPC UA calls it: `Double`, `Double[]`, `3DFrame`.
 std::string typeNameOf(skill::ValueType type) {
-    switch (type) {
-        case skill::ValueType::null:
-            return "Null";
-        case skill::ValueType::boolean:
-            return "Boolean";
-        case skill::ValueType::int32:
-            return "Int32";
-        case skill::ValueType::uint32:
-            return "UInt32";
-        case skill::ValueType::uint64:
-            return "UInt64";
-        case skill::ValueType::number:
-            return "Double";
-        case skill::ValueType::text:
-            return "String";
-        case skill::ValueType::frame:
-            return "3DFrame";
-        case skill::ValueType::vector3:
-            return "3DVector";
-        case skill::ValueType::numbers:
-            return "Double[]";
-        case skill::ValueType::texts:
-            return "String[]";
-        case skill::ValueType::ranges:
-            return "Range[]";
-        case skill::ValueType::frames:
-            return "3DFrame[]";
-    }
-    return "";
-}
-
-const FieldNode* findField(const std::vector<FieldNode>& nodes, std::string_view name) {
-    const auto found = std::find_if(nodes.begin(), nodes.end(),
-                                    [&](const auto& node) { return node.field.name == name; });
-    return found == nodes.end() ? nullptr : &*found;
-}
-
-/// A server that does not yet list the namespace has no extra event fields: any index will do.
-std::uint16_t deviceNamespace(opcua::Client& client) {
-    return client.namespaceIndex(kDeviceNamespace).value_or(1);
+    // In the order of ValueType.
+    static constexpr std::array kNames{"Null",     "Boolean", "Int32",    "UInt32",   "UInt64",
+                                       "Double",   "String",  "3DFrame",  "3DVector", "Double[]",
+                                       "String[]", "Range[]", "3DFrame[]"};
+    static_assert(kNames.size() == std::variant_size_v<skill::Value>);
+    return kNames[static_cast<std::size_t>(type)];
 }
 
 }  // namespace
@@ -89,13 +49,7 @@ Answer<> SkillHandle::Impl::readNodes() {
 
 Answer<> SkillHandle::Impl::subscribe() {
     subscription = {};
-    auto subscribed =
-        client.subscribeEvents(address.node, transitionFilter(deviceNamespace(client)),
-                               [log = log](const opcua::EventNotice& notice) { log->add(notice); });
-    if (!subscribed) {
-        return tl::unexpected(subscribed.error());
-    }
-    subscription = std::move(*subscribed);
+    METIER_ASSIGN(subscription, watchTransitions(client, address.node, log));
     return {};
 }
 
@@ -146,18 +100,19 @@ std::string SkillHandle::Impl::reasonText() const {
 }
 
 Answer<const FieldNode*> SkillHandle::Impl::parameter(std::string_view name) const {
-    if (const auto* node = findField(nodes.parameters, name)) {
-        return node;
+    for (const auto& node : nodes.parameters) {
+        if (node.field.name == name) {
+            return &node;
+        }
     }
     std::vector<std::string> known;
     for (const auto& field : parameters) {
         known.push_back(field.name);
     }
-    return tl::unexpected(
-        Failure{{Errc::not_found, fmt::format("{} has no parameter '{}'; it has: {}", address.name,
-                                              name, fmt::join(known, ", "))},
-                opcua::status::kBadNoMatch,
-                {}});
+    return tl::unexpected(failureOf(Errc::not_found,
+                                    fmt::format("{} has no parameter '{}'; it has: {}",
+                                                address.name, name, fmt::join(known, ", ")),
+                                    opcua::status::kBadNoMatch));
 }
 
 Answer<SkillHandle> SkillHandle::open(opcua::Client& client, SkillAddress address) {
@@ -204,13 +159,14 @@ Answer<> SkillHandle::set(std::string_view name, const skill::Value& value) {
     if (!written) {
         return tl::unexpected(impl_->refused(written.error(), name));
     }
-    if (written->front() == opcua::status::kBadTypeMismatch) {
-        return tl::unexpected(
-            impl_->wrongType(opcua::failed(written->front(), "").value(), *node, value));
+    const auto status = written->front();
+    if (!status.isBad()) {
+        return {};
     }
-    return written->front().isBad()
-               ? tl::unexpected(impl_->refused(opcua::failed(written->front(), "").value(), name))
-               : Answer<>();
+    const auto refusal = opcua::failed(status, "").value();
+    return tl::unexpected(status == opcua::status::kBadTypeMismatch
+                              ? impl_->wrongType(refusal, *node, value)
+                              : impl_->refused(refusal, name));
 }
 
 Answer<> SkillHandle::setAsync(std::string_view name, const skill::Value& value, UtcTime meant_for,
@@ -236,10 +192,9 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
                                                                 std::vector<opcua::Value> inputs) {
     METIER_TRY(refresh());
     if (nodes.*method == opcua::NodeId{}) {
-        return tl::unexpected(
-            Failure{{Errc::not_supported, fmt::format("{} has no {}", address.name, name)},
-                    opcua::status::kBadMethodInvalid,
-                    {}});
+        return tl::unexpected(failureOf(Errc::not_supported,
+                                        fmt::format("{} has no {}", address.name, name),
+                                        opcua::status::kBadMethodInvalid));
     }
     auto result =
         client.call(opcua::MethodCall{address.node, nodes.*method, std::move(inputs), boot});
@@ -250,14 +205,11 @@ Answer<std::vector<opcua::Value>> SkillHandle::Impl::callMetier(opcua::NodeId Sk
 }
 
 Answer<std::string> SkillHandle::startWith(const skill::StartRequest& request) {
-    const auto outputs = impl_->begin([&] {
+    METIER_ASSIGN(const auto outputs, impl_->begin([&] {
         return impl_->callMetier(&SkillNodes::start_with, "StartWith",
                                  startWithInputs(request, impl_->nodes));
-    });
-    if (!outputs) {
-        return tl::unexpected(outputs.error());
-    }
-    return outputs->empty() ? std::string() : outputs->front().as<std::string>().value_or("");
+    }));
+    return outputs.empty() ? std::string() : outputs.front().as<std::string>().value_or("");
 }
 
 Answer<skill::CheckReport> SkillHandle::check(const skill::ValueMap& parameters) {
@@ -276,18 +228,6 @@ Answer<skill::ExecutionRecord> SkillHandle::Impl::execution(const std::string& i
     return executionFrom(outputs, id, results, address.name);
 }
 
-Answer<> SkillHandle::start() {
-    return call(Method::start);
-}
-Answer<> SkillHandle::suspend() {
-    return call(Method::suspend);
-}
-Answer<> SkillHandle::resume() {
-    return call(Method::resume);
-}
-Answer<> SkillHandle::halt() {
-    return call(Method::halt);
-}
 Answer<> SkillHandle::reset() {
     const auto deadline = std::chrono::steady_clock::now() + kResetTime;
     for (;;) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "metier/base/random.hpp"
+#include "questions.hpp"
 #include "skill_handle_impl.hpp"
 
 namespace metier::client {
@@ -41,10 +42,6 @@ Errc errcFor(skill::Reason reason) {
         default:
             return Errc::device_fault;
     }
-}
-
-Failure failureOf(Errc code, std::string message) {
-    return {{code, std::move(message)}, opcua::statusFrom(code), {}};
 }
 
 Failure haltedFailure(const std::string& skill, skill::Reason reason, const std::string& text) {

@@ -160,6 +160,14 @@ Answer<> findProgramNodes(Client& client, const SkillAddress& address,
 
 }  // namespace
 
+std::vector<Field> fieldsOf(const std::vector<FieldNode>& nodes) {
+    std::vector<Field> fields;
+    for (const auto& node : nodes) {
+        fields.push_back(node.field);
+    }
+    return fields;
+}
+
 Answer<SkillNodes> readSkillNodes(Client& client, const SkillAddress& address) {
     Questions questions(client);
     METIER_ASSIGN(const auto children, childrenOf(questions, address.node));

@@ -36,6 +36,8 @@ struct SkillNodes {
     std::vector<FieldNode> results;
 };
 
+std::vector<skill::Field> fieldsOf(const std::vector<FieldNode>& nodes);
+
 /// Finds them. Errors: not_found if the object lacks what every Program has.
 opcua::Answer<SkillNodes> readSkillNodes(opcua::Client& client, const SkillAddress& address);
 

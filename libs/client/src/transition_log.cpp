@@ -14,8 +14,8 @@ using skill::TransitionEvent;
 
 constexpr std::size_t kKept = 1000;
 
-/// The fields of transitionFilter(), in its order.
-enum EventField : std::size_t {
+/// The fields that watchTransitions() asks for, in its order.
+enum Field : std::size_t {
     kNumber,
     kTime,
     kMessage,
@@ -76,16 +76,23 @@ std::optional<skill::StoppingEvent> stoppingFrom(const opcua::EventNotice& notic
 
 }  // namespace
 
-opcua::EventFilter transitionFilter(std::uint16_t device_namespace) {
-    return {.fields = {{{0, "Transition"}, {0, "Number"}},
-                       {{0, "Time"}},
-                       {{0, "Message"}},
-                       {{0, "Severity"}},
-                       {{0, "IntermediateResult"}},
-                       {{device_namespace, "ExecutionId"}},
-                       {{device_namespace, "Reason"}},
-                       {{device_namespace, "ReasonText"}}},
-            .of_type = opcua::ids::kProgramTransitionEventType};
+opcua::Answer<opcua::Subscription> watchTransitions(opcua::Client& client,
+                                                    const opcua::NodeId& skill,
+                                                    std::shared_ptr<TransitionLog> log) {
+    // A server that does not yet list the namespace has no extra event fields: any index will do.
+    const auto device = client.namespaceIndex("https://fortiss.org/UA/Device/").value_or(1);
+    const opcua::EventFilter filter{.fields = {{{0, "Transition"}, {0, "Number"}},
+                                               {{0, "Time"}},
+                                               {{0, "Message"}},
+                                               {{0, "Severity"}},
+                                               {{0, "IntermediateResult"}},
+                                               {{device, "ExecutionId"}},
+                                               {{device, "Reason"}},
+                                               {{device, "ReasonText"}}},
+                                    .of_type = opcua::ids::kProgramTransitionEventType};
+    return client.subscribeEvents(
+        skill, filter,
+        [log = std::move(log)](const opcua::EventNotice& notice) { log->add(notice); });
 }
 
 opcua::Answer<opcua::Subscription> watchStopping(

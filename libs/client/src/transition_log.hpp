@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -69,8 +70,10 @@ opcua::Answer<opcua::Subscription> watchStopping(
     opcua::Client& client, const opcua::NodeId& skill,
     std::function<void(const skill::StoppingEvent&)> on_stopping);
 
-/// Filter for the fields of events that TransitionLog needs.
-/// \param device_namespace index of the Device namespace on this server
-opcua::EventFilter transitionFilter(std::uint16_t device_namespace);
+/// Has the transitions of a skill added to the log.
+/// Errors: the server's.
+opcua::Answer<opcua::Subscription> watchTransitions(opcua::Client& client,
+                                                    const opcua::NodeId& skill,
+                                                    std::shared_ptr<TransitionLog> log);
 
 }  // namespace metier::client

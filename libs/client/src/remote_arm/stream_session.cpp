@@ -31,12 +31,6 @@ Result<client::SkillAddress> findStream(opcua::Client& client) {
     return fail(Errc::not_found, "the server has no PositionStreamSkill");
 }
 
-bool hasParameter(const client::SkillHandle& skill, std::string_view name) {
-    const auto& fields = skill.parameters();
-    return std::any_of(fields.begin(), fields.end(),
-                       [&](const skill::Field& field) { return field.name == name; });
-}
-
 SafetyState safetyFrom(opcua_skill::SafetyStateKind kind) {
     using Kind = opcua_skill::SafetyStateKind;
     switch (kind) {
@@ -70,21 +64,18 @@ Result<std::unique_ptr<StreamSession>> StreamSession::open(const RemoteArmOption
     options.connect_timeout = kConnectTimeout;
     options.publishing_interval = kPublishingInterval;
     options.security = remote.security;
-    auto client = opcua::Client::connect(remote.url, options);
-    if (!client) {
-        return fail(client.error());
-    }
-    METIER_ASSIGN(auto address, findStream(**client));
-    METIER_ASSIGN(auto nodes, client::findKinematics(**client, address));
-    METIER_ASSIGN(auto kinematics, client::readKinematics(**client, nodes));
+    METIER_ASSIGN(auto client, opcua::Client::connect(remote.url, options));
+    METIER_ASSIGN(auto address, findStream(*client));
+    METIER_ASSIGN(auto nodes, client::findKinematics(*client, address));
+    METIER_ASSIGN(auto kinematics, client::readKinematics(*client, nodes));
     if (kinematics.axisCount() > device::kMaxAxes || kinematics.cycle_time <= 0) {
         return fail(Errc::not_supported,
                     fmt::format("an arm of {} axes, at most {}; cycle {} s", kinematics.axisCount(),
                                 device::kMaxAxes, kinematics.cycle_time));
     }
-    METIER_ASSIGN(auto stream, client::SkillHandle::open(**client, std::move(address)));
+    METIER_ASSIGN(auto stream, client::SkillHandle::open(*client, std::move(address)));
     std::unique_ptr<StreamSession> session(
-        new StreamSession(std::move(*client), std::move(nodes), std::move(kinematics),
+        new StreamSession(std::move(client), std::move(nodes), std::move(kinematics),
                           std::move(stream), std::move(wake_up)));
     METIER_TRY(session->subscribe());
     return session;
@@ -97,7 +88,7 @@ StreamSession::StreamSession(std::unique_ptr<opcua::Client> client, client::Kine
       nodes_(std::move(nodes)),
       kinematics_(std::move(kinematics)),
       stream_(std::move(stream)),
-      takes_end_(hasParameter(stream_, kEndOfStream)) {
+      takes_end_(skill::findField(stream_.parameters(), kEndOfStream) != nullptr) {
     notes_->wake_up = std::move(wake_up);
 }
 
@@ -165,54 +156,45 @@ Result<void> StreamSession::subscribe() {
     subscribeTransitions();
     const auto interval = std::chrono::milliseconds(
         static_cast<std::int64_t>(std::max(kinematics_.cycle_time * 1000.0, 5.0)));
-    auto joints = client::subscribeJointPosition(
-        *client_, nodes_, interval,
-        [notes = notes_, axes = kinematics_.axisCount()](const std::vector<double>& values) {
-            if (values.size() == axes) {
-                notes->notePosition(device::JointArray(values));
-            }
-        });
-    if (!joints) {
-        return fail(joints.error());
+    METIER_ASSIGN(joints_, client::subscribeJointPosition(
+                               *client_, nodes_, interval,
+                               [notes = notes_,
+                                axes = kinematics_.axisCount()](const std::vector<double>& values) {
+                                   if (values.size() == axes) {
+                                       notes->notePosition(device::JointArray(values));
+                                   }
+                               }));
+    METIER_ASSIGN(const auto now, client::readJointPosition(*client_, nodes_));
+    if (now.size() != kinematics_.axisCount()) {
+        return fail(Errc::type_mismatch, "ActualJointPosition has another length");
     }
-    joints_ = std::move(*joints);
-    const auto now = client::readJointPosition(*client_, nodes_);
-    if (!now || now->size() != kinematics_.axisCount()) {
-        return fail(now ? Error{Errc::type_mismatch, "ActualJointPosition has another length"}
-                        : static_cast<const Error&>(now.error()));
-    }
-    notes_->notePosition(device::JointArray(*now));
+    notes_->notePosition(device::JointArray(now));
     return subscribeState();
 }
 
 Result<void> StreamSession::subscribeState() {
-    auto safety = client_->subscribeData(
-        nodes_.safety_state, {.sampling_interval = kSafetyInterval},
-        [notes = notes_](const opcua::DataValue& value) {
-            if (value.value.isEmpty()) {  // the connection or the subscription has ended
-                notes->noteBroken(
-                    fmt::format("the safety state is not told any more ({})", value.status.name()));
-                return;
-            }
-            const auto kind = value.value.as<std::int32_t>();
-            notes->noteSafety(kind ? safetyFrom(opcua_skill::SafetyStateKind(*kind))
-                                   : SafetyState::disconnected);
-        });
-    if (!safety) {
-        return fail(safety.error());
-    }
-    auto missed = client_->subscribeData(
-        nodes_.missed_cycles, {.sampling_interval = kSafetyInterval},
-        [notes = notes_](const opcua::DataValue& value) {
-            if (const auto cycles = value.value.as<std::uint64_t>()) {
-                notes->note([&](Observed& seen) { seen.missed_cycles = *cycles; });
-            }
-        });
-    if (!missed) {
-        return fail(missed.error());
-    }
-    safety_ = std::move(*safety);
-    missed_cycles_ = std::move(*missed);
+    METIER_ASSIGN(
+        safety_,
+        client_->subscribeData(
+            nodes_.safety_state, {.sampling_interval = kSafetyInterval},
+            [notes = notes_](const opcua::DataValue& value) {
+                if (value.value.isEmpty()) {  // the connection or the subscription has ended
+                    notes->noteBroken(fmt::format("the safety state is not told any more ({})",
+                                                  value.status.name()));
+                    return;
+                }
+                const auto kind = value.value.as<std::int32_t>();
+                notes->noteSafety(kind ? safetyFrom(opcua_skill::SafetyStateKind(*kind))
+                                       : SafetyState::disconnected);
+            }));
+    METIER_ASSIGN(missed_cycles_,
+                  client_->subscribeData(
+                      nodes_.missed_cycles, {.sampling_interval = kSafetyInterval},
+                      [notes = notes_](const opcua::DataValue& value) {
+                          if (const auto cycles = value.value.as<std::uint64_t>()) {
+                              notes->note([&](Observed& seen) { seen.missed_cycles = *cycles; });
+                          }
+                      }));
     return subscribeStandstill();
 }
 
@@ -220,16 +202,14 @@ Result<void> StreamSession::subscribeStandstill() {
     if (nodes_.standstill.isNull()) {
         return {};
     }
-    auto standstill = client_->subscribeData(
-        nodes_.standstill, {.sampling_interval = kPublishingInterval},
-        [notes = notes_](const opcua::DataValue& value) {
-            const auto stands = value.value.as<bool>();
-            notes->note([&](Observed& seen) { seen.standstill = stands.value_or(false); });
-        });
-    if (!standstill) {
-        return fail(standstill.error());
-    }
-    standstill_ = std::move(*standstill);
+    METIER_ASSIGN(standstill_, client_->subscribeData(
+                                   nodes_.standstill, {.sampling_interval = kPublishingInterval},
+                                   [notes = notes_](const opcua::DataValue& value) {
+                                       const auto stands = value.value.as<bool>();
+                                       notes->note([&](Observed& seen) {
+                                           seen.standstill = stands.value_or(false);
+                                       });
+                                   }));
     return {};
 }
 
@@ -244,11 +224,11 @@ Result<void> StreamSession::startStream(const skill::ParentExecution& parent) {
         seen.refused.clear();
     });
     if (!parent.id.empty() && stream_.takesParents()) {
-        const auto started = stream_.startWith({.parent = parent});
-        return started ? Result<void>() : fail(started.error());
+        METIER_TRY(stream_.startWith({.parent = parent}));
+    } else {
+        METIER_TRY(stream_.start());
     }
-    const auto started = stream_.start();
-    return started ? Result<void>() : fail(started.error());
+    return {};
 }
 
 void StreamSession::send(const device::JointArray& set_point, UtcTime meant_for) {
@@ -270,21 +250,6 @@ void StreamSession::write(std::string_view parameter, const skill::Value& value,
     if (!sent) {
         notes_->noteBroken(sent.error().message);
     }
-}
-
-Result<skill::State> StreamSession::streamState() {
-    METIER_ASSIGN(auto state, stream_.state());
-    return state;
-}
-
-Result<void> StreamSession::haltStream() {
-    METIER_TRY(stream_.halt());
-    return {};
-}
-
-Result<void> StreamSession::resetStream() {
-    METIER_TRY(stream_.reset());
-    return {};
 }
 
 }  // namespace metier::client

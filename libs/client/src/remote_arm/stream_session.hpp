@@ -54,9 +54,7 @@ public:
     void send(const device::JointArray& set_point, UtcTime meant_for);
     /// Writes EndOfStream, without waiting. False if the server ends a stream only by silence.
     bool endStream();
-    Result<skill::State> streamState();
-    Result<void> haltStream();
-    Result<void> resetStream();
+    client::SkillHandle& stream() noexcept { return stream_; }
 
 private:
     StreamSession(std::unique_ptr<opcua::Client> client, client::KinematicsNodes nodes,

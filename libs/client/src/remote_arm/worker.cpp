@@ -46,8 +46,16 @@ device::ArmInfo infoOf(const StreamSession& session) {
 
 }  // namespace
 
-RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake_up,
-                          std::unique_ptr<StreamSession> session)
+Result<std::unique_ptr<RemoteArm>> RemoteArm::connect(RemoteArmOptions options) {
+    // Shared by the thread that waits and the sessions that ring, also late.
+    auto wake_up = std::make_shared<WakeUp>();
+    METIER_ASSIGN(auto session, StreamSession::open(options, wake_up));
+    return std::make_unique<RemoteArmWorker>(std::move(options), std::move(wake_up),
+                                             std::move(session));
+}
+
+RemoteArmWorker::RemoteArmWorker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake_up,
+                                 std::unique_ptr<StreamSession> session)
     : options_(std::move(options)),
       wake_up_(std::move(wake_up)),
       session_(std::move(session)),
@@ -58,18 +66,18 @@ RemoteArm::Worker::Worker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-RemoteArm::Worker::~Worker() {
+RemoteArmWorker::~RemoteArmWorker() {
     thread_.request_stop();
     wake_up_->notify();
     thread_ = {};
 }
 
-std::optional<RemoteArm::Absence> RemoteArm::Worker::absence() const {
+std::optional<RemoteArm::Absence> RemoteArmWorker::absence() const {
     const std::lock_guard lock(mutex_);
     return absence_;
 }
 
-Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> source) {
+Result<void> RemoteArmWorker::attach(std::shared_ptr<device::SetPointSource> source) {
     {
         const std::lock_guard lock(mutex_);
         if (const auto now = safety(); now.state != SafetyState::normal) {
@@ -86,18 +94,18 @@ Result<void> RemoteArm::Worker::attach(std::shared_ptr<device::SetPointSource> s
     return {};
 }
 
-void RemoteArm::Worker::nameOwner(std::string application_uri) {
+void RemoteArmWorker::nameOwner(std::string application_uri) {
     const std::lock_guard lock(mutex_);
     owner_ = std::move(application_uri);
 }
 
-skill::ParentExecution RemoteArm::Worker::parent() const {
+skill::ParentExecution RemoteArmWorker::parent() const {
     const std::lock_guard lock(mutex_);
     return owner_.empty() ? skill::ParentExecution{}
                           : skill::ParentExecution{std::string(source_->execution()), owner_};
 }
 
-void RemoteArm::Worker::stop() noexcept {
+void RemoteArmWorker::stop() noexcept {
     {
         const std::lock_guard lock(mutex_);
         stop_asked_ = taken_;
@@ -105,7 +113,7 @@ void RemoteArm::Worker::stop() noexcept {
     wake_up_->notify();
 }
 
-Result<void> RemoteArm::Worker::resetFault() {
+Result<void> RemoteArmWorker::resetFault() {
     const auto now = safety();
     if (now.state == SafetyState::disconnected) {
         return fail(Errc::connection_lost, now.text);
@@ -121,7 +129,7 @@ Result<void> RemoteArm::Worker::resetFault() {
                                            info_.name, options_.url, now.text));
 }
 
-void RemoteArm::Worker::run(const std::stop_token& stop) {
+void RemoteArmWorker::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         if (session_ == nullptr) {
             reconnect(stop);
@@ -141,7 +149,7 @@ void RemoteArm::Worker::run(const std::stop_token& stop) {
     letGo(EndCause::disconnected);
 }
 
-void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
+void RemoteArmWorker::reconnect(const std::stop_token& stop) {
     auto session = StreamSession::open(options_, wake_up_);
     if (!session) {
         wake_up_->wait(stop, std::chrono::steady_clock::now() + options_.retry_interval);
@@ -161,7 +169,7 @@ void RemoteArm::Worker::reconnect(const std::stop_token& stop) {
     halted_by_stop_ = false;
 }
 
-std::string RemoteArm::Worker::changeIn(const StreamSession& session) const {
+std::string RemoteArmWorker::changeIn(const StreamSession& session) const {
     if (session.deviceName() != info_.name) {
         return fmt::format("{} has another arm now, {}", options_.url, session.deviceName());
     }
@@ -174,12 +182,12 @@ std::string RemoteArm::Worker::changeIn(const StreamSession& session) const {
                : fmt::format("{} tells of other kinematics or limits than before", options_.url);
 }
 
-void RemoteArm::Worker::noteAbsence(std::optional<Absence> absence) {
+void RemoteArmWorker::noteAbsence(std::optional<Absence> absence) {
     const std::lock_guard lock(mutex_);
     absence_ = absence;
 }
 
-void RemoteArm::Worker::observe() {
+void RemoteArmWorker::observe() {
     const auto seen = session_->observed();
     observeStream(seen);
     observeArm(seen);
@@ -201,7 +209,7 @@ void RemoteArm::Worker::observe() {
     answerReset();
 }
 
-void RemoteArm::Worker::observeStream(const StreamSession::Observed& seen) {
+void RemoteArmWorker::observeStream(const StreamSession::Observed& seen) {
     if (stream_ == Stream::none) {
         return;
     }
@@ -223,7 +231,7 @@ void RemoteArm::Worker::observeStream(const StreamSession::Observed& seen) {
     }
 }
 
-void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
+void RemoteArmWorker::observeArm(const StreamSession::Observed& seen) {
     const double time = std::chrono::duration<double>(seen.sampled - sampled_).count();
     if (state_.velocity.size() != seen.position.size()) {
         state_.velocity = device::JointArray(seen.position.size());
@@ -241,7 +249,7 @@ void RemoteArm::Worker::observeArm(const StreamSession::Observed& seen) {
     state_.missed_cycles = seen.missed_cycles;
 }
 
-bool RemoteArm::Worker::judgeStandstill(const StreamSession::Observed& seen, bool at_target) const {
+bool RemoteArmWorker::judgeStandstill(const StreamSession::Observed& seen, bool at_target) const {
     if (seen.standstill) {
         // While a stream runs, the news may be from before its begin until the arm is at its end.
         return *seen.standstill && (at_target || source_ == nullptr);
@@ -251,7 +259,7 @@ bool RemoteArm::Worker::judgeStandstill(const StreamSession::Observed& seen, boo
     return unmoved > kStandstill || (at_target && (settled_ || unmoved > kStandstillAtTarget));
 }
 
-Safety RemoteArm::Worker::judge(const StreamSession::Observed& seen) const {
+Safety RemoteArmWorker::judge(const StreamSession::Observed& seen) const {
     if (!seen.broken.empty()) {
         return {SafetyState::disconnected, fmt::format("{}: the connection to {} is lost: {}",
                                                        info_.name, options_.url, seen.broken)};
@@ -269,18 +277,18 @@ Safety RemoteArm::Worker::judge(const StreamSession::Observed& seen) const {
 }
 
 /// The state of a stopped robot may be seen before the transition that says why.
-bool RemoteArm::Worker::awaitsWords(const StreamSession::Observed& seen) const {
+bool RemoteArmWorker::awaitsWords(const StreamSession::Observed& seen) const {
     return seen.words.empty() && state_.safety == SafetyState::normal &&
            std::chrono::steady_clock::now() - seen.safety_since < kLongestSilence;
 }
 
-void RemoteArm::Worker::enter(Safety safety) {
+void RemoteArmWorker::enter(Safety safety) {
     state_.safety = safety.state;
     safety_.set(std::move(safety));
     safety_.dispatch();
 }
 
-void RemoteArm::Worker::publish() {
+void RemoteArmWorker::publish() {
     const bool moved_by_others =
         state_.commanded_position.size() != state_.position.size() ||
         device::largestDifference(state_.commanded_position, state_.position) > kMoved;
@@ -291,7 +299,7 @@ void RemoteArm::Worker::publish() {
     published_.write(state_);
 }
 
-void RemoteArm::Worker::takeRequests() {
+void RemoteArmWorker::takeRequests() {
     bool stop_asked = false;
     {
         const std::lock_guard lock(mutex_);
@@ -309,19 +317,20 @@ void RemoteArm::Worker::takeRequests() {
     }
 }
 
-void RemoteArm::Worker::beginReset() {
+void RemoteArmWorker::beginReset() {
     reset_deadline_ = std::chrono::steady_clock::now() + kResetWait;
     if (session_ == nullptr) {
         endReset(fail(Errc::connection_lost, safety().text));
         return;
     }
-    const auto state = session_->streamState();
+    auto& stream = session_->stream();
+    const auto state = stream.state();
     // A skill that is Ready while its arm is stopped resets the arm by way of Halted.
     const bool stopped = session_->observed().safety != SafetyState::normal;
     auto reset =
-        state && *state == skill::State::ready && stopped ? session_->haltStream() : Result<void>();
+        state && *state == skill::State::ready && stopped ? stream.halt() : opcua::Answer<>();
     if (reset && state && (*state == skill::State::halted || stopped)) {
-        reset = session_->resetStream();
+        reset = stream.reset();
     }
     if (!state || !reset) {
         endReset(fail(state ? reset.error() : state.error()));
@@ -333,7 +342,7 @@ void RemoteArm::Worker::beginReset() {
 
 /// Answers resetFault(). The server's safety state follows its Reset a moment later; the fault is
 /// only gone then.
-void RemoteArm::Worker::answerReset() {
+void RemoteArmWorker::answerReset() {
     if (!reset_deadline_) {
         return;
     }
@@ -344,15 +353,15 @@ void RemoteArm::Worker::answerReset() {
     }
 }
 
-void RemoteArm::Worker::endReset(Result<void> outcome) {
+void RemoteArmWorker::endReset(Result<void> outcome) {
     reset_deadline_.reset();
     resets_.answer(std::move(outcome));
 }
 
-void RemoteArm::Worker::stopNow() {
+void RemoteArmWorker::stopNow() {
     if (stream_ == Stream::running && session_ != nullptr) {
         halted_by_stop_ = true;
-        if (const auto halted = session_->haltStream(); !halted) {
+        if (const auto halted = session_->stream().halt(); !halted) {
             fault_ = halted.error().message;
         }
         enterEnding();
@@ -360,7 +369,7 @@ void RemoteArm::Worker::stopNow() {
     letGo(EndCause::stopped);
 }
 
-void RemoteArm::Worker::serveSource() {
+void RemoteArmWorker::serveSource() {
     if (source_ == nullptr || stream_ == Stream::running) {
         return;
     }
@@ -373,9 +382,9 @@ void RemoteArm::Worker::serveSource() {
     }
 }
 
-void RemoteArm::Worker::startStream() {
+void RemoteArmWorker::startStream() {
     if (std::exchange(halted_by_stop_, false)) {
-        if (const auto reset = session_->resetStream(); !reset) {
+        if (const auto reset = session_->stream().reset(); !reset) {
             fault_ = reset.error().message;
             return;
         }
@@ -390,7 +399,7 @@ void RemoteArm::Worker::startStream() {
     sent_ = 0;
 }
 
-SteadyTime RemoteArm::Worker::nextWake() const {
+SteadyTime RemoteArmWorker::nextWake() const {
     if (stream_ == Stream::running) {
         return stream_start_ + sent_ * info_.cycle;
     }
@@ -399,11 +408,11 @@ SteadyTime RemoteArm::Worker::nextWake() const {
     return std::chrono::steady_clock::now() + (busy ? 10ms : kIdlePause);
 }
 
-UtcTime RemoteArm::Worker::meantFor() const {
+UtcTime RemoteArmWorker::meantFor() const {
     return stream_start_utc_ + std::chrono::duration_cast<UtcTime::duration>(sent_ * info_.cycle);
 }
 
-void RemoteArm::Worker::cycle() {
+void RemoteArmWorker::cycle() {
     const auto now = std::chrono::steady_clock::now();
     const auto due = static_cast<std::uint64_t>((now - stream_start_) / info_.cycle) + 1;
     if (due > sent_ + kMostCyclesBehind) {
@@ -415,7 +424,7 @@ void RemoteArm::Worker::cycle() {
     }
 }
 
-void RemoteArm::Worker::nextSetPoint() {
+void RemoteArmWorker::nextSetPoint() {
     if (source_ == nullptr) {  // it was taken from the arm: the server ends the stream by itself
         enterEnding();
         return;
@@ -432,19 +441,19 @@ void RemoteArm::Worker::nextSetPoint() {
 }
 
 /// Reports the end to the source once the stream has ended: then the arm is free for the next user.
-void RemoteArm::Worker::finishStream() {
+void RemoteArmWorker::finishStream() {
     enterEnding();
     if (!session_->endStream()) {
         letGo(EndCause::done);  // the silence that ends it is longer than anybody would wait
     }
 }
 
-void RemoteArm::Worker::enterEnding() {
+void RemoteArmWorker::enterEnding() {
     stream_ = Stream::ending;
     ending_since_ = std::chrono::steady_clock::now();
 }
 
-void RemoteArm::Worker::letGo(EndCause cause) {
+void RemoteArmWorker::letGo(EndCause cause) {
     done_ = false;
     const auto source = std::exchange(source_, nullptr);
     if (source == nullptr) {

@@ -18,24 +18,24 @@
 namespace metier::client {
 
 /// The thread of a RemoteArm: keeps the connection, and is the cycle while something moves.
-class RemoteArm::Worker {
+class RemoteArmWorker final : public RemoteArm {
 public:
-    Worker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake_up,
-           std::unique_ptr<StreamSession> session);
-    ~Worker();
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
+    RemoteArmWorker(RemoteArmOptions options, std::shared_ptr<WakeUp> wake_up,
+                    std::unique_ptr<StreamSession> session);
+    ~RemoteArmWorker() override;
+    RemoteArmWorker(const RemoteArmWorker&) = delete;
+    RemoteArmWorker& operator=(const RemoteArmWorker&) = delete;
 
-    const opcua_skill::KinematicsData& kinematics() const noexcept { return kinematics_; }
-    const device::ArmInfo& info() const noexcept { return info_; }
-    device::ArmState state() const noexcept { return published_.read(); }
-    device::Safety safety() const { return safety_.safety(); }
-    std::optional<Absence> absence() const;
-    void nameOwner(std::string application_uri);
-    Result<void> attach(std::shared_ptr<device::SetPointSource> source);
-    void stop() noexcept;
-    Result<void> resetFault();
-    device::Registration onSafetyChange(device::Arm::SafetyCallback callback) {
+    const opcua_skill::KinematicsData& kinematics() const noexcept override { return kinematics_; }
+    const device::ArmInfo& info() const noexcept override { return info_; }
+    device::ArmState state() const noexcept override { return published_.read(); }
+    device::Safety safety() const override { return safety_.safety(); }
+    std::optional<Absence> absence() const override;
+    void nameOwner(std::string application_uri) override;
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
+    void stop() noexcept override;
+    Result<void> resetFault() override;
+    device::Registration onSafetyChange(SafetyCallback callback) override {
         return safety_.onChange(std::move(callback));
     }
 

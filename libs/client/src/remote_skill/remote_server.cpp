@@ -9,16 +9,6 @@
 
 namespace metier::client {
 
-class RemoteServer::Worker {
-public:
-    Worker(RemoteServerOptions options, std::unique_ptr<opcua::Client> client,
-           std::shared_ptr<skill::Executor> owner)
-        : connection(std::move(options), std::move(client)), executor(std::move(owner)) {}
-
-    Connection connection;
-    std::shared_ptr<skill::Executor> executor;  // shared by what its thread owns
-};
-
 Result<std::unique_ptr<RemoteServer>> RemoteServer::connect(
     RemoteServerOptions options, std::shared_ptr<skill::Executor> executor) {
     if (options.name.empty()) {
@@ -30,46 +20,45 @@ Result<std::unique_ptr<RemoteServer>> RemoteServer::connect(
                     fmt::format("{}: {}", options.url, client.error().message));
     }
     return std::unique_ptr<RemoteServer>(new RemoteServer(
-        std::make_unique<Worker>(std::move(options), std::move(*client), std::move(executor))));
+        std::make_unique<Connection>(std::move(options), std::move(*client)), std::move(executor)));
 }
 
-RemoteServer::RemoteServer(std::unique_ptr<Worker> worker) : worker_(std::move(worker)) {}
+RemoteServer::RemoteServer(std::unique_ptr<Connection> connection,
+                           std::shared_ptr<skill::Executor> executor)
+    : connection_(std::move(connection)), executor_(std::move(executor)) {}
 
 RemoteServer::~RemoteServer() = default;
 
 const std::string& RemoteServer::url() const noexcept {
-    return worker_->connection.options().url;
+    return connection_->options().url;
 }
 
 const std::string& RemoteServer::name() const noexcept {
-    return worker_->connection.options().name;
+    return connection_->options().name;
 }
 
 std::optional<SteadyTime> RemoteServer::awaySince() const {
-    return worker_->connection.awaySince();
+    return connection_->awaySince();
 }
 
 opcua::Client& RemoteServer::client() {
-    return worker_->connection.client();
+    return connection_->client();
 }
 
 Result<std::vector<client::SkillAddress>> RemoteServer::skills() {
-    auto found = client::findSkills(worker_->connection.client());
-    return found ? Result<std::vector<client::SkillAddress>>(std::move(*found))
-                 : fail(found.error());
+    METIER_ASSIGN(auto found, client::findSkills(connection_->client()));
+    return found;
 }
 
 Result<std::unique_ptr<composition::UsedSkill>> RemoteServer::use(const client::SkillAddress& skill,
                                                                   std::string origin) {
-    auto opened = open(skill, std::move(origin));
-    return opened
-               ? usedSkill(std::move(*opened))
-               : Result<std::unique_ptr<composition::UsedSkill>>(fail(std::move(opened.error())));
+    METIER_ASSIGN(auto opened, open(skill, std::move(origin)));
+    return usedSkill(std::move(opened));
 }
 
 Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::string origin) {
-    const auto link = std::make_shared<UsedSkillLink>(worker_->executor);
-    METIER_ASSIGN(auto open, worker_->connection.open(skill, link));
+    const auto link = std::make_shared<UsedSkillLink>(executor_);
+    METIER_ASSIGN(auto open, connection_->open(skill, link));
     METIER_ASSIGN(const auto now, open->skill.now());
     if (!open->skill.knowsExecutions()) {
         return fail(Errc::not_supported,
@@ -80,11 +69,11 @@ Result<PendingUse> RemoteServer::open(const client::SkillAddress& skill, std::st
 }
 
 std::unique_ptr<composition::UsedSkill> RemoteServer::usedSkill(PendingUse use) {
-    auto used = std::make_unique<RemoteUsedSkill>(worker_->connection, use.link,
-                                                  std::move(use.name), std::move(use.origin));
+    auto used = std::make_unique<RemoteUsedSkill>(*connection_, use.link, std::move(use.name),
+                                                  std::move(use.origin));
     used->adopt(use.skill, use.now);
     // No used has got the events since it was opened.
-    worker_->connection.run([skill = std::move(use.skill), link = std::move(use.link)] {
+    connection_->run([skill = std::move(use.skill), link = std::move(use.link)] {
         if (const auto now = skill->skill.now()) {
             link->post([now = *now](RemoteUsedSkill& other) { other.refresh(now); });
         }

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <utility>
-
-#include "remote_skill/clock_offset.hpp"
 
 namespace metier::client {
 
@@ -15,6 +14,44 @@ using skill::Method;
 using skill::Reason;
 using skill::State;
 using skill::TransitionNumber;
+
+namespace {
+
+using composition::ClockOffset;
+using std::chrono::duration_cast;
+using std::chrono::nanoseconds;
+
+constexpr int kQuestions = 10;
+constexpr const char* kResetMeanwhile = "it was reset while it was suspended";
+const opcua::NodeId kCurrentTime(0, 2258U);  // Server/ServerStatus/CurrentTime
+
+Result<ClockOffset> askTime(opcua::Client& client) {
+    const auto sent = std::chrono::steady_clock::now();
+    const auto sent_utc = std::chrono::system_clock::now();
+    const auto answer = client.read(kCurrentTime);
+    const auto half = duration_cast<nanoseconds>(std::chrono::steady_clock::now() - sent) / 2;
+    if (!answer) {
+        return fail(answer.error());
+    }
+    const auto time = answer->as<UtcTime>();
+    if (!time) {
+        return fail(Errc::type_mismatch, "ServerStatus/CurrentTime is not a UtcTime");
+    }
+    return ClockOffset{duration_cast<nanoseconds>(*time - sent_utc) - half, half};
+}
+
+/// Asks a server for its time, several times, and trusts the quickest answer: its clock was read
+/// within that round trip, so half of it is the uncertainty. Waits for the server.
+Result<ClockOffset> clockOffsetOf(opcua::Client& client) {
+    METIER_ASSIGN(auto best, askTime(client));
+    for (int i = 1; i < kQuestions; ++i) {
+        METIER_ASSIGN(const auto offset, askTime(client));
+        best = offset.uncertainty < best.uncertainty ? offset : best;
+    }
+    return best;
+}
+
+}  // namespace
 
 RemoteUsedSkill::RemoteUsedSkill(Connection& connection, std::shared_ptr<UsedSkillLink> link,
                                  std::string name, std::string origin)
@@ -75,7 +112,7 @@ void RemoteUsedSkill::lost(const std::string& why) {
         tellReset(fail(Errc::connection_lost, why));
     }
     if (!execution_.empty()) {
-        end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, why});
+        endLost(why);
     }
 }
 
@@ -120,7 +157,7 @@ void RemoteUsedSkill::begin(skill::StartRequest request, UsedSkillListener& list
     if (!sent) {
         link_->post([id = execution_, text = sent.error().message](RemoteUsedSkill& used) {
             if (used.execution_ == id) {
-                used.end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, text});
+                used.endLost(text);
             }
         });
     }
@@ -145,7 +182,7 @@ void RemoteUsedSkill::started(const std::string& id, const opcua::Answer<std::st
     const auto& failure = answer.error();
     if (failure.delivery != opcua::Failure::Delivery::answered) {
         haltIfRuns(id);
-        end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, failure.message});
+        endLost(failure.message);
         return;
     }
     withReason(failure.message, [id](RemoteUsedSkill& used, const AsyncSkill::Now& now) {
@@ -202,24 +239,15 @@ void RemoteUsedSkill::onTransition(const skill::TransitionEvent& event) {
         case TransitionNumber::ready_to_running:
             return;
         case TransitionNumber::running_to_suspended:
-            if (listener_ != nullptr) {
-                listener_->onSuspended();
-            }
-            return;
+            return tell(&UsedSkillListener::onSuspended);
         case TransitionNumber::suspended_to_running:
-            if (listener_ != nullptr) {
-                listener_->onResumed();
-            }
-            return;
+            return tell(&UsedSkillListener::onResumed);
         case TransitionNumber::running_to_ready:
             return finished();
         case TransitionNumber::suspended_to_ready:
-            return end({UsedSkillEnd::Kind::halted,
-                        {},
-                        event.reason,
-                        "it was reset while it was suspended"});
+            return endHalted(event.reason, kResetMeanwhile);
         default:
-            return end({UsedSkillEnd::Kind::halted, {}, event.reason, event.reason_text});
+            return endHalted(event.reason, event.reason_text);
     }
 }
 
@@ -245,7 +273,7 @@ void RemoteUsedSkill::onMissed() {
                 link->post([id, record](RemoteUsedSkill& used) { used.caughtUp(id, record); });
             });
         if (!sent) {
-            end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, sent.error().message});
+            endLost(sent.error().message);
         }
     }
 }
@@ -257,10 +285,7 @@ void RemoteUsedSkill::caughtUp(const std::string& id,
     }
     if (!record) {
         haltIfRuns(id);
-        end({UsedSkillEnd::Kind::lost,
-             {},
-             Reason::device_lost,
-             "what became of it: " + record.error().message});
+        endLost("what became of it: " + record.error().message);
         return;
     }
     tellMissed(*record);
@@ -271,26 +296,23 @@ void RemoteUsedSkill::tellMissed(const skill::ExecutionRecord& record) {
     const auto before = std::exchange(state_, record.state);
     switch (record.state) {
         case State::suspended:
-            if (before != State::suspended && listener_ != nullptr) {
-                listener_->onSuspended();
+            if (before != State::suspended) {
+                tell(&UsedSkillListener::onSuspended);
             }
             return;
         case State::running:
-            if (before == State::suspended && listener_ != nullptr) {
-                listener_->onResumed();
+            if (before == State::suspended) {
+                tell(&UsedSkillListener::onResumed);
             }
             return;
         case State::ready:
             if (record.reason == Reason::finished) {
                 return end({UsedSkillEnd::Kind::finished, record.result});
             }
-            return end({UsedSkillEnd::Kind::halted,
-                        {},
-                        record.reason,
-                        "it was reset while it was suspended"});
+            return endHalted(record.reason, kResetMeanwhile);
         case State::halted:
             reason_text_ = record.reason_text;
-            return end({UsedSkillEnd::Kind::halted, {}, record.reason, record.reason_text});
+            return endHalted(record.reason, record.reason_text);
     }
 }
 
@@ -307,16 +329,30 @@ void RemoteUsedSkill::finished() {
                 if (used.execution_ != id) {
                     return;
                 }
-                used.end(record ? UsedSkillEnd{UsedSkillEnd::Kind::finished, record->result}
-                                : UsedSkillEnd{UsedSkillEnd::Kind::lost,
-                                               {},
-                                               Reason::device_lost,
-                                               "its result: " + record.error().message});
+                if (record) {
+                    used.end({UsedSkillEnd::Kind::finished, record->result});
+                } else {
+                    used.endLost("its result: " + record.error().message);
+                }
             });
         });
     if (!sent) {
-        end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, sent.error().message});
+        endLost(sent.error().message);
     }
+}
+
+void RemoteUsedSkill::tell(void (UsedSkillListener::*event)()) {
+    if (listener_ != nullptr) {
+        (listener_->*event)();
+    }
+}
+
+void RemoteUsedSkill::endHalted(Reason reason, std::string text) {
+    end({UsedSkillEnd::Kind::halted, {}, reason, std::move(text)});
+}
+
+void RemoteUsedSkill::endLost(std::string text) {
+    end({UsedSkillEnd::Kind::lost, {}, Reason::device_lost, std::move(text)});
 }
 
 void RemoteUsedSkill::end(UsedSkillEnd end) {
@@ -364,10 +400,6 @@ Result<void> RemoteUsedSkill::suspend() {
         return {};
     }
     return command(Method::suspend);
-}
-
-Result<void> RemoteUsedSkill::resume() {
-    return command(Method::resume);
 }
 
 void RemoteUsedSkill::halt() {

@@ -38,7 +38,7 @@ public:
     void compareClocks(std::function<void(Result<composition::ClockOffset>)> done) override;
     void begin(skill::StartRequest request, composition::UsedSkillListener& listener) override;
     Result<void> suspend() override;
-    Result<void> resume() override;
+    Result<void> resume() override { return command(skill::Method::resume); }
     void halt() override;
     void release() override;
 
@@ -59,7 +59,10 @@ private:
     void finished();
     void caughtUp(const std::string& id, const opcua::Answer<skill::ExecutionRecord>& record);
     void tellMissed(const skill::ExecutionRecord& record);
+    void tell(void (composition::UsedSkillListener::*event)());
     void end(UsedSkillEnd end);
+    void endHalted(skill::Reason reason, std::string text);
+    void endLost(std::string text);
     /// \param call the Reset that is answered
     void wasReset(std::uint64_t call, const opcua::Answer<>& answer);
     void tellReset(const Result<void>& outcome);

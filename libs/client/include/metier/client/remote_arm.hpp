@@ -31,22 +31,18 @@ struct RemoteArmOptions {
 ///
 /// Threading: as device::Arm. One thread of its own is the cycle. It sends messages, so unlike that
 /// of a driver it may allocate, and a late answer of the server delays the next message.
-class RemoteArm final : public device::Arm {
+class RemoteArm : public device::Arm {
 public:
     /// Connects and reads the arm's description; waits.
     /// Errors: connection_lost, timeout; not_found if the server has no PositionStreamSkill or
     ///         publishes no Kinematics for it.
     static Result<std::unique_ptr<RemoteArm>> connect(RemoteArmOptions options);
-    ~RemoteArm() override;
-    RemoteArm(const RemoteArm&) = delete;
-    RemoteArm& operator=(const RemoteArm&) = delete;
-
     /// Chain and limits, as the server published them at connect().
-    const opcua_skill::KinematicsData& kinematics() const noexcept;
+    virtual const opcua_skill::KinematicsData& kinematics() const noexcept = 0;
 
     /// Sets the ApplicationUri of the server on whose behalf motions are made; the position stream
     /// gets it with its start, if its server keeps records. Any thread.
-    void nameOwner(std::string application_uri);
+    virtual void nameOwner(std::string application_uri) = 0;
 
     /// Reason why the arm cannot be used.
     struct Absence {
@@ -54,20 +50,7 @@ public:
         bool replaced = false;  ///< its server is back, with another arm or other limits
     };
     /// Absence of the arm; nothing while it can be used. Threads: any.
-    std::optional<Absence> absence() const;
-
-    const device::ArmInfo& info() const noexcept override;
-    device::ArmState state() const noexcept override;
-    device::Safety safety() const override;
-    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
-    void stop() noexcept override;
-    Result<void> resetFault() override;
-    device::Registration onSafetyChange(SafetyCallback callback) override;
-
-private:
-    class Worker;
-    explicit RemoteArm(std::unique_ptr<Worker> worker);
-    std::unique_ptr<Worker> worker_;
+    virtual std::optional<Absence> absence() const = 0;
 };
 
 }  // namespace metier::client

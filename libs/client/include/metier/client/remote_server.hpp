@@ -29,6 +29,7 @@ struct RemoteServerOptions {
     std::string own_server{};
 };
 
+class Connection;
 struct OpenSkill;
 class UsedSkillLink;
 
@@ -82,9 +83,10 @@ public:
     std::unique_ptr<composition::UsedSkill> usedSkill(PendingUse use);
 
 private:
-    class Worker;
-    explicit RemoteServer(std::unique_ptr<Worker> worker);
-    std::unique_ptr<Worker> worker_;
+    RemoteServer(std::unique_ptr<Connection> connection, std::shared_ptr<skill::Executor> executor);
+
+    std::unique_ptr<Connection> connection_;
+    std::shared_ptr<skill::Executor> executor_;  // shared by what its thread owns
 };
 
 }  // namespace metier::client

@@ -62,7 +62,7 @@ public:
                              std::function<void(opcua::Answer<>)> done);
 
     /// Calls Start. Running has been committed when this returns without an error.
-    opcua::Answer<> start();
+    opcua::Answer<> start() { return call(skill::Method::start); }
     /// Sets all parameters and starts, in one call.
     /// \return the execution's id
     /// Errors: not_supported, if the server's skill lacks StartWith.
@@ -77,9 +77,9 @@ public:
     /// Record of an execution, also one of another session.
     /// Errors: not_found, not_supported.
     opcua::Answer<skill::ExecutionRecord> execution(const std::string& id);
-    opcua::Answer<> suspend();
-    opcua::Answer<> resume();
-    opcua::Answer<> halt();
+    opcua::Answer<> suspend() { return call(skill::Method::suspend); }
+    opcua::Answer<> resume() { return call(skill::Method::resume); }
+    opcua::Answer<> halt() { return call(skill::Method::halt); }
     /// Calls Reset, repeatedly for up to 1 s while the device is not done.
     /// Errors: timeout, if it is not done then: it goes on, and another reset() returns its
     /// outcome.
