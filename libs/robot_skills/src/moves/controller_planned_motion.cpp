@@ -40,17 +40,6 @@ double fraction(int sample) noexcept {
     return static_cast<double>(sample) / kSamples;
 }
 
-/// Largest speed of the path parameter in the plan [1/s].
-double pathSpeed(const Trajectory& trajectory) noexcept {
-    const double clock_speed = trajectory.clockSpeed();
-    double fastest = 0.0;
-    for (int i = 0; i <= kSamples; ++i) {
-        const double clock = fraction(i) * trajectory.clockEnd();
-        fastest = std::max(fastest, trajectory.pathParameter({clock, clock_speed, 0.0}).velocity);
-    }
-    return fastest;
-}
-
 /// Largest speed of an axis along the path.
 struct AxisSpeed {
     double absolute = 0.0;  ///< [rad/s]
@@ -181,10 +170,20 @@ Result<ControllerPlannedMotion> plannedLine(const ControllerPlannedRequest& requ
 
 }  // namespace
 
+double plannedPathSpeed(const Trajectory& trajectory) noexcept {
+    const double clock_speed = trajectory.clockSpeed();
+    double fastest = 0.0;
+    for (int i = 0; i <= kSamples; ++i) {
+        const double clock = fraction(i) * trajectory.clockEnd();
+        fastest = std::max(fastest, trajectory.pathParameter({clock, clock_speed, 0.0}).velocity);
+    }
+    return fastest;
+}
+
 Result<ControllerPlannedMotion> controllerPlannedMotion(const ControllerPlannedRequest& request) {
     METIER_TRY(checkTimes(request.parameters));
     METIER_TRY(checkAcceleration(request));
-    const double path_speed = pathSpeed(request.trajectory);
+    const double path_speed = plannedPathSpeed(request.trajectory);
     const auto fastest = fastestAxis(request, path_speed);
     // Without any way there is no speed.
     if (fastest.absolute > 0.0 && fastest.absolute < kSlowest) {

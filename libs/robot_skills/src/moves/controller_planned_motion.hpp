@@ -17,6 +17,9 @@ struct ControllerPlannedRequest {
     const MoveParameters& parameters;
 };
 
+/// Largest planned speed of the path parameter [1/s].
+double plannedPathSpeed(const motion::Trajectory& trajectory) noexcept;
+
 /// Makes the request to a controller's own planner for exactly this move, no faster than planned.
 ///
 /// A PTP becomes a motion to the joints at its end, so that the controller chooses no other

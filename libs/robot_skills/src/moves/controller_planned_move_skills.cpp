@@ -29,7 +29,7 @@ Result<std::unique_ptr<skill::Skill>> makePlanned(const PlanningArm& arm,
                 {trajectory, path, parameters.start_time, parameters.stop_time});
         }
         auto move = std::make_shared<ControllerPlannedMove>(
-            ControllerPlannedMove::Setup{arm.arm, arm.clock, trajectory, path, end, tellMoveDone});
+            ControllerPlannedMove::Setup{arm, trajectory, path, end, tellMoveDone});
         return std::make_unique<ControllerPlannedWork>(
             ControllerPlannedWork::Devices{arm.arm, arm.planner}, std::move(*motion),
             std::move(move), toolDistance(trajectory));

@@ -30,26 +30,43 @@ void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results
 // ------------------------------------------------------------
 
 ControllerPlannedMove::ControllerPlannedMove(Setup setup)
-    : setup_(std::move(setup)), deviation_(setup_.trajectory, setup_.path) {}
+    : setup_(std::move(setup)),
+      deviation_(setup_.trajectory, setup_.path),
+      acceleration_(setup_.robot.model, setup_.trajectory, setup_.robot.arm.info().cycleSeconds()) {
+}
 
 void ControllerPlannedMove::begin(const skill::ExecutionHandle& execution) {
     tell_ = execution;
     stop_asked_.store(false);
-    begun_ = setup_.clock.now();
+    begun_ = setup_.robot.clock.now();
     if (first_begun_ == 0.0) {
-        first_begun_ = toSeconds(setup_.clock.utcNow());
+        first_begun_ = toSeconds(setup_.robot.clock.utcNow());
     }
+    acceleration_.restart();
+    noteStop(setup_.robot.arm.state());
     in_motion_.store(true);
 }
 
+void ControllerPlannedMove::abandon() noexcept {
+    setup_.robot.stopping->clear();
+    in_motion_.store(false);
+}
+
 void ControllerPlannedMove::observe(const device::ArmState& state) noexcept {
-    deviation_.take(toVector(state.position));
+    place_ = deviation_.take(toVector(state.position));
+    noteStop(state);
+}
+
+void ControllerPlannedMove::noteStop(const device::ArmState& state) noexcept {
+    const auto acceleration = acceleration_.take(state, place_);
+    setup_.robot.stopping->note(stoppingEstimateOf(state, setup_.robot.model, acceleration));
 }
 
 void ControllerPlannedMove::ended(const Result<MotionOutcome>& outcome) {
-    moved_ += setup_.clock.now() - begun_;
-    last_ended_ = toSeconds(setup_.clock.utcNow());
-    rest_ = setup_.arm.state().position;
+    moved_ += setup_.robot.clock.now() - begun_;
+    last_ended_ = toSeconds(setup_.robot.clock.utcNow());
+    rest_ = setup_.robot.arm.state().position;
+    setup_.robot.stopping->clear();
     in_motion_.store(false);
     if (!outcome) {
         const bool lost = outcome.error().code == Errc::connection_lost;
@@ -63,7 +80,8 @@ void ControllerPlannedMove::ended(const Result<MotionOutcome>& outcome) {
 
 void ControllerPlannedMove::tellStopped() {
     if (!stop_asked_.load()) {
-        tell_.fail(Reason::error, setup_.arm.info().name + ": the motion was stopped from outside");
+        tell_.fail(Reason::error,
+                   setup_.robot.arm.info().name + ": the motion was stopped from outside");
         return;
     }
     const auto tool = setup_.trajectory.toolPose(toVector(rest_));
@@ -78,7 +96,7 @@ void ControllerPlannedMove::tellArrived(const MotionOutcome& outcome) {
         tell_.fail(Reason::error,
                    fmt::format("{}: the motion ended in another configuration: an axis is {:.4f} "
                                "rad from its target, limit {} rad",
-                               setup_.arm.info().name, off, kArrivedJoints));
+                               setup_.robot.arm.info().name, off, kSameJoints));
         return;
     }
     setup_.tell(tell_, results(rest_), outcome);

@@ -4,11 +4,12 @@
 #include <functional>
 #include <memory>
 
-#include "metier/base/clock.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/motion/trajectory.hpp"
 #include "metier/robot_skills/move_parameters.hpp"
+#include "moves/acceleration_phase.hpp"
 #include "moves/arm_work.hpp"
+#include "moves/controller_planned_move_skills.hpp"
 #include "moves/move_variant.hpp"
 
 namespace metier::robot_skills {
@@ -28,8 +29,7 @@ void tellMoveDone(const skill::ExecutionHandle& tell, const MoveResults& results
 class ControllerPlannedMove final : public device::MotionObserver {
 public:
     struct Setup {
-        device::Arm& arm;
-        const Clock& clock;
+        PlanningArm robot;
         motion::Trajectory trajectory;
         PathDeviationMeter::Path path;
         MoveEnd end;
@@ -41,7 +41,7 @@ public:
     /// Owner's thread, before the controller is asked to move.
     void begin(const skill::ExecutionHandle& execution);
     /// Owner's thread, instead of ended(): the controller did not begin.
-    void abandon() noexcept { in_motion_.store(false); }
+    void abandon() noexcept;
     /// Any thread.
     bool inMotion() const noexcept { return in_motion_.load(); }
     /// Notes that the motion is to be stopped. A stop without this note before it is an error.
@@ -54,12 +54,15 @@ public:
     void ended(const Result<device::MotionOutcome>& outcome);
 
 private:
+    void noteStop(const device::ArmState& state) noexcept;
     MoveResults results(const device::JointArray& reached) const;
     void tellArrived(const device::MotionOutcome& outcome);
     void tellStopped();
 
     Setup setup_;
     PathDeviationMeter deviation_;
+    AccelerationPhase acceleration_;
+    double place_ = 0.0;  ///< where the arm was last measured on the path, 0 start to 1 end
     std::atomic<bool> in_motion_{false};
     std::atomic<bool> stop_asked_{false};
     skill::ExecutionHandle tell_;

@@ -129,7 +129,8 @@ Result<std::unique_ptr<skill::ExecutionWork>> plannedForceWork(
     const PlanningArm& arm, const Trajectory& trajectory, const ForceMoveParameters& parameters) {
     auto motion = plannedForceMotion(arm.model, trajectory, parameters);
     if (!motion && arm.sensor != nullptr) {
-        return feelingWork({arm.arm, *arm.sensor, arm.model, arm.clock}, trajectory, parameters);
+        return feelingWork({arm.arm, *arm.sensor, arm.model, arm.clock, arm.stopping}, trajectory,
+                           parameters);
     }
     if (!motion) {
         return fail(std::move(motion.error()));
@@ -139,8 +140,8 @@ Result<std::unique_ptr<skill::ExecutionWork>> plannedForceWork(
                                                        const MotionOutcome& outcome) {
         tellForceMove(execution, parameters, results, metForce(model, results, outcome));
     };
-    auto move = std::make_shared<ControllerPlannedMove>(ControllerPlannedMove::Setup{
-        arm.arm, arm.clock, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
+    auto move = std::make_shared<ControllerPlannedMove>(
+        ControllerPlannedMove::Setup{arm, trajectory, Path::cartesian_line, MoveEnd::pose, tell});
     return std::make_unique<ControllerPlannedWork>(
         ControllerPlannedWork::Devices{arm.arm, arm.planner}, std::move(*motion), std::move(move),
         toolDistance(trajectory));

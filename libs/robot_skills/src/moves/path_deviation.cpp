@@ -8,14 +8,16 @@ namespace metier::robot_skills {
 PathDeviationMeter::PathDeviationMeter(motion::Trajectory trajectory, Path path) noexcept
     : trajectory_(std::move(trajectory)), path_(path) {}
 
-void PathDeviationMeter::take(const motion::JointVector& measured) noexcept {
-    const double distance = path_ == Path::joint_line
-                                ? fromJointLine(measured)
-                                : trajectory_.deviation(trajectory_.toolPose(measured)).distance;
-    largest_ = std::max(largest_, distance);
+double PathDeviationMeter::take(const motion::JointVector& measured) noexcept {
+    const auto deviation = path_ == Path::joint_line
+                               ? fromJointLine(measured)
+                               : trajectory_.deviation(trajectory_.toolPose(measured));
+    largest_ = std::max(largest_, deviation.distance);
+    return deviation.fraction;
 }
 
-double PathDeviationMeter::fromJointLine(const motion::JointVector& measured) const noexcept {
+motion::PathDeviation PathDeviationMeter::fromJointLine(
+    const motion::JointVector& measured) const noexcept {
     const auto start = trajectory_.start();
     const auto end = trajectory_.end();
     const auto line = end.view() - start.view();
@@ -24,7 +26,8 @@ double PathDeviationMeter::fromJointLine(const motion::JointVector& measured) co
     const double share = length_squared > 0.0 ? std::clamp(along / length_squared, 0.0, 1.0) : 0.0;
     auto nearest = start;
     nearest.view() += share * line;
-    return motion::distanceBetween(trajectory_.toolPose(measured), trajectory_.toolPose(nearest));
+    return {motion::distanceBetween(trajectory_.toolPose(measured), trajectory_.toolPose(nearest)),
+            0.0, share};
 }
 
 }  // namespace metier::robot_skills

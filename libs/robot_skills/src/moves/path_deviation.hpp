@@ -17,13 +17,14 @@ public:
     PathDeviationMeter(motion::Trajectory trajectory, Path path) noexcept;
 
     /// Takes a measured joint position.
-    void take(const motion::JointVector& measured) noexcept;
+    /// \return its place on the path, 0 start to 1 end
+    double take(const motion::JointVector& measured) noexcept;
 
     /// Largest distance of the tool frame from its path so far [m].
     double largest() const noexcept { return largest_; }
 
 private:
-    double fromJointLine(const motion::JointVector& measured) const noexcept;
+    motion::PathDeviation fromJointLine(const motion::JointVector& measured) const noexcept;
 
     motion::Trajectory trajectory_;
     Path path_;

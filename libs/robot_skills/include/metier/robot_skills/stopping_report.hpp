@@ -12,11 +12,11 @@ namespace metier::robot_skills {
 /// Stop of an arm on its path, if it were halted now: time [s] and way of the set-points. The
 /// measured arm follows them by the lag of its controller.
 ///
-/// Threading: read() on any thread; the others on the thread that has the source of the set-points,
-/// which is the cycle thread while it is attached. Nothing locks or allocates.
+/// Threading: read() on any thread; the others on the thread that has the motion, which is the
+/// cycle thread while it runs. Nothing locks or allocates.
 class StoppingReport {
 public:
-    /// Stop of the motion that metier plans and runs now; nothing if it runs none.
+    /// Stop of the move that runs now; nothing if none does.
     std::optional<motion::StoppingEstimate> read() const noexcept {
         const auto now = newest_.read();
         return now.known ? std::optional(now.way) : std::nullopt;
@@ -32,9 +32,12 @@ private:
     device::SharedValue<Newest> newest_;
 };
 
-/// Stop of an arm whose motion the controller plans, computed from its measured velocity: each axis
-/// brakes with its own limits. The way is that of the flange.
+/// Stop of an arm whose set-points metier does not plan, computed from its measured velocity: each
+/// axis brakes with its own limits. The way is that of the flange.
+/// \param acceleration of each axis, which ends first [rad/s2]; empty: none
+/// \return zero for an arm at rest that is not about to move
 motion::StoppingEstimate stoppingEstimateOf(const device::ArmState& state,
-                                            const motion::RobotModel& model);
+                                            const motion::RobotModel& model,
+                                            const device::JointArray& acceleration = {});
 
 }  // namespace metier::robot_skills
