@@ -42,12 +42,8 @@ constexpr std::array kTorqueUnits{
 };
 
 std::string plain(std::string_view text) {
-    std::string result;
-    for (const char letter : text) {
-        if (std::isalnum(static_cast<unsigned char>(letter)) != 0) {
-            result += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-        }
-    }
+    auto result = inLowerCase(text);
+    std::erase_if(result, [](unsigned char letter) { return std::isalnum(letter) == 0; });
     return result;
 }
 
@@ -159,10 +155,6 @@ Result<std::optional<double>> parseRate(std::string_view page) {
     return fail(Errc::invalid_argument,
                 fmt::format("{} is '{}', expected records per second, 1 to {}", kRate.front(),
                             text.substr(0, kLongestShown), kHighestRate));
-}
-
-Calibration calibrationFrom(double counts_per_force, double counts_per_torque) noexcept {
-    return {1.0 / counts_per_force, 1.0 / counts_per_torque};
 }
 
 }  // namespace metier::netft_driver

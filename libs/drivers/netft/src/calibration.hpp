@@ -39,7 +39,4 @@ Result<Calibration> parseCalibration(std::string_view page, const UnitTexts& fal
 ///         says that the sensor sends none.
 Result<std::optional<double>> parseRate(std::string_view page);
 
-/// \param counts_per_force [1/N], counts_per_torque [1/Nm], as the settings give them
-Calibration calibrationFrom(double counts_per_force, double counts_per_torque) noexcept;
-
 }  // namespace metier::netft_driver

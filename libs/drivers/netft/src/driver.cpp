@@ -36,8 +36,8 @@ std::optional<Calibration> givenCalibration(const cell::Settings& settings) {
         settings.reject(force ? "counts_per_torque" : "counts_per_force",
                         "missing; counts are given for both or for none");
     }
-    return calibrationFrom(settings.numberOr("counts_per_force", 1.0, 1e-3, 1e12),
-                           settings.numberOr("counts_per_torque", 1.0, 1e-3, 1e12));
+    return Calibration{1.0 / settings.numberOr("counts_per_force", 1.0, 1e-3, 1e12),
+                       1.0 / settings.numberOr("counts_per_torque", 1.0, 1e-3, 1e12)};
 }
 
 std::string unitText(const cell::Settings& settings, std::string_view name,

@@ -1,14 +1,25 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <memory>
+#include <future>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "calibration.hpp"
 #include "metier/device/driver.hpp"
 #include "metier/device/force_torque_sensor.hpp"
+#include "metier/device/notifier.hpp"
+#include "metier/device/safety_publisher.hpp"
+#include "metier/device/shared_value.hpp"
+#include "metier/link/udp_link.hpp"
+#include "record_stream.hpp"
+#include "tare_task.hpp"
 
 namespace metier::netft_driver {
 
@@ -39,6 +50,8 @@ Result<NetftOptions> readOptions(const device::OpenRequest& request);
 
 /// An ATI Net F/T sensor. Connects, and connects again, by itself; each time it reads the
 /// calibration anew, and without one it gives no value.
+///
+/// While records come and their status does not change its thread neither locks nor allocates.
 class NetftSensor final : public device::ForceTorqueSensor {
 public:
     explicit NetftSensor(NetftOptions options);
@@ -47,20 +60,48 @@ public:
     NetftSensor(const NetftSensor&) = delete;
     NetftSensor& operator=(const NetftSensor&) = delete;
 
-    const std::string& name() const noexcept override;
+    const std::string& name() const noexcept override { return options_.name; }
     device::WrenchSample sample() const noexcept override;
-    device::Safety safety() const override;
+    device::Safety safety() const override { return safety_.safety(); }
     /// Waits at most 1 s. Errors also: device_fault while the sensor reports an error.
     Result<void> tare() override;
-    device::Registration onSafetyChange(SafetyCallback callback) override;
-
-    /// Records that were sent and did not come, since the first connection.
-    std::uint64_t lostRecords() const noexcept;
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        return safety_.onChange(std::move(callback));
+    }
 
 private:
-    class Session;
+    // ---- the thread that receives the records ----
+    void run(const std::stop_token& stop);
+    /// One connection, from begin to end. Errors: why it ended; nothing if it was to end.
+    Result<void> connection(const std::stop_token& stop);
+    /// Reads the calibration from the settings or the sensor's page, which also has the rate of the
+    /// records.
+    Result<Calibration> calibration();
+    Result<std::string> readPage() const;
+    void setSilence(std::optional<double> reported_rate) noexcept;
+    /// Asks for records until the first comes.
+    Result<void> begin(const std::stop_token& stop, link::UdpLink& link, RecordStream& stream);
+    Result<void> follow(const std::stop_token& stop, link::UdpLink& link, RecordStream& stream);
+    void take(const device::WrenchSample& sample, const RecordStream& stream);
+    Result<void> workOnTare(link::UdpLink& link, const device::WrenchSample& sample);
+    void endTare(const Result<void>& outcome);
+    void lost(const Error& why);
+    std::string named(std::string_view text) const;
 
-    std::unique_ptr<Session> session_;
+    const NetftOptions options_;
+    std::atomic<std::chrono::milliseconds> silence_;
+    device::SharedValue<device::WrenchSample> sample_;
+    device::SafetyPublisher safety_;
+    std::uint32_t status_ = 0;  // status word of the last record
+    bool connected_ = false;
+
+    std::atomic<bool> tare_asked_{false};
+    std::optional<TareTask> tare_;
+    std::mutex tare_mutex_;
+    std::vector<std::promise<Result<void>>> tare_answers_;
+
+    device::Notifier notifier_;
+    std::jthread thread_;
 };
 
 }  // namespace metier::netft_driver

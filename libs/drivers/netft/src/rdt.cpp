@@ -80,11 +80,8 @@ Result<RdtRecord> parseRecord(std::span<const std::byte> bytes) {
     return record;
 }
 
-StatusKind kindOf(std::uint32_t status) noexcept {
-    if (status == 0) {
-        return StatusKind::healthy;
-    }
-    return status == (kSummary | kMonitorLatched) ? StatusKind::warning : StatusKind::error;
+bool isError(std::uint32_t status) noexcept {
+    return status != 0 && status != (kSummary | kMonitorLatched);
 }
 
 std::string describeStatus(std::uint32_t status) {

@@ -35,14 +35,9 @@ struct RdtRecord {
 /// Errors: invalid_argument for any other number.
 Result<RdtRecord> parseRecord(std::span<const std::byte> bytes);
 
-/// Meaning of a status word for the values.
-enum class StatusKind : std::uint8_t {
-    healthy,
-    warning,  ///< a monitor condition is latched; the values are good
-    error,    ///< the values may not be used
-};
-
-StatusKind kindOf(std::uint32_t status) noexcept;
+/// Reports whether the values with this status word may not be used; a latched monitor condition
+/// alone is only a warning.
+bool isError(std::uint32_t status) noexcept;
 
 /// The causes in a status word by name, "gauge saturation or A/D error (status 80020000)".
 std::string describeStatus(std::uint32_t status);

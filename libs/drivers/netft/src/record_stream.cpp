@@ -10,7 +10,6 @@ using device::WrenchSample;
 std::optional<WrenchSample> RecordStream::take(std::span<const std::byte> datagram,
                                                SteadyTime now) {
     if (datagram.empty() || datagram.size() % kRecordSize != 0) {
-        ++rejected_;
         return std::nullopt;
     }
     std::optional<WrenchSample> newest;
@@ -28,10 +27,8 @@ bool RecordStream::isNew(const RdtRecord& record) {
         const auto step = record.sequence - last_->sequence;  // modulo 2^32
         constexpr std::uint32_t kHalf = 0x80000000U;
         if (step == 0 || step >= kHalf) {
-            ++late_;
             return false;
         }
-        lost_ += step - 1;
         sensor_sequence_ += std::uint32_t{record.sensor_sequence - last_->sensor_sequence};
     } else {
         sensor_sequence_ = record.sensor_sequence;
@@ -48,8 +45,7 @@ WrenchSample RecordStream::toSample(const RdtRecord& record, SteadyTime now) con
         sample.torque[i] = record.counts[i + 3] * calibration_.torque_per_count;
     }
     sample.sequence = sensor_sequence_;
-    sample.health =
-        kindOf(record.status) == StatusKind::error ? SafetyState::fault : SafetyState::normal;
+    sample.health = isError(record.status) ? SafetyState::fault : SafetyState::normal;
     sample.stamp = now;
     return sample;
 }

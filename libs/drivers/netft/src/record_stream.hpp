@@ -10,7 +10,7 @@
 
 namespace metier::netft_driver {
 
-/// Reads the datagrams of one stream: measurements, and the number of missing ones between them.
+/// Reads the datagrams of one stream of measurements.
 ///
 /// Taking a datagram that is one does not allocate. Threading: one thread.
 class RecordStream {
@@ -23,15 +23,9 @@ public:
 
     /// Status word of the newest record.
     std::uint32_t status() const noexcept { return status_; }
-    /// Records that were sent and did not come.
-    std::uint64_t lost() const noexcept { return lost_; }
-    /// Records that came twice or too late.
-    std::uint64_t late() const noexcept { return late_; }
-    /// Datagrams that are no records.
-    std::uint64_t rejected() const noexcept { return rejected_; }
 
 private:
-    /// Reports whether the record is newer than those before; counts the missing ones.
+    /// Reports whether the record is newer than those before.
     bool isNew(const RdtRecord& record);
     device::WrenchSample toSample(const RdtRecord& record, SteadyTime now) const noexcept;
 
@@ -39,9 +33,6 @@ private:
     std::optional<RdtRecord> last_;
     std::uint64_t sensor_sequence_ = 0;  // the sensor's counter, continued beyond its overflow
     std::uint32_t status_ = 0;
-    std::uint64_t lost_ = 0;
-    std::uint64_t late_ = 0;
-    std::uint64_t rejected_ = 0;
 };
 
 }  // namespace metier::netft_driver

@@ -138,11 +138,5 @@ TEST(Rate, IsRefusedIfRdtIsNotEnabled) {
     EXPECT_THAT(read.error().message, HasSubstr("comrdte is 'Disabled', expected Enabled"));
 }
 
-TEST(Calibration, CanBeGivenInSi) {
-    const auto given = calibrationFrom(1e6, 1e9);
-    EXPECT_DOUBLE_EQ(given.force_per_count, 1e-6);
-    EXPECT_DOUBLE_EQ(given.torque_per_count, 1e-9);
-}
-
 }  // namespace
 }  // namespace metier::netft_driver

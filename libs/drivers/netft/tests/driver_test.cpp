@@ -59,6 +59,7 @@ TEST(NetftDriver, TakesCountsInsteadOfTheSensorsPage) {
     const auto options =
         readOptions(request({{"counts_per_force", 1e6}, {"counts_per_torque", 1e9}}));
     ASSERT_TRUE(options->calibration);
+    EXPECT_DOUBLE_EQ(options->calibration->force_per_count, 1e-6);
     EXPECT_DOUBLE_EQ(options->calibration->torque_per_count, 1e-9);
     EXPECT_THAT(readOptions(request({{"counts_per_force", 1e6}})).error().message,
                 HasSubstr("counts_per_torque: missing"));
