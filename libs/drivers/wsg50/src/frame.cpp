@@ -44,13 +44,6 @@ Command& Command::f32(double value) noexcept {
     return u16(static_cast<std::uint16_t>(bits >> 16U));
 }
 
-Command& Command::text(std::string_view value) noexcept {
-    for (const char letter : value) {
-        u8(static_cast<std::uint8_t>(letter));
-    }
-    return *this;
-}
-
 std::span<const std::byte> Command::bytes() noexcept {
     const auto length = end_ - kHeader;
     bytes_[kPreambleSize + 1] = static_cast<std::byte>(length & 0xFFU);
@@ -110,11 +103,7 @@ FrameReader::Found FrameReader::look() noexcept {
     if (bytes.size() < whole) {
         return Found::more;
     }
-    if (crc(bytes.first(whole)) != 0) {
-        ++rejected_;
-        return Found::nothing;
-    }
-    return Found::frame;
+    return crc(bytes.first(whole)) == 0 ? Found::frame : Found::nothing;
 }
 
 }  // namespace metier::wsg50_driver

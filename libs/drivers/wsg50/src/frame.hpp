@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 
 namespace metier::wsg50_driver {
 
@@ -37,7 +36,6 @@ public:
     Command& u8(std::uint8_t value) noexcept;
     Command& u16(std::uint16_t value) noexcept;
     Command& f32(double value) noexcept;
-    Command& text(std::string_view value) noexcept;
 
     CommandId id() const noexcept { return id_; }
     /// The whole frame, with length and checksum. Valid as long as the command, until it changes.
@@ -59,7 +57,7 @@ struct Frame {
 };
 
 /// Cuts the gripper's stream of bytes into frames. Bytes that are no frame, and frames with a wrong
-/// checksum, are skipped and counted.
+/// checksum, are skipped.
 ///
 /// Does not allocate. Threading: one thread.
 class FrameReader {
@@ -75,9 +73,6 @@ public:
     /// call of any function here.
     std::optional<Frame> next() noexcept;
 
-    /// Frames whose checksum was wrong.
-    std::uint64_t rejected() const noexcept { return rejected_; }
-
 private:
     enum class Found : std::uint8_t { frame, more, nothing };
     Found look() noexcept;
@@ -85,7 +80,6 @@ private:
     std::array<std::byte, 2 * (kLargestPayload + 8)> bytes_{};
     std::size_t begin_ = 0;
     std::size_t end_ = 0;
-    std::uint64_t rejected_ = 0;
 };
 
 }  // namespace metier::wsg50_driver

@@ -201,7 +201,7 @@ Command releaseCommand(double width, double speed) noexcept {
 }
 
 Command acknowledgeCommand() noexcept {
-    return Command(CommandId::acknowledge).text("ack");
+    return Command(CommandId::acknowledge).u8('a').u8('c').u8('k');
 }
 
 Command accelerationCommand(double acceleration) noexcept {

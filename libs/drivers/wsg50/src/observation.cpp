@@ -36,9 +36,7 @@ Result<bool> Observation::take(const Reply& reply, SteadyTime now) {
         default:
             return false;
     }
-    if (!taken) {
-        return fail(std::move(taken.error()));
-    }
+    METIER_TRY(taken);
     for (std::size_t i = 0; i < kValues.size(); ++i) {
         if (kValues[i] == reply.id) {
             ++counts_[i];

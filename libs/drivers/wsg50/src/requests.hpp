@@ -1,6 +1,6 @@
 #pragma once
 
-#include "wsg50_gripper.hpp"
+#include "options.hpp"
 
 namespace metier::wsg50_driver {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "messages.hpp"
 #include "wire.hpp"
 
 namespace metier::wsg50_driver::testing {
@@ -40,7 +41,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 TEST(Command, IsTheFrameThatTheGripperKnows) {
-    EXPECT_EQ(toBytes(Command(CommandId::acknowledge).text("ack").bytes()),
+    EXPECT_EQ(toBytes(acknowledgeCommand().bytes()),
               bytes({0xAA, 0xAA, 0xAA, 0x24, 3, 0, 'a', 'c', 'k', 0xDC, 0xB9}));
     EXPECT_EQ(toBytes(Command(CommandId::disconnect).bytes()),
               bytes({0xAA, 0xAA, 0xAA, 0x07, 0, 0, 0x35, 0x4C}));
@@ -68,7 +69,6 @@ TEST(FrameReader, SkipsAFrameWithAWrongChecksumAndFindsTheNext) {
     broken[7] ^= std::byte{1};
     Reading reading;
     EXPECT_THAT(reading.give(broken + frame(0x45, {})), ElementsAre(0x45));
-    EXPECT_EQ(reading.reader.rejected(), 1U);
 }
 
 TEST(FrameReader, FindsAFrameBehindOneWithAWrongLength) {
