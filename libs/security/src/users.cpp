@@ -27,8 +27,8 @@ constexpr std::string_view kNameCharacters =
 constexpr std::array<std::string_view, 4> kRoleNames{"Observer", "Operator", "Engineer",
                                                      "SecurityAdmin"};
 
-Result<void> checkName(const std::string& name) {
-    const bool right = !name.empty() && name.size() <= kLongestName &&
+Result<void> checkUserName(const std::string& name) {
+    const bool right = !name.empty() && name.size() <= kLongestUserName &&
                        name.find_first_not_of(kNameCharacters) == std::string::npos;
     return right ? Result<void>()
                  : fail(Errc::invalid_argument,

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "metier/base/numbers.hpp"
 
@@ -23,39 +25,21 @@ Command single(Code code, double argument) noexcept {
     return command;
 }
 
-std::string_view nameOf(Code code) noexcept {
-    switch (code) {
-        case Code::state:
-            return "state";
-        case Code::cancel:
-            return "cancel";
-        case Code::move_joints:
-            return "joint move";
-        case Code::move_pose:
-            return "Cartesian move";
-        case Code::joint_velocity:
-            return "joint velocity";
-        case Code::joint_acceleration:
-            return "joint acceleration";
-        case Code::line_velocity:
-            return "Cartesian velocity";
-        case Code::line_acceleration:
-            return "Cartesian acceleration";
-        case Code::force_condition:
-            return "force condition";
-        case Code::interface:
-            return "control interface";
-        case Code::motion_type:
-            return "motion type";
-        case Code::control_mode:
-            return "control mode";
-        case Code::execution:
-            return "execution type";
-        case Code::tool:
-            return "tool";
-    }
-    return "command";
-}
+using Name = std::pair<Code, std::string_view>;
+constexpr std::array kNames{Name{Code::state, "state"},
+                            Name{Code::cancel, "cancel"},
+                            Name{Code::move_joints, "joint move"},
+                            Name{Code::move_pose, "Cartesian move"},
+                            Name{Code::joint_velocity, "joint velocity"},
+                            Name{Code::joint_acceleration, "joint acceleration"},
+                            Name{Code::line_velocity, "Cartesian velocity"},
+                            Name{Code::line_acceleration, "Cartesian acceleration"},
+                            Name{Code::force_condition, "force condition"},
+                            Name{Code::interface, "control interface"},
+                            Name{Code::motion_type, "motion type"},
+                            Name{Code::control_mode, "control mode"},
+                            Name{Code::execution, "execution type"},
+                            Name{Code::tool, "tool"}};
 
 }  // namespace
 
@@ -130,7 +114,9 @@ Command attachTool(int index) noexcept {
 }
 
 std::string describe(const Command& command) {
-    return fmt::format("{} ({})", nameOf(command.code), static_cast<int>(command.code));
+    const auto* const name = std::ranges::find(kNames, command.code, &Name::first);
+    return fmt::format("{} ({})", name == kNames.end() ? "command" : name->second,
+                       static_cast<int>(command.code));
 }
 
 }  // namespace metier::iiwa_driver

@@ -37,14 +37,6 @@ constexpr double kLongestStall = 3.0;
 constexpr double kLongestBraking = 4.0;
 constexpr double kCancelAgain = 0.5;
 
-double fastestAxis(const CabinetState& state) noexcept {
-    double fastest = 0.0;
-    for (const double velocity : state.velocity) {
-        fastest = std::max(fastest, std::abs(velocity));
-    }
-    return fastest;
-}
-
 Miss worstAxis(const device::JointArray& position, const device::JointArray& target) noexcept {
     Miss worst{Miss::Quantity::axis, 0, 0.0, kAxisTolerance};
     for (std::size_t axis = 0; axis < target.size(); ++axis) {
@@ -57,30 +49,53 @@ Miss worstAxis(const device::JointArray& position, const device::JointArray& tar
     return worst;
 }
 
-std::string_view nameOf(Miss::Quantity quantity) noexcept {
-    switch (quantity) {
-        case Miss::Quantity::axis:
-            return "axis";
-        case Miss::Quantity::position:
-            return "the tool";
-        case Miss::Quantity::rotation:
-            return "the tool's orientation";
-    }
-    return "";
+std::string errorNote(int code) {
+    return code == 0 ? "" : fmt::format(" (error {}: {})", code, errorText(code));
 }
 
 }  // namespace
 
 bool stands(const CabinetState& state) noexcept {
-    return fastestAxis(state) < kStandstillSpeed;
+    return std::all_of(state.velocity.begin(), state.velocity.end(),
+                       [](double v) { return std::abs(v) < kStandstillSpeed; });
 }
 
 std::string toString(const Miss& miss) {
     const bool axis = miss.quantity == Miss::Quantity::axis;
     const std::string_view unit = miss.quantity == Miss::Quantity::position ? "m" : "rad";
-    return fmt::format("{}{} {:.4f} {} from its target, limit {:.4f} {}", nameOf(miss.quantity),
-                       axis ? fmt::format(" {}", miss.axis + 1) : "", miss.distance, unit,
+    const auto what =
+        axis ? fmt::format("axis {}", miss.axis + 1)
+             : std::string(miss.quantity == Miss::Quantity::position ? "the tool"
+                                                                     : "the tool's orientation");
+    return fmt::format("{} {:.4f} {} from its target, limit {:.4f} {}", what, miss.distance, unit,
                        miss.limit, unit);
+}
+
+Result<device::MotionOutcome> outcomeOf(const RunEnd& end, const std::string& name,
+                                        const std::string& lost) {
+    switch (end.cause) {
+        case Cause::at_target:
+        case Cause::stopped:
+        case Cause::force:
+            return end.outcome;
+        case Cause::refused:
+            return fail(Errc::device_fault,
+                        fmt::format("{}: the cabinet refused: {}{}", name, describe(end.command),
+                                    errorNote(end.error)));
+        case Cause::not_ready:
+            return fail(Errc::device_fault, fmt::format("{}: not ready to move: {}{}", name,
+                                                        toString(end.miss), errorNote(end.error)));
+        case Cause::off_target:
+            return fail(Errc::device_fault, fmt::format("{}: the motion ended with {}{}", name,
+                                                        toString(end.miss), errorNote(end.error)));
+        case Cause::stalled:
+            return fail(Errc::device_fault,
+                        fmt::format("{}: the motion neither went on nor ended: {}{}", name,
+                                    toString(end.miss), errorNote(end.error)));
+        case Cause::disconnected:
+            return fail(Errc::connection_lost, lost);
+    }
+    return fail(Errc::internal, name + ": a motion ended in no known way");
 }
 
 void ControllerPlannedRun::begin(const Request& request, const CabinetState& now,

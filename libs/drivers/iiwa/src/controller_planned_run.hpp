@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "cabinet_settings.hpp"
 #include "metier/device/motion_planner.hpp"
@@ -43,6 +44,13 @@ struct RunEnd {
     int error = 0;  ///< code that the cabinet noted during the motion, 0 if none
     device::MotionOutcome outcome{};
 };
+
+/// Outcome of a controller-planned motion for its caller.
+/// \param name of the device, for texts
+/// \param lost why the connection is gone, for texts
+/// Errors: device_fault, connection_lost
+Result<device::MotionOutcome> outcomeOf(const RunEnd& end, const std::string& name,
+                                        const std::string& lost);
 
 /// One motion of the cabinet's own planner, from its settings to standstill.
 ///

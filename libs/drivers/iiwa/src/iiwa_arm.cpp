@@ -42,40 +42,60 @@ Result<void> check(const IiwaOptions& options, const motion::RobotModel& model) 
     return {};
 }
 
-}  // namespace
-
-/// The parts and threads behind the faces.
-class IiwaArm::Machine {
+/// The parts and threads of an arm.
+class Machine final : public IiwaArm {
 public:
     Machine(const IiwaOptions& options, const motion::RobotModel& model, Session::Links links)
-        : commander_(infoOf(options, model), model, {options.force_tolerance, options.tool}),
-          force_(commander_.core(), longestSilence(options)),
+        : commander_(infoOf(options, model), model, options),
+          force_(core_, longestSilence(options)),
           notifier_([this] { commander_.dispatch(); }),
-          session_(std::move(links), {commander_, force_, [this] { notifier_.signal(); }},
-                   {options.precision, options.cycle, options.answer_timeout}),
+          session_(std::move(links), {commander_, force_, [this] { notifier_.signal(); }}, options),
           thread_([this](const std::stop_token& stop) { session_.run(stop); }) {}
 
-    ~Machine() {
+    ~Machine() override {
         thread_.request_stop();
         session_.shutdown();
         thread_.join();
-        commander_.lost(commander_.core().info().name + ": the driver was shut down");
+        commander_.lost(info().name + ": the driver was shut down");
         notifier_.signal();
     }
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;
 
-    MotionCommander& commander() noexcept { return commander_; }
-    FlangeForce& force() noexcept { return force_; }
-    std::uint16_t port() const { return session_.port(); }
+    std::uint16_t port() const override { return session_.port(); }
+    device::ForceTorqueSensor& flangeForce() noexcept override { return force_; }
+
+    const device::ArmInfo& info() const noexcept override { return core_.info(); }
+    device::ArmState state() const noexcept override { return core_.state(); }
+    device::Safety safety() const override { return core_.safety(); }
+    const TimeHistogram* cycleJitter() const noexcept override { return core_.cycleJitter(); }
+    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override {
+        return commander_.attach(std::move(source));
+    }
+    void stop() noexcept override {
+        core_.stop();
+        commander_.stopMotion();
+    }
+    Result<void> resetFault() override { return commander_.resetFault(); }
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        return core_.onSafetyChange(std::move(callback));
+    }
+
+    Result<void> move(const device::ControllerPlannedMotion& motion, Done done) override {
+        return commander_.move(motion, std::move(done));
+    }
+    void stopMotion() noexcept override { commander_.stopMotion(); }
 
 private:
     MotionCommander commander_;
+    device::ArmCore& core_ = commander_.core();
     FlangeForce force_;
     device::Notifier notifier_;
     Session session_;
     std::jthread thread_;
 };
+
+}  // namespace
 
 Result<std::unique_ptr<IiwaArm>> IiwaArm::create(const IiwaOptions& options,
                                                  const motion::RobotModel& model) {
@@ -90,61 +110,8 @@ Result<std::unique_ptr<IiwaArm>> IiwaArm::create(const IiwaOptions& options,
     if (!guard) {
         return fail(guard.error().code, options.name + ": " + guard.error().message);
     }
-    return std::unique_ptr<IiwaArm>(new IiwaArm(std::make_unique<Machine>(
-        options, model, Session::Links{std::move(*listener), std::move(*guard)})));
-}
-
-IiwaArm::IiwaArm(std::unique_ptr<Machine> machine) : machine_(std::move(machine)) {}
-
-IiwaArm::~IiwaArm() = default;
-
-std::uint16_t IiwaArm::port() const {
-    return machine_->port();
-}
-
-device::ForceTorqueSensor& IiwaArm::flangeForce() noexcept {
-    return machine_->force();
-}
-
-const device::ArmInfo& IiwaArm::info() const noexcept {
-    return machine_->commander().core().info();
-}
-
-device::ArmState IiwaArm::state() const noexcept {
-    return machine_->commander().core().state();
-}
-
-const TimeHistogram* IiwaArm::cycleJitter() const noexcept {
-    return machine_->commander().core().cycleJitter();
-}
-
-device::Safety IiwaArm::safety() const {
-    return machine_->commander().core().safety();
-}
-
-Result<void> IiwaArm::attach(std::shared_ptr<device::SetPointSource> source) {
-    return machine_->commander().attach(std::move(source));
-}
-
-void IiwaArm::stop() noexcept {
-    machine_->commander().core().stop();
-    machine_->commander().stopMotion();
-}
-
-Result<void> IiwaArm::resetFault() {
-    return machine_->commander().resetFault();
-}
-
-device::Registration IiwaArm::onSafetyChange(SafetyCallback callback) {
-    return machine_->commander().core().onSafetyChange(std::move(callback));
-}
-
-Result<void> IiwaArm::move(const device::ControllerPlannedMotion& motion, Done done) {
-    return machine_->commander().move(motion, std::move(done));
-}
-
-void IiwaArm::stopMotion() noexcept {
-    machine_->commander().stopMotion();
+    return std::make_unique<Machine>(options, model,
+                                     Session::Links{std::move(*listener), std::move(*guard)});
 }
 
 }  // namespace metier::iiwa_driver

@@ -25,16 +25,10 @@ constexpr std::uint64_t kMostSkipped = 4;
 // A setting that was refused is tried again after this time [s].
 constexpr double kTryAgain = 1.0;
 
-motion::JointVector toVector(const device::JointArray& joints) noexcept {
-    motion::JointVector vector(kAxes);
-    std::copy_n(joints.begin(), kAxes, vector.begin());
-    return vector;
-}
-
 }  // namespace
 
 MotionCommander::MotionCommander(device::ArmInfo info, const motion::RobotModel& model,
-                                 const MotionCommanderOptions& options)
+                                 const IiwaOptions& options)
     : core_(std::move(info)),
       model_(model),
       options_(options),
@@ -90,7 +84,8 @@ void MotionCommander::takeSettingIn(const Command& sent, const CabinetState& ans
 /// The arm is ready for motions, unless it is not the one that the model describes.
 void MotionCommander::settledIn(const CabinetState& answer) {
     mode_ = Mode::idle;
-    const auto flange = model_.kinematics().forward(toVector(answer.position));
+    const auto joints = motion::JointVector::from(answer.position.values());
+    const auto flange = model_.kinematics().forward(*joints);
     const auto pose = motion::toPose(answer.pose);
     if (options_.tool >= 0) {
         flange_from_tool_ = flange.inverse() * pose;

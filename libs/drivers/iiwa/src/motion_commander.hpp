@@ -10,18 +10,12 @@
 #include "metier/device/arm_core.hpp"
 #include "metier/device/motion_planner.hpp"
 #include "metier/device/request_slot.hpp"
+#include "metier/iiwa_driver/iiwa_arm.hpp"
 #include "metier/motion/robot_model.hpp"
 #include "readiness.hpp"
 #include "servo_run.hpp"
 
 namespace metier::iiwa_driver {
-
-/// Settings for the cabinet, besides motions.
-struct MotionCommanderOptions {
-    double force_tolerance = 10.0;  ///< largest inaccuracy of the cabinet's estimate of a contact
-                                    ///< force [N]
-    int tool = -1;                  ///< index in the station's setup; -1: none
-};
 
 /// Decides which command is sent to the cabinet next, and turns its answers into the state of the
 /// arm.
@@ -30,9 +24,10 @@ struct MotionCommanderOptions {
 /// except where the safety state changes.
 class MotionCommander {
 public:
-    /// \param model must outlive the commander
+    /// \param model   must outlive the commander
+    /// \param options with the tool and the force tolerance
     MotionCommander(device::ArmInfo info, const motion::RobotModel& model,
-                    const MotionCommanderOptions& options);
+                    const IiwaOptions& options);
 
     device::ArmCore& core() noexcept { return core_; }
     const device::ArmCore& core() const noexcept { return core_; }
@@ -90,7 +85,7 @@ private:
 
     device::ArmCore core_;
     const motion::RobotModel& model_;
-    const MotionCommanderOptions options_;
+    const IiwaOptions options_;
     device::RequestSlot<device::ControllerPlannedMotion, RunEnd> slot_;
     std::mutex admission_;  ///< one of attach() and move()
 

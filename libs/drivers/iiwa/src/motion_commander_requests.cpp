@@ -4,7 +4,6 @@
 
 #include "motion_check.hpp"
 #include "motion_commander.hpp"
-#include "run_outcome.hpp"
 
 // Requests to the commander, from any thread.
 

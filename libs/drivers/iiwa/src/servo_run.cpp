@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "commands.hpp"
@@ -106,11 +107,9 @@ bool ServoRun::accept(const device::JointArray& set_point) noexcept {
         if (!std::isfinite(value)) {
             return refuse({Kind::not_finite, axis, value, 0.0, {}});
         }
-        if (value < limits.lower - kJointRounding) {
-            return refuse({Kind::position, axis, value, limits.lower, {}});
-        }
-        if (value > limits.upper + kJointRounding) {
-            return refuse({Kind::position, axis, value, limits.upper, {}});
+        const double within = std::clamp(value, limits.lower, limits.upper);
+        if (std::abs(value - within) > kRounding) {
+            return refuse({Kind::position, axis, value, within, {}});
         }
         const double longest = kStepFactor * limits.velocity * cycle_ + kSmallStep;
         if (const double step = std::abs(value - commanded_[axis]); step > longest) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "metier/link/back_off.hpp"
 
 namespace metier::iiwa_driver {
 
@@ -23,7 +24,7 @@ constexpr auto kPause = std::chrono::milliseconds(200);
 
 }  // namespace
 
-Session::Session(Links links, Clients clients, const SessionOptions& options)
+Session::Session(Links links, Clients clients, const IiwaOptions& options)
     : links_(std::move(links)), clients_(std::move(clients)), options_(options) {}
 
 void Session::run(const std::stop_token& stop) {
@@ -32,7 +33,7 @@ void Session::run(const std::stop_token& stop) {
         if (link) {
             serve(*link, stop);
         } else if (link.error().code != Errc::timeout) {
-            pause(stop);
+            link::waitFor(stop, kPause);
         }
     }
 }
@@ -50,7 +51,7 @@ void Session::serve(link::TcpLink& link, const std::stop_token& stop) {
     clients_.commander.lost(fmt::format("{}: cabinet {}{}", clients_.commander.core().info().name,
                                         served.error().message, hint));
     clients_.signal();
-    pause(stop);
+    link::waitFor(stop, kPause);
 }
 
 Result<void> Session::poll(link::TcpLink& link, const std::stop_token& stop) {
@@ -124,11 +125,6 @@ void Session::awaitCycle(SteadyTime& scheduled) {
         return;
     }
     std::this_thread::sleep_until(scheduled);
-}
-
-void Session::pause(const std::stop_token& stop) {
-    std::unique_lock lock(pause_mutex_);
-    pause_.wait_for(lock, stop, kPause, [] { return false; });
 }
 
 }  // namespace metier::iiwa_driver

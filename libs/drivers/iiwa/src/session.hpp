@@ -2,24 +2,16 @@
 
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <stop_token>
 
 #include "flange_force.hpp"
-#include "metier/iiwa_driver/wire.hpp"
+#include "metier/iiwa_driver/iiwa_arm.hpp"
 #include "metier/link/link_guard.hpp"
 #include "metier/link/tcp_link.hpp"
 #include "motion_commander.hpp"
 
 namespace metier::iiwa_driver {
-
-struct SessionOptions {
-    Precision precision = Precision::float32;
-    std::chrono::nanoseconds cycle{std::chrono::milliseconds(10)};
-    std::chrono::nanoseconds answer_timeout{std::chrono::milliseconds(100)};
-};
 
 /// Waits until the cabinet connects, then sends one command per cycle and passes its answers on,
 /// until the connection is lost; then waits again.
@@ -42,7 +34,7 @@ public:
         link::LinkGuard guard;
     };
 
-    Session(Links links, Clients clients, const SessionOptions& options);
+    Session(Links links, Clients clients, const IiwaOptions& options);
 
     std::uint16_t port() const { return links_.listener.port(); }
     /// Runs until `stop` is requested; ends within one cycle after it.
@@ -57,16 +49,13 @@ private:
     Result<CabinetState> exchange(link::TcpLink& link, const Command& command,
                                   std::chrono::nanoseconds timeout);
     void awaitCycle(SteadyTime& scheduled);
-    void pause(const std::stop_token& stop);
 
     Links links_;
     Clients clients_;
-    const SessionOptions options_;
+    const IiwaOptions options_;
     bool answered_ = false;  ///< the cabinet has answered on this connection
     bool guarded_ = false;   ///< this connection
     std::array<std::byte, kLongestState + 1> buffer_{};
-    std::mutex pause_mutex_;
-    std::condition_variable_any pause_;
 };
 
 }  // namespace metier::iiwa_driver

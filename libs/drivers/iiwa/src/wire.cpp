@@ -73,13 +73,23 @@ Numbers takeNumbers(std::span<const std::byte> bytes, Precision precision) noexc
     return numbers;
 }
 
-Problem checkRange(const Numbers& numbers, std::size_t begin, std::size_t count,
-                   double largest) noexcept {
-    for (std::size_t i = begin; i < begin + count; ++i) {
+/// Elements that must be finite and may not be larger than this.
+struct Range {
+    std::size_t begin;
+    std::size_t count;
+    double largest;
+};
+constexpr std::array kRanges{
+    Range{kPosition, kAxes, kLargestPosition}, Range{kVelocity, kAxes, kLargestVelocity},
+    Range{kPlace, 3, kLargestDistance* kMillimetresPerMetre},
+    Range{kOrientation, 3, kLargestPosition}, Range{kLastError, 1, kLargestError}};
+
+Problem checkRange(const Numbers& numbers, const Range& range) noexcept {
+    for (std::size_t i = range.begin; i < range.begin + range.count; ++i) {
         if (!std::isfinite(numbers[i])) {
             return StateError{StateError::Kind::not_finite, i, numbers[i]};
         }
-        if (std::abs(numbers[i]) > largest) {
+        if (std::abs(numbers[i]) > range.largest) {
             return StateError{StateError::Kind::out_of_range, i, numbers[i]};
         }
     }
@@ -96,22 +106,11 @@ Problem checkFlags(const Numbers& numbers) noexcept {
 }
 
 Problem findProblem(const Numbers& numbers) noexcept {
-    if (auto problem = checkFlags(numbers)) {
-        return problem;
+    auto problem = checkFlags(numbers);
+    for (const auto& range : kRanges) {
+        problem = problem ? problem : checkRange(numbers, range);
     }
-    if (auto problem = checkRange(numbers, kPosition, kAxes, kLargestPosition)) {
-        return problem;
-    }
-    if (auto problem = checkRange(numbers, kVelocity, kAxes, kLargestVelocity)) {
-        return problem;
-    }
-    if (auto problem = checkRange(numbers, kPlace, 3, kLargestDistance * kMillimetresPerMetre)) {
-        return problem;
-    }
-    if (auto problem = checkRange(numbers, kOrientation, 3, kLargestPosition)) {
-        return problem;
-    }
-    return checkRange(numbers, kLastError, 1, kLargestError);
+    return problem;
 }
 
 device::JointArray joints(const Numbers& numbers, std::size_t begin) noexcept {

@@ -22,7 +22,7 @@ using ::testing::Not;
 
 class MotionCommanderTest : public ::testing::Test {
 protected:
-    explicit MotionCommanderTest(const MotionCommanderOptions& options = {})
+    explicit MotionCommanderTest(const IiwaOptions& options = {})
         : commander_({"iiwa", std::vector<std::string>(kAxes, "A"), 10ms}, model_, options) {}
 
     void connect() {
@@ -147,7 +147,7 @@ TEST_F(MotionCommanderTest, IsTheFaultOfAnotherArmUntilItIsGone) {
 
 class MotionCommanderWithATool : public MotionCommanderTest {
 protected:
-    MotionCommanderWithATool() : MotionCommanderTest({.force_tolerance = 10.0, .tool = 3}) {}
+    MotionCommanderWithATool() : MotionCommanderTest({.tool = 3}) {}
 };
 
 TEST_F(MotionCommanderWithATool, AttachesIt) {

@@ -7,11 +7,11 @@
 #include "arm_bench.hpp"
 #include "cabinet_settings.hpp"
 #include "commands.hpp"
+#include "controller_planned_run.hpp"
 #include "flange_force.hpp"
 #include "metier/motion/frame.hpp"
 #include "motion_check.hpp"
 #include "readiness.hpp"
-#include "run_outcome.hpp"
 
 namespace metier::iiwa_driver {
 namespace {

@@ -37,38 +37,20 @@ struct IiwaOptions {
 /// arm does not go on when somebody makes the cabinet ready again. If the connection ends for any
 /// reason, the robot application stops the arm and ends; an operator has to start it again.
 /// Source: docs/protocols/iiwa.md.
-class IiwaArm final : public device::Arm, public device::MotionPlanner {
+///
+/// Its destructor closes the connection; the cabinet then stops a moving arm.
+class IiwaArm : public device::Arm, public device::MotionPlanner {
 public:
     /// \param model model of an arm with 7 axes; must outlive the arm
     /// Errors: invalid_argument (model, cycle, not an address of this computer), already_exists
     /// (the port is taken).
     static Result<std::unique_ptr<IiwaArm>> create(const IiwaOptions& options,
                                                    const motion::RobotModel& model);
-    /// Closes the connection; the cabinet then stops a moving arm.
-    ~IiwaArm() override;
 
     /// TCP port at which the cabinet is awaited.
-    std::uint16_t port() const;
+    virtual std::uint16_t port() const = 0;
     /// Sensor of the wrench at the flange that the cabinet estimates; lives as long as the arm.
-    device::ForceTorqueSensor& flangeForce() noexcept;
-
-    const device::ArmInfo& info() const noexcept override;
-    device::ArmState state() const noexcept override;
-    device::Safety safety() const override;
-    const TimeHistogram* cycleJitter() const noexcept override;
-    Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
-    void stop() noexcept override;
-    Result<void> resetFault() override;
-    device::Registration onSafetyChange(SafetyCallback callback) override;
-
-    Result<void> move(const device::ControllerPlannedMotion& motion, Done done) override;
-    void stopMotion() noexcept override;
-
-private:
-    class Machine;
-    explicit IiwaArm(std::unique_ptr<Machine> machine);
-
-    std::unique_ptr<Machine> machine_;
+    virtual device::ForceTorqueSensor& flangeForce() noexcept = 0;
 };
 
 }  // namespace metier::iiwa_driver
