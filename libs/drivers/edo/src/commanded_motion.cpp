@@ -35,7 +35,7 @@ std::string toText(const Violation& violation) {
 }
 
 CommandedMotion::CommandedMotion(const AxisOptions& axes)
-    : axes_(axes), position_(axes.velocity.size()), velocity_(axes.velocity.size()) {}
+    : axes_(axes), position_(axes.size()), velocity_(axes.size()) {}
 
 void CommandedMotion::reset(const device::JointArray& position) noexcept {
     position_ = position;
@@ -70,14 +70,14 @@ std::optional<Violation> CommandedMotion::check(std::size_t axis, double positio
         return Violation{Violation::Kind::not_finite, axis, position, 0.0};
     }
     const double speed = (position - position_[axis]) / kCycleSeconds;
-    if (std::abs(speed) > kStepReserve * axes_.velocity[axis]) {
-        return Violation{Violation::Kind::step, axis, speed, axes_.velocity[axis]};
+    if (std::abs(speed) > kStepReserve * axes_[axis].velocity) {
+        return Violation{Violation::Kind::step, axis, speed, axes_[axis].velocity};
     }
-    const bool outward = speed > 0.0 ? position > axes_.upper[axis] + kPositionReserve
-                                     : position < axes_.lower[axis] - kPositionReserve;
+    const bool outward = speed > 0.0 ? position > axes_[axis].upper + kPositionReserve
+                                     : position < axes_[axis].lower - kPositionReserve;
     if (outward && speed != 0.0) {
         return Violation{Violation::Kind::position, axis, position,
-                         speed > 0.0 ? axes_.upper[axis] : axes_.lower[axis]};
+                         speed > 0.0 ? axes_[axis].upper : axes_[axis].lower};
     }
     return std::nullopt;
 }
@@ -88,7 +88,7 @@ void CommandedMotion::hold() noexcept {
 
 void CommandedMotion::brake() noexcept {
     for (std::size_t axis = 0; axis < position_.size(); ++axis) {
-        const double change = axes_.deceleration[axis] * kCycleSeconds;
+        const double change = axes_[axis].acceleration * kCycleSeconds;
         auto& velocity = velocity_[axis];
         velocity = std::abs(velocity) <= change ? 0.0 : velocity - std::copysign(change, velocity);
         position_[axis] += velocity * kCycleSeconds;

@@ -1,7 +1,7 @@
 #include <memory>
 #include <utility>
 
-#include "edo_connection.hpp"
+#include "edo_arm.hpp"
 #include "metier/device/driver.hpp"
 
 namespace metier::device {
@@ -11,10 +11,8 @@ Driver edoDriver();
 namespace {
 
 struct Edo {
-    explicit Edo(edo_driver::EdoOptions options)
-        : connection(std::move(options)), arm(connection), gripper(connection) {}
+    explicit Edo(edo_driver::EdoOptions options) : arm(std::move(options)), gripper(arm) {}
 
-    edo_driver::EdoConnection connection;
     edo_driver::EdoArm arm;
     edo_driver::EdoGripper gripper;
 };

@@ -18,8 +18,7 @@ constexpr int kHeldState = 8;
 
 /// The three numbers behind the last underscore.
 std::optional<Version> parse(std::string_view software) {
-    software.remove_prefix(software.rfind('_') == std::string_view::npos ? 0
-                                                                         : software.rfind('_') + 1);
+    software.remove_prefix(software.rfind('_') + 1);  // npos + 1 is 0
     Version version{};
     const char* at = software.data();
     const char* const end = at + software.size();

@@ -37,6 +37,24 @@ SafetyState stopKind(std::uint32_t opcode) {
                                                         : SafetyState::protective_stop;
 }
 
+std::string stateName(std::uint8_t state) {
+    if (state == MachineState::command) {
+        return "COMMAND";
+    }
+    return state < kNames.size() ? std::string(kNames[state]) : fmt::format("state {}", state);
+}
+
+std::string opcodeText(std::uint32_t opcode) {
+    std::string text;
+    for (std::uint32_t bit = 0; bit < 32; ++bit) {
+        if ((opcode >> bit & 1U) != 0) {
+            text += text.empty() ? "" : ", ";
+            text += bit < kBits.size() ? std::string(kBits[bit]) : fmt::format("bit {}", bit);
+        }
+    }
+    return text;
+}
+
 device::Safety unusable(SafetyState state, const MachineState& machine, std::string_view advice) {
     return {state, fmt::format("{}{}{}", toText(machine), advice.empty() ? "" : ": ", advice)};
 }
@@ -56,24 +74,6 @@ device::Safety byOpcode(const MachineState& machine) {
 }
 
 }  // namespace
-
-std::string stateName(std::uint8_t state) {
-    if (state == MachineState::command) {
-        return "COMMAND";
-    }
-    return state < kNames.size() ? std::string(kNames[state]) : fmt::format("state {}", state);
-}
-
-std::string opcodeText(std::uint32_t opcode) {
-    std::string text;
-    for (std::uint32_t bit = 0; bit < 32; ++bit) {
-        if ((opcode >> bit & 1U) != 0) {
-            text += text.empty() ? "" : ", ";
-            text += bit < kBits.size() ? std::string(kBits[bit]) : fmt::format("bit {}", bit);
-        }
-    }
-    return text;
-}
 
 std::string toText(const MachineState& machine) {
     const auto bits = opcodeText(machine.opcode);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "metier/base/numbers.hpp"
+#include "units.hpp"
 
 namespace metier::edo_driver {
 namespace {
@@ -19,23 +19,18 @@ Duration seconds(double value) {
 /// Without a model: the controller's own configuration (docs/protocols/edo.md#axes).
 motion::JointLimits defaultLimits(std::size_t axis) {
     const bool wrist = axis >= 3;
-    return {-kStroke[axis] * kDegree, kStroke[axis] * kDegree, (wrist ? 33.59 : 22.79) * kDegree,
-            (wrist ? 67.2 : 45.6) * kDegree, 0.0};
+    return {-kStroke[axis] * kRadiansPerDegree, kStroke[axis] * kRadiansPerDegree,
+            (wrist ? 33.59 : 22.79) * kRadiansPerDegree, (wrist ? 67.2 : 45.6) * kRadiansPerDegree,
+            0.0};
 }
 
 void readAxes(const motion::RobotModel* model, EdoOptions& options) {
     const auto count = model != nullptr ? model->axisCount() : options.layout.axes;
     options.layout.axes = count;
-    options.axes.lower = device::JointArray(count);
-    options.axes.upper = options.axes.lower;
-    options.axes.velocity = options.axes.lower;
-    options.axes.deceleration = options.axes.lower;
     for (std::size_t axis = 0; axis < count; ++axis) {
-        const auto limits = model != nullptr ? model->limits(axis) : defaultLimits(axis);
-        options.axes.lower[axis] = limits.lower;
-        options.axes.upper[axis] = limits.upper;
-        options.axes.velocity[axis] = limits.velocity;
-        options.axes.deceleration[axis] = kBrakeReserve * limits.acceleration;
+        auto& limits =
+            options.axes.emplace_back(model != nullptr ? model->limits(axis) : defaultLimits(axis));
+        limits.acceleration *= kBrakeReserve;
         options.axis_names.push_back(model != nullptr ? model->chain().joints[axis].name
                                                       : fmt::format("J{}", axis + 1));
     }
@@ -59,8 +54,9 @@ void readGripper(const cell::Settings& settings, GripperOptions& gripper) {
     gripper.stroke = settings.numberOr("stroke", gripper.stroke, 0.001, 0.2);
     gripper.speed = settings.numberOr("gripper_speed", gripper.speed, 0.001, 1.0);
     gripper.grasp_shortfall =
-        settings.numberOr("grasp_shortfall_mm", gripper.grasp_shortfall / kMillimetre, 0.1, 50) *
-        kMillimetre;
+        settings.numberOr("grasp_shortfall_mm", gripper.grasp_shortfall / kMetresPerMillimetre, 0.1,
+                          50) *
+        kMetresPerMillimetre;
     gripper.grasp_current = settings.numberOr("grasp_current", gripper.grasp_current, 0, 10);
     gripper.timeout = seconds(settings.numberOr("gripper_timeout", 10, 0.1, 120));
 }
@@ -92,7 +88,7 @@ Result<EdoOptions> readOptions(const device::OpenRequest& request) {
         settings.numberOr("following_distance", options.following.distance, 0.001, 3);
     options.reset.steps =
         static_cast<std::uint32_t>(std::lround(settings.numberOr("reset_steps", 2000, 1, 100'000)));
-    options.reset.offset = settings.numberOr("reset_offset_deg", 3.5, 0, 10) * kDegree;
+    options.reset.offset = settings.numberOr("reset_offset_deg", 3.5, 0, 10) * kRadiansPerDegree;
     readTimes(settings, options);
     readGripper(settings, options.gripper);
     if (request.model != nullptr && request.model->axisCount() > kMaxJoints - 1) {

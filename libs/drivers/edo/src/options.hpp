@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "metier/base/clock.hpp"
 #include "metier/device/driver.hpp"
@@ -13,13 +14,8 @@ namespace metier::edo_driver {
 
 using Duration = std::chrono::nanoseconds;
 
-/// Limits of the axes that the driver assumes. One value per axis: [rad], [rad/s], [rad/s2].
-struct AxisOptions {
-    device::JointArray lower;
-    device::JointArray upper;
-    device::JointArray velocity;
-    device::JointArray deceleration;  ///< deceleration of the driver's own braking
-};
+/// Limits of the axes that the driver assumes; the acceleration is that of its own braking.
+using AxisOptions = std::vector<motion::JointLimits>;
 
 /// Thresholds for comparing set-points with the motion of the joints.
 struct FollowingOptions {

@@ -12,53 +12,68 @@ struct Published {
     std::string_view message;
 };
 
+/// Reads an object: `read` takes the value of one key and returns false if it is unusual.
+template <typename Read>
+bool readObject(JsonCursor& cursor, const Read& read) noexcept {
+    cursor.enterObject();
+    while (const auto key = cursor.nextKey()) {
+        if (!read(*key)) {
+            return false;
+        }
+    }
+    return cursor.ok();
+}
+
+bool skip(JsonCursor& cursor) noexcept {
+    cursor.skip();
+    return true;
+}
+
+template <typename Integer>
+bool readInteger(JsonCursor& cursor, std::int64_t low, std::int64_t high, Integer& to) noexcept {
+    const auto value = cursor.integer();
+    to = static_cast<Integer>(value);
+    return cursor.ok() && value >= low && value <= high;
+}
+
+template <typename Message>
+std::optional<Incoming> ifUsual(bool usual, const Message& message) noexcept {
+    return usual ? std::optional<Incoming>(message) : std::nullopt;
+}
+
 std::optional<Published> split(std::string_view text) noexcept {
     JsonCursor cursor(text);
     Published parts;
     std::string_view op;
-    cursor.enterObject();
-    while (const auto key = cursor.nextKey()) {
-        if (*key == "op") {
+    const bool whole = readObject(cursor, [&](std::string_view key) {
+        if (key == "op") {
             op = cursor.string();
-        } else if (*key == "topic") {
+        } else if (key == "topic") {
             parts.topic = cursor.string();
-        } else if (*key == "msg") {
-            parts.message = cursor.skip();
         } else {
-            cursor.skip();
+            const auto value = cursor.skip();
+            parts.message = key == "msg" ? value : parts.message;
         }
-    }
-    const bool usual = cursor.ok() && cursor.atEnd() && op == "publish";
-    return usual ? std::optional(parts) : std::nullopt;
-}
-
-/// An integer within the limits; nothing is what an unusual message has.
-std::optional<std::int64_t> integer(JsonCursor& cursor, std::int64_t low,
-                                    std::int64_t high) noexcept {
-    const auto value = cursor.integer();
-    return cursor.ok() && value >= low && value <= high ? std::optional(value) : std::nullopt;
+        return true;
+    });
+    return whole && cursor.atEnd() && op == "publish" ? std::optional(parts) : std::nullopt;
 }
 
 bool readJoint(JsonCursor& cursor, double unit, JointSample& sample) noexcept {
-    cursor.enterObject();
-    while (const auto key = cursor.nextKey()) {
-        if (*key == "position") {
+    return readObject(cursor, [&](std::string_view key) {
+        if (key == "position") {
             sample.position = cursor.numberOrNull() * unit;
-        } else if (*key == "velocity") {
+        } else if (key == "velocity") {
             sample.velocity = cursor.numberOrNull() * unit;
-        } else if (*key == "current") {
+        } else if (key == "current") {
             sample.current = cursor.numberOrNull();
-        } else if (*key == "commandFlag") {
-            const auto flags = integer(cursor, 0, 0xffff);
-            if (!flags) {
-                return false;
-            }
-            sample.flags = static_cast<std::uint32_t>(*flags);
+        } else if (key == "commandFlag") {
+            return readInteger(cursor, 0, 0xffff, sample.flags);
         } else {
             cursor.skip();
         }
-    }
-    return cursor.ok();
+        return true;
+    });
 }
 
 bool readList(JsonCursor& cursor, const JointLayout& layout, JointStates& states) noexcept {
@@ -77,56 +92,29 @@ bool readList(JsonCursor& cursor, const JointLayout& layout, JointStates& states
 std::optional<Incoming> readJointStates(JsonCursor cursor, const JointLayout& layout) noexcept {
     JointStates states;
     bool found = false;
-    cursor.enterObject();
-    while (const auto key = cursor.nextKey()) {
-        if (*key != "joints") {
-            cursor.skip();
-        } else if (!readList(cursor, layout, states)) {
-            return std::nullopt;
-        } else {
-            found = true;
-        }
-    }
-    return found && cursor.ok() ? std::optional<Incoming>(states) : std::nullopt;
+    const bool usual = readObject(cursor, [&](std::string_view key) {
+        found = found || key == "joints";
+        return key == "joints" ? readList(cursor, layout, states) : skip(cursor);
+    });
+    return ifUsual(usual && found, states);
 }
 
 std::optional<Incoming> readMachineState(JsonCursor cursor) noexcept {
     MachineState machine;
-    cursor.enterObject();
-    while (const auto key = cursor.nextKey()) {
-        const bool state = *key == "current_state";
-        if (!state && *key != "opcode") {
-            cursor.skip();
-            continue;
-        }
-        const auto value = integer(cursor, 0, state ? 0xff : 0xffff'ffff);
-        if (!value) {
-            return std::nullopt;
-        }
-        if (state) {
-            machine.state = static_cast<std::uint8_t>(*value);
-        } else {
-            machine.opcode = static_cast<std::uint32_t>(*value);
-        }
-    }
-    return cursor.ok() ? std::optional<Incoming>(machine) : std::nullopt;
+    const bool usual = readObject(cursor, [&](std::string_view key) {
+        return key == "current_state" ? readInteger(cursor, 0, 0xff, machine.state)
+               : key == "opcode"      ? readInteger(cursor, 0, 0xffff'ffff, machine.opcode)
+                                      : skip(cursor);
+    });
+    return ifUsual(usual, machine);
 }
 
 std::optional<Incoming> readAlgorithmState(JsonCursor cursor) noexcept {
     AlgorithmState algorithm;
-    cursor.enterObject();
-    while (const auto key = cursor.nextKey()) {
-        if (*key != "data") {
-            cursor.skip();
-            continue;
-        }
-        const auto value = integer(cursor, -128, 127);
-        if (!value) {
-            return std::nullopt;
-        }
-        algorithm.value = static_cast<int>(*value);
-    }
-    return cursor.ok() ? std::optional<Incoming>(algorithm) : std::nullopt;
+    const bool usual = readObject(cursor, [&](std::string_view key) {
+        return key == "data" ? readInteger(cursor, -128, 127, algorithm.value) : skip(cursor);
+    });
+    return ifUsual(usual, algorithm);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <cstddef>
+#include <memory_resource>
 #include <utility>
 #include <vector>
 
@@ -31,74 +32,24 @@ using boost::system::error_code;
 constexpr std::size_t kLongestMessage = std::size_t{1} << 20U;
 constexpr std::size_t kUsualMessage = std::size_t{1} << 16U;
 
-/// Memory for the pending operations of one direction, so that none of them allocates.
-class OperationMemory {
-public:
-    void* take(std::size_t size) {
-        for (auto& block : blocks_) {
-            if (!block.used && size <= block.bytes.size()) {
-                block.used = true;
-                return block.bytes.data();
-            }
-        }
-        return ::operator new(size);
-    }
-
-    void giveBack(void* memory) noexcept {
-        for (auto& block : blocks_) {
-            if (memory == block.bytes.data()) {
-                block.used = false;
-                return;
-            }
-        }
-        ::operator delete(memory);
-    }
-
-private:
-    struct Block {
-        alignas(std::max_align_t) std::array<std::byte, 2048> bytes;
-        bool used = false;
-    };
-    std::array<Block, 4> blocks_{};
-};
-
-template <typename T>
-class OperationAllocator {
-public:
-    using value_type = T;
-    explicit OperationAllocator(OperationMemory& memory) noexcept : memory_(&memory) {}
-    template <typename U>
-    OperationAllocator(const OperationAllocator<U>& other) noexcept  // NOLINT: as allocators are
-        : memory_(other.memory_) {}
-
-    T* allocate(std::size_t count) { return static_cast<T*>(memory_->take(count * sizeof(T))); }
-    void deallocate(T* memory, std::size_t) noexcept { memory_->giveBack(memory); }
-    template <typename U>
-    bool operator==(const OperationAllocator<U>& other) const noexcept {
-        return memory_ == other.memory_;
-    }
-
-private:
-    template <typename U>
-    friend class OperationAllocator;
-    OperationMemory* memory_;
-};
-
 /// One direction of the link: at most one operation at a time.
 struct Direction {
-    OperationMemory memory{};
+    // For its operation, so that the heap is not used.
+    std::array<std::byte, std::size_t{1} << 15U> storage{};
+    std::pmr::monotonic_buffer_resource buffer{storage.data(), storage.size()};
+    std::pmr::unsynchronized_pool_resource memory{{4, 4096}, &buffer};
     bool pending = false;
     error_code error{};
 };
 
 /// Notes how an operation ended.
 struct Ended {
-    using allocator_type = OperationAllocator<std::byte>;
+    using allocator_type = std::pmr::polymorphic_allocator<std::byte>;
 
     Direction* direction;
 
     // NOLINTNEXTLINE(readability-identifier-naming): so Asio asks for it
-    allocator_type get_allocator() const noexcept { return allocator_type(direction->memory); }
+    allocator_type get_allocator() const noexcept { return &direction->memory; }
     template <typename... Ignored>
     void operator()(error_code error, const Ignored&...) const noexcept {
         direction->error = error;

@@ -22,7 +22,7 @@ device::JointArray both(double first, double second) {
 }
 
 /// Two axes of +-1 rad, 0.4 rad/s, braking with 2 rad/s2.
-const AxisOptions kAxes{both(-1, -1), both(1, 1), both(0.4, 0.4), both(2, 2)};
+const AxisOptions kAxes(2, {-1.0, 1.0, 0.4, 2.0, 0.0});
 const SteadyTime kStart{1000s};
 
 TEST(CommandedMotion, BrakesEachAxisOnItsOwn) {

@@ -6,7 +6,7 @@
 #include <future>
 #include <mutex>
 
-#include "edo_connection.hpp"
+#include "edo_arm.hpp"
 #include "fake_edo.hpp"
 #include "metier/device/driver.hpp"
 #include "rosbridge_server.hpp"

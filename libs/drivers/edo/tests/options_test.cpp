@@ -32,7 +32,7 @@ TEST(Options, HaveDefaults) {
     EXPECT_EQ(options.joint_timeout, 100ms);
     EXPECT_NEAR(options.reset.offset, 3.5 * std::numbers::pi / 180.0, 1e-12);
     EXPECT_FALSE(options.start_on_connect);
-    EXPECT_NEAR(options.axes.velocity[0], 22.79 * std::numbers::pi / 180.0, 1e-12);
+    EXPECT_NEAR(options.axes[0].velocity, 22.79 * std::numbers::pi / 180.0, 1e-12);
 }
 
 TEST(Options, AreRead) {
@@ -63,11 +63,11 @@ TEST(Options, HaveTheLimitsOfTheRobotsOwnConfiguration) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
         const bool wrist = axis >= 3;
         EXPECT_EQ(options.axis_names[axis], "J" + std::to_string(axis + 1));
-        EXPECT_DOUBLE_EQ(options.axes.lower[axis], -options.axes.upper[axis]);
-        EXPECT_NEAR(options.axes.velocity[axis], (wrist ? 33.59 : 22.79) * kDegree, 1e-12);
-        EXPECT_NEAR(options.axes.deceleration[axis], 2 * (wrist ? 67.2 : 45.6) * kDegree, 1e-12);
+        EXPECT_DOUBLE_EQ(options.axes[axis].lower, -options.axes[axis].upper);
+        EXPECT_NEAR(options.axes[axis].velocity, (wrist ? 33.59 : 22.79) * kDegree, 1e-12);
+        EXPECT_NEAR(options.axes[axis].acceleration, 2 * (wrist ? 67.2 : 45.6) * kDegree, 1e-12);
     }
-    EXPECT_NEAR(options.axes.upper[1], 99 * kDegree, 1e-12);
+    EXPECT_NEAR(options.axes[1].upper, 99 * kDegree, 1e-12);
 }
 
 TEST(Options, HaveTheNamesAndLimitsOfTheModelIfThereIsOne) {
@@ -79,10 +79,10 @@ TEST(Options, HaveTheNamesAndLimitsOfTheModelIfThereIsOne) {
     for (std::size_t axis = 0; axis < model.axisCount(); ++axis) {
         const auto& limits = model.limits(axis);
         EXPECT_EQ(options.axis_names[axis], model.chain().joints[axis].name);
-        EXPECT_EQ(options.axes.lower[axis], limits.lower);
-        EXPECT_EQ(options.axes.upper[axis], limits.upper);
-        EXPECT_EQ(options.axes.velocity[axis], limits.velocity);
-        EXPECT_EQ(options.axes.deceleration[axis], 2 * limits.acceleration);
+        EXPECT_EQ(options.axes[axis].lower, limits.lower);
+        EXPECT_EQ(options.axes[axis].upper, limits.upper);
+        EXPECT_EQ(options.axes[axis].velocity, limits.velocity);
+        EXPECT_EQ(options.axes[axis].acceleration, 2 * limits.acceleration);
     }
 }
 

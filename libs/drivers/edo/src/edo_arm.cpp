@@ -1,9 +1,8 @@
-#include "edo_connection.hpp"
+#include "edo_arm.hpp"
 
-#include <algorithm>
-#include <condition_variable>
 #include <utility>
 
+#include "metier/link/back_off.hpp"
 #include "wire.hpp"
 
 namespace metier::edo_driver {
@@ -19,8 +18,6 @@ constexpr auto kSendTime = 100ms;
 // Longest wait for a message; the robot sends one each 10 ms at least.
 constexpr auto kTick = 20ms;
 constexpr auto kCloseTime = 2s;
-constexpr std::chrono::milliseconds kFirstPause = 200ms;
-constexpr std::chrono::milliseconds kLongestPause = 2s;
 
 SteadyTime now() {
     return std::chrono::steady_clock::now();
@@ -30,17 +27,10 @@ device::ArmInfo infoFor(const EdoOptions& options) {
     return {options.name, options.axis_names, EdoOptions::kCycle};
 }
 
-void pause(std::chrono::milliseconds time, const std::stop_token& stop) {
-    std::mutex mutex;
-    std::condition_variable_any stopped;
-    std::unique_lock lock(mutex);
-    stopped.wait_for(lock, stop, time, [] { return false; });
-}
-
 }  // namespace
 
 /// Sends through the link and keeps the first failure.
-class EdoConnection::LinkWire final : public Wire {
+class EdoArm::LinkWire final : public Wire {
 public:
     explicit LinkWire(WebSocketLink& link) : link_(link) {}
 
@@ -56,7 +46,7 @@ private:
     Result<void> state_;
 };
 
-EdoConnection::EdoConnection(EdoOptions options)
+EdoArm::EdoArm(EdoOptions options)
     : options_(std::move(options)),
       core_(infoFor(options_)),
       session_(options_, core_),
@@ -66,12 +56,12 @@ EdoConnection::EdoConnection(EdoOptions options)
       }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-EdoConnection::~EdoConnection() {
+EdoArm::~EdoArm() {
     thread_.request_stop();
     thread_.join();
 }
 
-Result<void> EdoConnection::attach(std::shared_ptr<device::SetPointSource> source) {
+Result<void> EdoArm::attach(std::shared_ptr<device::SetPointSource> source) {
     const std::lock_guard lock(turn_);
     if (session_.gripperSlot().occupied()) {
         return fail(Errc::resource_unavailable, options_.name + ": the gripper moves");
@@ -79,8 +69,8 @@ Result<void> EdoConnection::attach(std::shared_ptr<device::SetPointSource> sourc
     return core_.attach(std::move(source));
 }
 
-Result<void> EdoConnection::moveJaws(GripperTask::Kind kind, const device::GripperRequest& request,
-                                     device::Gripper::Done done) {
+Result<void> EdoArm::moveJaws(GripperTask::Kind kind, const device::GripperRequest& request,
+                              device::Gripper::Done done) {
     const auto task = taskFor(kind, request, options_.gripper);
     if (!task) {
         return fail(task.error().code, options_.name + " gripper: " + task.error().message);
@@ -96,13 +86,13 @@ Result<void> EdoConnection::moveJaws(GripperTask::Kind kind, const device::Gripp
     return session_.gripperSlot().post(*task, std::move(done));
 }
 
-device::GripperState EdoConnection::gripperState() const noexcept {
+device::GripperState EdoArm::gripperState() const noexcept {
     auto state = session_.gripperState();
     state.safety = core_.safetyState();
     return state;
 }
 
-Result<void> EdoConnection::resetFault() {
+Result<void> EdoArm::resetFault() {
     const auto safety = core_.safety();
     if (safety.state == SafetyState::normal) {
         return {};
@@ -120,25 +110,27 @@ Result<void> EdoConnection::resetFault() {
 
 // ---- cycle thread ------------------------------------------------------------------------------
 
-void EdoConnection::run(const std::stop_token& stop) {
-    auto next_pause = kFirstPause;
+void EdoArm::run(const std::stop_token& stop) {
+    link::BackOff back_off;
     while (!stop.stop_requested()) {
         auto link = WebSocketLink::connect(options_.host, options_.port, now() + kConnectTime);
         Result<void> served = link ? serve(*link, stop) : fail(link.error());
         if (served) {
             break;
         }
-        next_pause = link ? kFirstPause : std::min(2 * next_pause, kLongestPause);
+        if (link) {
+            back_off.reset();
+        }
         session_.linkDown(served.error().message);
         tell();
-        pause(next_pause, stop);
+        back_off.wait(stop);
     }
     session_.letGo("the driver was shut down");
     tell();
 }
 
 /// \return nothing once the driver is to end, else why the link is of no use any more
-Result<void> EdoConnection::serve(WebSocketLink& link, const std::stop_token& stop) {
+Result<void> EdoArm::serve(WebSocketLink& link, const std::stop_token& stop) {
     LinkWire wire(link);
     session_.linkUp(now(), wire);
     while (!stop.stop_requested()) {
@@ -148,7 +140,7 @@ Result<void> EdoConnection::serve(WebSocketLink& link, const std::stop_token& st
     return {};
 }
 
-Result<void> EdoConnection::step(WebSocketLink& link, LinkWire& wire) {
+Result<void> EdoArm::step(WebSocketLink& link, LinkWire& wire) {
     const auto text = link.receive(now() + kTick);
     if (text) {
         session_.onText(*text, now(), wire);
@@ -162,7 +154,7 @@ Result<void> EdoConnection::step(WebSocketLink& link, LinkWire& wire) {
     return wire.state();
 }
 
-void EdoConnection::close(WebSocketLink& link, LinkWire& wire) {
+void EdoArm::close(WebSocketLink& link, LinkWire& wire) {
     const auto deadline = now() + kCloseTime;
     while (!session_.closed() && now() < deadline) {
         session_.close();
@@ -172,19 +164,10 @@ void EdoConnection::close(WebSocketLink& link, LinkWire& wire) {
     }
 }
 
-void EdoConnection::tell() noexcept {
+void EdoArm::tell() noexcept {
     if (core_.toTell() || session_.gripperSlot().toTell()) {
         notifier_.signal();
     }
-}
-
-// ---- gripper -----------------------------------------------------------------------------------
-
-EdoGripper::EdoGripper(EdoConnection& connection) : connection_(connection) {
-    const auto& options = connection.options();
-    info_.name = options.name + " gripper";
-    info_.stroke = options.gripper.stroke;
-    info_.max_speed = options.gripper.speed;
 }
 
 }  // namespace metier::edo_driver
