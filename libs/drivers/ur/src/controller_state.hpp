@@ -76,9 +76,6 @@ struct ControllerState {
     Joints target_q{};       ///< [rad]
     Joints actual_q{};       ///< [rad]
     Joints actual_qd{};      ///< [rad/s]
-    /// Force along x, y, z [N] and torque about x, y, z [Nm] at the tool, in the base frame; zeros
-    /// if the controller does not send it.
-    std::array<double, 6> tool_force{};
     RobotMode robot_mode = RobotMode::no_controller;
     SafetyMode safety_mode = SafetyMode::undefined;
     RuntimeState runtime_state = RuntimeState::stopped;

@@ -22,8 +22,7 @@ std::size_t sizeOf(std::string_view type) noexcept {
     return type == "VECTOR6D" ? 48 : type == "DOUBLE" ? 8 : 4;
 }
 
-template <std::size_t size>
-bool allFinite(const std::array<double, size>& values) noexcept {
+bool allFinite(const Joints& values) noexcept {
     return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
@@ -58,7 +57,7 @@ bool isPossible(const ControllerState& state) noexcept {
 bool isFinite(const ControllerState& state) noexcept {
     return std::isfinite(state.timestamp) && std::isfinite(state.speed_scaling) &&
            std::isfinite(state.target_speed_fraction) && allFinite(state.target_q) &&
-           allFinite(state.actual_q) && allFinite(state.actual_qd) && allFinite(state.tool_force);
+           allFinite(state.actual_q) && allFinite(state.actual_qd);
 }
 
 }  // namespace
@@ -88,7 +87,6 @@ OutputRecipe::OutputRecipe(std::int32_t register_base)
            "target_speed_fraction",
            "DOUBLE",
            {}},
-          {&ControllerState::tool_force, Need::optional, "actual_TCP_force", "VECTOR6D", {}},
       } {}
 
 std::vector<std::string> OutputRecipe::names() const {

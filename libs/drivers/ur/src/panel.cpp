@@ -22,11 +22,10 @@ constexpr auto kSlice = 5ms;  // time after which a new job or the end is notice
 
 }  // namespace
 
-Panel::Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script)
+Panel::Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings)
     : parts_(std::move(parts)),
       peer_(std::move(peer)),
       settings_(settings),
-      script_(script),
       recovery_(peer_, settings, parts_.newest, parts_.reporter),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -67,7 +66,7 @@ Result<void> Panel::upload(std::int32_t token) {
     const auto now = std::chrono::steady_clock::now();
     METIER_ASSIGN(auto link, link::TcpLink::connect(peer_.host, settings_.secondary_port,
                                                     now + kUploadTimeout));
-    const std::string script = servojScript(script_, token);
+    const std::string script = servojScript(settings_, token);
     METIER_TRY(link.send(std::as_bytes(std::span(script)), now + kUploadTimeout));
     script_link_ = std::move(link);
     close_script_link_ = now + kScriptLinkLife;

@@ -37,7 +37,7 @@ public:
         std::function<Observation()> newest;
     };
 
-    Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings, ScriptOptions script);
+    Panel(Parts parts, Recovery::Peer peer, const UrSettings& settings);
 
 private:
     void run(const std::stop_token& stop);
@@ -49,7 +49,6 @@ private:
     const Parts parts_;
     const Recovery::Peer peer_;
     const UrSettings settings_;
-    const ScriptOptions script_;
     Recovery recovery_;
     /// Kept open and read for a while: a close with unread bytes could discard the script.
     std::optional<link::TcpLink> script_link_;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint8_t kRobotState = 16;
 constexpr std::uint8_t kRobotMessage = 20;
 
-enum class SubPackage : std::uint8_t { robot_mode = 0, kinematics = 5, configuration = 6 };
+enum class SubPackage : std::uint8_t { kinematics = 5, configuration = 6 };
 enum class Message : std::uint8_t {
     text = 0,
     version = 3,
@@ -32,28 +32,10 @@ bool allFinite(const Joints& values) noexcept {
     return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-Result<void> readMode(ByteReader reader, Package& package) {
-    const auto size = reader.remaining();
-    ModeData mode;
-    reader.take(8 + 3);  // time stamp; connected, enabled, power on
-    mode.emergency_stopped = reader.uint8() != 0;
-    mode.protective_stopped = reader.uint8() != 0;
-    mode.program_running = reader.uint8() != 0;
-    mode.program_paused = reader.uint8() != 0;
-    mode.robot_mode = static_cast<RobotMode>(reader.number<std::int8_t>());
-    if (!reader.ok()) {
-        return malformed("robot mode", size);
-    }
-    package.mode = mode;
-    return {};
-}
-
 Result<void> readKinematics(ByteReader reader, Package& package) {
     const auto size = reader.remaining();
     Kinematics kinematics;
-    for (auto& checksum : kinematics.checksum) {
-        checksum = reader.number<std::uint32_t>();
-    }
+    reader.take(kAxes * sizeof(std::uint32_t));  // checksums
     kinematics.theta = reader.float64s<kAxes>();
     kinematics.a = reader.float64s<kAxes>();
     kinematics.d = reader.float64s<kAxes>();
@@ -78,8 +60,7 @@ Result<void> readConfiguration(ByteReader reader, Package& package) {
         configuration.max_acceleration[axis] = reader.float64();
     }
     reader.take((5 + 4 * kAxes) * sizeof(double));  // defaults of motions, nominal DH parameters
-    reader.take(2 * sizeof(std::int32_t));          // masterboard version, controller box
-    configuration.robot_type = reader.number<std::int32_t>();
+    reader.take(3 * sizeof(std::int32_t));  // masterboard version, controller box, type of arm
     if (!reader.ok() || !allFinite(configuration.lower) || !allFinite(configuration.upper) ||
         !allFinite(configuration.max_velocity) || !allFinite(configuration.max_acceleration)) {
         return malformed("configuration", size);
@@ -90,8 +71,6 @@ Result<void> readConfiguration(ByteReader reader, Package& package) {
 
 Result<void> readSubPackage(std::uint8_t type, std::span<const std::byte> body, Package& package) {
     switch (static_cast<SubPackage>(type)) {
-        case SubPackage::robot_mode:
-            return readMode(ByteReader(body), package);
         case SubPackage::kinematics:
             return readKinematics(ByteReader(body), package);
         case SubPackage::configuration:
@@ -116,14 +95,8 @@ Result<Package> readRobotState(ByteReader reader) {
 }
 
 Version readVersion(ByteReader& reader) {
-    Version version;
-    version.name = printable(reader.text(reader.uint8()));
-    version.major = reader.uint8();
-    version.minor = reader.uint8();
-    version.bugfix = reader.number<std::int32_t>();
-    version.build = reader.number<std::int32_t>();
-    version.date = printable(reader.restAsText());
-    return version;
+    reader.take(reader.uint8());  // name of the software
+    return {reader.uint8()};
 }
 
 Report readError(ByteReader& reader) {

@@ -21,7 +21,6 @@ inline constexpr std::size_t kMaxPackageSize = 65536;
 
 /// T_i = Rz(q_i + theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i) of this very arm. [rad], [m]
 struct Kinematics {
-    std::array<std::uint32_t, kAxes> checksum{};
     Joints theta{};
     Joints a{};
     Joints d{};
@@ -30,33 +29,19 @@ struct Kinematics {
     friend bool operator==(const Kinematics&, const Kinematics&) = default;
 };
 
-/// Limits of the controller's safety settings, and the type of its arm.
+/// Limits of the controller's safety settings.
 struct Configuration {
     Joints lower{};             ///< [rad]
     Joints upper{};             ///< [rad]
     Joints max_velocity{};      ///< [rad/s]
     Joints max_acceleration{};  ///< [rad/s2]
-    std::int32_t robot_type = 0;
 
     friend bool operator==(const Configuration&, const Configuration&) = default;
 };
 
-/// Content of the sub-package robot mode, as far as the driver uses it.
-struct ModeData {
-    bool emergency_stopped = false;
-    bool protective_stopped = false;
-    bool program_running = false;
-    bool program_paused = false;
-    RobotMode robot_mode = RobotMode::no_controller;
-};
-
+/// Version of the controller's software, as far as the driver uses it.
 struct Version {
-    std::string name;
     int major = 0;
-    int minor = 0;
-    int bugfix = 0;
-    int build = 0;
-    std::string date;
 };
 
 /// A message of the controller for a person.
@@ -77,7 +62,6 @@ struct Report {
 struct Package {
     std::optional<Kinematics> kinematics;
     std::optional<Configuration> configuration;
-    std::optional<ModeData> mode;
     std::optional<Version> version;
     std::optional<Report> report;
 };

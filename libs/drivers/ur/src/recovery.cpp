@@ -49,6 +49,12 @@ Result<dashboard::Client> Recovery::dial() const {
     return client;
 }
 
+Result<void> Recovery::command(dashboard::Client& client, std::string_view text,
+                               std::string_view expected) const {
+    const auto done = client.command(text, expected, commandDeadline());
+    return done ? done : refuse(done.error().message);
+}
+
 Result<void> Recovery::run(const std::stop_token& stop) {
     const auto now = newest_();
     if (!now.connected) {
@@ -88,11 +94,7 @@ Result<void> Recovery::unlock(const std::stop_token& stop) {
     // Their replies show only whether there was a popup; a link that fails now also fails below.
     (void)client.ask("close safety popup", commandDeadline());
     (void)client.ask("close popup", commandDeadline());
-    if (auto unlocked = client.command("unlock protective stop", "Protective stop releasing",
-                                       commandDeadline());
-        !unlocked) {
-        return refuse(unlocked.error().message);
-    }
+    METIER_TRY(command(client, "unlock protective stop", "Protective stop releasing"));
     return await(isSafe, kUnlockTimeout, "the protective stop was not released", stop);
 }
 
@@ -114,23 +116,15 @@ Result<void> Recovery::powerOn(const std::stop_token& stop) {
     }
     METIER_ASSIGN(auto client, dial());
     if (mode != RobotMode::idle) {
-        if (auto on = client.command("power on", "Powering on", commandDeadline()); !on) {
-            return refuse(on.error().message);
-        }
-        auto powered = await(
+        METIER_TRY(command(client, "power on", "Powering on"));
+        METIER_TRY(await(
             [](const ControllerState& state) {
                 return state.robot_mode == RobotMode::idle ||
                        state.robot_mode == RobotMode::running;
             },
-            kPowerTimeout, "the arm was not powered on", stop);
-        if (!powered) {
-            return powered;
-        }
+            kPowerTimeout, "the arm was not powered on", stop));
     }
-    if (auto released = client.command("brake release", "Brake releasing", commandDeadline());
-        !released) {
-        return refuse(released.error().message);
-    }
+    METIER_TRY(command(client, "brake release", "Brake releasing"));
     return await([](const ControllerState& s) { return s.robot_mode == RobotMode::running; },
                  kPowerTimeout, "the brakes were not released", stop);
 }
@@ -147,10 +141,7 @@ Result<void> Recovery::endPausedProgram(const std::stop_token& stop) {
 
 Result<void> Recovery::stopProgram() {
     METIER_ASSIGN(auto client, dial());
-    if (auto stopped = client.command("stop", "Stopped", commandDeadline()); !stopped) {
-        return refuse(stopped.error().message);
-    }
-    return {};
+    return command(client, "stop", "Stopped");
 }
 
 Result<void> Recovery::checkSlider() const {

@@ -18,7 +18,6 @@ struct Observation {
     ControllerState state;
     bool connected = false;
     bool standing = false;
-    SteadyTime stamp{};
 };
 
 /// Takes the steps at the dashboard that need no person, so that the arm may move again.
@@ -54,6 +53,9 @@ private:
     Result<void> await(const std::function<bool(const ControllerState&)>& reached,
                        std::chrono::nanoseconds time, const std::string& what,
                        const std::stop_token& stop) const;
+    /// Gives a command; any failure of it is a device_fault.
+    Result<void> command(dashboard::Client& client, std::string_view text,
+                         std::string_view expected) const;
     tl::unexpected<Error> refuse(const std::string& why) const;
 
     const Peer peer_;

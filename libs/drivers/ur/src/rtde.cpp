@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <iterator>
+
 #include "metier/base/text.hpp"
 #include "wire.hpp"
 
@@ -12,7 +14,7 @@ namespace {
 
 Bytes package(PackageType type, const Bytes& payload) {
     Bytes bytes;
-    ByteWriter writer(bytes);
+    ByteWriter writer(std::back_inserter(bytes));
     writer.number(static_cast<std::uint16_t>(kHeaderSize + payload.size()));
     writer.number(static_cast<std::uint8_t>(type));
     bytes.insert(bytes.end(), payload.begin(), payload.end());
@@ -52,17 +54,17 @@ Result<std::optional<Package>> firstPackage(const StreamBuffer& buffer) {
 
 Bytes requestProtocolVersion() {
     Bytes payload;
-    ByteWriter(payload).number(kProtocolVersion);
+    ByteWriter(std::back_inserter(payload)).number(kProtocolVersion);
     return package(PackageType::request_protocol_version, payload);
 }
 
-Bytes getControllerVersion() {
-    return package(PackageType::get_controller_version, {});
+Bytes request(PackageType type) {
+    return package(type, {});
 }
 
 Bytes setupOutputs(double frequency, const std::vector<std::string>& names) {
     Bytes payload;
-    ByteWriter writer(payload);
+    ByteWriter writer(std::back_inserter(payload));
     writer.float64(frequency);
     writer.text(fmt::format("{}", fmt::join(names, ",")));
     return package(PackageType::setup_outputs, payload);
@@ -70,16 +72,8 @@ Bytes setupOutputs(double frequency, const std::vector<std::string>& names) {
 
 Bytes setupInputs(const std::vector<std::string>& names) {
     Bytes payload;
-    ByteWriter(payload).text(fmt::format("{}", fmt::join(names, ",")));
+    ByteWriter(std::back_inserter(payload)).text(fmt::format("{}", fmt::join(names, ",")));
     return package(PackageType::setup_inputs, payload);
-}
-
-Bytes start() {
-    return package(PackageType::start, {});
-}
-
-Bytes pause() {
-    return package(PackageType::pause, {});
 }
 
 Result<bool> parseAccepted(std::span<const std::byte> payload) {
@@ -162,21 +156,10 @@ Result<void> checkSetpointReply(const RecipeReply& reply, std::int32_t register_
     return {};
 }
 
-namespace {
-
-/// push_back() on storage of a fixed size that is known to suffice.
-struct FixedBytes {
-    std::array<std::byte, kSetpointPackageSize> bytes{};
-    std::size_t size = 0;
-    void push_back(std::byte byte) noexcept { bytes.at(size++) = byte; }  // NOLINT: as containers
-};
-
-}  // namespace
-
 std::array<std::byte, kSetpointPackageSize> setpointPackage(std::uint8_t recipe_id,
                                                             const Setpoint& setpoint) noexcept {
-    FixedBytes out;
-    ByteWriter writer(out);
+    std::array<std::byte, kSetpointPackageSize> bytes{};
+    ByteWriter writer(bytes.begin());
     writer.number(static_cast<std::uint16_t>(kSetpointPackageSize));
     writer.number(static_cast<std::uint8_t>(PackageType::data));
     writer.number(recipe_id);
@@ -185,7 +168,7 @@ std::array<std::byte, kSetpointPackageSize> setpointPackage(std::uint8_t recipe_
     for (const double position : setpoint.position) {
         writer.float64(position);
     }
-    return out.bytes;
+    return bytes;
 }
 
 }  // namespace metier::ur_driver::rtde

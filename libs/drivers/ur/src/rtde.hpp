@@ -49,12 +49,11 @@ Result<std::optional<Package>> firstPackage(const StreamBuffer& buffer);
 
 // ---- what a client sends ----
 Bytes requestProtocolVersion();
-Bytes getControllerVersion();
+/// A package without content: get_controller_version, start, pause.
+Bytes request(PackageType type);
 /// \param frequency of the data packages [Hz]
 Bytes setupOutputs(double frequency, const std::vector<std::string>& names);
 Bytes setupInputs(const std::vector<std::string>& names);
-Bytes start();
-Bytes pause();
 
 // ---- answers of a controller. Errors of all: invalid_argument, the package is malformed ----
 /// Parses the answer to requestProtocolVersion, start and pause.

@@ -30,68 +30,50 @@ Result<RtdeSession> RtdeSession::open(const RtdeRequest& request, SteadyTime dea
 }
 
 Result<void> RtdeSession::negotiate(const RtdeRequest& request, SteadyTime deadline) {
-    const auto accepted =
-        ask(rtde::requestProtocolVersion(), deadline).and_then([](const rtde::Bytes& answer) {
-            return rtde::parseAccepted(answer);
-        });
+    METIER_ASSIGN(const bool accepted,
+                  ask(rtde::requestProtocolVersion(), deadline).and_then(rtde::parseAccepted));
     if (!accepted) {
-        return fail(accepted.error());
-    }
-    if (!*accepted) {
         return fail(Errc::not_supported, "the controller does not speak version 2 of RTDE");
     }
-    const auto version =
-        ask(rtde::getControllerVersion(), deadline).and_then([](const rtde::Bytes& answer) {
-            return rtde::parseControllerVersion(answer);
-        });
-    if (!version) {
-        return fail(version.error());
-    }
-    const double highest =
-        version->major < kFirstESeries ? kHighestFrequencyCb3 : kHighestFrequency;
+    METIER_ASSIGN(const auto version,
+                  ask(rtde::request(PackageType::get_controller_version), deadline)
+                      .and_then(rtde::parseControllerVersion));
+    const double highest = version.major < kFirstESeries ? kHighestFrequencyCb3 : kHighestFrequency;
     if (request.frequency > highest) {
         return fail(Errc::not_supported,
                     fmt::format("software {}.{} gives at most {} Hz, asked for are {} Hz: set "
                                 "frequency",
-                                version->major, version->minor, highest, request.frequency));
+                                version.major, version.minor, highest, request.frequency));
     }
-    return setUpOutputs(request.frequency, deadline)
-        .and_then([&] { return setUpInputs(request.register_base, deadline); })
-        .and_then([&] { return write({}, deadline); })
-        .and_then([&] { return ask(rtde::start(), deadline); })
-        .and_then([](const rtde::Bytes& answer) { return rtde::parseAccepted(answer); })
-        .and_then([](bool started) -> Result<void> {
-            if (!started) {
-                return fail(Errc::not_supported, "the controller does not start RTDE");
-            }
-            return {};
-        });
+    METIER_TRY(setUpOutputs(request.frequency, deadline));
+    METIER_TRY(setUpInputs(request.register_base, deadline));
+    METIER_TRY(write({}, deadline));
+    METIER_ASSIGN(const bool started,
+                  ask(rtde::request(PackageType::start), deadline).and_then(rtde::parseAccepted));
+    if (!started) {
+        return fail(Errc::not_supported, "the controller does not start RTDE");
+    }
+    return {};
 }
 
 Result<void> RtdeSession::setUpOutputs(double frequency, SteadyTime deadline) {
     for (;;) {
-        const auto in_force =
-            ask(rtde::setupOutputs(frequency, outputs_.names()), deadline)
-                .and_then([](const rtde::Bytes& a) { return rtde::parseRecipeReply(a); })
-                .and_then([this](const rtde::RecipeReply& reply) { return outputs_.take(reply); });
-        if (!in_force) {
-            return fail(in_force.error());
-        }
-        if (*in_force) {
+        METIER_ASSIGN(const bool in_force,
+                      ask(rtde::setupOutputs(frequency, outputs_.names()), deadline)
+                          .and_then(rtde::parseRecipeReply)
+                          .and_then([this](const auto& reply) { return outputs_.take(reply); }));
+        if (in_force) {
             return {};
         }
     }
 }
 
 Result<void> RtdeSession::setUpInputs(std::int32_t register_base, SteadyTime deadline) {
-    const auto reply =
-        ask(rtde::setupInputs(rtde::setpointNames(register_base)), deadline)
-            .and_then([](const rtde::Bytes& a) { return rtde::parseRecipeReply(a); });
-    if (!reply) {
-        return fail(reply.error());
-    }
-    input_recipe_ = reply->id;
-    return rtde::checkSetpointReply(*reply, register_base);
+    METIER_ASSIGN(const auto reply,
+                  ask(rtde::setupInputs(rtde::setpointNames(register_base)), deadline)
+                      .and_then(rtde::parseRecipeReply));
+    input_recipe_ = reply.id;
+    return rtde::checkSetpointReply(reply, register_base);
 }
 
 Result<rtde::Bytes> RtdeSession::ask(const rtde::Bytes& request, SteadyTime deadline) {
@@ -160,7 +142,7 @@ Result<void> RtdeSession::write(const rtde::Setpoint& setpoint, SteadyTime deadl
 
 void RtdeSession::end(SteadyTime deadline) {
     if (write({}, deadline)) {
-        (void)link_.send(rtde::pause(), deadline);
+        (void)link_.send(rtde::request(PackageType::pause), deadline);
     }
 }
 

@@ -1,8 +1,11 @@
 #include "servoj_script.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "controller_state.hpp"
 
@@ -17,47 +20,50 @@ std::int64_t steps(std::chrono::nanoseconds time, std::chrono::nanoseconds cycle
     return std::max<std::int64_t>(1, time / cycle);
 }
 
-std::string positionList(std::int32_t register_base) {
-    std::string list;
-    for (std::size_t axis = 0; axis < kAxes; ++axis) {
-        list += fmt::format("{}read_input_float_register({})", axis == 0 ? "" : ", ",
-                            register_base + static_cast<std::int32_t>(axis));
-    }
-    return list;
-}
+constexpr std::string_view kScript = R"(def metier_follow():
+  write_output_integer_register({token_register}, {token})
+  waited = 0
+  while (read_input_integer_register({token_register}) != {token}) and (waited < {token_wait}):
+    waited = waited + 1
+    sync()
+  end
+  counter = read_input_integer_register({counter_register})
+  silent = 0
+  while (read_input_integer_register({token_register}) == {token}) and (silent < {patience}):
+    newest = read_input_integer_register({counter_register})
+    if newest == counter:
+      silent = silent + 1
+    else:
+      silent = 0
+      counter = newest
+    end
+    write_output_integer_register({counter_register}, counter)
+    servoj([{position}], 0, 0, {cycle}, {lookahead}, {gain})
+  end
+  stopj({stop_deceleration})
+  write_output_integer_register({token_register}, 0)
+end
+)";
 
 }  // namespace
 
-std::string servojScript(const ScriptOptions& options, std::int32_t token) {
-    const std::int32_t base = options.register_base;
-    std::string text = "def metier_follow():\n";
-    const auto line = [&text](const std::string& statement) { text += "  " + statement + "\n"; };
-    line(fmt::format("write_output_integer_register({}, {})", base, token));
-    line("waited = 0");
-    line(fmt::format("while (read_input_integer_register({}) != {}) and (waited < {}):", base,
-                     token, steps(kTokenWait, options.cycle)));
-    line("  waited = waited + 1");
-    line("  sync()");
-    line("end");
-    line(fmt::format("counter = read_input_integer_register({})", base + 1));
-    line("silent = 0");
-    line(fmt::format("while (read_input_integer_register({}) == {}) and (silent < {}):", base,
-                     token, steps(options.patience, options.cycle)));
-    line(fmt::format("  newest = read_input_integer_register({})", base + 1));
-    line("  if newest == counter:");
-    line("    silent = silent + 1");
-    line("  else:");
-    line("    silent = 0");
-    line("    counter = newest");
-    line("  end");
-    line(fmt::format("  write_output_integer_register({}, counter)", base + 1));
-    line(fmt::format("  servoj([{}], 0, 0, {}, {}, {})", positionList(base),
-                     std::chrono::duration<double>(options.cycle).count(), options.lookahead,
-                     options.gain));
-    line("end");
-    line(fmt::format("stopj({})", options.stop_deceleration));
-    line(fmt::format("write_output_integer_register({}, 0)", base));
-    return text + "end\n";
+std::string servojScript(const UrSettings& settings, std::int32_t token) {
+    std::vector<std::string> position;
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+        position.push_back(fmt::format("read_input_float_register({})",
+                                       settings.register_base + static_cast<std::int32_t>(axis)));
+    }
+    using fmt::arg;
+    const auto cycle = settings.cycle();
+    return fmt::format(kScript, arg("token", token), arg("token_register", settings.register_base),
+                       arg("counter_register", settings.register_base + 1),
+                       arg("token_wait", steps(kTokenWait, cycle)),
+                       arg("patience", steps(settings.receive_timeout, cycle)),
+                       arg("position", fmt::join(position, ", ")),
+                       arg("cycle", std::chrono::duration<double>(cycle).count()),
+                       arg("lookahead", settings.servoj_lookahead),
+                       arg("gain", settings.servoj_gain),
+                       arg("stop_deceleration", settings.stop_deceleration));
 }
 
 }  // namespace metier::ur_driver

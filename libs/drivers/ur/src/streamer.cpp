@@ -75,16 +75,19 @@ std::string toText(const StreamFault& fault) {
     return {};
 }
 
-Streamer::Streamer(device::ArmCore& core, const StreamOptions& options, std::int32_t first_token)
+Streamer::Streamer(device::ArmCore& core, const UrSettings& settings, const Joints& max_velocity,
+                   std::int32_t first_token)
     : core_(core),
-      options_(options),
-      window_(std::min<std::size_t>(kHistory,
-                                    cyclesIn(std::chrono::nanoseconds(static_cast<std::int64_t>(
-                                                 1e9 * (3.0 * options.lookahead + kFollowMargin))),
-                                             options.cycle))),
-      patience_(cyclesIn(options.patience, options.cycle)),
-      start_timeout_(cyclesIn(options.start_timeout, options.cycle)),
-      pace_(options.cycle),
+      settings_(settings),
+      max_velocity_(max_velocity),
+      cycle_(std::chrono::duration<double>(settings.cycle()).count()),
+      window_(std::min<std::size_t>(
+          kHistory, cyclesIn(std::chrono::nanoseconds(static_cast<std::int64_t>(
+                                 1e9 * (3.0 * settings.servoj_lookahead + kFollowMargin))),
+                             settings.cycle()))),
+      patience_(cyclesIn(settings.receive_timeout, settings.cycle())),
+      start_timeout_(cyclesIn(settings.start_timeout, settings.cycle())),
+      pace_(settings.cycle()),
       token_(first_token) {
     state_.position = device::JointArray(kAxes);
     state_.velocity = state_.position;
@@ -126,8 +129,7 @@ void Streamer::disconnected() noexcept {
 }
 
 void Streamer::measure(const ControllerState& now, SteadyTime stamp) noexcept {
-    const double cycle = std::chrono::duration<double>(options_.cycle).count();
-    const double periods = (now.timestamp - last_timestamp_) / cycle;
+    const double periods = (now.timestamp - last_timestamp_) / cycle_;
     const bool late = last_timestamp_ >= 0.0 && periods > 1.5 && periods < 1e6;
     const auto passed = late ? static_cast<std::uint64_t>(std::lround(periods)) : 1U;
     last_timestamp_ = now.timestamp;
@@ -137,7 +139,7 @@ void Streamer::measure(const ControllerState& now, SteadyTime stamp) noexcept {
     state_.velocity = device::JointArray(std::span<const double>(now.actual_qd));
     state_.safety = core_.safetyState();
     state_.standstill = std::all_of(now.actual_qd.begin(), now.actual_qd.end(), [this](double v) {
-        return std::abs(v) < options_.standstill_speed;
+        return std::abs(v) < settings_.standstill_speed;
     });
     state_.stamp = stamp;
     stand_cycles_ = state_.standstill ? stand_cycles_ + 1 : 0;
@@ -239,10 +241,9 @@ void Streamer::ask(Output& out) noexcept {
 }
 
 void Streamer::take(const device::JointArray& set_point) noexcept {
-    const double cycle = std::chrono::duration<double>(options_.cycle).count();
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
-        const double limit = options_.max_velocity[axis];
-        const double speed = std::abs(set_point[axis] - setpoint_.position[axis]) / cycle;
+        const double limit = max_velocity_[axis];
+        const double speed = std::abs(set_point[axis] - setpoint_.position[axis]) / cycle_;
         if (limit > 0.0 && speed > limit) {
             cycles_since_violation_ = 0;
         }
@@ -280,7 +281,8 @@ StreamFault Streamer::findDeviation(const ControllerState& now) noexcept {
             high = std::max(high, history_[i][axis]);
         }
         const double target = now.target_q[axis];
-        if (target < low - options_.follow_tolerance || target > high + options_.follow_tolerance) {
+        if (target < low - settings_.follow_tolerance ||
+            target > high + settings_.follow_tolerance) {
             fault = {StreamFault::Kind::not_followed, axis, target, low, high};
         }
     }
@@ -330,7 +332,7 @@ bool Streamer::standing() const noexcept {
 }
 
 double Streamer::seconds(std::uint32_t cycles) const noexcept {
-    return cycles * std::chrono::duration<double>(options_.cycle).count();
+    return cycles * cycle_;
 }
 
 }  // namespace metier::ur_driver

@@ -11,6 +11,7 @@
 #include "metier/device/arm_core.hpp"
 #include "rtde.hpp"
 #include "set_point_pace.hpp"
+#include "ur_settings.hpp"
 
 namespace metier::ur_driver {
 
@@ -36,19 +37,6 @@ struct StreamFault {
 /// Text for a person, without the device's name.
 std::string toText(const StreamFault& fault);
 
-struct StreamOptions {
-    std::chrono::nanoseconds cycle{};          ///< period of the set-points, > 0
-    std::chrono::nanoseconds patience{};       ///< longest silence that the script accepts, as in
-                                               ///< ScriptOptions
-    std::chrono::nanoseconds start_timeout{};  ///< longest time from the upload to the first
-                                               ///< set-point taken
-    double lookahead = 0.1;                    ///< lookahead time of servoj [s]
-    double standstill_speed = 0.005;           ///< below it an axis counts as standing [rad/s]
-    double follow_tolerance = 0.05;            ///< largest deviation of target_q from the
-                                               ///< set-points [rad]
-    Joints max_velocity{};                     ///< the controller's limits [rad/s]; 0: not known
-};
-
 /// Streams set-points in the cycle of the controller: asks the source, writes set-points, watches
 /// that the controller obeys. Has no socket, no thread and no clock.
 ///
@@ -68,8 +56,11 @@ public:
         StreamFault fault{};        ///< fault to report and to keep until a reset
     };
 
-    /// \param first_token of the scripts; not 0, best another one in every process
-    Streamer(device::ArmCore& core, const StreamOptions& options, std::int32_t first_token);
+    /// \param settings     with a frequency > 0
+    /// \param max_velocity the controller's limits [rad/s]; 0: not known
+    /// \param first_token  of the scripts; not 0, best another one in every process
+    Streamer(device::ArmCore& core, const UrSettings& settings, const Joints& max_velocity,
+             std::int32_t first_token);
 
     /// One data package came. The safety state of the core must be the package's already.
     Output cycle(const ControllerState& now, SteadyTime stamp) noexcept;
@@ -110,7 +101,9 @@ private:
     double seconds(std::uint32_t cycles) const noexcept;
 
     device::ArmCore& core_;
-    const StreamOptions options_;
+    const UrSettings settings_;
+    const Joints max_velocity_;
+    const double cycle_;        // [s]
     const std::size_t window_;  // cycles in which target_q may lag behind
     const std::uint32_t patience_;
     const std::uint32_t start_timeout_;

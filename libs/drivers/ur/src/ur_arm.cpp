@@ -22,41 +22,14 @@ constexpr auto kFirstPackage = 1s;  // longest time from the start of RTDE to it
 constexpr std::size_t kMaxJobs = 16;
 constexpr std::int32_t kLinkCycles = 3;
 
-std::chrono::nanoseconds cycleOf(const UrSettings& settings) {
-    return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / settings.frequency));
-}
-
 device::ArmInfo infoOf(const UrArmOptions& options) {
     device::ArmInfo info;
     info.name = options.name;
     for (const auto& joint : options.model.chain().joints) {
         info.axis_names.push_back(joint.name);
     }
-    info.cycle = cycleOf(options.settings);
+    info.cycle = options.settings.cycle();
     return info;
-}
-
-StreamOptions streamOptions(const UrArmOptions& options) {
-    StreamOptions stream;
-    stream.cycle = cycleOf(options.settings);
-    stream.patience = options.settings.receive_timeout;
-    stream.start_timeout = options.settings.start_timeout;
-    stream.lookahead = options.settings.servoj_lookahead;
-    stream.standstill_speed = options.settings.standstill_speed;
-    stream.follow_tolerance = options.settings.follow_tolerance;
-    stream.max_velocity = options.max_velocity;
-    return stream;
-}
-
-ScriptOptions scriptOptions(const UrSettings& settings) {
-    ScriptOptions script;
-    script.register_base = settings.register_base;
-    script.cycle = cycleOf(settings);
-    script.gain = settings.servoj_gain;
-    script.lookahead = settings.servoj_lookahead;
-    script.stop_deceleration = settings.stop_deceleration;
-    script.patience = settings.receive_timeout;
-    return script;
 }
 
 /// Another one in every process, so that a script of the last one is not taken for ours.
@@ -70,18 +43,17 @@ std::int32_t firstToken() {
 
 UrArm::UrArm(UrArmOptions options)
     : options_(std::move(options)),
-      link_timeout_(options_.settings.link_timeout > 0ns
-                        ? options_.settings.link_timeout
-                        : kLinkCycles * cycleOf(options_.settings)),
+      link_timeout_(options_.settings.link_timeout > 0ns ? options_.settings.link_timeout
+                                                         : kLinkCycles * options_.settings.cycle()),
       core_(infoOf(options_)),
       jobs_(kMaxJobs),
       reporter_(core_, [this] { notifier_.signal(); }),
-      streamer_(core_, streamOptions(options_), firstToken()),
+      streamer_(core_, options_.settings, options_.max_velocity, firstToken()),
       notifier_([this] { notify(); }),
       panel_(
           {jobs_, resets_, reporter_, [this](std::int32_t token) { streamer_.refuseStart(token); },
            [this] { return observed_.read(); }},
-          {options_.name, options_.host}, options_.settings, scriptOptions(options_.settings)),
+          {options_.name, options_.host}, options_.settings),
       primary_(options_.host, options_.settings.primary_port,
                [this](const primary::Package& package) { hear(package); }),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -122,10 +94,6 @@ Result<void> UrArm::resetFault() {
                                                options_.name, core_.safety().text));
     }
     return *outcome;
-}
-
-device::Registration UrArm::onSafetyChange(SafetyCallback callback) {
-    return core_.onSafetyChange(std::move(callback));
 }
 
 void UrArm::notify() {
@@ -201,7 +169,7 @@ Result<void> UrArm::cycle(RtdeSession& session, const ControllerState& now) {
     const auto stamp = std::chrono::steady_clock::now();
     reporter_.observe(now, streamer_.limitBroken(), stamp);
     const auto out = streamer_.cycle(now, stamp);
-    observed_.write({now, true, core_.state().standstill, stamp});
+    observed_.write({now, true, core_.state().standstill});
     if (out.fault.kind != StreamFault::Kind::none) {
         reporter_.latch(toText(out.fault), stamp);
     }

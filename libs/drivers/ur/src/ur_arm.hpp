@@ -54,10 +54,9 @@ public:
     Result<void> attach(std::shared_ptr<device::SetPointSource> source) override;
     void stop() noexcept override { core_.stop(); }
     Result<void> resetFault() override;
-    device::Registration onSafetyChange(SafetyCallback callback) override;
-
-    /// Force and torque at the tool, in the base frame, as the controller estimates it [N], [Nm].
-    std::array<double, 6> toolForce() const noexcept { return observed_.read().state.tool_force; }
+    device::Registration onSafetyChange(SafetyCallback callback) override {
+        return core_.onSafetyChange(std::move(callback));
+    }
 
 private:
     void run(const std::stop_token& stop);

@@ -24,12 +24,19 @@ struct UrSettings {
     std::int32_t register_base = 24;
     PowerOn power_on = PowerOn::by_a_person;
     std::chrono::nanoseconds link_timeout{};  ///< 0: three cycles
+    /// Longest silence of the set-points that the script accepts.
     std::chrono::nanoseconds receive_timeout = std::chrono::milliseconds(100);
+    /// Longest time from the upload of the script to the first set-point taken.
     std::chrono::nanoseconds start_timeout = std::chrono::seconds(3);
     std::chrono::nanoseconds unlock_delay = std::chrono::seconds(5);
     std::chrono::nanoseconds open_wait = std::chrono::seconds(3);
-    double standstill_speed = 0.005;  ///< [rad/s]
-    double follow_tolerance = 0.05;   ///< [rad]
+    double standstill_speed = 0.005;  ///< below it an axis counts as standing [rad/s]
+    double follow_tolerance = 0.05;   ///< largest deviation of target_q from the set-points [rad]
+
+    /// Period of the set-points; the frequency must be known.
+    std::chrono::nanoseconds cycle() const noexcept {
+        return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / frequency));
+    }
 
     /// Asks for every setting and calls finish().
     /// Errors: invalid_argument with everything that is wrong.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <concepts>
@@ -73,30 +74,34 @@ private:
 };
 
 /// A text from the wire, fit to be shown: one line of at most 300 printable characters.
-std::string printable(std::string_view raw);
+inline std::string printable(std::string_view raw) {
+    std::string text(raw.substr(0, 300));
+    std::ranges::replace_if(
+        text, [](char c) { return c < 0x20 || c >= 0x7f; }, ' ');
+    text.erase(text.find_last_not_of(' ') + 1);
+    return text;
+}
 
-/// Writes big-endian values one after another into a container with push_back(std::byte).
-template <typename Container>
+/// Writes big-endian values one after another to an output iterator of bytes.
+template <typename Output>
 class ByteWriter {
 public:
-    explicit ByteWriter(Container& out) : out_(out) {}
+    explicit ByteWriter(Output out) : out_(out) {}
 
     template <std::integral T>
     void number(T value) {
         const auto bits = static_cast<std::uint64_t>(value);
         for (std::size_t i = sizeof(T); i-- > 0;) {
-            out_.push_back(static_cast<std::byte>(bits >> (8U * i)));
+            *out_++ = static_cast<std::byte>(bits >> (8U * i));
         }
     }
     void float64(double value) { number(std::bit_cast<std::uint64_t>(value)); }
     void text(std::string_view value) {
-        for (const char character : value) {
-            out_.push_back(static_cast<std::byte>(character));
-        }
+        out_ = std::ranges::copy(std::as_bytes(std::span(value)), out_).out;
     }
 
 private:
-    Container& out_;
+    Output out_;
 };
 
 }  // namespace metier::ur_driver

@@ -40,12 +40,11 @@ std::vector<std::string> splitNames(const std::string& text) {
 
 std::string typeOf(const std::string& name) {
     static const std::map<std::string, std::string> kTypes{
-        {"timestamp", "DOUBLE"},         {"target_q", "VECTOR6D"},
-        {"actual_q", "VECTOR6D"},        {"actual_qd", "VECTOR6D"},
-        {"robot_mode", "INT32"},         {"safety_status", "INT32"},
-        {"safety_mode", "INT32"},        {"runtime_state", "UINT32"},
-        {"speed_scaling", "DOUBLE"},     {"target_speed_fraction", "DOUBLE"},
-        {"actual_TCP_force", "VECTOR6D"}};
+        {"timestamp", "DOUBLE"},     {"target_q", "VECTOR6D"},
+        {"actual_q", "VECTOR6D"},    {"actual_qd", "VECTOR6D"},
+        {"robot_mode", "INT32"},     {"safety_status", "INT32"},
+        {"safety_mode", "INT32"},    {"runtime_state", "UINT32"},
+        {"speed_scaling", "DOUBLE"}, {"target_speed_fraction", "DOUBLE"}};
     if (name.find("int_register_") != std::string::npos) {
         return "INT32";
     }
@@ -399,10 +398,6 @@ std::vector<std::byte> FakeController::dataPackage() {
             {"runtime_state", [&] { data.i32(knobs_.runtime); }},
             {"speed_scaling", [&] { data.f64(knobs_.scaling); }},
             {"target_speed_fraction", [&] { data.f64(knobs_.slider); }},
-            {"actual_TCP_force",
-             [&] {
-                 data.f64s(std::array{1.0, 2.0, 3.0, 0.1, 0.2, 0.3});
-             }},
             {"output_int_register_24", [&] { data.i32(out_token_); }},
             {"output_int_register_25", [&] { data.i32(out_counter_); }},
         };

@@ -66,10 +66,9 @@ INSTANTIATE_TEST_SUITE_P(Values, BadUrSetting,
 // ---- script ------------------------------------------------------------------------------------
 
 TEST(ServojScript, IsThisText) {
-    ScriptOptions options;
-    options.cycle = 8ms;
-    options.patience = 100ms;
-    EXPECT_EQ(servojScript(options, 17), R"(def metier_follow():
+    UrSettings settings;
+    settings.frequency = 125.0;
+    EXPECT_EQ(servojScript(settings, 17), R"(def metier_follow():
   write_output_integer_register(24, 17)
   waited = 0
   while (read_input_integer_register(24) != 17) and (waited < 62):
@@ -96,8 +95,14 @@ end
 }
 
 TEST(ServojScript, FollowsTheOptions) {
-    ScriptOptions options{30, 2ms, 500.0, 0.05, 8.0, 200ms};
-    const auto text = servojScript(options, 5);
+    UrSettings settings;
+    settings.register_base = 30;
+    settings.frequency = 500.0;
+    settings.servoj_gain = 500.0;
+    settings.servoj_lookahead = 0.05;
+    settings.stop_deceleration = 8.0;
+    settings.receive_timeout = 200ms;
+    const auto text = servojScript(settings, 5);
     EXPECT_THAT(text, HasSubstr("read_input_float_register(35)], 0, 0, 0.002, 0.05, 500)"));
     EXPECT_THAT(text, HasSubstr("silent < 100"));
     EXPECT_THAT(text, HasSubstr("stopj(8)"));

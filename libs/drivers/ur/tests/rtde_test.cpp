@@ -43,7 +43,6 @@ std::vector<std::byte> dataOf(double first_velocity = 0.5) {
     const std::array target{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
     const std::array actual{0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
     const std::array velocity{first_velocity, 0.0, 0.0, 0.0, 0.0, -0.5};
-    const std::array force{10.0, 11.0, 12.0, 13.0, 14.0, 15.0};
     return WireBytes()
         .u8(1)
         .f64(123.456)
@@ -57,15 +56,14 @@ std::vector<std::byte> dataOf(double first_velocity = 0.5) {
         .i32(-5)
         .f64(0.5)
         .f64(0.25)
-        .f64s(force)
         .bytes();
 }
 
 TEST(Rtde, RequestsAreTheBytesOfTheDocument) {
     EXPECT_EQ(requestProtocolVersion(), fromHex("00 05 56 00 02"));
-    EXPECT_EQ(getControllerVersion(), fromHex("00 03 76"));
-    EXPECT_EQ(start(), fromHex("00 03 53"));
-    EXPECT_EQ(pause(), fromHex("00 03 50"));
+    EXPECT_EQ(request(PackageType::get_controller_version), fromHex("00 03 76"));
+    EXPECT_EQ(request(PackageType::start), fromHex("00 03 53"));
+    EXPECT_EQ(request(PackageType::pause), fromHex("00 03 50"));
     EXPECT_EQ(setupOutputs(125.0, {"a", "bc"}),
               fromHex("00 0F 4F 40 5F 40 00 00 00 00 00 61 2C 62 63"));
     EXPECT_EQ(setupInputs({"a", "bc"}), fromHex("00 07 49 61 2C 62 63"));
@@ -166,7 +164,6 @@ TEST(OutputRecipe, DecodesADataPackage) {
     EXPECT_EQ(state->script_counter, -5);
     EXPECT_DOUBLE_EQ(state->speed_scaling, 0.5);
     EXPECT_DOUBLE_EQ(state->target_speed_fraction, 0.25);
-    EXPECT_DOUBLE_EQ(state->tool_force[2], 12.0);
 }
 
 TEST(OutputRecipe, DecodesWithoutAllocating) {
@@ -203,12 +200,11 @@ constexpr std::size_t kTarget = 1 + 8;
 constexpr std::size_t kActual = kTarget + 48;
 constexpr std::size_t kVelocity = kActual + 48;
 constexpr std::size_t kScaling = kVelocity + 48 + 20;
-constexpr std::size_t kForce = kScaling + 16;
 
 TEST(OutputRecipe, RefusesEveryNumberThatIsNotFinite) {
     std::vector<std::size_t> places{1, kScaling, kScaling + 8};
     for (std::size_t axis = 0; axis < 6; ++axis) {
-        for (const auto part : {kTarget, kActual, kVelocity, kForce}) {
+        for (const auto part : {kTarget, kActual, kVelocity}) {
             places.push_back(part + 8 * axis);
         }
     }
@@ -255,12 +251,11 @@ TEST(OutputRecipe, LeavesOutWhatIsNotNeeded) {
     OutputRecipe recipe(24);
     auto reply = allFound(recipe, 0);
     reply.types[9] = "NOT_FOUND";
-    reply.types[11] = "NOT_FOUND";
     EXPECT_EQ(recipe.take(reply), false);
     EXPECT_EQ(recipe.names().size(), 10U);
     EXPECT_EQ(recipe.take(allFound(recipe)), true);
     auto data = dataOf();
-    data.erase(data.end() - 48 - 8, data.end());  // no force, one speed
+    data.erase(data.end() - 8, data.end());  // one speed
     ASSERT_TRUE(recipe.decode(data));
     EXPECT_DOUBLE_EQ(recipe.decode(data)->speed_scaling, 1.0);
 }

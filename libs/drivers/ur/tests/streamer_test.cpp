@@ -17,20 +17,19 @@ using device::SafetyState;
 using testing::HasSubstr;
 using Kind = StreamFault::Kind;
 
-StreamOptions options() {
-    StreamOptions options;
-    options.cycle = 8ms;
-    options.patience = 80ms;
-    options.start_timeout = 400ms;
-    options.max_velocity.fill(1.0);
-    return options;
+UrSettings settings() {
+    UrSettings settings;
+    settings.frequency = 125.0;
+    settings.receive_timeout = 80ms;
+    settings.start_timeout = 400ms;
+    return settings;
 }
 
 /// A streamer and a controller of three lines: runs the script two cycles after its upload.
 class StreamerTest : public testing::Test {
 protected:
-    explicit StreamerTest(const StreamOptions& with = options(), std::int32_t first_token = 41)
-        : streamer_(core_, with, first_token) {
+    explicit StreamerTest(const UrSettings& with = settings(), std::int32_t first_token = 41)
+        : streamer_(core_, with, {1.0, 1.0, 1.0, 1.0, 1.0, 1.0}, first_token) {
         now_.robot_mode = RobotMode::running;
         now_.safety_mode = SafetyMode::normal;
         now_.target_q = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
@@ -378,7 +377,7 @@ class PatientStreamer : public StreamerTest {
 protected:
     PatientStreamer()
         : StreamerTest([] {
-              auto patient = options();
+              auto patient = settings();
               patient.start_timeout = 2s;
               return patient;
           }()) {}
@@ -404,7 +403,7 @@ TEST_F(PatientStreamer, NoticesASpeedThatStaysReducedAtTheStart) {
 
 class OverflowingStreamer : public StreamerTest {
 protected:
-    OverflowingStreamer() : StreamerTest(options(), -1) {}
+    OverflowingStreamer() : StreamerTest(settings(), -1) {}
 };
 
 TEST_F(OverflowingStreamer, HasNoTokenZero) {

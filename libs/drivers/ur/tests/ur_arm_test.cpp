@@ -144,19 +144,11 @@ TEST_F(ArmTest, UsesTheKinematicsAndLimitsThatTheControllerTells) {
 }
 
 TEST_F(ArmTest, FindsItsWayWithOlderSoftware) {
-    fake_.set([](auto& k) {
-        k.unknown = {"safety_status", "target_speed_fraction", "actual_TCP_force"};
-    });
+    fake_.set([](auto& k) { k.unknown = {"safety_status", "target_speed_fraction"}; });
     openReady();
     EXPECT_EQ(attach(0.1, 20)->outcome(), EndCause::done);
     fake_.set([](auto& k) { k.safety_mode = 7; });
     EXPECT_TRUE(becomes(SafetyState::emergency_stop));
-}
-
-TEST_F(ArmTest, TellsTheForceAtTheTool) {
-    openReady();
-    const auto force = static_cast<UrArm&>(arm()).toolForce();
-    EXPECT_EQ(force, (std::array{1.0, 2.0, 3.0, 0.1, 0.2, 0.3}));
 }
 
 }  // namespace

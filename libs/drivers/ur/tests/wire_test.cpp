@@ -32,7 +32,7 @@ TEST(ByteReader, RemembersThatSomethingWasMissing) {
 
 TEST(ByteWriter, WritesWhatTheReaderReads) {
     std::vector<std::byte> bytes;
-    ByteWriter writer(bytes);
+    ByteWriter writer(std::back_inserter(bytes));
     writer.number(std::int32_t{-3});
     writer.float64(-0.25);
     writer.number(std::uint16_t{65535});
