@@ -6,8 +6,6 @@
 #include <set>
 
 #include "cell_reading.hpp"
-#include "component_reading.hpp"
-#include "limits_reading.hpp"
 #include "metier/base/overloaded.hpp"
 #include "metier/cell/toml_file.hpp"
 
@@ -57,12 +55,9 @@ ArmServer readArm(const TomlTable& table, const std::filesystem::path& folder) {
     for (const auto& tool : table.tables("tool")) {
         arm.tools.push_back(readTool(tool));
     }
-    arm.payload = table.numberOr("payload", arm.payload);
-    if (!(arm.payload >= 0 && arm.payload <= kHeaviest)) {
-        table.reject("payload", fmt::format("{} is not within 0 to {} kg", arm.payload, kHeaviest));
-    }
-    arm.stream_silence = secondsWithin(table, "stream_silence", arm.stream_silence,
-                                       {kShortestSilence, kLongestSilence});
+    arm.payload = numberWithin(table, "payload", arm.payload, {0, kHeaviest, "kg"});
+    arm.stream_silence = numberWithin(table, "stream_silence", arm.stream_silence,
+                                      {kShortestSilence, kLongestSilence, "s"});
     if (table.has("compositions")) {
         arm.compositions = readFiles(table, "compositions", folder);
     }
@@ -136,8 +131,8 @@ ServerConfig readServer(const TomlTable& table, const std::filesystem::path& fol
     server.port = static_cast<std::uint16_t>(table.integerOr("port", 0, 0, kMaxPort));
     server.address = table.textOr("address", "127.0.0.1");
     server.publish_at_once = table.flagOr("publish_at_once", true);
-    server.stall_limit =
-        secondsWithin(table, "stall_limit", server.stall_limit, {kShortestStall, kLongestStall});
+    server.stall_limit = numberWithin(table, "stall_limit", server.stall_limit,
+                                      {kShortestStall, kLongestStall, "s"});
     if (table.has("limits")) {
         server.limits = readLimits(table.table("limits"));
     }

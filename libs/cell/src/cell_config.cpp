@@ -20,6 +20,13 @@ std::span<Used> usedBy(Kind& kind) {
     return {};
 }
 
+/// The first element that fits, or nullptr.
+template <typename T, typename Fits>
+const T* firstOf(const std::vector<T>& all, Fits fits) {
+    const auto found = std::find_if(all.begin(), all.end(), fits);
+    return found == all.end() ? nullptr : &*found;
+}
+
 std::string urlOf(const ServerConfig& server) {
     return fmt::format("opc.tcp://{}:{}", server.address, server.port);
 }
@@ -52,21 +59,16 @@ std::span<UsedServer> ServerConfig::usedServers() {
 }
 
 const ServerConfig* CellConfig::find(const std::string& server) const {
-    const auto found = std::find_if(servers.begin(), servers.end(),
-                                    [&](const auto& s) { return s.name == server; });
-    return found == servers.end() ? nullptr : &*found;
+    return firstOf(servers, [&](const auto& known) { return known.name == server; });
 }
 
 const VirtualController* CellConfig::findVirtual(const std::string& controller) const {
-    const auto found = std::find_if(virtual_controllers.begin(), virtual_controllers.end(),
-                                    [&](const auto& known) { return known.name == controller; });
-    return found == virtual_controllers.end() ? nullptr : &*found;
+    return firstOf(virtual_controllers,
+                   [&](const auto& known) { return known.name == controller; });
 }
 
 const VirtualController* CellConfig::world() const {
-    const auto found = std::find_if(virtual_controllers.begin(), virtual_controllers.end(),
-                                    [](const auto& known) { return known.type == "world"; });
-    return found == virtual_controllers.end() ? nullptr : &*found;
+    return firstOf(virtual_controllers, [](const auto& known) { return known.type == "world"; });
 }
 
 ServerConfig CellConfig::resolved(ServerConfig server) const {

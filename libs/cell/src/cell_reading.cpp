@@ -11,6 +11,16 @@ namespace {
 constexpr double kShortestPeriod = 0.2;
 constexpr double kLongestPeriod = 300.0;
 
+std::filesystem::path checkedFile(const TomlTable& table, std::string_view key,
+                                  const std::filesystem::path& file) {
+    auto path = std::filesystem::absolute(file).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+        table.reject(key, fmt::format("no such file: {}", path.string()));
+    }
+    return path;
+}
+
 }  // namespace
 
 bool isAddress(const std::string& server) {
@@ -20,26 +30,14 @@ bool isAddress(const std::string& server) {
 std::filesystem::path pathIn(const TomlTable& table, std::string_view key,
                              const std::filesystem::path& folder) {
     const auto text = table.text(key);
-    if (text.empty()) {
-        return {};
-    }
-    auto path = std::filesystem::absolute(folder / text).lexically_normal();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) {
-        table.reject(key, fmt::format("no such file: {}", path.string()));
-    }
-    return path;
+    return text.empty() ? std::filesystem::path() : checkedFile(table, key, folder / text);
 }
 
 std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char* key,
                                              const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
     for (const auto& file : table.texts(key)) {
-        files.push_back(std::filesystem::absolute(folder / file).lexically_normal());
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(files.back(), error)) {
-            table.reject(key, fmt::format("no such file: {}", files.back().string()));
-        }
+        files.push_back(checkedFile(table, key, folder / file));
     }
     if (files.empty()) {
         table.reject(key, "needs at least one file");
@@ -47,14 +45,18 @@ std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char*
     return files;
 }
 
-double secondsWithin(const TomlTable& table, std::string_view key, double preset,
-                     const Bounds& bounds) {
+double numberWithin(const TomlTable& table, std::string_view key, double preset,
+                    const Bounds& bounds) {
     const double value = table.numberOr(key, preset);
     if (!(value >= bounds.least && value <= bounds.most)) {
-        table.reject(key,
-                     fmt::format("{} is not within {} to {} s", value, bounds.least, bounds.most));
+        table.reject(key, fmt::format("{} is not within {} to {}{}{}", value, bounds.least,
+                                      bounds.most, bounds.unit.empty() ? "" : " ", bounds.unit));
     }
     return value;
+}
+
+UsedServer usedServer(const std::string& server) {
+    return {server, isAddress(server) ? server : ""};
 }
 
 std::vector<std::string> textOrTexts(const TomlTable& table, std::string_view key) {
@@ -75,8 +77,8 @@ Discovery readDiscovery(const TomlTable& table, Discovery preset) {
             table.reject("discovery", fmt::format("\"{}\" is no opc.tcp:// address", server));
         }
     }
-    discovery.period = secondsWithin(table, "discovery_period", discovery.period,
-                                     {kShortestPeriod, kLongestPeriod});
+    discovery.period = numberWithin(table, "discovery_period", discovery.period,
+                                    {kShortestPeriod, kLongestPeriod, "s"});
     discovery.mdns = table.flagOr("mdns", discovery.mdns);
     discovery.announce_as = table.textOr("announce_as", discovery.announce_as);
     if (discovery.announce_as.find_first_of(":/ ") != std::string::npos) {

@@ -29,15 +29,23 @@ std::vector<std::filesystem::path> readFiles(const TomlTable& table, const char*
 struct Bounds {
     double least;
     double most;
+    std::string_view unit{};  ///< for the error message
 };
 
-/// A time [s] within bounds.
-double secondsWithin(const TomlTable& table, std::string_view key, double preset,
-                     const Bounds& bounds);
+/// A number within bounds.
+double numberWithin(const TomlTable& table, std::string_view key, double preset,
+                    const Bounds& bounds);
+/// A server that others are made of: its address, or a name to be resolved.
+UsedServer usedServer(const std::string& server);
 
 /// One text, or a list of them.
 std::vector<std::string> textOrTexts(const TomlTable& table, std::string_view key);
 
+MoveComponent readMove(const TomlTable& table);
+CompositionServer readComposition(const TomlTable& table, const std::filesystem::path& folder);
+SynchronizedServer readSynchronized(const TomlTable& table);
+/// The table `limits` of a server.
+std::vector<Limit> readLimits(const TomlTable& table);
 /// The table `[records]` of a cell. A file is relative to `folder`.
 Records readRecords(const TomlTable& cell, const std::filesystem::path& folder);
 /// The key `metrics` of a server.

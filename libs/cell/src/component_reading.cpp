@@ -1,5 +1,3 @@
-#include "component_reading.hpp"
-
 #include <fmt/format.h>
 
 #include <set>
@@ -17,16 +15,8 @@ constexpr double kLongestStartDelay = 30.0;
 constexpr double kShortestAbsence = 0.5;
 constexpr double kLongestAbsence = 3'600.0;
 
-std::vector<UsedServer> readUsedServers(const TomlTable& table) {
-    std::vector<UsedServer> servers;
-    for (const auto& server : table.texts("servers")) {
-        servers.push_back({server, isAddress(server) ? server : ""});
-    }
-    return servers;
-}
-
 double readRebindAfter(const TomlTable& table, double preset) {
-    return secondsWithin(table, "rebind_after", preset, {kShortestAbsence, kLongestAbsence});
+    return numberWithin(table, "rebind_after", preset, {kShortestAbsence, kLongestAbsence, "s"});
 }
 
 }  // namespace
@@ -52,7 +42,7 @@ CompositionServer readComposition(const TomlTable& table, const std::filesystem:
         if (server == kDiscover) {
             composition.discover = true;
         } else {
-            composition.servers.push_back({server, isAddress(server) ? server : ""});
+            composition.servers.push_back(usedServer(server));
         }
     }
     composition.rebind_after = readRebindAfter(table, composition.rebind_after);
@@ -61,13 +51,13 @@ CompositionServer readComposition(const TomlTable& table, const std::filesystem:
 
 SynchronizedServer readSynchronized(const TomlTable& table) {
     SynchronizedServer synchronized;
-    synchronized.servers = readUsedServers(table);
-    synchronized.start_delay = secondsWithin(table, "start_delay", synchronized.start_delay,
-                                             {kShortestStartDelay, kLongestStartDelay});
+    synchronized.start_delay = numberWithin(table, "start_delay", synchronized.start_delay,
+                                            {kShortestStartDelay, kLongestStartDelay, "s"});
     std::set<std::string> names;
-    for (const auto& server : synchronized.servers) {
-        if (!names.insert(server.name).second) {
-            table.reject("servers", fmt::format("\"{}\" is there twice", server.name));
+    for (const auto& server : table.texts("servers")) {
+        synchronized.servers.push_back(usedServer(server));
+        if (!names.insert(server).second) {
+            table.reject("servers", fmt::format("\"{}\" is there twice", server));
         }
     }
     if (names.size() < 2) {

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "limits_reading.hpp"
+#include "cell_reading.hpp"
 
 namespace metier::cell {
 namespace {

@@ -1,16 +1,13 @@
 #include <fmt/format.h>
 
-#include <charconv>
-#include <utility>
-
 #include "cell_reading.hpp"
+#include "metier/base/text.hpp"
 
 namespace metier::cell {
 namespace {
 
 constexpr double kMostDays = 36'500.0;
 constexpr double kMostMegabytes = 1e9;
-constexpr std::uint32_t kMostPort = 65'535;
 
 bool isUrl(const std::string& text) {
     return text == "off" || text.starts_with("postgresql://") || text.starts_with("postgres://");
@@ -25,14 +22,6 @@ std::string absoluteUrl(const std::string& text, const std::filesystem::path& fo
     return std::filesystem::absolute(folder / file).lexically_normal().string();
 }
 
-double within(const TomlTable& table, std::string_view key, double preset, double most) {
-    const double value = table.numberOr(key, preset);
-    if (!(value >= 0 && value <= most)) {
-        table.reject(key, fmt::format("{} is not within 0 to {}", value, most));
-    }
-    return value;
-}
-
 }  // namespace
 
 Records readRecords(const TomlTable& cell, const std::filesystem::path& folder) {
@@ -42,9 +31,9 @@ Records readRecords(const TomlTable& cell, const std::filesystem::path& folder) 
     }
     const auto table = cell.table("records");
     records.url = absoluteUrl(table.textOr("url", ""), folder);
-    records.keep_days = within(table, "keep_days", records.keep_days, kMostDays);
+    records.keep_days = numberWithin(table, "keep_days", records.keep_days, {0, kMostDays});
     records.keep_megabytes =
-        within(table, "keep_megabytes", records.keep_megabytes, kMostMegabytes);
+        numberWithin(table, "keep_megabytes", records.keep_megabytes, {0, kMostMegabytes});
     return records;
 }
 
@@ -59,15 +48,12 @@ Result<HttpAddress> parseHttpAddress(std::string_view text) {
         }
         address.host = host;
     }
-    std::uint32_t number = 0;
-    const auto* const end = port.data() + port.size();
-    const auto read = std::from_chars(port.data(), end, number);
-    if (address.host.empty() || port.empty() || read.ec != std::errc() || read.ptr != end ||
-        number > kMostPort) {
+    const auto number = numberIn<std::uint16_t>(port);
+    if (address.host.empty() || !number) {
         return fail(Errc::invalid_argument,
-                    fmt::format("\"{}\" is not ADDRESS:PORT or PORT, of 0 to {}", text, kMostPort));
+                    fmt::format("\"{}\" is not ADDRESS:PORT or PORT, of 0 to 65535", text));
     }
-    address.port = static_cast<std::uint16_t>(number);
+    address.port = *number;
     return address;
 }
 

@@ -110,10 +110,6 @@ struct TomlTable::Impl {
         return values;
     }
 
-    TomlTable child(const toml::table* found, std::string child_path) const {
-        return file->open(found, std::move(child_path));
-    }
-
     void reportUnknownKeys() const {
         if (table == nullptr) {
             return;
@@ -256,7 +252,7 @@ TomlTable TomlTable::table(std::string_view key) const {
     if (node != nullptr && found == nullptr) {
         reject(key, "is not a table");
     }
-    return impl_->child(found, impl_->fullName(key));
+    return impl_->file->open(found, impl_->fullName(key));
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
@@ -271,7 +267,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
     }
     for (const auto& element : *node->as_array()) {
         const auto path = fmt::format("{}[{}]", impl_->fullName(key), result.size());
-        result.push_back(impl_->child(element.as_table(), path));
+        result.push_back(impl_->file->open(element.as_table(), path));
     }
     return result;
 }

@@ -1,6 +1,6 @@
 #include "connection.hpp"
 
-#include <arpa/inet.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -10,25 +10,26 @@
 #include <cerrno>
 #include <cstring>
 
+#include "metier/base/text.hpp"
+
 namespace metier::http {
 namespace {
 
 using std::chrono::milliseconds;
 
-void addressOf(const sockaddr_storage& address, std::string& ip, int& port) {
-    std::array<char, INET6_ADDRSTRLEN> text{};
-    if (address.ss_family == AF_INET) {
-        sockaddr_in v4{};
-        std::memcpy(&v4, &address, sizeof v4);
-        inet_ntop(AF_INET, &v4.sin_addr, text.data(), text.size());
-        port = ntohs(v4.sin_port);
-    } else if (address.ss_family == AF_INET6) {
-        sockaddr_in6 v6{};
-        std::memcpy(&v6, &address, sizeof v6);
-        inet_ntop(AF_INET6, &v6.sin6_addr, text.data(), text.size());
-        port = ntohs(v6.sin6_port);
+/// \param end getpeername or getsockname
+void addressOf(int socket, decltype(&getpeername) end, std::string& ip, int& port) {
+    sockaddr_storage storage{};
+    socklen_t length = sizeof storage;
+    auto* const address = reinterpret_cast<sockaddr*>(&storage);  // NOLINT: POSIX's way
+    std::array<char, NI_MAXHOST> host{};
+    std::array<char, NI_MAXSERV> service{};
+    if (end(socket, address, &length) == 0 &&
+        getnameinfo(address, length, host.data(), host.size(), service.data(), service.size(),
+                    NI_NUMERICHOST | NI_NUMERICSERV) == 0) {
+        ip = host.data();
+        port = numberIn<int>(service.data()).value_or(0);
     }
-    ip = text.data();
 }
 
 }  // namespace
@@ -124,17 +125,11 @@ ssize_t Connection::write(const char* bytes, size_t size) {
 }
 
 void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {
-    sockaddr_storage address{};
-    socklen_t length = sizeof address;
-    getpeername(socket_, reinterpret_cast<sockaddr*>(&address), &length);  // NOLINT: POSIX's way
-    addressOf(address, ip, port);
+    addressOf(socket_, &getpeername, ip, port);
 }
 
 void Connection::get_local_ip_and_port(std::string& ip, int& port) const {
-    sockaddr_storage address{};
-    socklen_t length = sizeof address;
-    getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length);  // NOLINT: POSIX's way
-    addressOf(address, ip, port);
+    addressOf(socket_, &getsockname, ip, port);
 }
 
 }  // namespace metier::http
