@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "metier/base/text.hpp"
+
 namespace metier::dashboard {
 namespace {
 
@@ -96,14 +98,8 @@ std::string sessionCookieName(const httplib::Request& request) {
 
 std::string cookie(const httplib::Request& request, const std::string& name) {
     const auto header = request.get_header_value("Cookie");
-    std::string_view rest = header;
-    while (!rest.empty()) {
-        const auto end = rest.find(';');
-        auto one = rest.substr(0, end);
-        rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-        while (one.starts_with(' ')) {
-            one.remove_prefix(1);
-        }
+    for (const auto part : split(header, ';')) {
+        const auto one = trimmed(part, " ");
         if (one.starts_with(name) && one.substr(name.size()).starts_with('=')) {
             return std::string(one.substr(name.size() + 1));
         }

@@ -45,16 +45,12 @@ void setToken(const Request& request, const std::string& token, Response& respon
 }  // namespace
 
 Api::Api(const Parts& parts)
-    : options_(parts.options),
-      board_(parts.board),
-      people_(parts.people),
-      tabs_(parts.tabs),
-      records_(parts.records),
+    : parts_(parts),
       commands_(parts.watches, parts.tabs),
       streams_(parts.board, parts.options.limits) {}
 
 std::shared_ptr<Person> Api::personOf(const Request& request) const {
-    return people_.find(tokenOf(request));
+    return parts_.people.find(tokenOf(request));
 }
 
 void Api::get(http::HttpServer& server, const std::string& path, Get handler) {
@@ -66,22 +62,22 @@ void Api::get(http::HttpServer& server, const std::string& path, Get handler) {
 }
 
 void Api::post(http::HttpServer& server, const std::string& path, Post handler) {
-    server.Post(path,
-                [this, handler = std::move(handler)](const Request& request, Response& response) {
-                    if (const auto meant = checkIntent(request); !meant) {
-                        return write(errorReply(meant.error()), response);
-                    }
-                    const auto person = personOf(request);
-                    if (!person) {
-                        return write(notLoggedIn(), response);
-                    }
-                    const auto body = parseBody(request.body);
-                    write(body ? handler(*body, person) : errorReply(body.error()), response);
-                });
+    const auto answer = [this, handler = std::move(handler)](const Request& request) -> Reply {
+        METIER_TRY(checkIntent(request));
+        const auto person = personOf(request);
+        if (!person) {
+            return notLoggedIn();
+        }
+        METIER_ASSIGN(const auto body, parseBody(request.body));
+        return handler(body, person);
+    };
+    server.Post(path, [answer](const Request& request, Response& response) {
+        write(answer(request), response);
+    });
 }
 
 Reply Api::me(const std::shared_ptr<Person>& person) const {
-    const bool lab = people_.isLab();
+    const bool lab = parts_.people.isLab();
     return {200,
             {{"user", person ? person->user() : ""},
              {"role", person ? person->role() : ""},
@@ -94,37 +90,32 @@ void Api::bindLogin(http::HttpServer& server) {
         write(me(personOf(request)), response);
     });
     server.Post("/api/login", [this](const Request& request, Response& response) {
-        if (const auto meant = checkIntent(request); !meant) {
-            return write(errorReply(meant.error()), response);
-        }
-        const auto body = parseBody(request.body);
-        const auto user =
-            body ? textOrNone(*body, "user") : Result<std::string>(fail(body.error()));
-        const auto password =
-            user ? textOrNone(*body, "password") : Result<std::string>(fail(user.error()));
-        if (!password) {
-            return write(errorReply(password.error()), response);
-        }
-        const auto token = people_.login(*user, *password);
-        if (!token) {
-            const bool wait = token.error().code == Errc::resource_unavailable;
-            const bool denied = token.error().code == Errc::access_denied;
-            return write(wait     ? errorReply(429, "resource_unavailable", token.error().message)
-                         : denied ? errorReply(401, "access_denied", token.error().message)
-                                  : errorReply(token.error()),
-                         response);
-        }
-        setToken(request, *token, response);
-        write(me(people_.find(*token)), response);
+        write(login(request, response), response);
     });
     server.Post("/api/logout", [this](const Request& request, Response& response) {
         if (const auto meant = checkIntent(request); !meant) {
             return write(errorReply(meant.error()), response);
         }
-        people_.logout(tokenOf(request));
+        parts_.people.logout(tokenOf(request));
         setToken(request, "", response);
         write(me(nullptr), response);
     });
+}
+
+Reply Api::login(const Request& request, Response& response) {
+    METIER_TRY(checkIntent(request));
+    METIER_ASSIGN(const auto body, parseBody(request.body));
+    METIER_ASSIGN(const auto user, textOrNone(body, "user"));
+    METIER_ASSIGN(const auto password, textOrNone(body, "password"));
+    const auto token = parts_.people.login(user, password);
+    if (!token) {
+        const auto& [code, why] = token.error();
+        return code == Errc::resource_unavailable ? errorReply(429, toString(code), why)
+               : code == Errc::access_denied      ? errorReply(401, toString(code), why)
+                                                  : errorReply(token.error());
+    }
+    setToken(request, *token, response);
+    return me(parts_.people.find(*token));
 }
 
 void Api::beginStream(const Request& request, Response& response) {
@@ -133,14 +124,14 @@ void Api::beginStream(const Request& request, Response& response) {
         return write(notLoggedIn(), response);
     }
     const auto tab = randomHex(kNameDigits);
-    tabs_.open(tab, person);
+    parts_.tabs.open(tab, person);
     const auto may_listen = [this, token = tokenOf(request), person] {
-        return people_.find(token) == person;
+        return parts_.people.find(token) == person;
     };
     if (const auto begun =
-            streams_.begin(tab, response, {may_listen, [this, tab] { tabs_.close(tab); }});
+            streams_.begin(tab, response, {may_listen, [this, tab] { parts_.tabs.close(tab); }});
         !begun) {
-        tabs_.close(tab);
+        parts_.tabs.close(tab);
         write(errorReply(503, toString(begun.error().code), begun.error().message), response);
     }
 }
@@ -168,25 +159,25 @@ void Api::bindCommands(http::HttpServer& server) {
 
 /// The URDF files of the folder of meshes, as paths in it.
 void Api::bindMeshes(http::HttpServer& server) {
-    if (options_.meshes.empty()) {
+    if (parts_.options.meshes.empty()) {
         return;
     }
     server.Get("/meshes/(.+)", [this](const Request& request, Response& response) {
         if (!personOf(request)) {
             return write(notLoggedIn(), response);
         }
-        serveFile(fileBelow(options_.meshes, request.matches[1]), response);
+        serveFile(fileBelow(parts_.options.meshes, request.matches[1]), response);
     });
     get(server, "/api/meshes", [this](const Request& /*request*/, const auto& /*person*/) {
         namespace fs = std::filesystem;
         constexpr std::size_t kMost = 1'000;
         auto files = json::array();
         std::error_code error;
-        for (auto entry = fs::recursive_directory_iterator(options_.meshes, error);
+        for (auto entry = fs::recursive_directory_iterator(parts_.options.meshes, error);
              !error && entry != fs::recursive_directory_iterator() && files.size() < kMost;
              entry.increment(error)) {
-            const auto name = entry->path().lexically_relative(options_.meshes).string();
-            if (entry->path().extension() == ".urdf" && fileBelow(options_.meshes, name)) {
+            const auto name = entry->path().lexically_relative(parts_.options.meshes).string();
+            if (entry->path().extension() == ".urdf" && fileBelow(parts_.options.meshes, name)) {
                 files.push_back(name);
             }
         }
@@ -199,8 +190,10 @@ void Api::bindFiles(http::HttpServer& server) {
          {std::pair{"js", "text/javascript"}, {"webmanifest", "application/manifest+json"}}) {
         server.set_file_extension_and_mimetype_mapping(extension, type);
     }
-    if (!server.set_mount_point("/", options_.web.string(), {{"Cache-Control", "no-cache"}})) {
-        server.Get("/", [web = options_.web.string()](const Request& /*any*/, Response& response) {
+    if (!server.set_mount_point("/", parts_.options.web.string(),
+                                {{"Cache-Control", "no-cache"}})) {
+        server.Get("/", [web = parts_.options.web.string()](const Request& /*any*/,
+                                                            Response& response) {
             response.status = 503;
             response.set_content(
                 fmt::format("The files of the page are not there: {} is no folder. The API is at "
@@ -214,11 +207,11 @@ void Api::bindFiles(http::HttpServer& server) {
 void Api::bind(http::HttpServer& server) {
     server.set_default_headers(protectiveHeaders());
     server.set_pre_routing_handler([this](const Request& request, Response& response) {
-        auto own = checkOrigin(request, options_.host_name);
-        own = own && people_.isLab() ? checkLocal(request) : own;
+        auto own = checkOrigin(request, parts_.options.host_name);
+        own = own && parts_.people.isLab() ? checkLocal(request) : own;
         if (!own) {
             write(errorReply(own.error()), response);
-        } else if (leadsElsewhere(options_.web, request.path)) {
+        } else if (leadsElsewhere(parts_.options.web, request.path)) {
             write(errorReply(404, "http", "no such file"), response);
         } else {
             return httplib::Server::HandlerResponse::Unhandled;
@@ -242,16 +235,17 @@ void Api::bind(http::HttpServer& server) {
     bindCommands(server);
     get(server, "/api/cell",
         [this](const Request& /*request*/, const std::shared_ptr<Person>& /*person*/) {
-            auto cell = board_.cell();
-            cell["lab"] = people_.isLab();
-            cell["meshes"] = !options_.meshes.empty();
+            auto cell = parts_.board.cell();
+            cell["lab"] = parts_.people.isLab();
+            cell["meshes"] = !parts_.options.meshes.empty();
             return Reply{200, std::move(cell)};
         });
-    get(server, "/api/records",
-        [this](const Request& request, const auto& /*person*/) { return records_.list(request); });
+    get(server, "/api/records", [this](const Request& request, const auto& /*person*/) {
+        return parts_.records.list(request);
+    });
     get(server, R"(/api/records/(\d{1,18}))",
         [this](const Request& request, const auto& /*person*/) {
-            return records_.one(std::stoll(request.matches[1]));
+            return parts_.records.one(std::stoll(request.matches[1]));
         });
     server.Get("/api/stream", [this](const Request& request, Response& response) {
         beginStream(request, response);

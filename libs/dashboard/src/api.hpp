@@ -49,13 +49,10 @@ private:
     void bindCommands(http::HttpServer& server);
     void bindMeshes(http::HttpServer& server);
     void beginStream(const httplib::Request& request, httplib::Response& response);
+    Reply login(const httplib::Request& request, httplib::Response& response);
     Reply me(const std::shared_ptr<Person>& person) const;
 
-    const Options& options_;
-    Board& board_;
-    People& people_;
-    Tabs& tabs_;
-    RecordsView& records_;
+    const Parts parts_;
     Commands commands_;
     Streams streams_;
 };

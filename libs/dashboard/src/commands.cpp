@@ -34,11 +34,10 @@ std::string serverOf(const std::string& key) {
 
 /// As the tab that has control.
 Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, const Person& person) {
-    const auto key = textIn(body, "key");
-    METIER_ASSIGN(const auto tab,
-                  key ? textIn(body, "tab") : Result<std::string>(fail(key.error())));
-    METIER_ASSIGN(auto reached, watches.skill(*key));
-    METIER_ASSIGN(auto session, tabs.session(tab, person, serverOf(*key)));
+    METIER_ASSIGN(const auto key, textIn(body, "key"));
+    METIER_ASSIGN(const auto tab, textIn(body, "tab"));
+    METIER_ASSIGN(auto reached, watches.skill(key));
+    METIER_ASSIGN(auto session, tabs.session(tab, person, serverOf(key)));
     METIER_ASSIGN(auto skill, session->session().skill(*reached.skill));
     return Named{std::move(reached), std::move(session), nullptr, std::move(skill)};
 }
@@ -46,14 +45,13 @@ Result<Named> commandedSkill(Watches& watches, Tabs& tabs, const json& body, con
 /// Skill for a command that needs no control. It is sent as the tab if that has control, since the
 /// server shows other clients that the skill is not theirs.
 Result<Named> askedSkill(Watches& watches, Tabs& tabs, const json& body, Person& person) {
-    const auto key = textIn(body, "key");
-    METIER_ASSIGN(const auto tab,
-                  key ? textOrNone(body, "tab") : Result<std::string>(fail(key.error())));
-    if (tabs.session(tab, person, serverOf(*key))) {
+    METIER_ASSIGN(const auto key, textIn(body, "key"));
+    METIER_ASSIGN(const auto tab, textOrNone(body, "tab"));
+    if (tabs.session(tab, person, serverOf(key))) {
         return commandedSkill(watches, tabs, body, person);
     }
-    METIER_ASSIGN(auto reached, watches.skill(*key));
-    METIER_ASSIGN(auto session, person.session(serverOf(*key)));
+    METIER_ASSIGN(auto reached, watches.skill(key));
+    METIER_ASSIGN(auto session, person.session(serverOf(key)));
     METIER_ASSIGN(auto skill, session->skill(*reached.skill));
     return Named{std::move(reached), nullptr, std::move(session), std::move(skill)};
 }
@@ -124,74 +122,49 @@ json checkJson(const skill::CheckReport& report) {
 }
 
 Reply Commands::check(const json& body, const std::shared_ptr<Person>& person) {
-    auto named = askedSkill(watches_, tabs_, body, *person);
-    if (!named) {
-        return errorReply(named.error());
-    }
-    auto values = parametersIn(body, named->skill->description());
-    if (!values) {
-        return errorReply(values.error());
-    }
+    METIER_ASSIGN(const auto named, askedSkill(watches_, tabs_, body, *person));
+    METIER_ASSIGN(const auto values, parametersIn(body, named.skill->description()));
     const auto report = awaitAnswer<skill::CheckReport>(
-        [&](auto done) { return named->skill->check(*values, std::move(done)); });
+        [&](auto done) { return named.skill->check(values, std::move(done)); });
     return report ? Reply{200, checkJson(*report)}
-                  : errorReply(explained(report.error(), *named->skill, "Check"));
+                  : errorReply(explained(report.error(), *named.skill, "Check"));
 }
 
 Reply Commands::start(const json& body, const std::shared_ptr<Person>& person) {
-    auto named = commandedSkill(watches_, tabs_, body, *person);
-    if (!named) {
-        return errorReply(named.error());
-    }
+    METIER_ASSIGN(const auto named, commandedSkill(watches_, tabs_, body, *person));
     skill::StartRequest request;
-    auto values = parametersIn(body, named->skill->description());
-    auto execution =
-        values ? textOrNone(body, "execution") : Result<std::string>(fail(values.error()));
-    if (!execution) {
-        return errorReply(execution.error());
+    METIER_ASSIGN(request.parameters, parametersIn(body, named.skill->description()));
+    METIER_ASSIGN(request.execution_id, textOrNone(body, "execution"));
+    if (const auto& control = named.reached.skill->control; !control.empty()) {
+        METIER_ASSIGN(request.epoch, named.tab->epochOf(control));
     }
-    const auto& control = named->reached.skill->control;
-    const auto epoch = control.empty() ? Result<std::uint64_t>(0) : named->tab->epochOf(control);
-    if (!epoch) {
-        return errorReply(epoch.error());
-    }
-    request.execution_id = std::move(*execution);
-    request.parameters = std::move(*values);
-    request.epoch = *epoch;
     const auto id = awaitAnswer<std::string>(
-        [&](auto done) { return named->skill->startWith(request, std::move(done)); });
+        [&](auto done) { return named.skill->startWith(request, std::move(done)); });
     return id ? Reply{200, {{"execution", opcua::sanitise(*id)}}}
-              : errorReply(explained(id.error(), *named->skill, "Start"));
+              : errorReply(explained(id.error(), *named.skill, "Start"));
 }
 
 Reply Commands::call(skill::Method method, const json& body,
                      const std::shared_ptr<Person>& person) {
-    auto named = commandedSkill(watches_, tabs_, body, *person);
-    if (!named) {
-        return errorReply(named.error());
-    }
-    const auto called = method == skill::Method::reset ? resetUntilDone(*named->skill)
-                                                       : callOnce(*named->skill, method);
-    return called ? Reply{}
-                  : errorReply(explained(called.error(), *named->skill, toString(method)));
+    METIER_ASSIGN(const auto named, commandedSkill(watches_, tabs_, body, *person));
+    const auto called = method == skill::Method::reset ? resetUntilDone(*named.skill)
+                                                       : callOnce(*named.skill, method);
+    return called ? Reply{} : errorReply(explained(called.error(), *named.skill, toString(method)));
 }
 
 Reply Commands::haltSkill(const json& body, const std::shared_ptr<Person>& person) {
-    const auto key = textIn(body, "key");
-    const auto reached = key ? watches_.skill(*key) : Result<ReachedSkill>(fail(key.error()));
-    return reached ? haltAll({{serverOf(*key), {*key}}}, person) : errorReply(reached.error());
+    METIER_ASSIGN(const auto key, textIn(body, "key"));
+    METIER_TRY(watches_.skill(key));
+    return haltAll({{serverOf(key), {key}}}, person);
 }
 
 Reply Commands::halt(const json& body, const std::shared_ptr<Person>& person) {
-    const auto server = textOrNone(body, "server");
-    const auto arm = server ? textOrNone(body, "arm") : Result<std::string>(fail(server.error()));
-    if (!arm) {
-        return errorReply(arm.error());
-    }
-    const auto skills = skillsOf(*server, *arm);
-    if (skills.empty() && !(server->empty() && arm->empty())) {
-        return errorReply({Errc::not_found, fmt::format("no skill of '{}' to halt",
-                                                        server->empty() ? *arm : *server)});
+    METIER_ASSIGN(const auto server, textOrNone(body, "server"));
+    METIER_ASSIGN(const auto arm, textOrNone(body, "arm"));
+    const auto skills = skillsOf(server, arm);
+    if (skills.empty() && !(server.empty() && arm.empty())) {
+        return fail(Errc::not_found,
+                    fmt::format("no skill of '{}' to halt", server.empty() ? arm : server));
     }
     return haltAll(skills, person);
 }

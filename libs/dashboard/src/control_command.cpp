@@ -44,22 +44,18 @@ ChangedControl changeControl(const std::vector<std::string>& servers, const Used
 }  // namespace
 
 Reply Commands::control(const json& body, const std::shared_ptr<Person>& person) {
-    const auto tab = textIn(body, "tab");
-    const auto action = tab ? textIn(body, "action") : Result<std::string>(fail(tab.error()));
-    const auto server =
-        action ? textOrNone(body, "server") : Result<std::string>(fail(action.error()));
-    if (!server) {
-        return errorReply(server.error());
+    METIER_ASSIGN(const auto tab, textIn(body, "tab"));
+    METIER_ASSIGN(const auto action, textIn(body, "action"));
+    METIER_ASSIGN(const auto server, textOrNone(body, "server"));
+    if (action != "take" && action != "release") {
+        return fail(Errc::invalid_argument, "action: take or release expected");
     }
-    if (*action != "take" && *action != "release") {
-        return errorReply({Errc::invalid_argument, "action: take or release expected"});
-    }
-    const bool takes = *action == "take";
-    const bool all = server->empty() || *server == "all";
+    const bool takes = action == "take";
+    const bool all = server.empty() || server == "all";
     const auto changed = changeControl(
-        all ? watches_.servers() : std::vector{*server},
+        all ? watches_.servers() : std::vector{server},
         all && takes ? watches_.usedServers() : UsedServers(), [&](const std::string& one) {
-            return takes ? tabs_.take(*tab, person, one) : tabs_.release(*tab, *person, one);
+            return takes ? tabs_.take(tab, person, one) : tabs_.release(tab, *person, one);
         });
     if (changed.first && changed.done.empty()) {
         return errorReply(*changed.first);

@@ -80,8 +80,7 @@ Result<std::unique_ptr<Dashboard>> Dashboard::start(Options options, const Clock
         }
     });
     own.api.bind(own.http);
-    METIER_ASSIGN(const auto port, own.http.serve(own.options.address, own.options.port));
-    own.port = port;
+    METIER_ASSIGN(own.port, own.http.serve(own.options.address, own.options.port));
     std::unique_ptr<Dashboard> dashboard(new Dashboard(std::move(impl)));  // NOLINT: private
     for (const auto& server : own.options.cell.servers) {
         dashboard->addServer(server);

@@ -23,9 +23,9 @@ json rounded(const std::vector<double>& values) {
     return list;
 }
 
-void LiveValues::set(json& values, const std::string& group, const std::string& key,
-                     const std::string& name, json value) {
-    auto& stored = values[group][key][name];
+void LiveValues::set(const char* group, const std::string& key, const std::string& name,
+                     json value) {
+    auto& stored = values_[group][key][name];
     if (stored != value) {
         changed_[group][key][name] = value;
         stored = std::move(value);
@@ -44,18 +44,9 @@ void LiveValues::setJoints(const std::string& arm, const std::vector<double>& jo
             velocity[axis] = (joints[axis] - before.position[axis]) / elapsed;
         }
     }
-    moving_ = moving_ || before.position != joints;
     before = {joints, time};
-    set(values_, "arms", arm, "q", rounded(joints));
-    set(values_, "arms", arm, "v", rounded(velocity));
-}
-
-void LiveValues::setForce(const std::string& arm, const std::vector<double>& force) {
-    setWrench(arm, 0, force);
-}
-
-void LiveValues::setTorque(const std::string& arm, const std::vector<double>& torque) {
-    setWrench(arm, 3, torque);
+    set("arms", arm, "q", rounded(joints));
+    set("arms", arm, "v", rounded(velocity));
 }
 
 void LiveValues::setWrench(const std::string& arm, std::size_t begin,
@@ -65,15 +56,15 @@ void LiveValues::setWrench(const std::string& arm, std::size_t begin,
         return;  // no wrench
     }
     std::copy(values.begin(), values.end(), wrench.begin() + static_cast<std::ptrdiff_t>(begin));
-    set(values_, "arms", arm, "f", rounded({wrench.begin(), wrench.end()}));
+    set("arms", arm, "f", rounded({wrench.begin(), wrench.end()}));
 }
 
 void LiveValues::setOfArm(const std::string& arm, const std::string& name, json value) {
-    set(values_, "arms", arm, name, std::move(value));
+    set("arms", arm, name, std::move(value));
 }
 
 void LiveValues::setOfGripper(const std::string& gripper, const std::string& name, json value) {
-    set(values_, "grippers", gripper, name, std::move(value));
+    set("grippers", gripper, name, std::move(value));
 }
 
 void LiveValues::setPart(const std::string& part, json value) {
@@ -103,7 +94,6 @@ json LiveValues::all(UtcTime now) const {
 }
 
 json LiveValues::changes(UtcTime now) {
-    moving_ = false;
     if (changed_.empty()) {
         return nullptr;
     }

@@ -20,8 +20,12 @@ public:
     /// Measured joint positions [rad] of an arm, true at `time`; the velocity follows from them.
     void setJoints(const std::string& arm, const std::vector<double>& joints, UtcTime time);
     /// Half of a wrench: force [N] or torque [N m] along or about x, y, z.
-    void setForce(const std::string& arm, const std::vector<double>& force);
-    void setTorque(const std::string& arm, const std::vector<double>& torque);
+    void setForce(const std::string& arm, const std::vector<double>& force) {
+        setWrench(arm, 0, force);
+    }
+    void setTorque(const std::string& arm, const std::vector<double>& torque) {
+        setWrench(arm, 3, torque);
+    }
     /// Any other value of an arm by its name in the stream: "c", "jitter", "safety", "missed".
     void setOfArm(const std::string& arm, const std::string& name, nlohmann::json value);
     void setOfGripper(const std::string& gripper, const std::string& name, nlohmann::json value);
@@ -33,8 +37,6 @@ public:
     nlohmann::json all(UtcTime now) const;
     /// Values that have changed since the last call; null if none has.
     nlohmann::json changes(UtcTime now);
-    /// Whether an arm's joints changed since the last changes().
-    bool moving() const noexcept { return moving_; }
 
 private:
     struct Joints {
@@ -42,14 +44,13 @@ private:
         UtcTime time{};
     };
     void setWrench(const std::string& arm, std::size_t begin, const std::vector<double>& values);
-    void set(nlohmann::json& values, const std::string& group, const std::string& key,
-             const std::string& name, nlohmann::json value);
+    void set(const char* group, const std::string& key, const std::string& name,
+             nlohmann::json value);
 
     std::map<std::string, Joints> joints_;
     std::map<std::string, std::array<double, 6>> wrenches_;
     nlohmann::json values_ = nlohmann::json::object();  // arms, grippers, parts
     nlohmann::json changed_ = nlohmann::json::object();
-    bool moving_ = false;
 };
 
 /// A number as it is sent: rounded to a millionth, so that it is short.

@@ -31,15 +31,11 @@ json parsed(const std::string& text) {
     return value.is_discarded() ? json(text) : inLists(value);
 }
 
-json timeOrNull(UtcTime time) {
-    return time == UtcTime{} ? json() : json(secondsOf(time));
-}
-
 json valueOf(const Member& member, const std::string& text) {
     return member.form == records::Form::json ? parsed(text) : json(text);
 }
 json valueOf(const Member& /*member*/, UtcTime time) {
-    return timeOrNull(time);
+    return time == UtcTime{} ? json() : json(secondsOf(time));
 }
 template <std::integral T>
 json valueOf(const Member& /*member*/, T number) {
@@ -54,10 +50,6 @@ json objectOf(const Record& record) {
         shown[std::string(member.name)] = valueOf(member, value);
     });
     return shown;
-}
-
-json jsonOf(const records::Transition& transition) {
-    return objectOf(transition);
 }
 
 json valuesOf(const records::SampleValues& values) {
@@ -82,15 +74,6 @@ json pathJson(const std::vector<records::PathSample>& path) {
     auto list = json::array();
     for (std::size_t i = 0; i < kept; ++i) {
         list.push_back(jsonOf(path[thinned(i, kept, path.size())]));
-    }
-    return list;
-}
-
-template <typename T>
-json listOf(const std::vector<T>& all) {
-    auto list = json::array();
-    for (const auto& one : all) {
-        list.push_back(jsonOf(one));
     }
     return list;
 }
@@ -141,17 +124,12 @@ Result<std::pair<records::Filter, records::Page>> recordsQuery(const httplib::Re
                                      {"parent", &filter.parent}}) {
         *part = request.get_param_value(name);
     }
-    auto from = timeIn(request, "from");
-    auto until = from ? timeIn(request, "to") : from;
-    const auto before =
-        wholeIn(request, "before", {0, std::numeric_limits<std::int64_t>::max()}, 0);
-    const auto count = wholeIn(request, "count", {1, kMostRecords}, kUsual);
-    if (!until || !before || !count) {
-        return fail(!until ? until.error() : !before ? before.error() : count.error());
-    }
-    filter.from = *from;
-    filter.until = *until;
-    return std::pair{std::move(filter), records::Page{*before, static_cast<std::uint32_t>(*count)}};
+    METIER_ASSIGN(filter.from, timeIn(request, "from"));
+    METIER_ASSIGN(filter.until, timeIn(request, "to"));
+    METIER_ASSIGN(const auto before,
+                  wholeIn(request, "before", {0, std::numeric_limits<std::int64_t>::max()}, 0));
+    METIER_ASSIGN(const auto count, wholeIn(request, "count", {1, kMostRecords}, kUsual));
+    return std::pair{std::move(filter), records::Page{before, static_cast<std::uint32_t>(count)}};
 }
 
 RecordsView::RecordsView(std::string url, Board& board)
@@ -168,14 +146,10 @@ json RecordsView::recordJson(const ExecutionRow& execution) const {
 }
 
 Reply RecordsView::list(const httplib::Request& request) {
-    const auto query = recordsQuery(request);
-    if (!query) {
-        return errorReply(query.error());
-    }
+    METIER_ASSIGN(const auto query, recordsQuery(request));
     const auto listing =
-        recorded_
-            ? store_.use([&](Store& store) { return store.list(query->first, query->second); })
-            : Result<records::Listing>(fail(Errc::not_found, "nothing is recorded"));
+        recorded_ ? store_.use([&](Store& store) { return store.list(query.first, query.second); })
+                  : Result<records::Listing>(fail(Errc::not_found, "nothing is recorded"));
     if (!listing && listing.error().code != Errc::not_found) {
         return errorReply(listing.error());
     }
@@ -189,7 +163,10 @@ Reply RecordsView::list(const httplib::Request& request) {
 Result<json> RecordsView::detailsOf(Store& store, std::int64_t number) const {
     METIER_ASSIGN(const auto details, records::detailsOf(store, number));
     auto shown = recordJson(details.execution);
-    shown["transitions"] = listOf(details.transitions);
+    shown["transitions"] = json::array();
+    for (const auto& transition : details.transitions) {
+        shown["transitions"].push_back(objectOf(transition));
+    }
     shown["path"] = pathJson(details.path);
     shown["children"] = json::array();
     for (const auto& child : details.children) {
@@ -199,10 +176,11 @@ Result<json> RecordsView::detailsOf(Store& store, std::int64_t number) const {
 }
 
 Reply RecordsView::one(std::int64_t number) {
-    const auto shown = recorded_
-                           ? store_.use([&](Store& store) { return detailsOf(store, number); })
-                           : Result<json>(fail(Errc::not_found, "nothing is recorded"));
-    return shown ? Reply{200, *shown} : errorReply(shown.error());
+    if (!recorded_) {
+        return fail(Errc::not_found, "nothing is recorded");
+    }
+    METIER_ASSIGN(auto shown, store_.use([&](Store& store) { return detailsOf(store, number); }));
+    return {200, std::move(shown)};
 }
 
 void RecordsView::show(bool shown) {

@@ -4,20 +4,31 @@
 
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
 #include "metier/base/error.hpp"
 
 namespace metier::dashboard {
 
-/// An answer of the API.
-struct Reply {
-    int status = 200;
-    nlohmann::json body = nlohmann::json::object();
-};
+struct Reply;
 
 /// {"error": {"code": "out_of_range", "message": "..."}} with the HTTP status that fits the code.
 Reply errorReply(const Error& error);
 Reply errorReply(int status, std::string_view code, std::string_view message);
+
+/// An answer of the API.
+struct Reply {
+    Reply() = default;
+    Reply(int http_status, nlohmann::json content)
+        : status(http_status), body(std::move(content)) {}
+    /// As errorReply(); METIER_TRY and METIER_ASSIGN answer by it.
+    template <typename Failure>
+    Reply(const tl::unexpected<Failure>& failed)  // NOLINT(google-explicit-constructor)
+        : Reply(errorReply(failed.value())) {}
+
+    int status = 200;
+    nlohmann::json body = nlohmann::json::object();
+};
 
 /// Writes an answer that no cache keeps.
 void write(const Reply& reply, httplib::Response& response);

@@ -14,7 +14,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using opcua::Answer;
-using opcua::DataValue;
 
 constexpr auto kJoints = 33ms;  // 30 Hz
 constexpr auto kStates = 100ms;
@@ -57,14 +56,25 @@ void ServerLink::showLive(bool shown) {
     }
 }
 
+opcua::NodeId ServerLink::below(const opcua::NodeId& object,
+                                std::vector<opcua::QualifiedName> path) {
+    return client_->translate(object, std::move(path)).value_or(opcua::NodeId());
+}
+
 /// Subscribes to a Variable. One that the server lacks, or does not let us read, is not shown.
+template <typename T>
 void ServerLink::subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
-                           std::function<void(const DataValue&)> callback) {
+                           std::function<void(const T&, UtcTime)> callback) {
     if (node.isNull()) {
         return;
     }
     auto subscribed =
-        client_->subscribeData(node, {.sampling_interval = interval}, std::move(callback));
+        client_->subscribeData(node, {.sampling_interval = interval},
+                               [callback = std::move(callback)](const opcua::DataValue& now) {
+                                   if (const auto value = now.value.as<T>()) {
+                                       callback(*value, now.source_time);
+                                   }
+                               });
     if (subscribed) {
         live_.push_back(std::move(*subscribed));
     }
@@ -73,11 +83,10 @@ void ServerLink::subscribe(const opcua::NodeId& node, std::chrono::milliseconds 
 template <typename T>
 void ServerLink::subscribeLive(const opcua::NodeId& node, std::chrono::milliseconds interval,
                                std::function<void(LiveValues&, const T&, UtcTime)> change) {
-    subscribe(node, interval, [&board = *board_, change = std::move(change)](const DataValue& now) {
-        if (const auto value = now.value.as<T>()) {
-            board.changeLive([&](LiveValues& live) { change(live, *value, now.source_time); });
-        }
-    });
+    subscribe<T>(node, interval,
+                 [&board = *board_, change = std::move(change)](const T& value, UtcTime time) {
+                     board.changeLive([&](LiveValues& live) { change(live, value, time); });
+                 });
 }
 
 void ServerLink::showArm(const Arm& arm) {
@@ -125,41 +134,33 @@ void ServerLink::showController(const LinkedController& controller) {
         return;
     }
     auto& board = *board_;
-    if (const auto owner = client_->translate(controller.node, {{*metier, "ControlOwner"}})) {
-        subscribe(*owner, kStates, [&board, key = controller.key](const DataValue& notice) {
-            if (const auto name = notice.value.as<std::string>()) {
-                board.changeControl(
-                    key, [&](ControlState& state) { state.owner = opcua::sanitise(*name); });
-            }
+    subscribe<std::string>(
+        below(controller.node, {{*metier, "ControlOwner"}}), kStates,
+        [&board, key = controller.key](const std::string& name, UtcTime /*time*/) {
+            board.changeControl(key,
+                                [&](ControlState& state) { state.owner = opcua::sanitise(name); });
         });
-    }
-    if (const auto lease = client_->translate(controller.node, {{*metier, "LeaseRemaining"}})) {
-        subscribe(*lease, kSlow, [&board, key = controller.key](const DataValue& notice) {
-            if (const auto left = notice.value.as<double>()) {
-                board.changeControl(key, [&](ControlState& state) {
-                    state.lease_ms = rounded(*left);
-                    state.until =
-                        *left > 0.0 ? secondsOf(notice.source_time) + rounded(*left) / 1e3 : 0.0;
-                });
-            }
-        });
-    }
+    subscribe<double>(below(controller.node, {{*metier, "LeaseRemaining"}}), kSlow,
+                      [&board, key = controller.key](double left, UtcTime time) {
+                          board.changeControl(key, [&](ControlState& state) {
+                              state.lease_ms = rounded(left);
+                              state.until =
+                                  left > 0.0 ? secondsOf(time) + rounded(left) / 1e3 : 0.0;
+                          });
+                      });
     showGripper(controller.node, *metier);
 }
 
 void ServerLink::showGripper(const opcua::NodeId& object, std::uint16_t metier) {
-    const auto nodeOf = [&](const char* name) {
-        return client_->translate(object, {{metier, name}}).value_or(opcua::NodeId());
-    };
-    subscribeLive<bool>(nodeOf("PartHeld"), kStates,
+    subscribeLive<bool>(below(object, {{metier, "PartHeld"}}), kStates,
                         [key = server_](LiveValues& live, bool held, UtcTime /*time*/) {
                             live.setOfGripper(key, "held", held);
                         });
-    subscribeLive<double>(nodeOf("GripperWidth"), kJoints,
+    subscribeLive<double>(below(object, {{metier, "GripperWidth"}}), kJoints,
                           [key = server_](LiveValues& live, double width, UtcTime /*time*/) {
                               live.setOfGripper(key, "width", rounded(width));
                           });
-    subscribeLive<double>(nodeOf("GripperForce"), kStates,
+    subscribeLive<double>(below(object, {{metier, "GripperForce"}}), kStates,
                           [key = server_](LiveValues& live, double force, UtcTime /*time*/) {
                               live.setOfGripper(key, "force", rounded(force));
                           });
@@ -180,30 +181,21 @@ void ServerLink::showSkill(const LinkedSkill& skill) {
             }
         });
     };
-    const auto sub_state =
-        client_->translate(node, {{*metier, "RunningSubStates"}, {0, "CurrentState"}});
-    if (sub_state) {
-        subscribe(*sub_state, kStates, [onText](const DataValue& notice) {
-            if (const auto text = notice.value.as<opcua::LocalizedText>();
-                text && !text->text.empty()) {
-                onText(&SkillState::sub_state, text->text);
+    subscribe<opcua::LocalizedText>(
+        below(node, {{*metier, "RunningSubStates"}, {0, "CurrentState"}}), kStates,
+        [onText](const opcua::LocalizedText& text, UtcTime /*time*/) {
+            if (!text.text.empty()) {
+                onText(&SkillState::sub_state, text.text);
             }
         });
-    }
-    if (const auto step = client_->translate(node, {{*metier, "CurrentStep"}})) {
-        subscribe(*step, kStates, [onText](const DataValue& notice) {
-            if (const auto text = notice.value.as<std::string>()) {
-                onText(&SkillState::step, *text);
-            }
-        });
-    }
-    if (const auto progress = client_->translate(node, {{*metier, "Progress"}})) {
-        subscribe(*progress, kStates, [&board, key = skill.key](const DataValue& notice) {
-            if (const auto part = notice.value.as<double>()) {
-                board.changeSkill(key, [&](SkillState& state) { state.progress = rounded(*part); });
-            }
-        });
-    }
+    subscribe<std::string>(
+        below(node, {{*metier, "CurrentStep"}}), kStates,
+        [onText](const std::string& text, UtcTime /*time*/) { onText(&SkillState::step, text); });
+    subscribe<double>(below(node, {{*metier, "Progress"}}), kStates,
+                      [&board, key = skill.key](double part, UtcTime /*time*/) {
+                          board.changeSkill(
+                              key, [&](SkillState& state) { state.progress = rounded(part); });
+                      });
 }
 
 }  // namespace metier::dashboard

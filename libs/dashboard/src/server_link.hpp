@@ -85,9 +85,12 @@ private:
     void showGripper(const opcua::NodeId& object, std::uint16_t metier);
     void showController(const LinkedController& controller);
     void showSkill(const LinkedSkill& skill);
+    /// A node below an object; null if there is none.
+    opcua::NodeId below(const opcua::NodeId& object, std::vector<opcua::QualifiedName> path);
+    /// \param callback called with values of that type only, and the time at which they were true
+    template <typename T>
     void subscribe(const opcua::NodeId& node, std::chrono::milliseconds interval,
-                   std::function<void(const opcua::DataValue&)> callback);
-    /// \param change called with values of that type only, and the time at which they were true
+                   std::function<void(const T&, UtcTime)> callback);
     template <typename T>
     void subscribeLive(const opcua::NodeId& node, std::chrono::milliseconds interval,
                        std::function<void(LiveValues&, const T&, UtcTime)> change);

@@ -166,21 +166,6 @@ TEST(LiveValuesOfAnArm, AreKeptApartFromThoseOfOthers) {
     EXPECT_EQ(all.at("t"), 1'800'000'000.0);
 }
 
-TEST(LiveValuesOfAnArm, ShowWhetherItMoves) {
-    LiveValues live;
-    live.setJoints("ur5", {1.0}, kNoon);
-    live.changes(kNoon);
-    EXPECT_FALSE(live.moving());
-    live.setJoints("ur5", {1.0}, kNoon + 10ms);
-    EXPECT_FALSE(live.moving());
-    live.setJoints("ur5", {1.1}, kNoon + 20ms);
-    EXPECT_TRUE(live.moving());
-    live.setJoints("ur5", {1.1}, kNoon + 30ms);
-    EXPECT_TRUE(live.moving()) << "since the last changes()";
-    live.changes(kNoon);
-    EXPECT_FALSE(live.moving());
-}
-
 TEST(LiveValuesOfAnArm, HaveNoVelocityAcrossOtherAxesOrATimeThatStands) {
     LiveValues live;
     const auto velocity = [&] { return live.all(kNoon).at("arms").at("ur5").at("v"); };
