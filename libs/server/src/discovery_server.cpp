@@ -19,10 +19,8 @@ Result<std::unique_ptr<DiscoveryServer>> DiscoveryServer::start(const Options& o
     server_options.bind_addresses = {options.address};
     server_options.discovery = opcua::DiscoveryService{.forget_after = options.forget_after};
     std::unique_ptr<DiscoveryServer> made(new DiscoveryServer);
-    METIER_ASSIGN(auto access, secureServer(server_options, identity, made->clock_));
-    made->access_ = std::move(access);
-    METIER_ASSIGN(auto server, opcua::Server::create(std::move(server_options)));
-    made->server_ = std::move(server);
+    METIER_ASSIGN(made->access_, secureServer(server_options, identity, made->clock_));
+    METIER_ASSIGN(made->server_, opcua::Server::create(std::move(server_options)));
     if (made->access_ != nullptr) {
         made->access_->follow(*made->server_);
     }

@@ -6,34 +6,13 @@
 #include <variant>
 
 #include "host/announcement.hpp"
-#include "kinds/arm_server.hpp"
-#include "kinds/composition_server.hpp"
-#include "kinds/gripper_server.hpp"
-#include "kinds/move_server.hpp"
-#include "kinds/synchronized_server.hpp"
-#include "metier/base/overloaded.hpp"
+#include "kinds/kinds.hpp"
 #include "metier/server/user_folders.hpp"
 
 namespace metier::server {
 
 Result<std::unique_ptr<Server>> start(const cell::ServerConfig& config, const Context& context) {
-    using Started = Result<std::unique_ptr<Server>>;
-    return std::visit(overloaded{[&](const cell::ArmServer& arm) -> Started {
-                                     return ArmServer::start(config, arm, context);
-                                 },
-                                 [&](const cell::GripperServer& gripper) -> Started {
-                                     return GripperServer::start(config, gripper, context);
-                                 },
-                                 [&](const cell::MoveComponent& move) -> Started {
-                                     return MoveServer::start(config, move, context);
-                                 },
-                                 [&](const cell::CompositionServer& composition) -> Started {
-                                     return CompositionServer::start(config, composition, context);
-                                 },
-                                 [&](const cell::SynchronizedServer& arms) -> Started {
-                                     return SynchronizedServer::start(config, arms, context);
-                                 }},
-                      config.kind);
+    return std::visit([&](const auto& kind) { return serve(config, kind, context); }, config.kind);
 }
 
 Result<Identity> identityOf(const cell::ServerConfig& config, const Security& security) {

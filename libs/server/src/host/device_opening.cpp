@@ -29,30 +29,19 @@ constexpr std::chrono::seconds kFirstAnswer{10};
 constexpr std::chrono::seconds kSettling{2};
 constexpr int kLastPort = 65535;
 
-/// Registers for the safety state at any interface that the device has.
-template <typename Callback>
-device::Registration onSafetyChange(const device::OpenDevice& device, Callback callback) {
-    if (device.arm != nullptr) {
-        return device.arm->onSafetyChange(callback);
-    }
-    if (device.gripper != nullptr) {
-        return device.gripper->onSafetyChange(callback);
-    }
-    return device.force_torque_sensor->onSafetyChange(callback);
+/// Calls the function with any interface that the device has: each has a safety state.
+template <typename Use>
+auto withAnInterface(const device::OpenDevice& device, Use use) {
+    return device.arm != nullptr       ? use(*device.arm)
+           : device.gripper != nullptr ? use(*device.gripper)
+                                       : use(*device.force_torque_sensor);
 }
 
 Safety safetyOf(const device::OpenDevice& device) {
-    if (device.arm != nullptr) {
-        return device.arm->safety();
-    }
-    return device.gripper != nullptr ? device.gripper->safety()
-                                     : device.force_torque_sensor->safety();
+    return withAnInterface(device, [](const auto& part) { return part.safety(); });
 }
 
 struct LockedDevice {
-    LockedDevice(link::NameLock name_lock, std::shared_ptr<void> open_device)
-        : lock(std::move(name_lock)), device(std::move(open_device)) {}
-
     link::NameLock lock;
     std::shared_ptr<void> device;  // as OpenDevice::owner
 };
@@ -110,7 +99,8 @@ Result<device::OpenDevice> openDevice(const cell::DriverChoice& choice, const De
     auto device = found->open({user.name, choice.controller, choice.settings, user.model});
     if (device && lock) {
         // Shared, as OpenDevice asks for; the connection ends before its lock.
-        device->owner = std::make_shared<LockedDevice>(std::move(*lock), std::move(device->owner));
+        device->owner = std::make_shared<LockedDevice>(
+            LockedDevice{std::move(*lock), std::move(device->owner)});
     }
     return device;
 }
@@ -123,11 +113,13 @@ void awaitConnection(const device::OpenDevice& device) {
     };
     // Shared with a callback that may still run when this function has returned.
     const auto seen = std::make_shared<Seen>();
-    const auto registration = onSafetyChange(device, [seen](const Safety& safety) {
+    const auto note = [seen](const Safety& safety) {
         const std::lock_guard lock(seen->mutex);
         seen->state = safety.state;
         seen->changed.notify_one();
-    });
+    };
+    const auto registration =
+        withAnInterface(device, [&](auto& part) { return part.onSafetyChange(note); });
     const auto waitFor = [&](std::chrono::milliseconds longest, auto reached) {
         std::unique_lock lock(seen->mutex);
         return seen->changed.wait_for(lock, longest, [&] { return reached(seen->state); });

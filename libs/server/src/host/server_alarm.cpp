@@ -13,9 +13,7 @@ constexpr std::uint16_t kOver = 100;
 }  // namespace
 
 Result<void> ServerAlarm::follow(opcua::Server& server, std::shared_ptr<skill::Executor> executor) {
-    METIER_ASSIGN(auto emitter,
-                  opcua::EventEmitter::create(server, opcua::ids::kSystemEventType, {}));
-    emitter_ = std::move(emitter);
+    METIER_ASSIGN(emitter_, opcua::EventEmitter::create(server, opcua::ids::kSystemEventType, {}));
     const std::lock_guard lock(mutex_);
     executor_ = std::move(executor);
     return {};

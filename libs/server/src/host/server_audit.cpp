@@ -47,16 +47,15 @@ Result<std::unique_ptr<ServerAudit>> ServerAudit::open(const cell::ServerConfig&
         return nullptr;
     }
     std::unique_ptr<ServerAudit> audit(new ServerAudit(config.name));
-    auto log = security::AuditLog::open(
-        {.file = config.state_folder / "audit" /
-                 fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
-         .on_write_state = [&audit = *audit](security::WriteState state, const std::string& why) {
-             audit.tell(state, why);
-         }});
-    if (!log) {
-        return fail(log.error());
-    }
-    audit->log_ = std::move(*log);
+    METIER_ASSIGN(
+        audit->log_,
+        security::AuditLog::open(
+            {.file = config.state_folder / "audit" /
+                     fmt::format("{}-{}-{}.log", config.name, config.address, config.port),
+             .on_write_state = [&audit = *audit](security::WriteState state,
+                                                 const std::string& why) {
+                 audit.tell(state, why);
+             }}));
     options.on_audit = [&log = *audit->log_,
                         before = std::move(options.on_audit)](const opcua::AuditRecord& record) {
         log.append(entryOf(record));

@@ -21,20 +21,18 @@ Result<std::unique_ptr<ServerRecords>> ServerRecords::open(const cell::ServerCon
         return nullptr;
     }
     std::unique_ptr<ServerRecords> made(new ServerRecords(config.name));
-    auto recorder = records::Recorder::create(
-        {.url = config.records.url,
-         .server = server,
-         .keep = retentionOf(config.records),
-         .on_write_state = [&alarm = made->alarm_](const records::WriteReport& report) {
-             alarm.tell(report.write_state == records::WriteState::failing
-                            ? ServerAlarm::Kind::begins
-                            : ServerAlarm::Kind::over,
-                        report.text);
-         }});
-    if (!recorder) {
-        return fail(recorder.error());
-    }
-    made->recorder_ = std::move(*recorder);
+    METIER_ASSIGN(
+        made->recorder_,
+        records::Recorder::create(
+            {.url = config.records.url,
+             .server = server,
+             .keep = retentionOf(config.records),
+             .on_write_state = [&alarm = made->alarm_](const records::WriteReport& report) {
+                 alarm.tell(report.write_state == records::WriteState::failing
+                                ? ServerAlarm::Kind::begins
+                                : ServerAlarm::Kind::over,
+                            report.text);
+             }}));
     return made;
 }
 

@@ -44,23 +44,20 @@ Result<std::unique_ptr<SkillHost>> SkillHost::create(const cell::ServerConfig& c
     std::unique_ptr<SkillHost> host(new SkillHost(config, identity));
     host->port_lock_ = std::move(port_lock);
     METIER_TRY(host->makeServer(std::move(nodesets)));
-    METIER_ASSIGN(auto skills, opcua_skill::SkillServer::create(*host->server_, host->clock_));
-    host->skills_ = std::move(skills);
+    METIER_ASSIGN(host->skills_, opcua_skill::SkillServer::create(*host->server_, host->clock_));
     METIER_TRY(host->audit_ == nullptr
                    ? Result<void>()
                    : host->audit_->follow(*host->server_, host->skills_->executor()));
-    METIER_ASSIGN(auto records, ServerRecords::open(config, host->application_uri_));
-    host->records_ = std::move(records);
+    METIER_ASSIGN(host->records_, ServerRecords::open(config, host->application_uri_));
     METIER_TRY(host->records_ == nullptr
                    ? Result<void>()
                    : host->records_->follow(*host->server_, host->skills_->executor()));
     METIER_TRY(opcua_skill::publishDictionary(host->nodes()));
     host->control_ = std::make_shared<skill::Control>(host->skills_->executor(), host->clock_);
     host->names_ = std::move(names);
-    if (host->names_ != nullptr) {
-        return host;
+    if (host->names_ == nullptr) {
+        METIER_TRY(host->keepNames(config));
     }
-    METIER_TRY(host->keepNames(config));
     return host;
 }
 
@@ -70,11 +67,9 @@ Result<void> SkillHost::keepNames(const cell::ServerConfig& config) {
         names_ = std::make_shared<skill::ExecutionNames>();
         return {};
     }
-    METIER_ASSIGN(auto names,
-                  skill::ExecutionNames::open(config.state_folder /
-                                              fmt::format("{}-{}-{}.executions", config.name,
-                                                          config.address, config.port)));
-    names_ = std::move(names);
+    METIER_ASSIGN(names_, skill::ExecutionNames::open(
+                              config.state_folder / fmt::format("{}-{}-{}.executions", config.name,
+                                                                config.address, config.port)));
     return {};
 }
 
@@ -92,13 +87,10 @@ Result<void> SkillHost::makeServer(std::vector<std::string> nodesets) {
                                                        : opcua::EventPublishing::at_interval;
     options.limits = limitsOf(config_.limits);
     options.application_uri = applicationUriOf(config_);
-    METIER_ASSIGN(auto access, secureServer(options, identity_, clock_));
-    access_ = std::move(access);
+    METIER_ASSIGN(access_, secureServer(options, identity_, clock_));
     application_uri_ = options.application_uri;
-    METIER_ASSIGN(auto audit, ServerAudit::open(config_, options));
-    audit_ = std::move(audit);
-    METIER_ASSIGN(auto server, opcua::Server::create(std::move(options)));
-    server_ = std::move(server);
+    METIER_ASSIGN(audit_, ServerAudit::open(config_, options));
+    METIER_ASSIGN(server_, opcua::Server::create(std::move(options)));
     if (access_ != nullptr) {
         access_->follow(*server_);
     }
@@ -146,7 +138,7 @@ Result<void> SkillHost::watchPrograms() {
     if (!config_.metrics) {
         return {};
     }
-    METIER_ASSIGN(auto metrics,
+    METIER_ASSIGN(metrics_,
                   ServerMetrics::start(
                       config_, {.server = *server_,
                                 .control = *control_,
@@ -155,7 +147,6 @@ Result<void> SkillHost::watchPrograms() {
                                 .gripper = gripper_,
                                 .recorder = records_ == nullptr ? nullptr : &records_->recorder(),
                                 .audit = audit_.get()}));
-    metrics_ = std::move(metrics);
     return {};
 }
 
@@ -183,11 +174,8 @@ Result<void> SkillHost::publishArm(const opcua_skill::MotionDeviceSystem& system
     moved_ = {&shown.arm, shown.sensor, shown.arm.info().name};
     auto data = toKinematicsData(shown.model);
     data.payload = shown.payload;
-    auto published = opcua_skill::publishKinematics(server_->nodes(), system, data,
-                                                    [shown] { return stateOf(shown); });
-    if (!published) {
-        return published;
-    }
+    METIER_TRY(opcua_skill::publishKinematics(server_->nodes(), system, data,
+                                              [shown] { return stateOf(shown); }));
     METIER_TRY(opcua_skill::serveBasePlacement(*server_, system));
     return opcua_skill::publishArmFigures(server_->nodes(), system.kinematics,
                                           figuresOf(shown, clock_));

@@ -1,5 +1,3 @@
-#include "kinds/arm_server.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <utility>
 
 #include "host/device_opening.hpp"
+#include "host/skill_host.hpp"
+#include "kinds/kinds.hpp"
 #include "kinds/own_compositions.hpp"
 #include "metier/motion/frame.hpp"
 #include "metier/robot_skills/gripper_skills.hpp"
@@ -27,13 +27,6 @@ opcua_skill::MotionDeviceSystemSpec specOf(const cell::ServerConfig& config,
         spec.axis_names.push_back(joint.name);
     }
     return spec;
-}
-
-std::vector<std::string> nodesetsOf(const cell::ArmServer& config) {
-    if (config.nodeset.empty()) {
-        return {};
-    }
-    return {config.nodeset};
 }
 
 /// The model with the tools of the cell besides its own.
@@ -64,43 +57,33 @@ Result<std::optional<device::OpenDevice>> openSensor(const std::string& server,
     return std::optional(std::move(sensor));
 }
 
-}  // namespace
+class ArmServer final : public Server {
+public:
+    ArmServer(std::unique_ptr<const motion::RobotModel> file_model, device::OpenDevice device,
+              std::optional<device::OpenDevice> sensor, std::unique_ptr<SkillHost> host)
+        : file_model_(std::move(file_model)),
+          device_(std::move(device)),
+          sensor_(std::move(sensor)),
+          model_(device_.model ? *device_.model : *file_model_),
+          host_(std::move(host)) {}
 
-Result<std::unique_ptr<ArmServer>> ArmServer::start(const cell::ServerConfig& config,
-                                                    const cell::ArmServer& arm,
-                                                    const Context& context) {
-    auto loaded = motion::RobotModel::load(arm.model).and_then(
-        [&](const auto& model) { return withTools(model, arm.tools); });
-    if (!loaded) {
-        return fail(loaded.error());
-    }
-    auto model = std::make_unique<const motion::RobotModel>(std::move(*loaded));
-    METIER_ASSIGN(auto device, openDevice(arm.driver, {config.name, context.drivers, model.get()}));
-    if (device.arm == nullptr) {
-        return fail(Errc::invalid_argument,
-                    fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
-                                arm.driver.type));
-    }
-    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, nodesetsOf(arm)));
-    METIER_ASSIGN(auto sensor, openSensor(config.name, arm, context.drivers));
-    awaitConnection(device);
-    std::unique_ptr<ArmServer> server(
-        new ArmServer(std::move(model), std::move(device), std::move(sensor), std::move(host)));
-    METIER_TRY(server->offer(config, arm));
-    METIER_TRY(server->host_->start());
-    return server;
-}
+    std::string url() const override { return host_->url(); }
+    Result<void> begin(const cell::ServerConfig& config, const cell::ArmServer& arm);
 
-ArmServer::ArmServer(std::unique_ptr<const motion::RobotModel> file_model,
-                     device::OpenDevice device, std::optional<device::OpenDevice> sensor,
-                     std::unique_ptr<SkillHost> host)
-    : file_model_(std::move(file_model)),
-      device_(std::move(device)),
-      sensor_(std::move(sensor)),
-      model_(device_.model ? *device_.model : *file_model_),
-      host_(std::move(host)) {}
+private:
+    Result<void> offerSkills(const opcua_skill::MotionDeviceSystem& system,
+                             const cell::ArmServer& config);
 
-Result<void> ArmServer::offer(const cell::ServerConfig& config, const cell::ArmServer& arm) {
+    std::unique_ptr<const motion::RobotModel> file_model_;  // outlives the device, which reads it
+    device::OpenDevice device_;
+    std::optional<device::OpenDevice> sensor_;
+    std::shared_ptr<const robot_skills::StreamReport> stream_report_;      // shared with the skill
+    std::shared_ptr<const robot_skills::StoppingReport> stopping_report_;  // shared with the moves
+    const motion::RobotModel& model_;  // as the controller describes the robot, else of the file
+    std::unique_ptr<SkillHost> host_;  // ends before the device
+};
+
+Result<void> ArmServer::begin(const cell::ServerConfig& config, const cell::ArmServer& arm) {
     METIER_ASSIGN(const auto system, arm.nodeset.empty()
                                          ? opcua_skill::publishMotionDeviceSystem(
                                                host_->nodes(), specOf(config, model_))
@@ -115,10 +98,11 @@ Result<void> ArmServer::offer(const cell::ServerConfig& config, const cell::ArmS
         METIER_TRY(host_->publishGripper(system.controller, *device_.gripper));
     }
     // A controller that measures the wrench itself needs no sensor in the cell file.
-    return host_->publishArm(system,
-                             {*device_.arm, model_, arm.payload,
-                              sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor,
-                              stream_report_, stopping_report_});
+    METIER_TRY(host_->publishArm(
+        system, {*device_.arm, model_, arm.payload,
+                 sensor_ ? sensor_->force_torque_sensor : device_.force_torque_sensor,
+                 stream_report_, stopping_report_}));
+    return host_->start();
 }
 
 Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& system,
@@ -146,6 +130,30 @@ Result<void> ArmServer::offerSkills(const opcua_skill::MotionDeviceSystem& syste
             {robot_skills::makeHoldSkill(*device_.gripper, host_->skills().executor()), nullptr});
     }
     return host_->offerSkills(system.skills, config.skills, std::move(offered));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> serve(const cell::ServerConfig& config, const cell::ArmServer& arm,
+                                      const Context& context) {
+    METIER_ASSIGN(auto loaded, motion::RobotModel::load(arm.model).and_then(
+                                   [&](const auto& model) { return withTools(model, arm.tools); }));
+    auto model = std::make_unique<const motion::RobotModel>(std::move(loaded));
+    METIER_ASSIGN(auto device, openDevice(arm.driver, {config.name, context.drivers, model.get()}));
+    if (device.arm == nullptr) {
+        return fail(Errc::invalid_argument,
+                    fmt::format("{}: the driver \"{}\" is not one of an arm", config.name,
+                                arm.driver.type));
+    }
+    const auto nodesets =
+        arm.nodeset.empty() ? std::vector<std::string>() : std::vector{arm.nodeset};
+    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, nodesets));
+    METIER_ASSIGN(auto sensor, openSensor(config.name, arm, context.drivers));
+    awaitConnection(device);
+    auto server = std::make_unique<ArmServer>(std::move(model), std::move(device),
+                                              std::move(sensor), std::move(host));
+    METIER_TRY(server->begin(config, arm));
+    return server;
 }
 
 }  // namespace metier::server

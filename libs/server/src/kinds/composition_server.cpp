@@ -1,5 +1,3 @@
-#include "kinds/composition_server.hpp"
-
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -9,19 +7,22 @@
 
 #include "finding/arm_figures.hpp"
 #include "finding/skill_matching.hpp"
+#include "host/skill_host.hpp"
 #include "kinds/composition_files.hpp"
-#include "kinds/look_times.hpp"
-#include "metier/composition/composition.hpp"
-#include "metier/composition/local_used_skill.hpp"
-#include "metier/composition/sequence_skill.hpp"
+#include "kinds/kinds.hpp"
+#include "kinds/own_compositions.hpp"
+#include "kinds/rebinder.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/composition/definition.hpp"
+#include "metier/opcua_skill/skill_controller.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
+namespace {
 
 using composition::Definition;
 
-namespace {
-
+constexpr std::chrono::seconds kLongestSearch{20};
 constexpr std::chrono::milliseconds kSearchPause{200};
 
 /// "ptp, line"
@@ -33,7 +34,40 @@ std::string namesOf(const std::vector<composition::Use>& uses) {
     return names;
 }
 
-}  // namespace
+class CompositionServer final : public Server {
+public:
+    CompositionServer(const cell::ServerConfig& config, cell::CompositionServer composition,
+                      const Identity& identity, std::unique_ptr<SkillHost> host);
+    ~CompositionServer() override;
+
+    std::string url() const override { return host_->url(); }
+    Result<void> begin(const std::vector<Definition>& definitions, const link::StopSignal& stop);
+
+private:
+    class Roles;
+    Result<void> connect(const std::vector<cell::UsedServer>& servers);
+    Result<void> offer(const std::vector<Definition>& definitions, const link::StopSignal& stop);
+    Result<void> offerOne(const opcua_skill::SkillController& place, const Definition& definition,
+                          const link::StopSignal& stop);
+
+    Result<std::unique_ptr<client::RemoteServer>> connectTo(const std::string& url,
+                                                            const std::string& name);
+    Result<std::shared_ptr<client::RemoteServer>> connectFound(const DiscoveredServer& found);
+    void keepBound();
+
+    const cell::CompositionServer config_;
+    const cell::Discovery discovery_;
+    const std::string name_;
+    const Identity& identity_;
+    std::string life_;  // part of the ids of executions
+    std::vector<std::unique_ptr<client::RemoteServer>> servers_;
+    std::vector<OfferedSkill> offered_;  // of all compositions
+    // Those that were found, shared by the skills that use them.
+    std::vector<std::shared_ptr<client::RemoteServer>> found_;
+    std::vector<SkillBinding> bindings_;
+    std::unique_ptr<Rebinder> rebinder_;
+    std::unique_ptr<SkillHost> host_;  // ends before the servers that its skills use
+};
 
 /// Finds the used skills of one definition and what to publish of them.
 class CompositionServer::Roles {
@@ -68,16 +102,7 @@ public:
         }
     }
 
-    composition::Descriptions descriptions() const {
-        composition::Descriptions result;
-        for (const auto& [alias, used] : used_skills_) {
-            result.emplace(alias, used->description());
-        }
-        return result;
-    }
-    std::map<std::string, std::unique_ptr<composition::UsedSkill>> takeUsedSkills() {
-        return std::move(used_skills_);
-    }
+    UsedSkills takeUsedSkills() { return std::move(used_skills_); }
 
     Result<void> publish(const opcua::NodeId& skills, const std::string& name) {
         auto& nodes = server_.host_->nodes();
@@ -104,12 +129,7 @@ private:
     }
 
     void useLocal(const composition::Use& use, skill::Program& program) {
-        const auto& name = definition_.name;
-        used_skills_.emplace(use.alias, std::make_unique<composition::LocalUsedSkill>(
-                                            program, server_.host_->skills().executor(),
-                                            skill::Caller{.session_id = "composition " + name,
-                                                          .client_name = name,
-                                                          .of_this_server = true}));
+        used_skills_.emplace(use.alias, usedOf(*server_.host_, program, definition_.name));
         const auto& used = program.description().name;
         if (std::find(local_.begin(), local_.end(), used) == local_.end()) {
             local_.push_back(used);
@@ -181,25 +201,20 @@ private:
     CompositionServer& server_;
     const Definition& definition_;
     std::string origin_;
-    std::map<std::string, std::unique_ptr<composition::UsedSkill>> used_skills_;
+    UsedSkills used_skills_;
     std::vector<opcua_skill::RemoteSkill> remote_;
     std::vector<std::string> local_;        // names of used skills of this server
     std::vector<composition::Use> sought_;  // uses that no server of the list has
     std::vector<SkillBinding> bindings_;
 };
 
-Result<std::unique_ptr<CompositionServer>> CompositionServer::start(
-    const cell::ServerConfig& config, const cell::CompositionServer& composition,
-    const Context& context) {
-    METIER_ASSIGN(auto definitions, loadDefinitions(composition.files));
-    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, {}));
-    std::unique_ptr<CompositionServer> server(
-        new CompositionServer(config, composition, context.identity, std::move(host)));
-    METIER_TRY(server->connect(composition.servers));
-    METIER_TRY(server->offer(std::move(definitions), context.stop));
-    METIER_TRY(server->host_->start());
-    server->keepBound();
-    return server;
+Result<void> CompositionServer::begin(const std::vector<Definition>& definitions,
+                                      const link::StopSignal& stop) {
+    METIER_TRY(connect(config_.servers));
+    METIER_TRY(offer(definitions, stop));
+    METIER_TRY(host_->start());
+    keepBound();
+    return {};
 }
 
 CompositionServer::CompositionServer(const cell::ServerConfig& config,
@@ -234,6 +249,16 @@ void CompositionServer::keepBound() {
         std::move(bindings_));
 }
 
+Result<std::unique_ptr<client::RemoteServer>> CompositionServer::connectTo(
+    const std::string& url, const std::string& name) {
+    return client::RemoteServer::connect({.url = url,
+                                          .name = name,
+                                          .application_name = "metier " + name_,
+                                          .security = identity_.credentials(),
+                                          .own_server = host_->applicationUri()},
+                                         host_->skills().executor());
+}
+
 Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
     const DiscoveredServer& found) {
     for (const auto& known : found_) {
@@ -241,26 +266,14 @@ Result<std::shared_ptr<client::RemoteServer>> CompositionServer::connectFound(
             return known;
         }
     }
-    METIER_ASSIGN(auto server,
-                  client::RemoteServer::connect({.url = found.found.url,
-                                                 .name = found.found.name,
-                                                 .application_name = "metier " + name_,
-                                                 .security = identity_.credentials(),
-                                                 .own_server = host_->applicationUri()},
-                                                host_->skills().executor()));
+    METIER_ASSIGN(auto server, connectTo(found.found.url, found.found.name));
     found_.emplace_back(std::move(server));
     return found_.back();
 }
 
 Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& servers) {
     for (const auto& used : servers) {
-        METIER_ASSIGN(auto server,
-                      client::RemoteServer::connect({.url = used.url,
-                                                     .name = used.name,
-                                                     .application_name = "metier " + name_,
-                                                     .security = identity_.credentials(),
-                                                     .own_server = host_->applicationUri()},
-                                                    host_->skills().executor()));
+        METIER_ASSIGN(auto server, connectTo(used.url, used.name));
         METIER_ASSIGN(auto skills, server->skills());
         for (auto& skill : skills) {
             const auto arm = figuresOfArm(server->client(), skill);
@@ -271,35 +284,42 @@ Result<void> CompositionServer::connect(const std::vector<cell::UsedServer>& ser
     return {};
 }
 
-Result<void> CompositionServer::offer(std::vector<Definition> definitions,
+Result<void> CompositionServer::offer(const std::vector<Definition>& definitions,
                                       const link::StopSignal& stop) {
     METIER_ASSIGN(const auto place,
                   opcua_skill::publishSkillController(host_->nodes(), name_,
                                                       "Skills that are made of other skills."));
-    for (auto& definition : definitions) {
-        METIER_TRY(offerOne(place, std::move(definition), stop));
+    for (const auto& definition : definitions) {
+        METIER_TRY(offerOne(place, definition, stop));
     }
     return host_->offerControl(place.controller);
 }
 
 Result<void> CompositionServer::offerOne(const opcua_skill::SkillController& place,
-                                         Definition definition, const link::StopSignal& stop) {
-    const auto name = definition.name;
+                                         const Definition& definition,
+                                         const link::StopSignal& stop) {
     Roles roles(*this, definition);
     METIER_TRY(roles.find(stop));
-    METIER_ASSIGN(auto composed, composition::compose(definition, roles.descriptions()));
-    const skill::ProgramOptions options{.control = host_->control(),
-                                        .names = host_->names(),
-                                        .rest_deadline = composition::restDeadlineOf(definition)};
-    auto sequence = std::make_unique<composition::SequenceSkill>(
-        std::move(composed), roles.takeUsedSkills(), host_->skills().executor(), host_->clock(),
-        roles.origin() + "~" + life_);
-    auto& skill = *sequence;
-    METIER_TRY(host_->skills().publish(place.skills, std::move(sequence), options));
+    METIER_ASSIGN(auto* const skill, publishSequence(*host_, place.skills,
+                                                     {definition, roles.takeUsedSkills(),
+                                                      roles.origin() + "~" + life_}));
     METIER_ASSIGN(const auto node,
-                  opcua_skill::findSkillObject(host_->nodes(), place.skills, name));
-    roles.keepBindings(skill, node);
-    return roles.publish(place.skills, name);
+                  opcua_skill::findSkillObject(host_->nodes(), place.skills, definition.name));
+    roles.keepBindings(*skill, node);
+    return roles.publish(place.skills, definition.name);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> serve(const cell::ServerConfig& config,
+                                      const cell::CompositionServer& composition,
+                                      const Context& context) {
+    METIER_ASSIGN(const auto definitions, loadDefinitions(composition.files));
+    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, {}));
+    auto server =
+        std::make_unique<CompositionServer>(config, composition, context.identity, std::move(host));
+    METIER_TRY(server->begin(definitions, context.stop));
+    return server;
 }
 
 }  // namespace metier::server

@@ -11,7 +11,6 @@
 #include "kinds/composition_files.hpp"
 #include "metier/composition/composition.hpp"
 #include "metier/composition/local_used_skill.hpp"
-#include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
@@ -85,41 +84,54 @@ Result<void> publishUses(SkillHost& host, const opcua::NodeId& skills, const std
     return {};
 }
 
-Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, Definition definition,
+Result<void> offerOne(SkillHost& host, const opcua::NodeId& skills, const Definition& definition,
                       const std::string& server) {
-    const auto name = definition.name;
     METIER_ASSIGN(const auto chosen, chooseAll(definition, host.skills().programs(), server));
-    const auto executor = host.skills().executor();
-    composition::Descriptions descriptions;
-    std::map<std::string, std::unique_ptr<composition::UsedSkill>> used_skills;
+    UsedSkills used_skills;
     for (const auto& [alias, program] : chosen) {
-        descriptions.emplace(alias, program->description());
-        used_skills.emplace(alias, std::make_unique<composition::LocalUsedSkill>(
-                                       *program, executor,
-                                       skill::Caller{.session_id = "composition " + name,
-                                                     .client_name = name,
-                                                     .of_this_server = true}));
+        used_skills.emplace(alias, usedOf(host, *program, definition.name));
     }
-    METIER_ASSIGN(auto composed, composition::compose(definition, descriptions));
-    const skill::ProgramOptions options{.control = host.control(),
-                                        .names = host.names(),
-                                        .rest_deadline = composition::restDeadlineOf(definition)};
-    auto origin = fmt::format("{}.{}~{}", server, name, newLife());
-    const auto published = host.skills().publish(
-        skills,
-        std::make_unique<composition::SequenceSkill>(std::move(composed), std::move(used_skills),
-                                                     executor, host.clock(), std::move(origin)),
-        options);
-    return published ? publishUses(host, skills, name, chosen) : fail(published.error());
+    METIER_TRY(publishSequence(host, skills,
+                               {definition, std::move(used_skills),
+                                fmt::format("{}.{}~{}", server, definition.name, newLife())}));
+    return publishUses(host, skills, definition.name, chosen);
 }
 
 }  // namespace
 
+std::unique_ptr<composition::UsedSkill> usedOf(SkillHost& host, skill::Program& program,
+                                               const std::string& composed) {
+    return std::make_unique<composition::LocalUsedSkill>(
+        program, host.skills().executor(),
+        skill::Caller{.session_id = "composition " + composed,
+                      .client_name = composed,
+                      .of_this_server = true});
+}
+
+Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua::NodeId& skills,
+                                                    Sequence sequence) {
+    composition::Descriptions descriptions;
+    for (const auto& [alias, used] : sequence.used_skills) {
+        descriptions.emplace(alias, used->description());
+    }
+    METIER_ASSIGN(auto composed, composition::compose(sequence.definition, descriptions));
+    auto made = std::make_unique<composition::SequenceSkill>(
+        std::move(composed), std::move(sequence.used_skills), host.skills().executor(),
+        host.clock(), std::move(sequence.origin));
+    auto* const skill = made.get();
+    METIER_TRY(
+        host.skills().publish(skills, std::move(made),
+                              {.control = host.control(),
+                               .names = host.names(),
+                               .rest_deadline = composition::restDeadlineOf(sequence.definition)}));
+    return skill;
+}
+
 Result<void> offerOwnCompositions(SkillHost& host, const opcua::NodeId& skills,
                                   const OwnCompositions& own) {
-    METIER_ASSIGN(auto definitions, loadDefinitions(own.files));
-    for (auto& definition : definitions) {
-        METIER_TRY(offerOne(host, skills, std::move(definition), own.server));
+    METIER_ASSIGN(const auto definitions, loadDefinitions(own.files));
+    for (const auto& definition : definitions) {
+        METIER_TRY(offerOne(host, skills, definition, own.server));
     }
     return {};
 }

@@ -1,14 +1,35 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "host/skill_host.hpp"
 #include "metier/base/error.hpp"
+#include "metier/composition/sequence_skill.hpp"
 #include "metier/opcua/node_id.hpp"
 
 namespace metier::server {
+
+using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>>;  ///< by alias
+
+/// A skill of the host, for the composed skill of that name.
+std::unique_ptr<composition::UsedSkill> usedOf(SkillHost& host, skill::Program& program,
+                                               const std::string& composed);
+
+/// A skill that a file declares, with the skills that it uses.
+struct Sequence {
+    const composition::Definition& definition;
+    UsedSkills used_skills;
+    std::string origin;  ///< as composition::SequenceSkill takes it
+};
+
+/// Publishes the skill below `skills`; it is the host's.
+/// Errors: mistakes in the definition; those of SkillServer::publish().
+Result<composition::SequenceSkill*> publishSequence(SkillHost& host, const opcua::NodeId& skills,
+                                                    Sequence sequence);
 
 /// Skills that files declare for one server.
 struct OwnCompositions {

@@ -8,13 +8,12 @@
 #include <map>
 #include <utility>
 
-#include "kinds/look_times.hpp"
+#include "kinds/own_compositions.hpp"
 #include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
 namespace {
 
-using UsedSkills = std::map<std::string, std::unique_ptr<composition::UsedSkill>>;
 using namespace std::chrono_literals;
 
 constexpr auto kLongestTurn = 5s;  // longest time until the executor gets to something
@@ -47,11 +46,8 @@ Rebinder::~Rebinder() {
 void Rebinder::stop() {
     thread_.request_stop();
     thread_ = {};
-    for (auto& former : formers_) {
-        static_cast<void>(onExecutor([used_skills = former.used_skills]() -> Result<void> {
-            used_skills->clear();
-            return {};
-        }));
+    for (const auto& former : formers_) {
+        static_cast<void>(letGoOf(former));
     }
     formers_.clear();
 }
@@ -160,14 +156,14 @@ void Rebinder::show(const Exchange& parts, const SkillBinding& binding) {
 /// Those that are back: what was left there has been seen to.
 void Rebinder::forget() {
     std::erase_if(formers_, [this](const Former& former) {
-        if (former.server->awaySince()) {
-            return false;
-        }
-        return onExecutor([used_skills = former.used_skills]() -> Result<void> {
-                   used_skills->clear();
-                   return {};
-               })
-            .has_value();
+        return !former.server->awaySince() && letGoOf(former);
+    });
+}
+
+Result<void> Rebinder::letGoOf(const Former& former) {
+    return onExecutor([used_skills = former.used_skills]() -> Result<void> {
+        used_skills->clear();
+        return {};
     });
 }
 

@@ -69,6 +69,7 @@ private:
     Result<void> exchange(Exchange& parts, SkillBinding& binding);
     void show(const Exchange& parts, const SkillBinding& binding);
     void forget();
+    Result<void> letGoOf(const Former& former);
     Result<void> onExecutor(std::function<Result<void>()> work);
     void tell(const SkillBinding& binding, const Error& error);
 

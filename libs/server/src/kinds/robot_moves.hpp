@@ -36,11 +36,7 @@ public:
                                                      std::shared_ptr<skill::ExecutionNames> names);
 
     const ConnectedRobot& robot() const noexcept { return robot_; }
-    std::string url() const { return host_->url(); }
-    std::uint16_t port() const { return host_->port(); }
-    /// Endpoint URL as announced to others.
-    std::string announcedUrl() const { return host_->announcedUrl(); }
-    const std::shared_ptr<skill::ExecutionNames>& names() const noexcept { return host_->names(); }
+    const SkillHost& host() const noexcept { return *host_; }
 
 private:
     RobotMoves(ConnectedRobot robot, std::unique_ptr<SkillHost> host);

@@ -1,18 +1,20 @@
-#include "kinds/synchronized_server.hpp"
-
 #include <fmt/format.h>
 
 #include <utility>
 
 #include "finding/skill_matching.hpp"
+#include "host/skill_host.hpp"
 #include "kinds/composition_files.hpp"
+#include "kinds/kinds.hpp"
+#include "metier/client/remote_server.hpp"
+#include "metier/composition/synchronized_move_skill.hpp"
 #include "metier/opcua_skill/skill_controller.hpp"
+#include "metier/opcua_skill/used_skills.hpp"
 
 namespace metier::server {
+namespace {
 
 using composition::Arm;
-
-namespace {
 
 // Arms whose component has died run on no longer than this, and the time to detect it.
 constexpr std::chrono::milliseconds kSessionTimeout{2'000};
@@ -22,18 +24,25 @@ std::string originOf(const std::string& component) {
     return fmt::format("{}.{}", component, kSkill);
 }
 
-}  // namespace
+class SynchronizedServer final : public Server {
+public:
+    SynchronizedServer(const Identity& identity, std::unique_ptr<SkillHost> host)
+        : identity_(identity), host_(std::move(host)) {}
 
-Result<std::unique_ptr<SynchronizedServer>> SynchronizedServer::start(
-    const cell::ServerConfig& config, const cell::SynchronizedServer& arms,
-    const Context& context) {
-    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, {}));
-    std::unique_ptr<SynchronizedServer> server(
-        new SynchronizedServer(context.identity, std::move(host)));
-    METIER_TRY(server->offer(config.name, arms));
-    METIER_TRY(server->host_->start());
-    return server;
-}
+    std::string url() const override { return host_->url(); }
+    Result<void> begin(const std::string& name, const cell::SynchronizedServer& config);
+
+private:
+    Result<Arm> connect(const cell::UsedServer& used, const std::string& component);
+    Result<std::unique_ptr<composition::UsedSkill>> use(client::RemoteServer& server,
+                                                        const std::string& type,
+                                                        const std::string& component);
+
+    const Identity& identity_;
+    std::vector<std::unique_ptr<client::RemoteServer>> servers_;
+    std::vector<opcua_skill::RemoteSkill> used_;
+    std::unique_ptr<SkillHost> host_;  // ends before the servers that its skill uses
+};
 
 Result<std::unique_ptr<composition::UsedSkill>> SynchronizedServer::use(
     client::RemoteServer& server, const std::string& type, const std::string& component) {
@@ -71,7 +80,7 @@ Result<Arm> SynchronizedServer::connect(const cell::UsedServer& used,
     return Arm{used.name, std::move(pose_move), std::move(joint_move)};
 }
 
-Result<void> SynchronizedServer::offer(const std::string& name,
+Result<void> SynchronizedServer::begin(const std::string& name,
                                        const cell::SynchronizedServer& config) {
     METIER_ASSIGN(const auto place, opcua_skill::publishSkillController(
                                         host_->nodes(), name, "Moves several arms together."));
@@ -94,7 +103,19 @@ Result<void> SynchronizedServer::offer(const std::string& name,
     for (const auto& used : used_) {
         METIER_TRY(opcua_skill::publishUse(host_->nodes(), object, used));
     }
-    return host_->offerControl(place.controller);
+    METIER_TRY(host_->offerControl(place.controller));
+    return host_->start();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> serve(const cell::ServerConfig& config,
+                                      const cell::SynchronizedServer& arms,
+                                      const Context& context) {
+    METIER_ASSIGN(auto host, SkillHost::create(config, context.identity, {}));
+    auto server = std::make_unique<SynchronizedServer>(context.identity, std::move(host));
+    METIER_TRY(server->begin(config.name, arms));
+    return server;
 }
 
 }  // namespace metier::server

@@ -26,51 +26,32 @@ http::HttpLimits limits() {
 
 }  // namespace
 
-class MetricsEndpoint::Server {
-public:
-    explicit Server(Options options) : options_(std::move(options)) {
-        http_.Get("/metrics", [this](const httplib::Request& /*request*/, httplib::Response& to) {
-            to.set_content(options_.metrics(), TextPage::kContentType);
-        });
-        http_.Get("/healthz", [this](const httplib::Request& /*request*/, httplib::Response& to) {
-            const auto health = options_.health();
-            to.status = health.good ? kGood : kBad;
-            to.set_content(health.text + "\n", "text/plain; charset=utf-8");
-        });
-    }
-
-    ~Server() { http_.end(); }
-    Server(const Server&) = delete;
-    Server& operator=(const Server&) = delete;
-
-    Result<void> start() {
-        const auto port = http_.serve(options_.address, options_.port);
-        if (!port) {
-            return fail(Errc::resource_unavailable, "metrics: " + port.error().message);
-        }
-        port_ = *port;
-        return {};
-    }
-
-    std::uint16_t port() const noexcept { return port_; }
-
-private:
-    const Options options_;
-    http::HttpServer http_{limits()};
-    std::uint16_t port_ = 0;
-};
-
 Result<std::unique_ptr<MetricsEndpoint>> MetricsEndpoint::start(Options options) {
-    auto server = std::make_unique<Server>(std::move(options));
-    METIER_TRY(server->start());
-    return std::unique_ptr<MetricsEndpoint>(new MetricsEndpoint(std::move(server)));
+    std::unique_ptr<MetricsEndpoint> made(new MetricsEndpoint);
+    made->http_ = std::make_unique<http::HttpServer>(limits());
+    auto& server = *made->http_;
+    server.Get("/metrics", [metrics = std::move(options.metrics)](
+                               const httplib::Request& /*request*/, httplib::Response& to) {
+        to.set_content(metrics(), TextPage::kContentType);
+    });
+    server.Get("/healthz", [health = std::move(options.health)](const httplib::Request& /*request*/,
+                                                                httplib::Response& to) {
+        const auto now = health();
+        to.status = now.good ? kGood : kBad;
+        to.set_content(now.text + "\n", "text/plain; charset=utf-8");
+    });
+    const auto port = server.serve(options.address, options.port);
+    if (!port) {
+        return fail(Errc::resource_unavailable, "metrics: " + port.error().message);
+    }
+    made->port_ = *port;
+    return made;
 }
 
-MetricsEndpoint::MetricsEndpoint(std::unique_ptr<Server> server) : server_(std::move(server)) {}
-MetricsEndpoint::~MetricsEndpoint() = default;
+MetricsEndpoint::MetricsEndpoint() = default;
 
-std::uint16_t MetricsEndpoint::port() const noexcept {
-    return server_->port();
+MetricsEndpoint::~MetricsEndpoint() {
+    http_->end();
 }
 
 }  // namespace metier::server

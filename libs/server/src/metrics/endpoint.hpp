@@ -7,6 +7,10 @@
 
 #include "metier/base/error.hpp"
 
+namespace metier::http {
+class HttpServer;
+}  // namespace metier::http
+
 namespace metier::server {
 
 /// Whether a server does what it is for, and in words why not.
@@ -38,13 +42,13 @@ public:
     MetricsEndpoint(const MetricsEndpoint&) = delete;
     MetricsEndpoint& operator=(const MetricsEndpoint&) = delete;
 
-    std::uint16_t port() const noexcept;
+    std::uint16_t port() const noexcept { return port_; }
 
 private:
-    class Server;
-    explicit MetricsEndpoint(std::unique_ptr<Server> server);
+    MetricsEndpoint();
 
-    std::unique_ptr<Server> server_;
+    std::unique_ptr<http::HttpServer> http_;
+    std::uint16_t port_ = 0;
 };
 
 }  // namespace metier::server

@@ -34,23 +34,23 @@ ProgramMeter::~ProgramMeter() {
 }
 
 void ProgramMeter::onTransition(const skill::TransitionEvent& event) {
-    state_.store(event.to, std::memory_order_relaxed);
+    state_ = event.to;
     switch (event.number) {
         case TransitionNumber::ready_to_running:
-            starts_.add();
+            ++starts_;
             started_ = std::chrono::steady_clock::now();
             runs_ = true;
             break;
         case TransitionNumber::running_to_suspended:
-            suspends_.add();
+            ++suspends_;
             break;
         case TransitionNumber::running_to_ready:
-            finished_.add();
+            ++finished_;
             ended();
             break;
         case TransitionNumber::running_to_halted:
         case TransitionNumber::suspended_to_halted:
-            halts_.at(static_cast<std::size_t>(event.reason)).add();
+            ++halts_.at(static_cast<std::size_t>(event.reason));
             ended();
             break;
         case TransitionNumber::suspended_to_ready:
@@ -75,7 +75,7 @@ void ProgramMeter::onDiagnostic(const skill::Diagnostic& diagnostic) {
         return;
     }
     if (const auto method = methodOf(diagnostic.last_method_call)) {
-        refusals_.at(static_cast<std::size_t>(*method)).add();
+        ++refusals_.at(static_cast<std::size_t>(*method));
     }
 }
 

@@ -9,7 +9,6 @@
 #include "metier/base/clock.hpp"
 #include "metier/base/histogram.hpp"
 #include "metier/skill/program.hpp"
-#include "metrics/counter.hpp"
 
 namespace metier::server {
 
@@ -29,23 +28,25 @@ public:
     ProgramMeter& operator=(const ProgramMeter&) = delete;
 
     const std::string& skill() const noexcept { return skill_; }
-    skill::State state() const noexcept { return state_.load(std::memory_order_relaxed); }
-    std::uint64_t starts() const noexcept { return starts_.value(); }
+    skill::State state() const noexcept { return state_; }
+    std::uint64_t starts() const noexcept { return starts_; }
     /// Executions that reached their end.
-    std::uint64_t finished() const noexcept { return finished_.value(); }
-    std::uint64_t suspends() const noexcept { return suspends_.value(); }
+    std::uint64_t finished() const noexcept { return finished_; }
+    std::uint64_t suspends() const noexcept { return suspends_; }
     /// Executions that were Halted, and why.
     std::uint64_t halts(skill::Reason reason) const noexcept {
-        return halts_.at(static_cast<std::size_t>(reason)).value();
+        return halts_.at(static_cast<std::size_t>(reason));
     }
     /// Calls of a method that were refused.
     std::uint64_t refusals(skill::Method method) const noexcept {
-        return refusals_.at(static_cast<std::size_t>(method)).value();
+        return refusals_.at(static_cast<std::size_t>(method));
     }
     /// Times from Running to the end, for any outcome [s].
     const TimeHistogram& durations() const noexcept { return durations_; }
 
 private:
+    using Counter = std::atomic<std::uint64_t>;
+
     void onTransition(const skill::TransitionEvent& event) override;
     void onDiagnostic(const skill::Diagnostic& diagnostic) override;
     void ended();
@@ -55,11 +56,11 @@ private:
     std::atomic<skill::State> state_;
     SteadyTime started_{};
     bool runs_ = false;
-    Counter starts_;
-    Counter finished_;
-    Counter suspends_;
-    std::array<Counter, kReasons> halts_;
-    std::array<Counter, kMethods> refusals_;
+    Counter starts_ = 0;
+    Counter finished_ = 0;
+    Counter suspends_ = 0;
+    std::array<Counter, kReasons> halts_{};
+    std::array<Counter, kMethods> refusals_{};
     TimeHistogram durations_;
 };
 

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <utility>
-
-#include "metrics/process_figures.hpp"
 
 namespace metier::server {
 namespace {
@@ -28,6 +31,41 @@ constexpr std::array kSafety{SafetyState::normal, SafetyState::protective_stop,
                              SafetyState::emergency_stop, SafetyState::fault,
                              SafetyState::disconnected};
 
+// Time when this library was loaded, with the program.
+const auto kStart = std::chrono::system_clock::now();
+
+double secondsOf(const timeval& time) {
+    constexpr double kMicrosecond = 1e-6;
+    return static_cast<double>(time.tv_sec) + kMicrosecond * static_cast<double>(time.tv_usec);
+}
+
+std::uint64_t residentBytes() {
+    std::ifstream statm("/proc/self/statm");
+    std::uint64_t total = 0;
+    std::uint64_t resident = 0;
+    statm >> total >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t openFiles() {
+    std::error_code error;
+    const std::filesystem::directory_iterator files("/proc/self/fd", error);
+    return error ? 0 : static_cast<std::uint64_t>(std::distance(begin(files), end(files)));
+}
+
+/// Adds what the kernel knows of this process, by the names that Prometheus has for it.
+void addProcess(TextPage& page) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    page.figure("process_cpu_seconds_total", MetricKind::counter, "CPU time of the process.",
+                secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime));
+    page.figure("process_resident_memory_bytes", MetricKind::gauge, "Memory of the process.",
+                residentBytes());
+    page.figure("process_open_fds", MetricKind::gauge, "Open files and sockets.", openFiles());
+    page.figure("process_start_time_seconds", MetricKind::gauge, "Since 1970-01-01 UTC.",
+                std::chrono::duration<double>(kStart.time_since_epoch()).count());
+}
+
 template <typename Name>
 std::string textOf(Name name) {
     return std::string(toString(name));
@@ -44,14 +82,11 @@ void addDevice(TextPage& page, const std::string& name, SafetyState now) {
 Result<std::unique_ptr<ServerMetrics>> ServerMetrics::start(const cell::ServerConfig& config,
                                                             Watched watched) {
     std::unique_ptr<ServerMetrics> made(new ServerMetrics(config, std::move(watched)));
-    auto endpoint = MetricsEndpoint::start({.address = config.metrics->host,
-                                            .port = config.metrics->port,
-                                            .metrics = [&told = *made] { return told.page(); },
-                                            .health = [&told = *made] { return told.health(); }});
-    if (!endpoint) {
-        return fail(endpoint.error());
-    }
-    made->endpoint_ = std::move(*endpoint);
+    METIER_ASSIGN(made->endpoint_,
+                  MetricsEndpoint::start({.address = config.metrics->host,
+                                          .port = config.metrics->port,
+                                          .metrics = [&told = *made] { return told.page(); },
+                                          .health = [&told = *made] { return told.health(); }}));
     spdlog::info("{}: figures at http://{}:{}/metrics", config.name, config.metrics->host,
                  made->endpoint_->port());
     return made;
@@ -104,6 +139,14 @@ std::string ServerMetrics::page() const {
     return page.text();
 }
 
+void ServerMetrics::addEach(TextPage& page, std::string_view name, std::string_view help,
+                            std::uint64_t (ProgramMeter::*count)() const noexcept) const {
+    page.family(name, MetricKind::counter, help);
+    for (const auto& meter : meters_) {
+        page.add({{"skill", meter->skill()}}, ((*meter).*count)());
+    }
+}
+
 void ServerMetrics::addSkills(TextPage& page) const {
     page.family("metier_skill_state", MetricKind::gauge,
                 "1 for the state that a skill is in, else 0.");
@@ -113,14 +156,9 @@ void ServerMetrics::addSkills(TextPage& page) const {
                      std::uint64_t{meter->state() == state});
         }
     }
-    page.family("metier_skill_starts_total", MetricKind::counter, "Executions that began.");
-    for (const auto& meter : meters_) {
-        page.add({{"skill", meter->skill()}}, meter->starts());
-    }
-    page.family("metier_skill_suspends_total", MetricKind::counter, "How often one was suspended.");
-    for (const auto& meter : meters_) {
-        page.add({{"skill", meter->skill()}}, meter->suspends());
-    }
+    addEach(page, "metier_skill_starts_total", "Executions that began.", &ProgramMeter::starts);
+    addEach(page, "metier_skill_suspends_total", "How often one was suspended.",
+            &ProgramMeter::suspends);
     page.family("metier_skill_refusals_total", MetricKind::counter,
                 "Calls of a method that were refused.");
     for (const auto& meter : meters_) {
@@ -132,10 +170,8 @@ void ServerMetrics::addSkills(TextPage& page) const {
 }
 
 void ServerMetrics::addEnds(TextPage& page) const {
-    page.family("metier_skill_finished_total", MetricKind::counter, "Executions that finished.");
-    for (const auto& meter : meters_) {
-        page.add({{"skill", meter->skill()}}, meter->finished());
-    }
+    addEach(page, "metier_skill_finished_total", "Executions that finished.",
+            &ProgramMeter::finished);
     page.family("metier_skill_halts_total", MetricKind::counter,
                 "Executions that were Halted, by reason.");
     for (const auto& meter : meters_) {
@@ -152,25 +188,21 @@ void ServerMetrics::addEnds(TextPage& page) const {
 
 void ServerMetrics::addServer(TextPage& page) const {
     const auto now = watched_.server.statistics();
-    page.family("metier_server_silence_seconds", MetricKind::gauge,
-                "Since the server's thread was last seen working.");
-    page.add({}, silence().count());
-    page.family("metier_connections", MetricKind::gauge, "Open TCP connections.");
-    page.add({}, std::uint64_t{now.connections});
-    page.family("metier_sessions", MetricKind::gauge, "OPC UA sessions.");
-    page.add({}, std::uint64_t{now.sessions});
-    page.family("metier_connections_refused_total", MetricKind::counter,
-                "Connections beyond what the limits allow.");
-    page.add({}, now.refused_connections);
-    page.family("metier_peers_cut_total", MetricKind::counter,
-                "Connections that were closed because their peer did not read.");
-    page.add({}, now.cut_peers);
-    page.family("metier_publish_latency_seconds", MetricKind::histogram,
-                "From an event until it was handed to the socket, for each Subscription.");
-    page.add({}, watched_.server.publishLatency().read());
-    page.family("metier_lease_losses_total", MetricKind::counter,
-                "Leases that ended without being given back.");
-    page.add({}, watched_.control.losses());
+    page.figure("metier_server_silence_seconds", MetricKind::gauge,
+                "Since the server's thread was last seen working.", silence().count());
+    page.figure("metier_connections", MetricKind::gauge, "Open TCP connections.",
+                std::uint64_t{now.connections});
+    page.figure("metier_sessions", MetricKind::gauge, "OPC UA sessions.",
+                std::uint64_t{now.sessions});
+    page.figure("metier_connections_refused_total", MetricKind::counter,
+                "Connections beyond what the limits allow.", now.refused_connections);
+    page.figure("metier_peers_cut_total", MetricKind::counter,
+                "Connections that were closed because their peer did not read.", now.cut_peers);
+    page.figure("metier_publish_latency_seconds", MetricKind::histogram,
+                "From an event until it was handed to the socket, for each Subscription.",
+                watched_.server.publishLatency().read());
+    page.figure("metier_lease_losses_total", MetricKind::counter,
+                "Leases that ended without being given back.", watched_.control.losses());
 }
 
 void ServerMetrics::addQueues(TextPage& page) const {
@@ -185,8 +217,8 @@ void ServerMetrics::addQueues(TextPage& page) const {
         page.add({{"queue", "records"}}, std::uint64_t{status.waiting});
         page.add({{"queue", "record_samples"}}, std::uint64_t{status.waiting_samples});
     }
-    page.family("metier_send_queue_bytes", MetricKind::gauge, "What waits for peers to read it.");
-    page.add({}, std::uint64_t{now.queued_bytes});
+    page.figure("metier_send_queue_bytes", MetricKind::gauge, "What waits for peers to read it.",
+                std::uint64_t{now.queued_bytes});
 }
 
 void ServerMetrics::addRecords(TextPage& page) const {
@@ -194,11 +226,10 @@ void ServerMetrics::addRecords(TextPage& page) const {
         return;
     }
     const auto status = watched_.recorder->status();
-    page.family("metier_records_failing", MetricKind::gauge, "1 while nothing can be recorded.");
-    page.add({}, std::uint64_t{status.write_state == records::WriteState::failing});
-    page.family("metier_records_written_total", MetricKind::counter,
-                "Executions that were recorded.");
-    page.add({}, status.written);
+    page.figure("metier_records_failing", MetricKind::gauge, "1 while nothing can be recorded.",
+                std::uint64_t{status.write_state == records::WriteState::failing});
+    page.figure("metier_records_written_total", MetricKind::counter,
+                "Executions that were recorded.", status.written);
     page.family("metier_records_dropped_total", MetricKind::counter, "What could not be recorded.");
     page.add({{"kind", "execution"}}, status.dropped.executions);
     page.add({{"kind", "event"}}, status.dropped.events);

@@ -48,6 +48,9 @@ private:
     // Threads of the endpoint.
     std::string page() const;
     ServerHealth health() const;
+    /// A counter of each skill.
+    void addEach(TextPage& page, std::string_view name, std::string_view help,
+                 std::uint64_t (ProgramMeter::*count)() const noexcept) const;
     void addSkills(TextPage& page) const;
     void addEnds(TextPage& page) const;
     void addServer(TextPage& page) const;

@@ -2,22 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 namespace metier::server {
 namespace {
 
-constexpr std::string_view typeName(MetricKind kind) {
-    switch (kind) {
-        case MetricKind::counter:
-            return "counter";
-        case MetricKind::gauge:
-            return "gauge";
-        case MetricKind::histogram:
-            return "histogram";
-    }
-    return "untyped";
-}
+constexpr std::array kTypeNames{"counter", "gauge", "histogram"};  // by MetricKind
 
 std::string escaped(std::string_view text, std::string_view also) {
     std::string result;
@@ -35,21 +26,17 @@ std::string escaped(std::string_view text, std::string_view also) {
 }
 
 std::string textOf(double value) {
-    if (std::isnan(value)) {
-        return "NaN";
-    }
-    if (std::isinf(value)) {
-        return value > 0 ? "+Inf" : "-Inf";
-    }
-    return fmt::format("{}", value);
+    return std::isnan(value)   ? "NaN"
+           : std::isinf(value) ? (value > 0 ? "+Inf" : "-Inf")
+                               : fmt::format("{}", value);
 }
 
 }  // namespace
 
 void TextPage::family(std::string_view name, MetricKind kind, std::string_view help) {
     family_ = name;
-    text_ +=
-        fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, escaped(help, ""), name, typeName(kind));
+    text_ += fmt::format("# HELP {} {}\n# TYPE {} {}\n", name, escaped(help, ""), name,
+                         kTypeNames.at(static_cast<std::size_t>(kind)));
 }
 
 void TextPage::add(const Labels& labels, double value) {

@@ -25,6 +25,12 @@ public:
 
     /// \param name [a-zA-Z_:][a-zA-Z0-9_:]*, once on a page; that of a counter ends in _total
     void family(std::string_view name, MetricKind kind, std::string_view help);
+    /// A family of one figure without labels. Parameters as family() and add() take them.
+    template <typename Value>
+    void figure(std::string_view name, MetricKind kind, std::string_view help, const Value& value) {
+        family(name, kind, help);
+        add({}, value);
+    }
     /// A figure of the family, which is no histogram.
     void add(const Labels& labels, double value);
     void add(const Labels& labels, std::uint64_t value);
